@@ -52,7 +52,6 @@ _IN_SI = {
     },
     "pressure": {
         "Pa": 1.0, "uPa": 1e-6, "mPa": 1e-3, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "N/m2": 1.0,
-        "bar": 1e5, "mbar": 1e2, "ubar": 0.1, "psi": _POUND_FORCE / _INCH**2,
         "pa": 1.0, "kpa": 1e3, "pascal": 1.0, "pascals": 1.0,
     },
     "angle": {

@@ -131,11 +131,11 @@ def _windows(
     path: Path, name: str, recording: RecordingBlocks, opened: ExitStack
 ) -> Iterator[dict[str, object]]:
     """Yield the rows of the windows of a recording, which is closed after the last one."""
-    from noise.labels.labelling import names_no_channels
     from noise.labels.windows import tracks
+    from noise.recordings.files import names_channels
 
     with opened:
-        for channel, track in tracks(recording, per_track=names_no_channels(path)):
+        for channel, track in tracks(recording, per_track=not names_channels(path)):
             for row in _windows_of(path, track):
                 yield {"file": name, "channel": channel, **row}
 

@@ -22,7 +22,7 @@ from noise.labels.segment_speed import segment_speed, speed_remark
 from noise.labels.segments import label_recording
 from noise.recordings import read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
-from noise.recordings.sidecar import find_sidecar, read_sidecar
+from noise.recordings.files import names_channels
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,7 +41,6 @@ __all__ = [
     "Labelling",
     "label_rows",
     "labelled_tracks",
-    "names_no_channels",
     "segment_cells",
 ]
 
@@ -141,7 +140,7 @@ class Labelling:
         """Return the rows of a recording, and whether it is calibrated."""
         with open_blocks(path, full_scale=self.full_scale) as blocks:
             recording = blocks or read_recording(path, full_scale=self.full_scale)
-            segments = label_recording(recording, self._loaded, per_track=names_no_channels(path))
+            segments = label_recording(recording, self._loaded, per_track=not names_channels(path))
             if self.loudness:
                 segments = with_loudness(RecordingBlocks.of(recording), segments)
             rows = label_rows(name, recording, segments, self._inference)
@@ -171,12 +170,6 @@ class Labelling:
         }
 
 
-def names_no_channels(path: Path) -> bool:
-    """Whether it is a plain sound file, whose tracks stand for themselves."""
-    sidecar = find_sidecar(path)
-    return sidecar is None or read_sidecar(sidecar).channels is None
-
-
 def labelled_tracks(path: Path, n_channels: int) -> list[str]:
     """Return what of a recording has labels of its own, as the column ``channel`` names it.
 
@@ -186,7 +179,7 @@ def labelled_tracks(path: Path, n_channels: int) -> list[str]:
     >>> labelled_tracks(Path("stereo.wav"), 2), labelled_tracks(Path("mono.wav"), 1)
     (['1', '2'], ['all'])
     """
-    several = n_channels > 1 and names_no_channels(path)
+    several = n_channels > 1 and not names_channels(path)
     return [str(number + 1) for number in range(n_channels)] if several else ["all"]
 
 

@@ -6,13 +6,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from noise.labels.frequencies import TELLING, segment_frequency
-from noise.labels.labelling import label_rows, names_no_channels
+from noise.labels.labelling import label_rows
 from noise.labels.levels import sound_levels, with_weighted_levels
 from noise.labels.segments import Segment
 from noise.labels.table import HUMAN
 from noise.labels.windows import can_be_described, describe, tracks
 from noise.recordings import read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings.files import names_channels
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,7 +83,7 @@ def said_rows(
             segments = _as_many_as_fit(segments if new is None else new)
         found = [
             segment
-            for channel, track in tracks(recording, per_track=names_no_channels(path))
+            for channel, track in tracks(recording, per_track=not names_channels(path))
             for segment in with_weighted_levels(track, _measured(track, channel, segments))
         ]
         if not whole:

@@ -20,11 +20,12 @@ from models.foreign_file import refusing
 from models.recording import Channel, Recording
 from noise.recordings.chunks import Chunks, to_units
 from noise.recordings.decimation import decimated
-from noise.recordings.files import LOGGER, MIN_SAMPLES, READERS
+from noise.recordings.files import MIN_SAMPLES, say_once
+from noise.recordings.formats import HIGHEST_RATE, LOWEST_RATE, formats
 from noise.recordings.formats.isolated import open_isolated
-from noise.recordings.formats.sampling import HIGHEST_RATE, LOWEST_RATE, check_rate
 from noise.recordings.formats.sound_file import SoundReader
-from noise.recordings.meaning import chosen_rows, describe
+from noise.recordings.meaning import describe
+from noise.recordings.unwrapping import find_turns
 
 if TYPE_CHECKING:
     import os
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.condition import Condition
-    from noise.recordings.meaning import PascalPerFullScale
+    from noise.recordings.meaning import Meaning, PascalPerFullScale
 
 __all__ = ["RecordingBlocks", "open_blocks"]
 
@@ -167,7 +168,8 @@ def open_blocks(
 def _open(
     path: Path, full_scale: PascalPerFullScale | None, stack: ExitStack
 ) -> RecordingBlocks | None:
-    if READERS.get(path.suffix.lower()) == LOGGER:
+    of = formats().get(path.suffix.lower())
+    if of is not None and of.read is None:
         return _open_logged(path, full_scale, stack)
     sound = _opened(path)
     if sound is None:
@@ -182,9 +184,30 @@ def _open(
         return samples
 
     chunks = Chunks(read_chunk, sound.n_samples, len(meaning.channels))
-    read, n_samples, rate = decimated(chunks.read, sound.n_samples, raw.rate)
+    return _described(path, meaning, chunks.read, sound.n_samples, raw.rate)
+
+
+def _described(
+    path: Path,
+    meaning: Meaning,
+    read: Callable[[int, int], NDArray[np.float64]],
+    n_samples: int,
+    rate: float,
+) -> RecordingBlocks:
+    """Return samples in units as a recording, whose angles go on."""
+    unwrapping = find_turns(meaning.channels, read, n_samples, meaning.calibrated)
+    say_once(path, (*meaning.notes, *unwrapping.notes))
+
+    def read_unwrapped(first: int, last: int) -> NDArray[np.float64]:
+        samples = read(first, last)
+        if unwrapping.jumps:
+            samples = samples.copy()
+            unwrapping.add(samples, first)
+        return samples
+
+    worked, n_samples, rate = decimated(read_unwrapped, n_samples, rate)
     return RecordingBlocks(
-        rate, meaning.channels, meaning.condition, meaning.calibrated, path.name, n_samples, read
+        rate, meaning.channels, meaning.condition, meaning.calibrated, path.name, n_samples, worked
     )
 
 
@@ -198,29 +221,22 @@ def _open_logged(
     except OSError:  # whoever reads it whole says what is wrong
         return None
     raw, n, read_rows = stack.enter_context(open_isolated(path))
-    check_rate(raw.rate, str(path))
     if 8 * n * len(raw.samples) < _LARGE or n < MIN_SAMPLES:
         return None
-    # Which rows it is that count is told from numbers in place of samples.
-    raw = chosen_rows(path, replace(raw, samples=np.arange(float(len(raw.samples)))[:, np.newaxis]))
-    rows, channels_of = raw.samples[:, 0].astype(int), replace(raw, samples=raw.samples[:, :0])
-    meaning = describe(path, channels_of, full_scale)
+    meaning = describe(path, raw, full_scale)
 
     def read_chunk(start: int, end: int) -> NDArray[np.float64]:
-        samples: NDArray[np.float64] = read_rows(start, end)[rows]
+        samples = read_rows(start, end)
         to_units(path, samples, meaning.channels, raw.rate, start)
         return samples
 
     chunks = Chunks(read_chunk, n, len(raw.samples))
-    read, n_samples, rate = decimated(chunks.read, n, raw.rate)
-    return RecordingBlocks(
-        rate, meaning.channels, meaning.condition, meaning.calibrated, path.name, n_samples, read
-    )
+    return _described(path, meaning, chunks.read, n, raw.rate)
 
 
 def _opened(path: Path) -> SoundReader | None:
     """Return a large sound file that is sound, opened; None for any other."""
-    if not READERS.get(path.suffix.lower(), "").startswith("noise.recordings.formats.sound_file:"):
+    if path.suffix.lower() not in formats():
         return None
     try:
         sound = SoundReader(path)

@@ -1,84 +1,39 @@
 """Recordings on disk: samples in one file and, where more is known, a sidecar of the same stem.
 
-A format is an ending and the function that reads it. Readers are named, not imported: a format
-whose library is an optional extra costs nothing until a file of it turns up, and a further format
-is one file and one entry here. A reader returns what the file says and nothing more; what the
-samples mean is decided in `noise.recordings.meaning`, once for all formats.
+Formats are found in `noise.recordings.formats`; what the samples mean is decided in
+`noise.recordings.meaning`, once for all of them.
 """
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
-from importlib import import_module
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from models.condition import Condition
+from models.calibration import Calibration
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import reading, refusing
-from models.recording import Recording
+from models.recording import Channel, Recording
 from noise.base.progress import note
 from noise.base.readable import readable
 from noise.recordings.folders import files_below
-from noise.recordings.formats.sampling import check_rate
-from noise.recordings.meaning import check_finite, chosen_rows, describe
+from noise.recordings.formats import RawSamples, check_rate, formats
+from noise.recordings.formats.isolated import open_isolated
+from noise.recordings.meaning import PascalPerFullScale, check_finite, describe
+from noise.recordings.sidecar import find_sidecar, read_sidecar
+from noise.recordings.unwrapping import find_turns
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
-    from numpy.typing import NDArray
-
-    from models.calibration import Calibration
-    from models.recording import Channel
-    from noise.recordings.meaning import PascalPerFullScale
-
-__all__ = [
-    "LOGGER",
-    "MIN_SAMPLES",
-    "READERS",
-    "RawSamples",
-    "find_recordings",
-    "read_raw",
-    "read_recording",
-]
+__all__ = ["MIN_SAMPLES", "find_recordings", "names_channels", "read_raw", "read_recording"]
 
 MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""
 
 _NAMED = 3
 """Of what is left out, so many are named."""
-
-_SOUND = "noise.recordings.formats.sound_file:read_sound_file"
-LOGGER = "noise.recordings.formats.isolated:read_isolated"
-"""Reader of what loggers write."""
-
-_UNIVERSAL = "noise.recordings.formats.universal_file:read_universal_file"
-
-READERS = {
-    ".aif": _SOUND,
-    ".aiff": _SOUND,
-    ".bw64": _SOUND,
-    ".bwf": _SOUND,
-    ".flac": _SOUND,
-    ".h5": LOGGER,
-    ".hdf5": LOGGER,
-    ".mdf": LOGGER,
-    ".mf4": LOGGER,
-    ".mp3": _SOUND,
-    ".oga": _SOUND,
-    ".ogg": _SOUND,
-    ".opus": _SOUND,
-    ".rf64": _SOUND,
-    ".tdms": LOGGER,
-    ".uff": _UNIVERSAL,
-    ".unv": _UNIVERSAL,
-    ".wav": _SOUND,
-    ".wave": _SOUND,
-}
-"""Ending in lower case -> reader, as ``module:function``."""
 
 _CONVERT = "convert to WAV or FLAC, as by: ffmpeg -i {name} {stem}.wav"
 _EXPORT = "export as TDMS, MDF4, HDF5, UFF58 or WAV from the program that wrote it"
@@ -91,43 +46,9 @@ OTHERS = {
 }  # fmt: skip
 """Endings of recordings that are not read -> what to do."""
 
+_BLOCK = 1 << 16  # samples a channel
 
-@dataclass(frozen=True, eq=False)
-class RawSamples:
-    """What a file holds, before anyone says what it means.
-
-    Parameters
-    ----------
-    samples : ndarray, shape (n_channels, n_samples)
-        As stored: over full scale [-] where `fractional`.
-    rate : float
-        Sampling rate [Hz].
-    fractional : bool
-        Whether samples are coded as fractions of a full scale (integers, lossy formats) and not
-        as floating-point values of their own.
-    description, comment : str
-        Free text in the file, where meters and engineers note a calibration.
-    channels : tuple of (Channel or None), optional
-        Where the file itself says what it measures: one a row of `samples`, which are in the
-        channels' units; None for a row that is no channel of ours, as the file has it.
-    condition : Condition
-        As far as the file itself tells it.
-    unclear : str
-        Why the file's own words do not settle what it measures, where they do not: the error,
-        unless a sidecar names the channels.
-    notes : tuple of str
-        What should be known of the file.
-    """
-
-    samples: NDArray[np.float64]
-    rate: float
-    fractional: bool
-    description: str = ""
-    comment: str = ""
-    channels: tuple[Channel | None, ...] | None = None
-    condition: Condition = field(default_factory=Condition)
-    unclear: str = ""
-    notes: tuple[str, ...] = ()
+_said: set[str] = set()
 
 
 def read_recording(
@@ -141,12 +62,12 @@ def read_recording(
     Parameters
     ----------
     path : path-like
-        File with one of the endings of `READERS`. A sidecar is the file
-        of the same stem with the ending ``.json``. Without one each track is a pressure channel (an
-        acceleration channel where a meter says so).
+        File with one of the endings of `noise.recordings.formats.formats`. A sidecar is the file
+        of the same stem with the ending ``.json``. Without one each track of a sound file is a
+        pressure channel (an acceleration channel where a meter says so).
     full_scale : float or tuple of float, optional
         Pressure of a full-scale sample [Pa], of all tracks or of each; wins over all that file and
-        sidecar say.
+        sidecar say, but for samples that are in a unit already.
     calibrations : mapping of str to Calibration, optional
         By kind of channel, for channels that neither file nor sidecar calibrates.
 
@@ -188,21 +109,23 @@ def _read_recording(
 ) -> Recording:
     raw = read_raw(path)
     meaning = describe(path, raw, full_scale, calibrations)
-    n_samples = raw.samples.shape[1]
+    samples, channels = raw.samples, meaning.channels
+    n_samples = samples.shape[1]
     if n_samples < MIN_SAMPLES:
         raise RecordingError(f"{path}: holds {n_samples} samples, expected at least {MIN_SAMPLES}")
     with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
-        notes = [
+        beyond = [
             _to_units(path, channel, curve, row)
-            for channel, curve, row in zip(
-                meaning.channels, meaning.curves, raw.samples, strict=True
-            )
+            for channel, curve, row in zip(channels, meaning.curves, samples, strict=True)
         ]
-    check_finite(path, raw.samples, raw.rate, meaning.channels)
+    check_finite(path, samples, raw.rate, channels)
+    unwrapping = find_turns(channels, lambda a, b: samples[:, a:b], n_samples, meaning.calibrated)
+    unwrapping.add(samples, 0)
+    notes = (*meaning.notes, *filter(None, beyond), *unwrapping.notes)
+    say_once(path, notes)
     return Recording(
-        raw.samples, raw.rate, meaning.channels, meaning.condition, meaning.calibrated, path.name,
-        tuple(filter(None, notes)),
-    )  # fmt: skip
+        samples, raw.rate, channels, meaning.condition, meaning.calibrated, path.name, notes
+    )
 
 
 def _to_units(
@@ -264,7 +187,9 @@ def find_recordings(
                 files = files_below(path, tell=True)
                 _note_others(path, [name for _, name in files])
                 found += [
-                    (file, readable(name)) for file, name in files if file.suffix.lower() in READERS
+                    (file, readable(name))
+                    for file, name in files
+                    if file.suffix.lower() in formats()
                 ]
             elif path.exists():
                 found.append((path, readable(path.name)))
@@ -302,11 +227,45 @@ def read_raw(path: Path) -> RawSamples:
             raise RecordingError(f"{path}: is empty (0 bytes)")
         if path.suffix.lower() in OTHERS:
             raise RecordingError(f"{path}: {_what_to_do(path.name)}")
-        if path.suffix.lower() not in READERS:
-            known = ", ".join(READERS)
+        of = formats().get(path.suffix.lower())
+        if of is None:
+            known = ", ".join(formats())
             raise RecordingError(f"{path}: has no ending of a recording; known are {known}")
-        module, _, function = READERS[path.suffix.lower()].partition(":")
-        reader: Callable[[Path], RawSamples] = getattr(import_module(module), function)
-        raw = reader(path)
+        raw = _read_logged(path) if of.read is None else of.read(path)
         check_rate(raw.rate, str(path))
-        return chosen_rows(path, raw)
+        return raw
+
+
+def _read_logged(path: Path) -> RawSamples:
+    with open_isolated(path) as (raw, n_samples, read):
+        samples = np.empty((len(raw.samples), n_samples))
+        for first in range(0, n_samples, _BLOCK):
+            last = min(first + _BLOCK, n_samples)
+            samples[:, first:last] = read(first, last)
+    return replace(raw, samples=samples)
+
+
+def names_channels(path: Path) -> bool:
+    """Whether a recording says what its channels are; the tracks of a plain sound file do not.
+
+    Raises
+    ------
+    RecordingError
+        Its sidecar cannot be read.
+
+    Examples
+    --------
+    >>> names_channels(Path("stereo.wav")), names_channels(Path("run07.tdms"))
+    (False, True)
+    """
+    of, sidecar = formats().get(path.suffix.lower()), find_sidecar(path)
+    logged = of is not None and of.read is None
+    return logged or (sidecar is not None and read_sidecar(sidecar).channels is not None)
+
+
+def say_once(path: Path, notes: Iterable[str]) -> None:
+    """Print notes on a recording; one that is true of many files is printed for the first."""
+    for text in notes:
+        if text not in _said:
+            _said.add(text)
+            note(f"{path}: {text}")

@@ -18,8 +18,8 @@ from models.foreign_table import read_table
 from models.recording import Channel
 from models.units import CHANNEL_UNITS, quantity_of_unit
 from noise.recordings import find_recordings, read_recording
-from noise.recordings.files import MIN_SAMPLES, READERS
-from noise.recordings.formats.sampling import check_rate
+from noise.recordings.files import MIN_SAMPLES
+from noise.recordings.formats import check_rate, formats
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -73,7 +73,7 @@ def find_hits(paths: Iterable[Path]) -> list[Path]:
         if not path.is_dir():
             found += [file for file, _ in find_recordings(path)]
             continue
-        inside = [file for file in path.iterdir() if file.suffix.lower() in {*_TABLES, *READERS}]
+        inside = [file for file in path.iterdir() if file.suffix.lower() in {*_TABLES, *formats()}]
         if not inside:
             raise ParameterError(f"{path}: there are no hits in it")
         found += sorted(inside)

@@ -2,7 +2,8 @@
 
 The worth is decided per channel by the first of these that says something:
 
-1. the caller's `full_scale`, an option or a calibrator's tone (pressure channels only),
+1. the caller's `full_scale`, an option or a calibrator's tone (pressure channels only), unless the
+   samples are in a unit already: full scale is worth nothing there, and a note says so,
 2. the sidecar: its ``scale``, or, for floating-point samples, that it names the channel, since
    such samples are then in the channel's unit; ``"calibrated": false`` silences 2 to 4,
 3. the file's description, then its name, as sound level meters write them,
@@ -45,11 +46,10 @@ if TYPE_CHECKING:
 
     from models.calibration import Calibration
     from models.condition import Condition
-    from noise.recordings.files import RawSamples
+    from noise.recordings.formats import RawSamples
 
 __all__ = [
-    "FullScale", "Meaning", "PascalPerFullScale", "check_finite", "chosen_rows", "describe",
-    "stated_full_scale",
+    "FullScale", "Meaning", "PascalPerFullScale", "check_finite", "describe", "stated_full_scale",
 ]  # fmt: skip
 
 PascalPerFullScale = float | tuple[float, ...]
@@ -67,26 +67,6 @@ _ACCELERATION = re.compile(
 )
 
 
-def chosen_rows(path: Path, raw: RawSamples) -> RawSamples:
-    """Leave out rows that are no channels, unless the sidecar names them as well.
-
-    Raises
-    ------
-    RecordingError
-        The file's own words do not settle what it measures, and no sidecar does.
-    """
-    sidecar = _sidecar(path)
-    if raw.channels is None or len(sidecar.channels or ()) == len(raw.samples):
-        return raw
-    if raw.unclear and sidecar.channels is None:
-        raise RecordingError(raw.unclear)
-    keep = [row for row, channel in enumerate(raw.channels) if channel is not None]
-    if not keep or len(keep) == len(raw.channels):
-        return raw
-    channels = tuple(channel for channel in raw.channels if channel is not None)
-    return replace(raw, samples=raw.samples[keep], channels=channels)
-
-
 @dataclass(frozen=True)
 class Meaning:
     """What the samples of a file are.
@@ -99,12 +79,15 @@ class Meaning:
     calibrated : bool
     curves : tuple of (Calibration or None)
         One a channel: from samples to values, where it takes more than a factor.
+    notes : tuple of str
+        What a reader should know of it, a line each.
     """
 
     channels: tuple[Channel, ...]
     condition: Condition
     calibrated: bool
     curves: tuple[Calibration | None, ...]
+    notes: tuple[str, ...] = ()
 
 
 def describe(
@@ -138,7 +121,7 @@ def describe(
     Examples
     --------
     >>> from pathlib import Path
-    >>> from noise.recordings.files import RawSamples
+    >>> from noise.recordings.formats import RawSamples
     >>> raw = RawSamples(np.empty((1, 0)), 48e3, fractional=True)
     >>> meaning = describe(Path("nowhere.wav"), raw, 2.0)
     >>> meaning.channels[0].name, meaning.channels[0].full_scale, meaning.calibrated
@@ -156,9 +139,11 @@ def describe(
             f"{sidecar_path}: gives a scale, but {path.name} holds floating-point samples, which "
             f"are in the channel's unit; remove the scale"
         )
-    channels, curves = _interpret(path, raw, sidecar, options, calibrations or {})
+    notes = list(raw.notes)
+    channels, curves = _interpret(path, raw, sidecar, options, calibrations or {}, notes)
     condition = _united(raw.condition, sidecar.condition)
-    return Meaning(channels, condition, bool(curves), curves or (None,) * n_channels)
+    curves_or_none = curves or (None,) * n_channels
+    return Meaning(channels, condition, bool(curves), curves_or_none, tuple(notes))
 
 
 def _by_track(
@@ -229,12 +214,12 @@ def _interpret(
     sidecar: Sidecar,
     options: tuple[float | None, ...],
     calibrations: Mapping[str, Calibration],
+    notes: list[str],
 ) -> tuple[tuple[Channel, ...], tuple[Calibration | None, ...]]:
     """Channels with the value of their full scale, and curves; none where a channel lacks both."""
     texts = (raw.description, path.name, raw.comment)
     stated = next((found for text in texts if (found := stated_full_scale(text))), None)
-    own = tuple(channel for channel in raw.channels or () if channel is not None)
-    channels = sidecar.channels or own
+    channels = sidecar.channels or raw.channels or ()
     if not channels:
         kind = "pressure" if stated is None or any(options) else stated.kind
         numbers = range(1, len(raw.samples) + 1)
@@ -245,7 +230,13 @@ def _interpret(
     readings = sidecar.readings or ("",) * len(channels)
     pairs: list[tuple[Channel, Calibration | None]] = []
     for channel, scale, reading, option in zip(channels, scales, readings, options, strict=True):
-        opinions = [option if channel.kind == "pressure" else None]
+        in_unit = in_units and sidecar.calibrated is not False and not reading
+        if in_unit and option is not None and channel.kind == "pressure":
+            notes.append(
+                f"{channel.name} is in {channel.unit} already; what full scale is worth "
+                "(--full-scale, --calibrator) is not used"
+            )
+        opinions = [option if channel.kind == "pressure" and not in_unit else None]
         if sidecar.calibrated is not False and not reading:
             opinions += [scale, 1.0 if in_units else None]
             opinions += [stated.value if stated and stated.kind == channel.kind else None]

@@ -58,6 +58,8 @@ class Sidecar:
     readings : tuple of str
         One a channel: the unit of what its chain read, one of `models.calibration.READING_UNITS`;
         empty where the samples are in the channel's own.
+    units : tuple of str
+        One a channel, as spelled; empty where not given.
     """
 
     channels: tuple[Channel, ...] | None = None
@@ -65,6 +67,7 @@ class Sidecar:
     condition: Condition = field(default_factory=Condition)
     calibrated: bool | None = None
     readings: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
 
 
 def find_sidecar(recording: Path) -> Path | None:
@@ -142,11 +145,12 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
         return Sidecar(condition=condition, calibrated=calibrated)
     entries = _channels(content["channels"], where)
     return Sidecar(
-        channels=tuple(channel for channel, _, _ in entries),
-        scales=tuple(scale for _, scale, _ in entries),
+        channels=tuple(channel for channel, _, _, _ in entries),
+        scales=tuple(scale for _, scale, _, _ in entries),
         condition=condition,
         calibrated=calibrated,
-        readings=tuple(reading for _, _, reading in entries),
+        readings=tuple(reading for _, _, reading, _ in entries),
+        units=tuple(unit for _, _, _, unit in entries),
     )
 
 
@@ -216,18 +220,18 @@ def _conditions_entry(condition: Condition) -> dict[str, float | str | None]:
     return entry
 
 
-def _channels(entries: object, where: str) -> list[tuple[Channel, float | None, str]]:
+def _channels(entries: object, where: str) -> list[tuple[Channel, float | None, str, str]]:
     if not isinstance(entries, list):
         _refuse(where, f"channels is {show(entries)}, expected a list")
     found = [_channel(entry, number, where) for number, entry in enumerate(entries, start=1)]
-    names = [channel.name for channel, _, _ in found]
+    names = [channel.name for channel, _, _, _ in found]
     if len(set(names)) < len(names):
         name, times = Counter(names).most_common(1)[0]
         _refuse(where, f"channel {name!r} is named {times} times, expected once")
     return found
 
 
-def _channel(entry: object, number: int, where: str) -> tuple[Channel, float | None, str]:
+def _channel(entry: object, number: int, where: str) -> tuple[Channel, float | None, str, str]:
     if not isinstance(entry, dict):
         _refuse(where, f"channel {number} is {show(entry)}, expected an object {{...}}")
     name = entry.get("name")
@@ -246,7 +250,7 @@ def _channel(entry: object, number: int, where: str) -> tuple[Channel, float | N
     direction = _vector(entry.get("direction"), f"{channel}: direction")
     if direction is not None:
         direction = _unit_vector(direction, f"{channel}: direction")
-    return Channel(plain.name, position, direction), scale, reading
+    return Channel(plain.name, position, direction), scale, reading, str(entry.get("unit", ""))
 
 
 def _condition(entry: object, where: str) -> Condition:

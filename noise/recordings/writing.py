@@ -15,7 +15,8 @@ import numpy as np
 from models.errors import ParameterError
 from models.recording import Recording
 from noise.base.atomic import atomic
-from noise.recordings.files import MIN_SAMPLES, READERS
+from noise.recordings.files import MIN_SAMPLES
+from noise.recordings.formats import formats
 from noise.recordings.sidecar import sidecar_text
 from noise.recordings.wav import wav_header
 
@@ -190,6 +191,6 @@ def _wav_path(path: Path) -> Path:
         raise ParameterError(f"{str(path)!r} names no file to write a recording to")
     if ending == ".wav":
         return path
-    if ending in READERS or ending == ".json":
+    if ending in formats() or ending == ".json":
         raise ParameterError(f"{path}: recordings are written as WAV; end the name in .wav")
     return path.with_name(path.name + ".wav")

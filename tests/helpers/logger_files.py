@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import h5py
 import numpy as np
 from asammdf import MDF, Signal
 from nptdms import ChannelObject, RootObject, TdmsWriter
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @dataclass
@@ -23,24 +20,43 @@ class Wave:
 
 
 def write_tdms(path: Path, waves: list[Wave], conditions: dict[str, object] | None = None) -> Path:
+    return tdms(
+        path,
+        *((w.name, w.samples, {"wf_increment": 1 / w.rate, "unit_string": w.unit}) for w in waves),
+        root=conditions,
+    )
+
+
+def tdms(path: Path, *channels: tuple, root: dict[str, object] | None = None) -> Path:
+    """Channels of one group: name, samples, properties."""
     with TdmsWriter(path) as file:
-        root = RootObject(conditions or {})
-        objects = [
-            ChannelObject(
-                "run", w.name, w.samples, {"wf_increment": 1 / w.rate, "unit_string": w.unit}
-            )
-            for w in waves
-        ]
-        file.write_segment([root, *objects])
+        objects = [ChannelObject("run", *channel) for channel in channels]
+        file.write_segment([RootObject(root or {}), *objects])
     return path
 
 
 def write_mdf(path: Path, waves: list[Wave], conditions: dict[str, object] | None = None) -> Path:
+    groups = []
+    for rate in dict.fromkeys((w.rate, w.samples.size) for w in waves):
+        together = [w for w in waves if (w.rate, w.samples.size) == rate]
+        time = np.arange(together[0].samples.size) / together[0].rate
+        groups.append([Signal(w.samples, time, unit=w.unit, name=w.name) for w in together])
+    return mdf(path, *groups, conditions=conditions)
+
+
+def mdf(
+    path: Path,
+    *groups: list[Signal],
+    unit: str = "s",
+    sync: int = 1,
+    conditions: dict[str, object] | None = None,
+) -> Path:
+    """Groups of signals, the unit of their master channels, and what that is (1 is time)."""
     with MDF(version="4.10") as file:
-        for rate in dict.fromkeys((w.rate, w.samples.size) for w in waves):
-            together = [w for w in waves if (w.rate, w.samples.size) == rate]
-            time = np.arange(together[0].samples.size) / together[0].rate
-            file.append([Signal(w.samples, time, unit=w.unit, name=w.name) for w in together])
+        for signals in groups:
+            file.append(signals)
+            master = file.groups[-1].channels[0]
+            master.unit, master.sync_type = unit, sync
         for key, value in (conditions or {}).items():
             file.header._common_properties[key] = str(value)
         file.save(path, overwrite=True)
@@ -48,13 +64,44 @@ def write_mdf(path: Path, waves: list[Wave], conditions: dict[str, object] | Non
 
 
 def write_hdf5(path: Path, waves: list[Wave], conditions: dict[str, object] | None = None) -> Path:
+    return hdf5(
+        path,
+        *((w.name, w.samples, {"unit": w.unit, "rate_Hz": w.rate}) for w in waves),
+        root=conditions,
+    )
+
+
+def hdf5(path: Path, *datasets: tuple, root: dict[str, object] | None = None) -> Path:
+    """Datasets: name, numbers, attributes."""
     with h5py.File(path, "w", track_order=True) as file:
-        file.attrs.update(conditions or {})
-        for w in waves:
-            dataset = file.create_dataset(w.name, data=w.samples)
-            dataset.attrs["unit"] = w.unit
-            dataset.attrs["rate_Hz"] = w.rate
+        file.attrs.update(root or {})
+        for name, data, attributes in datasets:
+            file.create_dataset(name, data=data).attrs.update(attributes)
     return path
 
 
+def uff(path: Path, *functions: tuple, step: float = 1 / 51200, axis: str = "s") -> Path:
+    """Datasets 58 in text: samples, unit, and where wanted data type, start, number of values."""
+    text = ""
+    for function in functions:
+        samples, unit = function[:2]
+        data_type, start, n = function[2:] or (0, 0.0, len(samples))
+        text += "    -1\n    58\n" + "NONE\n" * 5
+        text += f"{1:5}{0:10}{0:5}{0:10} {'A':>10}{1:10}{3:4} {'NONE':>10}{0:10}{0:4}\n"
+        text += f"{4:10}{n:10}{1:10}{start:13.5e}{step:13.5e}{0:13.5e}\n"
+        for kind, label in ((17, axis), (data_type, unit), (0, "NONE"), (0, "NONE")):
+            text += f"{kind:10}{0:5}{0:5}{0:5} {'NONE':20} {label:20}\n"
+        rows = [samples[i : i + 4] for i in range(0, len(samples), 4)]
+        text += "".join("".join(f"{value:20.11e}" for value in row) + "\n" for row in rows)
+        text += "    -1\n"
+    path.write_bytes(text.encode("latin-1"))
+    return path
+
+
+def write_uff(path: Path, waves: list[Wave], conditions: dict[str, object] | None = None) -> Path:
+    assert not conditions, "universal files state none"
+    return uff(path, *((w.samples, w.unit) for w in waves), step=1 / waves[0].rate)
+
+
 WRITERS = {".tdms": write_tdms, ".mf4": write_mdf, ".h5": write_hdf5}
+"""Of formats that state conditions, channel names and a rate for each channel."""

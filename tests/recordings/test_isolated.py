@@ -7,6 +7,8 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,11 +17,12 @@ from models.errors import RecordingError
 from noise.batch import find_jobs, perform_all
 from noise.labels.labelling import Labelling
 from noise.recordings import read_recording
-from noise.recordings.formats import isolated
+from noise.recordings.formats.isolated import open_isolated
 from tests.helpers.batch_work import in_order
 from tests.helpers.logger_files import WRITERS, Wave
 
 X = np.sin(0.01 * np.arange(200_000))
+LINUX = pytest.mark.skipif(sys.platform != "linux", reason="lists processes as Linux does")
 
 
 @pytest.fixture
@@ -27,56 +30,47 @@ def path(tmp_path):
     return WRITERS[".h5"](tmp_path / "run.h5", [Wave("mic", "Pa", X), Wave("torque", "", 2 * X)])
 
 
-def process():
-    return isolated._processes[os.getpid()]
+def children(of=None):
+    """Numbers of the processes that one has started."""
+    stats = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):  # it has ended
+            stats.append(path.read_text())
+    parents = {int(stat.split()[0]): int(stat.rpartition(")")[2].split()[1]) for stat in stats}
+    return {pid for pid, parent in parents.items() if parent == (of or os.getpid())}
 
 
-def test_it_lives_on_from_file_to_file(path, tmp_path):
-    run = read_recording(path)
-    first = process().pid
-    np.testing.assert_array_equal(run["torque"], 2 * X)
+@LINUX
+def test_it_lives_on_from_file_to_file_whatever_they_are(path, tmp_path):
+    np.testing.assert_array_equal(read_recording(path)["torque"], 2 * X)
+    before = children()
     (tmp_path / "bad.h5").write_bytes(b"no file of that sort")
     with pytest.raises(RecordingError):
         read_recording(tmp_path / "bad.h5")
     read_recording(path)
-    assert process().pid == first
+    assert children() == before
 
 
-def test_one_that_died_is_replaced(path):
+@LINUX
+def test_one_that_dies_over_a_file_is_a_file_refused_and_the_next_is_read(path):
     read_recording(path)
-    process().kill()
-    process().wait()
+    with open_isolated(path) as (_, _, read):
+        for pid in children():
+            os.kill(pid, signal.SIGKILL)
+        with pytest.raises(RecordingError, match=r"run\.h5: .* no HDF5 .* ended the process"):
+            read(0, 100)
     assert read_recording(path).samples.shape == (2, X.size)
 
 
-def test_one_that_dies_over_a_file_is_a_file_refused(path, monkeypatch):
-    read_recording(path)
-    monkeypatch.setattr(
-        isolated, "_answer", lambda _: process().kill() or isolated.pickle.loads(b"")
-    )
-    with pytest.raises(
-        RecordingError, match=r"run\.h5: is damaged or no HDF5 .* ended the process"
-    ):
-        read_recording(path)
-    monkeypatch.undo()
-    assert read_recording(path).samples.shape == (2, X.size)
-
-
-def test_an_interrupt_leaves_no_half_answer_behind(path, monkeypatch):
-    answered = []
-    answer = isolated._answer
-
-    def interrupted(process):
-        answered.append(answer(process))
-        if len(answered) == 2:
-            raise KeyboardInterrupt
-        return answered[-1]
-
-    monkeypatch.setattr(isolated, "_answer", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        read_recording(path)
-    monkeypatch.undo()
+def test_an_interrupt_leaves_no_half_answer_behind(path):
+    with pytest.raises(KeyboardInterrupt), open_isolated(path):
+        raise KeyboardInterrupt
     np.testing.assert_array_equal(read_recording(path)["torque"], 2 * X)
+
+
+def test_two_files_are_open_at_once(path):
+    with open_isolated(path) as (_, _, one), open_isolated(path) as (_, _, other):
+        np.testing.assert_array_equal(one(7, 99), other(7, 99))
 
 
 def test_a_path_is_that_of_the_folder_where_it_is_named(path, monkeypatch):
@@ -87,19 +81,21 @@ def test_a_path_is_that_of_the_folder_where_it_is_named(path, monkeypatch):
         read_recording("nowhere.h5")
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="a process is asked for by its number")
+@LINUX
 def test_it_ends_with_the_one_that_asks(path):
-    told = (
-        "import os, sys; from noise.recordings import read_recording, files;"
-        "from noise.recordings.formats import isolated; read_recording(sys.argv[1]);"
-        "print(isolated._processes[os.getpid()].pid, flush=True); os.kill(os.getpid(), 9)"
+    code = (
+        "import sys, time; from noise.recordings import read_recording;"
+        "read_recording(sys.argv[1]); print('read', flush=True); time.sleep(60)"
     )
-    done = subprocess.run([sys.executable, "-c", told, path], capture_output=True, text=True)
-    assert done.returncode == -signal.SIGKILL
+    call = [sys.executable, "-c", code, path]
+    with subprocess.Popen(call, stdout=subprocess.PIPE, text=True) as asking:
+        assert asking.stdout.readline() == "read\n"
+        (reader,) = children(asking.pid)
+        asking.kill()
     until = time.monotonic() + 20.0
     while time.monotonic() < until:
         try:
-            os.kill(int(done.stdout), 0)
+            os.kill(reader, 0)
         except ProcessLookupError:
             return
         time.sleep(0.05)

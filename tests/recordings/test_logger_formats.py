@@ -103,7 +103,10 @@ def test_what_is_none_of_ours_is_passed_over_at_any_rate(write):
     [
         ([Wave("torque", "V", X)], "channel 'torque' has unit 'V', expected 'N m'"),
         ([Wave("torque", "Pa", X)], "channel 'torque' has unit 'Pa', expected 'N m'"),
-        ([Wave("mic", "V", X)], "channel 'mic' has unit 'V', expected N m, m/s^2"),
+        (
+            [Wave("mic", "V", X)],
+            "'mic' has unit 'V'; expected samples over time in one of N m",
+        ),
         ([Wave("a", "Pa", X), Wave("b", "Pa", X[:900])], "must be sampled together"),
         ([Wave("a", "Pa", X), Wave("b", "Pa", X, 25600.0)], "must be sampled together"),
         ([Wave("a", "Pa", np.full(99, np.nan))], "channel 'pressure' is nan at sample 0"),
@@ -180,16 +183,6 @@ def test_a_tdms_scale_is_applied_and_an_unknown_one_refused(tmp_path):
         unknown = scale | {"NI_Scale[0]_Scale_Type": "Magic"}
         file.write_segment([ChannelObject("g", "torque", counts, unknown)])
     assert "scale type 'Magic'" in refusal(path)
-
-
-def test_mdf_time_that_does_not_rise_evenly_is_refused(tmp_path):
-    path = tmp_path / "run.mf4"
-    time = np.arange(400) / 1e3
-    time[200:] += 0.5e-3
-    with MDF(version="4.10") as file:
-        file.append([Signal(X[:400], time, unit="Pa", name="mic")])
-        file.save(path)
-    assert "time does not rise evenly" in refusal(path)
 
 
 def test_mdf_events_that_are_none_of_ours_do_not_matter(tmp_path):

@@ -16,7 +16,6 @@ from noise.labels.labelling import label_rows
 from noise.labels.segments import label_recording
 from noise.recordings import read_recording, write_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
-from noise.recordings.formats import isolated
 from tests.helpers.logger_files import WRITERS, Wave
 
 RATE = 8000
@@ -185,14 +184,3 @@ def test_a_loggers_file_that_is_damaged_or_no_recording_is_refused_alike(tmp_pat
         with pytest.raises(RecordingError) as parts, open_blocks(one):
             pass
         assert str(parts.value) == str(whole.value)
-
-
-def test_no_process_is_left_of_a_loggers_file_that_was_read_in_parts(tmp_path, monkeypatch):
-    started = []
-    start = isolated._started
-    monkeypatch.setattr(isolated, "_started", lambda: started.append(start()) or started[-1])
-    path = WRITERS[".h5"](tmp_path / "run.h5", [Wave("mic", "Pa", noise(1, 1.0)[0])])
-    with open_blocks(path) as blocks:
-        blocks.read(0, 100)
-    assert len(started) == 1
-    assert started[0].poll() is not None

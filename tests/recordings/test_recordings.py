@@ -16,7 +16,7 @@ from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from models.units import CHANNEL_UNITS
 from noise.recordings import find_recordings, read_recording, write_recording
-from noise.recordings.files import READERS
+from noise.recordings.formats import formats
 
 RATE = 48_000
 HALF = np.full(480, 0.5)
@@ -158,7 +158,7 @@ def test_silence_is_a_recording(tmp_path):
 # What is refused
 
 
-@pytest.mark.parametrize("ending", sorted(READERS))
+@pytest.mark.parametrize("ending", sorted(formats()))
 def test_empty_files_text_and_noise_are_refused(tmp_path, ending):
     path = tmp_path / f"run{ending}"
     assert "no such file" in refusal(path)

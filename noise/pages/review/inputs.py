@@ -18,8 +18,8 @@ from noise.base.readable import readable
 from noise.base.tables import TABLE_ENDINGS, table_columns
 from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
-from noise.recordings.files import READERS
 from noise.recordings.folders import files_below
+from noise.recordings.formats import formats
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -177,7 +177,7 @@ def _is_sidecar(path: Path) -> bool:
     """Whether it only describes the recording beside it, as in ``review recordings/*``."""
     if path.suffix.lower() != ".json" or path.name == DIAGNOSIS:
         return False
-    return any(path.with_suffix(ending).is_file() for ending in READERS)
+    return any(path.with_suffix(ending).is_file() for ending in formats())
 
 
 def _inside(folder: Path) -> Iterator[tuple[str, Path]]:

@@ -1,35 +1,43 @@
-"""HDF5 files as raw samples: each one-dimensional dataset of numbers is a channel.
+"""HDF5 files as channels: each one-dimensional dataset of numbers is one.
 
 HDF5 fixes no layout, so the plainest one is read: datasets named as they like with an attribute
 ``unit`` (or ``units``), at any depth, and the sampling rate as an attribute of the dataset or of
 one of its groups (``rate_Hz``, ``rate``, ``fs``, ``sampling_rate``, ``sample_rate``,
-``sampling_frequency``, or the step ``dt``), or else as a dataset ``time`` beside them, in seconds.
-Conditions are attributes of the file. Datasets kept in other files are not followed.
+``sampling_frequency``, or the step ``dt``), or else as a dataset ``time`` beside them. A start is
+``t0``, ``start`` or ``start_s``, the unit of the axis ``x_unit``. Packed numbers have a
+``scale_factor`` and an ``add_offset``. Conditions are attributes of the file. Datasets kept in
+other files are not followed.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import RecordingError
-from noise.recordings.formats.logged import LoggedChannel
-from noise.recordings.formats.sampling import even_rate, whole_rate
-from noise.recordings.formats.stated_condition import CONDITIONS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-__all__ = ["open_hdf5"]
+from models.units import split_unit
+from noise.recordings.formats import Format
+from noise.recordings.formats.logged import (
+    CONDITIONS,
+    NOT_STATED,
+    PACKING,
+    Axis,
+    LoggedChannel,
+    Read,
+    is_time,
+    packing,
+)  # fmt: skip
 
 _RATES = ("rate_Hz", "rate", "fs", "sampling_rate", "sample_rate", "sampling_frequency")
-_STEP = "dt"
-_TIMES = ("time", "t", "time_s")
+_STEPS = ("dt", "sampling_interval")
+_STARTS = ("t0", "start", "start_s", "start_time")
+_AXIS_UNITS = ("x_unit", "xunit", "x_units", "axis_unit")
 _UNITS = ("unit", "units", "unit_str")
 _DENSEST = 1032  # bytes a byte: what deflate reaches at best
 _LONGEST = 1 << 16  # of the text of an attribute [byte]
@@ -58,33 +66,94 @@ def open_hdf5(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, ob
         logged = [
             _channel(path, dataset)
             for dataset in datasets
-            if _last(dataset) not in _TIMES and dataset.size > 0
+            if dataset.size > 0 and not is_time(_last(dataset), _text(path, dataset, _UNITS))
         ]
-        properties = {key: _attribute(path, file, key) for key in CONDITIONS}
-        yield [channel for channel in logged if channel is not None], properties
+        yield logged, _attributes(path, file, CONDITIONS)
 
 
-def _channel(path: Path, dataset: Any) -> LoggedChannel | None:
-    """Describe a dataset as a channel; None where no sampling rate belongs to it."""
-    where = f"{path}: channel {_last(dataset)!r}"
-    _check_size(path, where, dataset)
-    rate = _rate(path, where, dataset)
-    units = (_attribute(path, dataset, key) for key in _UNITS)
-    unit = next((_text(value) for value in units if value is not None), "")
-    if rate is None:
-        return None
-    return LoggedChannel(_last(dataset), unit, int(dataset.size), rate, _reading(dataset))
+FORMAT = Format("HDF5", (".h5", ".hdf5"), channels=open_hdf5, library="h5py", extra="hdf5")
 
 
-def _reading(dataset: Any) -> Callable[[int, int], NDArray[np.generic]]:
+def _channel(path: Path, dataset: Any) -> LoggedChannel:
+    _check_size(path, dataset)
+    factor, offset, problem, remark = packing(
+        _attributes(path, dataset, PACKING), dataset.dtype.kind in "iu"
+    )
+    return LoggedChannel(
+        name=_last(dataset),
+        n_samples=int(dataset.size),
+        read=_reading(dataset),
+        axes=_axes(path, dataset),
+        factor=factor,
+        offset=offset,
+        unit=_text(path, dataset, _UNITS),
+        problem=problem,
+        remark=remark,
+    )
+
+
+def _axes(path: Path, dataset: Any) -> list[Axis]:
+    """Axes as the innermost holder of a dataset states them that states any."""
+    scales = [str(scale.name).rpartition("/")[2] for scale in dataset.dims[0].values()]
+    quantity = dataset.dims[0].label or next(iter(scales), NOT_STATED)
+    axes: list[Axis] = []
+    holder = dataset
+    while True:
+        unit = _text(path, holder, _AXIS_UNITS)
+        numbers = {
+            key: _number(path, dataset, key, value)
+            for key, value in _attributes(path, holder, (*_RATES, *_STEPS, *_STARTS)).items()
+        }
+        steps = [
+            1.0 / numbers[key] if key in _RATES else numbers[key]
+            for key in (*_RATES, *_STEPS)
+            if numbers.get(key)
+        ]
+        starts = [numbers[key] for key in _STARTS if key in numbers]
+        axes += [
+            Axis(start=start, step=step, times=NOT_STATED, unit=unit, quantity=quantity)
+            for start, step in zip_longest(starts, steps, fillvalue=NOT_STATED)
+        ]
+        if holder is not dataset:
+            axes += _time_beside(path, holder, dataset)
+        if holder.name == "/" or any(axis.step or axis.times for axis in axes):
+            return axes
+        holder = holder.parent
+
+
+def _number(path: Path, dataset: Any, key: str, value: object) -> float:
+    if not isinstance(value, np.number):
+        raise RecordingError(
+            f"{path}: channel {_last(dataset)!r}: {key} is {value!r}, expected a number"
+        )
+    return float(value)
+
+
+def _time_beside(path: Path, group: Any, dataset: Any) -> Iterator[Axis]:
+    """Time stamps beside a dataset, as many as it has samples."""
+    for name in group:
+        times: Any = group.get(name) if is_time(name, NOT_STATED) else None
+        if getattr(times, "shape", None) == dataset.shape and times.dtype.kind in "iuf":
+            unit = _text(path, times, _UNITS) or split_unit(name)[1] or NOT_STATED
+            if not is_time(name, unit):
+                continue
+            _check_size(path, times)
+            factor, offset, _, _ = packing(_attributes(path, times, PACKING), integers=False)
+            read = _reading(times, 1.0 if factor is None else factor, offset or 0.0)
+            yield Axis(start=NOT_STATED, step=NOT_STATED, times=read, unit=unit, quantity="time")
+
+
+def _reading(dataset: Any, factor: float = 1.0, offset: float = 0.0) -> Read:
     def read(start: int, stop: int) -> NDArray[np.generic]:
-        return np.asarray(dataset[start:stop])
+        values = np.asarray(dataset[start:stop])
+        return values if (factor, offset) == (1.0, 0.0) else factor * values + offset
 
     return read
 
 
-def _check_size(path: Path, where: str, dataset: Any) -> None:
+def _check_size(path: Path, dataset: Any) -> None:
     """Refuse a dataset whose numbers are not in this file, or cannot all be."""
+    where = f"{path}: channel {_last(dataset)!r}"
     if dataset.is_virtual or dataset.external:
         raise RecordingError(f"{where} is kept in another file; copy it into this one")
     stored = int(dataset.id.get_storage_size())
@@ -97,23 +166,20 @@ def _check_size(path: Path, where: str, dataset: Any) -> None:
         raise RecordingError(f"{where} is stored in chunks of {chunk} bytes, more than it holds")
 
 
-def _holders(dataset: Any) -> list[Any]:
-    """List a dataset and its groups, innermost first."""
-    holders = [dataset, dataset.parent]
-    while holders[-1].name != "/":
-        holders.append(holders[-1].parent)
-    return holders
+def _attributes(path: Path, item: Any, keys: tuple[str, ...]) -> dict[str, object]:
+    """Attributes of one element, by name; those that there are."""
+    names = {name.lower(): name for name in item.attrs}
+    found = ((key, names.get(key.lower())) for key in keys)
+    return {key: _attribute(path, item, name) for key, name in found if name is not None}
 
 
 def _attribute(path: Path, item: Any, key: str) -> object:
-    """Value of an attribute of one element, None where there is none.
+    """Value of an attribute of one element.
 
     Its size is asked for first: the library sets aside what a damaged header announces.
     """
     import h5py
 
-    if key not in item.attrs:
-        return None
     entry = item.attrs.get_id(key)
     number, text = entry.dtype.kind in "iuf", h5py.check_string_dtype(entry.dtype) is not None
     single = entry.get_space().get_simple_extent_npoints() == 1
@@ -123,30 +189,13 @@ def _attribute(path: Path, item: Any, key: str) -> object:
     return value.reshape(-1)[0] if isinstance(value, np.ndarray) else value
 
 
-def _rate(path: Path, where: str, dataset: Any) -> float | None:
-    holders = _holders(dataset)
-    for holder in holders:
-        for key in (*_RATES, _STEP):
-            value = _attribute(path, holder, key)
-            if value is None:
-                continue
-            if not isinstance(value, np.number):
-                raise RecordingError(f"{where}: {key} is {value!r}, expected a number")
-            number = float(value)
-            return whole_rate(1.0 / number if key == _STEP and number else number, where)
-    for group in holders[1:]:
-        times = next((group[name] for name in _TIMES if name in group), None)
-        if times is not None and times.shape == dataset.shape and times.dtype.kind in "iuf":
-            _check_size(path, f"{where}: time", times)
-            return even_rate(int(times.size), _reading(times), where)
-    return None
-
-
 def _last(dataset: Any) -> str:
     return str(dataset.name).rpartition("/")[2]
 
 
-def _text(value: object) -> str:
+def _text(path: Path, item: Any, keys: tuple[str, ...]) -> str | None:
+    """First of some attributes as a text; none where none is stated."""
+    value = next(iter(_attributes(path, item, keys).values()), NOT_STATED)
     if isinstance(value, bytes):
         return value.decode("utf-8", "replace")
-    return str(value)
+    return NOT_STATED if value is NOT_STATED else str(value)

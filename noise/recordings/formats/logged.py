@@ -1,74 +1,175 @@
-"""Channels of data loggers as ours: what TDMS, MDF4 and HDF5 have in common.
+"""The gate through which each channel of a logger's file passes.
 
-A channel is what its unit says, or, without a unit, what its name says if that is one of ours; its
-samples are brought to SI. Loggers record more than noise: a temperature or a voltage is passed
-over, unless a sidecar names it. What contradicts itself is refused, and so are channels with
-different rates or lengths: to bring them together one would have to invent samples, and the delay
-of a resampling filter would look like one of the rig.
+A reader of a format states of each channel what its axis is (start, step or time stamps, unit,
+quantity) and what its values are (factor, offset, unit). What its format does not state it has to
+write as `NOT_STATED`. All that is stated is used here, or the channel is left out with a note that
+says why, or the file is refused: nothing is passed over.
+
+- The axis is time, in any unit of time. A spectrum, samples over an angle, and time stamps that do
+  not rise evenly are no recordings.
+- A channel is what its unit says, or, without a unit, what its name says if that is one of ours. A
+  sidecar that names the channels has the last word.
+- Channels that begin at different times are aligned by whole samples and cut to what they have in
+  common. Other differences are refused: to bring channels together one would have to invent
+  samples, and the delay of a resampling filter would look like one of the rig.
 
 Samples are read block by block, so that reading takes the memory of the result and no more.
 """
 
 from __future__ import annotations
 
+import json
 import math
 import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.condition import Condition
 from models.errors import RecordingError
 from models.recording import Channel
-from models.units import CHANNEL_UNITS, kind_of_unit, known_units
-from noise.recordings.files import RawSamples
-from noise.recordings.formats.sampling import SAME_RATE
-from noise.recordings.formats.stated_condition import stated_condition
+from models.units import CHANNEL_UNITS, kind_of_unit, known_units, quantity_of_unit, split_unit
+from noise.recordings.formats import RawSamples, check_rate
+from noise.recordings.sidecar import Sidecar, find_sidecar, parse_sidecar, read_sidecar
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-    from pathlib import Path
+NOT_STATED = None
+"""Of what a format, or a file, does not state."""
 
-    from numpy.typing import NDArray
+CONDITIONS = (
+    "speed_rad_s", "interference_mm", "support_stiffness_Nm_rad", "material", "temperature_C",
+)  # fmt: skip
+"""Properties of a file that are its operating condition, named as in a sidecar."""
 
+Read = Callable[[int, int], NDArray[np.generic]]
+"""From first and last sample (exclusive) to these samples."""
 
-__all__ = ["LoggedChannel", "describe_channels", "is_ours", "sample_blocks"]
+SAME_RATE = 1e-6
+"""Share by which rates may differ that are the same."""
+
+_JITTER = 0.05  # of a step, by which time stamps may miss their place
+_OFF = 0.1  # of a step, by which a channel may miss the samples of another
+_CONTRADICTION = 1e-3  # share by which two statements of one rate differ
+_COMMON = 0.5  # share of the longest channel that all must have in common
+_NAMED = 3  # of the channels that are left out, so many are named
+_UNCLEAR = {
+    "gain": 1.0, "sensitivity": 1.0, "calibration": 1.0, "calibration_factor": 1.0, "factor": 1.0,
+    "scale": 1.0, "offset": 0.0,
+}  # fmt: skip
+"""Attributes that may have been applied or not, and the value at which that does not matter."""
+
+PACKING = ("scale_factor", "add_offset", *_UNCLEAR)
+"""Attributes that `packing` takes."""
 
 _BLOCK = 1 << 16  # samples a channel
 _OURS = re.compile(rf"({'|'.join(CHANNEL_UNITS)})(_([2-9]|[1-9]\d{{1,3}}))?")
+_TIME = re.compile(r"time|zeit|temps|tiempo|tempo|timestamps?|t", re.IGNORECASE)
 
 
-@dataclass(frozen=True, eq=False)
-class LoggedChannel:
-    """One channel as a file describes it, not yet read.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Axis:
+    """What the samples of a channel stand over, as one place in a file states it.
 
     Parameters
     ----------
-    name, unit : str
-        Of the file; empty where it gives none.
+    start, step : float or None
+        Of the first sample, and from one to the next [unit].
+    times : callable or None
+        Reads the place of each sample [unit].
+    unit, quantity : str or None
+        Such as "ms" and "time".
+    """
+
+    start: float | None
+    step: float | None
+    times: Read | None
+    unit: str | None
+    quantity: str | None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LoggedChannel:
+    """A channel as its file states it, not yet read.
+
+    Parameters
+    ----------
+    name : str
     n_samples : int
-    rate : float
-        [Hz]
     read : callable
-        From first and last sample (exclusive) to these samples, real numbers.
+        Reads samples as stored.
+    axes : sequence of Axis
+        Empty where nothing is stated; the last one that states a start has the last word on it.
+    factor, offset : float or None
+        A value is ``factor * stored + offset`` [unit].
+    unit : str or None
+    problem, remark : str or None
+        Why the file's own words do not allow to read it, and what should be known of it.
     """
 
     name: str
-    unit: str
     n_samples: int
+    read: Read
+    axes: Sequence[Axis]
+    factor: float | None
+    offset: float | None
+    unit: str | None
+    problem: str | None
+    remark: str | None
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """A row of a recording: the channel that it is read from, and how.
+
+    Parameters
+    ----------
+    logged : LoggedChannel
+    kind : str
+        Of channel; empty where only a sidecar can say it.
+    value : float
+        Of the unit of the file [SI unit].
+    start : float or None
+        Of the first sample [s].
+    rate : float
+        [Hz]
+    first : int
+        Sample that the recording begins with.
+    """
+
+    logged: LoggedChannel
+    kind: str
+    value: float
+    start: float | None
     rate: float
-    read: Callable[[int, int], NDArray[np.generic]]
+    first: int = 0
+
+    def read(self, first: int, last: int) -> NDArray[np.float64]:
+        """Read samples of the recording [SI unit of the channel]."""
+        begin, end = self.first + first, self.first + last
+        block = np.array(self.logged.read(begin, end), dtype=np.float64)
+        if block.shape != (last - first,):
+            raise RecordingError(
+                f"channel {self.logged.name!r} is truncated; {self.logged.n_samples} samples are "
+                f"announced, {begin + len(block)} can be read"
+            )
+        factor, offset = self.logged.factor, self.logged.offset
+        with np.errstate(over="ignore", invalid="ignore"):  # refused where it is not finite
+            block *= self.value * (1.0 if factor is NOT_STATED else factor)
+            block += self.value * (0.0 if offset is NOT_STATED else offset)
+        return block
 
 
 def describe_channels(
     path: Path, logged: Sequence[LoggedChannel], properties: Mapping[str, object]
-) -> tuple[RawSamples, list[tuple[LoggedChannel, float]]]:
+) -> tuple[RawSamples, list[Row], int]:
     """Choose the channels of a logger's file that make a recording.
 
     Parameters
     ----------
     path : Path
-        For messages.
+        Of the file, beside which the sidecar is sought.
     logged : sequence of LoggedChannel
         In the order of the file.
     properties : mapping
@@ -78,150 +179,388 @@ def describe_channels(
     -------
     raw : RawSamples
         Without samples.
-    rows : list of (LoggedChannel, float)
-        The channel that each row is read from, and its unit [SI unit].
+    rows : list of Row
+    n_samples : int
+        Of each row.
 
     Raises
     ------
     RecordingError
-        There are no channels, or they contradict each other or themselves.
+        No channel can be used, or they contradict each other or themselves.
 
     Examples
     --------
-    >>> from pathlib import Path
     >>> x = np.ones(400)
-    >>> arm = LoggedChannel("Arm 1", "N mm", 400, 48e3, lambda a, b: x[a:b])
-    >>> raw, rows = describe_channels(Path("run.h5"), [arm], {"speed_rad_s": 5.0})
-    >>> raw.channels[0].name, rows[0][1], raw.condition.speed
-    ('torque', 0.001, 5.0)
+    >>> clock = Axis(start=0.0, step=0.02, times=NOT_STATED, unit="ms", quantity=NOT_STATED)
+    >>> arm = LoggedChannel(
+    ...     name="Arm 1", n_samples=400, read=lambda a, b: x[a:b], axes=[clock],
+    ...     factor=NOT_STATED, offset=NOT_STATED, unit="N mm",
+    ...     problem=NOT_STATED, remark=NOT_STATED,
+    ... )
+    >>> raw, rows, n = describe_channels(Path("run.h5"), [arm], {"speed_rad_s": 5.0})
+    >>> raw.channels[0].name, raw.rate, float(rows[0].read(0, 1)[0]), raw.condition.speed
+    ('torque', 50000.0, 0.001, 5.0)
     """
     if not logged:
-        raise RecordingError(f"{path}: holds no channel of numbers with a sampling rate")
-    kinds, doubts = [], []
+        raise RecordingError(f"{path}: holds no channel of numbers")
+    on_time: list[Row] = []
+    left_out: list[tuple[bool, str]] = []
+    steps: dict[Axis, tuple[float, float]] = {}
     for channel in logged:
         try:
-            kinds.append(_kind(channel, f"{path}: channel {channel.name!r}"))
+            kind, value = _kind(channel)
+            start, rate = _time(channel, steps)
         except RecordingError as error:
-            kinds.append(None)
-            doubts.append(str(error))
-    known = [channel for channel, kind in zip(logged, kinds, strict=True) if kind]
-    first = (known or logged)[0]
-    rows = [
-        (channel, kind)
-        for channel, kind in zip(logged, kinds, strict=True)
-        if kind or _together(channel, first)
+            # Of many channels those that ought to be ours are named first.
+            ours = bool(kind_of_unit(_unit(channel)) or _own_name(channel.name))
+            left_out.append((not ours, f"{channel.name!r} {error}"))
+        else:
+            on_time.append(Row(channel, kind, value, start, rate))
+    sidecar = _sidecar(path)
+    rows = _named_by(sidecar, on_time)
+    left_out += [
+        (True, f"{row.logged.name!r} {_unit_problem(row.logged)}")
+        for row in on_time
+        if row not in rows
     ]
-    for channel, _ in rows:
-        if not _together(channel, first):
-            raise RecordingError(
-                f"{path}: channel {channel.name!r} has {channel.n_samples} samples at "
-                f"{channel.rate:.10g} Hz, {first.name!r} has {first.n_samples} at "
-                f"{first.rate:.10g} Hz; channels of a recording must be sampled together"
-            )
-    if not known and not doubts:
-        doubts.append(
-            f"{path}: channel {first.name!r} has unit {first.unit!r}, expected {known_units()} "
-            "(or name the channels in a sidecar)"
+    reasons = [reason for _, reason in sorted(left_out, key=lambda one: one[0])]
+    if not rows:
+        raise RecordingError(
+            f"{path}: channel {_listed(reasons)}; expected samples over time in one of "
+            f"{known_units()}, or a sidecar that names the channels"
         )
+    notes = []
+    if reasons:
+        notes.append(f"left out: {_listed(reasons)}; a sidecar that names them makes them count")
+    if sidecar.channels is not None and len(rows) == len(sidecar.channels):
+        rows = [
+            _as_named(row, channel, unit, notes)
+            for row, channel, unit in zip(rows, sidecar.channels, sidecar.units, strict=True)
+        ]
+        channels = sidecar.channels
+    else:
+        channels = _names(rows)
+    notes += [f"channel {r.logged.name!r} {r.logged.remark}" for r in rows if r.logged.remark]
+    rows, n_samples = _together(path, rows, notes)
     raw = RawSamples(
         samples=np.empty((len(rows), 0)),
-        rate=first.rate,
+        rate=rows[0].rate,
         fractional=False,
-        channels=_names([(channel.name, kind) for channel, kind in rows]),
+        channels=channels,
         condition=stated_condition(properties, str(path)),
-        unclear=doubts[0] if doubts else "",
+        notes=tuple(notes),
     )
-    return raw, [(channel, kind[1] if kind else 1.0) for channel, kind in rows]
+    return raw, rows, n_samples
 
 
-def sample_blocks(
-    path: Path, rows: Sequence[tuple[LoggedChannel, float]], first: int = 0, last: int | None = None
-) -> Iterator[NDArray[np.float64]]:
-    """Read the rows of `describe_channels` one after the other, each in blocks, in SI.
+def _listed(reasons: Sequence[str]) -> str:
+    more = len(reasons) - _NAMED
+    return "; ".join(reasons[:_NAMED]) + (f"; and {more} more" if more > 0 else "")
 
-    Parameters
-    ----------
-    path : Path
-        For messages.
-    rows : sequence of (LoggedChannel, float)
-        Each with its factor [SI unit over the unit in the file].
-    first, last : int
-        Samples from which and up to which; by default all.
 
-    Yields
-    ------
-    ndarray, shape (n,)
-        [SI unit of the channel]
+# --- the axis ------------------------------------------------------------------------------------
+
+
+def is_time(name: str, unit: str | None) -> bool:
+    """Whether a channel holds time stamps, by its name and its unit.
+
+    Examples
+    --------
+    >>> is_time("Time (ms)", NOT_STATED), is_time("t", "s"), is_time("T", "degC")
+    (True, True, False)
+    """
+    named = _TIME.fullmatch(split_unit(name)[0].strip()) is not None
+    return named and (not unit or _time_unit(unit) is not None)
+
+
+def _time_unit(unit: str) -> float | None:
+    """Value of a unit of time [s], as in "ms" or "hours since 2024-01-01"; None for any other."""
+    found = quantity_of_unit(unit.partition(" since ")[0])
+    return found[1] if found is not None and found[0] == "time" else None
+
+
+def _time(
+    channel: LoggedChannel, steps: dict[Axis, tuple[float, float]]
+) -> tuple[float | None, float]:
+    """Start [s] and sampling rate [Hz] of a channel; time stamps that many share are read once."""
+    start, rates = None, []
+    for axis in channel.axes:
+        second = _second(axis)
+        if axis.times is not NOT_STATED:
+            if axis not in steps:
+                steps[axis] = even_step(channel.n_samples, axis.times)
+            first, step = steps[axis]
+            start = second * first
+            rates.append(1.0 / (second * step))
+        elif axis.start is not NOT_STATED:
+            start = second * axis.start
+        if axis.step is not NOT_STATED:
+            if not 0.0 < axis.step < math.inf:
+                raise RecordingError(f"has a step in time of {axis.step:g}")
+            rates.append(1.0 / (second * axis.step))
+    if not rates:
+        raise RecordingError("states no sampling rate")
+    if max(rates) - min(rates) > _CONTRADICTION * max(rates):
+        both = " and ".join(f"{rate:.6g}" for rate in rates)
+        raise RecordingError(f"states two sampling rates, {both} Hz")
+    return start, _whole(rates[0])
+
+
+def _second(axis: Axis) -> float:
+    """Value of the unit of an axis [s]; refused where it is no time."""
+    if axis.unit:
+        second = _time_unit(axis.unit)
+        if second is None:
+            over = f"{axis.quantity} " if axis.quantity else ""
+            raise RecordingError(f"stands over {over}in {axis.unit!r}, expected time")
+        return second
+    words = re.split(r"[\W_]+", axis.quantity or "time")
+    if not any(_TIME.fullmatch(word) for word in words):
+        raise RecordingError(f"stands over {axis.quantity!r}, expected time")
+    return 1.0
+
+
+def even_step(n: int, read: Read) -> tuple[float, float]:
+    """Return the first of `n` time stamps and their step, which must be even.
 
     Raises
     ------
     RecordingError
-        A channel ends before its file says.
-    """
-    for channel, factor in rows:
-        end = channel.n_samples if last is None else min(last, channel.n_samples)
-        for start in range(first, end, _BLOCK):
-            stop = min(end, start + _BLOCK)
-            block = np.array(channel.read(start, stop), dtype=np.float64)
-            if block.shape != (stop - start,):
-                raise RecordingError(
-                    f"{path}: channel {channel.name!r} is truncated; {channel.n_samples} samples "
-                    f"are announced, {start + len(block)} can be read"
-                )
-            with np.errstate(over="ignore", invalid="ignore"):  # refused where it is not finite
-                block *= factor
-            yield block
-
-
-def is_ours(name: str, unit: str) -> bool:
-    """Whether a channel's unit or its name is one of ours.
+        A time stamp misses its place by more than a twentieth of a step.
 
     Examples
     --------
-    >>> is_ours("Mic 1", "Pa"), is_ours("torque", ""), is_ours("Oil", "degC")
-    (True, True, False)
+    >>> t = 0.5 + np.arange(480) / 48e3
+    >>> start, step = even_step(480, lambda a, b: t[a:b])
+    >>> start, round(1.0 / step)
+    (0.5, 48000)
     """
-    return kind_of_unit(unit) is not None or _OURS.fullmatch(name.strip().lower()) is not None
+    if n < 2:
+        raise RecordingError(f"has {n} time stamps, expected at least 2")
+    start, end = float(read(0, 1)[0]), float(read(n - 1, n)[0])
+    step = (end - start) / (n - 1)
+    if not 0.0 < step < math.inf:
+        raise RecordingError("has a time that does not rise")
+    for begin in range(0, n, _BLOCK):
+        stop = min(n, begin + _BLOCK)
+        place = start + step * np.arange(begin, stop)
+        off = np.abs(np.asarray(read(begin, stop), dtype=np.float64) - place)
+        if not off.max() <= _JITTER * step:
+            at = begin + int(np.argmax(~(off <= _JITTER * step)))
+            raise RecordingError(f"has a time that does not rise evenly (sample {at})")
+    return start, step
 
 
-def _kind(channel: LoggedChannel, where: str) -> tuple[str, float] | None:
-    """Kind of a channel and its unit in SI; None for what is none of ours."""
-    named = _OURS.fullmatch(channel.name.strip().lower())
-    found = kind_of_unit(channel.unit)
-    if named is None:
-        return found
-    kind = named[1]
-    if not channel.unit.strip():
-        return kind, 1.0
-    if found is None or found[0] != kind:
+def _whole(rate: float) -> float:
+    """Bring a sampling rate to a whole number: loggers store the step with few digits."""
+    whole = float(round(rate))
+    return whole if abs(whole - rate) < SAME_RATE * rate else rate
+
+
+def _together(path: Path, rows: list[Row], notes: list[str]) -> tuple[list[Row], int]:
+    """Align channels by their start, and cut them to what they have in common."""
+    rate, longest = rows[0].rate, max(row.logged.n_samples for row in rows)
+    check_rate(rate, str(path))
+    for row in rows:
+        if not math.isclose(row.rate, rate, rel_tol=SAME_RATE):
+            raise RecordingError(
+                f"{path}: channel {row.logged.name!r} is sampled at {row.rate:.10g} Hz, "
+                f"{rows[0].logged.name!r} at {rate:.10g} Hz; channels of a recording must be "
+                "sampled together"
+            )
+    stated = [row.start for row in rows if row.start is not None]
+    if 0 < len(stated) < len(rows) and max(stated) > min(stated):
+        silent = next(row.logged.name for row in rows if row.start is None)
         raise RecordingError(
-            f"{where} has unit {channel.unit!r}, expected {CHANNEL_UNITS[kind]!r} "
-            "(or name the channels in a sidecar)"
+            f"{path}: does not state when channel {silent!r} begins, and others begin "
+            f"{max(stated) - min(stated):.6g} s apart"
         )
-    return found
+    begins = [max(stated, default=0.0) if row.start is None else row.start for row in rows]
+    late = [(max(begins) - begin) * rate for begin in begins]
+    off = [abs(one - round(one)) for one in late]
+    if max(off) > _OFF:
+        one = rows[int(np.argmax(off))]
+        raise RecordingError(
+            f"{path}: channel {one.logged.name!r} is sampled {max(off):.2f} of a step beside "
+            f"{rows[int(np.argmin(late))].logged.name!r}; channels of a recording must be sampled "
+            "together"
+        )
+    aligned = [
+        Row(row.logged, row.kind, row.value, row.start, rate, round(shift))
+        for row, shift in zip(rows, late, strict=True)
+    ]
+    common = min(row.logged.n_samples - row.first for row in aligned)
+    if common < _COMMON * longest:
+        counts = ", ".join(
+            f"{row.logged.name!r} {row.logged.n_samples} from {begin - min(begins):.6g} s"
+            for row, begin in zip(aligned, begins, strict=True)
+        )
+        raise RecordingError(
+            f"{path}: channels have {max(common, 0)} samples in common ({counts}); channels of a "
+            "recording must be sampled together"
+        )
+    if common < longest:
+        notes.append(
+            f"channels begin up to {(max(begins) - min(begins)) * 1e3:.6g} ms apart and have "
+            f"between {min(row.logged.n_samples for row in aligned)} and {longest} samples; they "
+            f"are aligned by their start and cut to the {common} samples in common"
+        )
+    return aligned, common
 
 
-def _together(one: LoggedChannel, other: LoggedChannel) -> bool:
-    same_length = one.n_samples == other.n_samples
+# --- the value -----------------------------------------------------------------------------------
+
+
+def _kind(channel: LoggedChannel) -> tuple[str, float]:
+    """Kind of a channel, empty for what is none of ours, and its unit in SI."""
+    if channel.problem:
+        raise RecordingError(channel.problem)
+    if not all(map(math.isfinite, (channel.factor or 0.0, channel.offset or 0.0))):
+        raise RecordingError(f"has factor {channel.factor} and offset {channel.offset}")
+    unit, named = _unit(channel), _own_name(channel.name).partition("_")[0]
+    found = kind_of_unit(unit)
+    if not unit:
+        return named, 1.0
+    return ("", 1.0) if found is None or named not in ("", found[0]) else found
+
+
+def _unit(channel: LoggedChannel) -> str:
+    """Return the unit of a channel, which may stand behind its name."""
+    unit = (channel.unit or "").strip()
+    behind = split_unit(channel.name)[1]
+    return unit or (behind if kind_of_unit(behind) else "")
+
+
+def _own_name(name: str) -> str:
+    """Name of a channel where it is one of ours, with or without a unit behind it."""
+    texts = (text.strip().lower() for text in (name, split_unit(name)[0]))
+    return next((text for text in texts if _OURS.fullmatch(text)), "")
+
+
+def _unit_problem(channel: LoggedChannel) -> str:
+    unit, named = _unit(channel), _own_name(channel.name).partition("_")[0]
+    expected = f", expected {CHANNEL_UNITS[named]!r}" if named else ""
+    return f"has unit {unit!r}{expected}" if unit else "states no unit"
+
+
+def packing(
+    attributes: Mapping[str, object], integers: bool
+) -> tuple[float | None, float | None, str | None, str | None]:
+    """Return factor, offset, problem and remark of a channel from its attributes.
+
+    ``scale_factor`` and ``add_offset`` mean one thing (value = factor * stored + offset). A gain or
+    a sensitivity may be what was applied or what is to be applied: whole numbers are not yet in
+    their unit, other numbers are taken to be.
+
+    Examples
+    --------
+    >>> packing({"scale_factor": 0.5}, integers=True)
+    (0.5, None, None, None)
+    >>> packing({"gain": 20.0}, integers=False)[3]
+    'has gain 20, which is not applied: its samples are taken to be in its unit already'
+    """
+    numbers = {
+        key.lower(): float(value)
+        for key, value in attributes.items()
+        if isinstance(value, int | float | np.number)
+    }
+    unclear = [
+        f"{k} {numbers[k]:g}" for k in _UNCLEAR if numbers.get(k, _UNCLEAR[k]) != _UNCLEAR[k]
+    ]
+    listed = f"has {' and '.join(unclear)}, " if unclear else ""
+    problem = f"{listed}and does not state how to apply it; state scale_factor and add_offset"
+    remark = f"{listed}which is not applied: its samples are taken to be in its unit already"
+    stated = numbers.get("scale_factor"), numbers.get("add_offset")
+    return *stated, problem if unclear and integers else None, remark if unclear else None
+
+
+def _sidecar(path: Path) -> Sidecar:
+    found = find_sidecar(path)
+    return Sidecar() if found is None else read_sidecar(found)
+
+
+def _named_by(sidecar: Sidecar, on_time: list[Row]) -> list[Row]:
+    """Rows that a sidecar names, by their number; ours where it names none."""
+    ours = [row for row in on_time if row.kind]
+    first = (ours or on_time)[:1]
+    beside = [row for row in on_time if any(_alike(row, one) for one in first)]
+    count = len(ours if sidecar.channels is None else sidecar.channels)
+    fitting = (rows for rows in (ours, on_time, beside) if len(rows) == count)
+    return next(fitting, ours)  # whoever decides what samples mean says that the numbers differ
+
+
+def _alike(one: Row, other: Row) -> bool:
+    same_length = one.logged.n_samples == other.logged.n_samples
     return same_length and math.isclose(one.rate, other.rate, rel_tol=SAME_RATE)
 
 
-def _names(
-    rows: Sequence[tuple[str, tuple[str, float] | None]],
-) -> tuple[Channel | None, ...]:
+def _as_named(row: Row, channel: Channel, unit: str, notes: list[str]) -> Row:
+    """Return a row as a sidecar names it: by a unit of its own the samples are in it as stored."""
+    stated = row.logged.unit or ""
+    same_kind = row.kind == channel.kind
+    if same_kind and (not unit or row.value == 1.0):
+        return row
+    if row.kind:
+        notes.append(
+            f"the sidecar's {channel.name} in {unit or channel.unit} stands for {stated!r} of "
+            f"channel {row.logged.name!r}"
+        )
+    return Row(row.logged, channel.kind, 1.0, row.start, row.rate)
+
+
+def _names(rows: Sequence[Row]) -> tuple[Channel, ...]:
     """Keep names that are ours; number the others of a kind with what is free."""
-    taken: set[str] = set()
-    names: list[str | None] = []
-    for name, kind in rows:
-        own = name.strip().lower()
-        keep = kind is not None and _OURS.fullmatch(own) is not None and own not in taken
-        names.append(own if keep else None)
-        taken |= {own} if keep else set()
-    for i, (_, kind) in enumerate(rows):
-        if kind is not None and names[i] is None:
-            number = 1
-            while (free := kind[0] if number == 1 else f"{kind[0]}_{number}") in taken:
-                number += 1
-            names[i] = free
-            taken.add(free)
-    return tuple(None if name is None else Channel(name) for name in names)
+    names: list[str] = []
+    for row in rows:
+        own = _own_name(row.logged.name)
+        names.append("" if own in names else own)
+    for i, row in enumerate(rows):
+        numbered = (row.kind if n == 1 else f"{row.kind}_{n}" for n in range(1, len(rows) + 2))
+        names[i] = names[i] or next(name for name in numbered if name not in names)
+    return tuple(map(Channel, names))
+
+
+# --- the condition -------------------------------------------------------------------------------
+
+
+def stated_condition(properties: Mapping[str, object], where: str) -> Condition:
+    """Read the operating condition among the properties of a file, checked as that of a sidecar.
+
+    Parameters
+    ----------
+    properties : mapping
+        Numbers may be texts; a support stiffness may be "fixed".
+    where : str
+        What messages call the file.
+
+    Raises
+    ------
+    RecordingError
+        A property that is named as a condition holds none.
+
+    Examples
+    --------
+    >>> stated_condition({"speed_rad_s": "5.0", "operator": "JD"}, "run07.tdms").speed
+    5.0
+    """
+    entry: dict[str, object] = {}
+    for key in CONDITIONS:
+        value = properties.get(key)
+        if value is None:
+            continue
+        if isinstance(value, np.ndarray | np.generic) and value.size == 1:
+            value = value.item()
+        if isinstance(value, bytes):
+            value = value.decode("utf-8", "replace")
+        if isinstance(value, str) and key != "material":
+            fixed = value.strip().lower() in ("fixed", "null")
+            value = None if fixed else _number(value)
+        entry[key] = value
+    return parse_sidecar(json.dumps({"conditions": entry}, default=str), where).condition
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text

@@ -1,6 +1,6 @@
-"""MDF4 files (ASAM MDF, test vehicles and benches) as raw samples: channels of all groups.
+"""MDF4 files (ASAM MDF, test vehicles and benches) as channels: those of all groups.
 
-Time is the master channel of each group and must rise evenly: events on a bus are no waveform.
+The axis is the master channel of each group, which may be time, an angle, a distance or an index.
 Conditions stand among the common properties of the file's comment. Samples that the file marks as
 invalid are refused; a measurement with holes is not the measurement.
 """
@@ -8,23 +8,18 @@ invalid are refused; a measurement with holes is not the measurement.
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import RecordingError
-from noise.recordings.formats.logged import LoggedChannel, is_ours
-from noise.recordings.formats.sampling import even_rate
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-__all__ = ["open_mdf"]
+from noise.recordings.formats import Format
+from noise.recordings.formats.logged import NOT_STATED, Axis, LoggedChannel
 
 _HEAD = 64  # bytes before the first block
 _UNFINISHED = slice(60, 64)  # of the head: flags of what was still to be done
@@ -33,6 +28,7 @@ _VIRTUAL = (3, 6)  # types of channels that have no bytes in a record
 _HAS_MARK = 1 << 1  # flag of a channel: a bit of each record says whether its value is valid
 _NUMBERS = range(6)  # data types: integers and floating-point values, both byte orders
 _TO_TEXT = (7, 8, 9, 10)  # conversions from value or text to text
+_QUANTITIES = ("", "time", "angle", "distance", "index")  # of a master channel
 
 
 @contextmanager
@@ -56,6 +52,9 @@ def open_mdf(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, obj
         yield logged, {e.attrib["name"]: e.text or "" for e in comment.iter("e")}
 
 
+FORMAT = Format("MDF", (".mdf", ".mf4"), channels=open_mdf, library="asammdf", extra="mdf")
+
+
 def _refuse_what_is_cut(record: logging.LogRecord) -> bool:
     """Make an error of what the library only warns of: it goes on without what lies beyond."""
     if "file size" in record.getMessage():
@@ -77,30 +76,36 @@ def _check_head(path: Path) -> None:
 
 
 def _group(path: Path, file: Any, group: int) -> list[LoggedChannel]:
-    """Channels of numbers in one group; events are passed over if they are none of ours."""
+    """Channels of numbers in one group."""
     block = file.groups[group]
     n, master = int(block.channel_group.cycles_nr), file.masters_db.get(group)
     plain = [i for i, c in enumerate(block.channels) if i != master and _is_number(c)]
-    if n < 2 or master is None or not plain:
+    if n == 0 or not plain:
         return []
-    for index in (master, *plain):
+    axes = []
+    if master is not None:
+        _check_place(path, block.channel_group, block.channels[master])
+        axes = [_axis(file, group, block.channels[master])]
+    for index in plain:
         _check_place(path, block.channel_group, block.channels[index])
+    return [_channel(file, group, index, axes) for index in plain]
 
+
+def _axis(file: Any, group: int, master: Any) -> Axis:
     def times(start: int, stop: int) -> NDArray[np.generic]:
         stamps = file.get_master(group, record_offset=start, record_count=stop - start)
         return np.asarray(stamps)
 
-    try:
-        rate = even_rate(n, times, f"{path}: channel {block.channels[master].name!r}")
-    except RecordingError:
-        ours = (is_ours(str(block.channels[i].name), _unit(block.channels[i])) for i in plain)
-        if any(ours):
-            raise
-        return []
-    return [_channel(path, file, group, index, rate) for index in plain]
+    return Axis(
+        start=NOT_STATED,
+        step=NOT_STATED,
+        times=times,
+        unit=_unit(master) or NOT_STATED,
+        quantity=dict(enumerate(_QUANTITIES)).get(int(master.sync_type)) or NOT_STATED,
+    )
 
 
-def _channel(path: Path, file: Any, group: int, index: int, rate: float) -> LoggedChannel:
+def _channel(file: Any, group: int, index: int, axes: list[Axis]) -> LoggedChannel:
     block = file.groups[group]
     channel = block.channels[index]
 
@@ -115,14 +120,22 @@ def _channel(path: Path, file: Any, group: int, index: int, rate: float) -> Logg
         )
         if invalid is not None and np.any(invalid):
             first = start + int(np.argmax(invalid))
-            raise RecordingError(
-                f"{path}: channel {channel.name!r} is marked as invalid at sample {first} "
-                f"({first / rate:.6g} s)"
-            )
+            raise RecordingError(f"channel {channel.name!r} is marked as invalid at sample {first}")
         return np.asarray(samples)
 
-    n = int(block.channel_group.cycles_nr)
-    return LoggedChannel(str(channel.name), _unit(channel), n, rate, read)
+    conversion = channel.conversion
+    to_text = conversion is not None and conversion.conversion_type in _TO_TEXT
+    return LoggedChannel(
+        name=str(channel.name),
+        n_samples=int(block.channel_group.cycles_nr),
+        read=read,
+        axes=axes,
+        factor=NOT_STATED,  # the library applies the conversion
+        offset=NOT_STATED,
+        unit=_unit(channel),
+        problem="has a conversion that makes texts of its values" if to_text else NOT_STATED,
+        remark=NOT_STATED,
+    )
 
 
 def _unit(channel: Any) -> str:
@@ -143,6 +156,5 @@ def _check_place(path: Path, group: Any, channel: Any) -> None:
 
 
 def _is_number(channel: Any) -> bool:
-    converted = channel.conversion is not None and channel.conversion.conversion_type in _TO_TEXT
     plain = channel.channel_type == _FIXED_LENGTH and channel.data_type in _NUMBERS
-    return plain and not converted and not channel.component_addr
+    return plain and not channel.component_addr

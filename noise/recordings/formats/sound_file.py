@@ -22,7 +22,7 @@ import soundfile
 from numpy.typing import NDArray
 
 from models.errors import RecordingError
-from noise.recordings.files import RawSamples
+from noise.recordings.formats import Format, RawSamples
 from noise.recordings.formats.containers import (
     Piece,
     PieceFile,
@@ -72,6 +72,16 @@ def read_sound_file(path: Path) -> RawSamples:
     """
     with SoundReader(path) as sound:
         return replace(sound.raw, samples=sound.read(0, sound.n_samples))
+
+
+FORMAT = Format(
+    "sound",
+    (
+        *(".wav", ".wave", ".bwf", ".bw64", ".rf64", ".aif", ".aiff"),
+        *(".flac", ".mp3", ".oga", ".ogg", ".opus"),
+    ),
+    read=read_sound_file,
+)
 
 
 class SoundReader:

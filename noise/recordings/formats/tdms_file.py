@@ -1,37 +1,42 @@
-"""TDMS files (LabVIEW, FlexLogger) as raw samples: the channels of all groups.
+"""TDMS files (LabVIEW, FlexLogger) as channels: those of all groups.
 
-The sampling rate is the waveform property ``wf_increment``, or comes from a channel ``time`` of the
-same group, in seconds; units are in ``unit_string`` (or ``NI_UnitDescription``), conditions among
-the properties of the file. A scale that the library does not know is refused, since it would hand
-out unscaled samples in its place. An index file beside the samples is not looked at: it repeats
-what the file says, or contradicts it.
+The axis is what the waveform properties say (``wf_increment``, ``wf_start_offset``,
+``wf_start_time``, ``wf_xname``, ``wf_xunit_string``), or a channel ``time`` of the same group.
+Units are in ``unit_string`` (or ``NI_UnitDescription``), conditions among the properties of the
+file. A scale that the library does not know is refused, since it would hand out unscaled samples in
+its place. An index file beside the samples is not looked at: it repeats what the file says, or
+contradicts it.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import RecordingError
-from noise.recordings.formats.logged import LoggedChannel
-from noise.recordings.formats.sampling import even_rate, whole_rate
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-__all__ = ["open_tdms"]
+from models.units import split_unit
+from noise.recordings.formats import Format
+from noise.recordings.formats.logged import (
+    NOT_STATED,
+    Axis,
+    LoggedChannel,
+    Read,
+    is_time,
+    packing,
+)  # fmt: skip
 
 _BIG_ENDIAN = 1 << 6  # in the table of contents, which itself is little-endian
 _VERSIONS = (4712, 4713)
-_STEP = "wf_increment"
-_TIMES = ("time", "t", "time_s")
+_UNSET_STEPS = (0.0, 1.0)  # of a waveform, as LabVIEW writes them where nobody set one
 _UNITS = ("unit_string", "NI_UnitDescription", "unit", "units")
+_UNSET_BEGIN = np.datetime64("1904-01-01")
+_SECOND = np.timedelta64(1, "s")
 _SCALE_TYPE = "_Scale_Type"
 _SCALES = (
     *("Linear", "Polynomial", "Table", "Add", "Subtract", "AdvancedAPI"),
@@ -54,15 +59,20 @@ def open_tdms(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, ob
     with path.open("rb") as stream, TdmsFile.open(stream) as file:
         if file.file_status.incomplete_final_segment:
             raise RecordingError(f"{path}: is truncated; its last segment goes on")
-        logged = []
-        for group in file.groups():
-            channels = [c for c in group.channels() if _numeric(path, c)]
-            times = next((c for c in channels if c.name.lower() in _TIMES), None)
-            for channel in channels:
-                found = _channel(path, channel, times)
-                if channel is not times and found is not None:
-                    logged.append(found)
+        groups = [[c for c in g.channels() if _holds(path, c, "iufM")] for g in file.groups()]
+        begins = {_begin(channel) for group in groups for channel in group}
+        logged: list[LoggedChannel] = []
+        for group in groups:
+            clocks = [c for c in group if is_time(c.name, _stated_unit(c))]
+            logged += [
+                _channel(channel, [c for c in clocks if len(c) == len(channel)], begins)
+                for channel in group
+                if channel not in clocks and channel.dtype.kind != "M"
+            ]
         yield logged, file.properties
+
+
+FORMAT = Format("TDMS", (".tdms",), channels=open_tdms, library="nptdms", extra="tdms")
 
 
 def _check_head(path: Path) -> None:
@@ -76,18 +86,16 @@ def _check_head(path: Path) -> None:
         raise RecordingError(f"{path}: is of TDMS version {number}, expected 4712 or 4713")
 
 
-def _numeric(path: Path, channel: Any) -> bool:
-    """Whether a channel holds real numbers; refused where it announces more than the file has."""
+def _holds(path: Path, channel: Any, kinds: str) -> bool:
+    """Whether a channel holds values of some kinds; refused where it announces more than can be."""
     where = f"{path}: channel {channel.name!r}"
     n = len(channel)
-    if n == 0 or channel.data_type is None or channel.data_type.nptype is None:
-        scaler = n > 0 and bool(getattr(channel, "_scaler_data_types", None))
-        if not scaler:
-            return False
+    if n == 0 or channel.data_type is None:
+        return False
     size = path.stat().st_size
     if n > size:
         raise RecordingError(f"{where} announces {n} samples in a file of {size} bytes")
-    if np.dtype(channel.dtype).kind not in "iuf":
+    if np.dtype(channel.dtype).kind not in kinds:
         return False
     for key, value in channel.properties.items():
         if key.endswith(_SCALE_TYPE) and value not in _SCALES:
@@ -97,24 +105,64 @@ def _numeric(path: Path, channel: Any) -> bool:
     return True
 
 
-def _channel(path: Path, channel: Any, times: Any) -> LoggedChannel | None:
-    """Describe a channel of the file; None where no sampling rate belongs to it."""
-    where = f"{path}: channel {channel.name!r}"
-    step = channel.properties.get(_STEP)
-    n = len(channel)
-    if step is not None:
-        number = float(step)
-        rate = whole_rate(1.0 / number if number else number, where)
-    elif times is not None and len(times) == n:
-        stamps = np.asarray(times[:])
-        rate = even_rate(n, lambda a, b: stamps[a:b], f"{path}: channel {times.name!r}")
+def _channel(channel: Any, clocks: list[Any], begins: set[Any]) -> LoggedChannel:
+    factor, offset, problem, remark = packing(
+        channel.properties, np.dtype(channel.dtype).kind in "iu"
+    )
+    return LoggedChannel(
+        name=channel.name,
+        n_samples=len(channel),
+        read=_in_order(channel),
+        axes=[_waveform(channel, begins), *map(_clock, clocks)],
+        factor=factor,
+        offset=offset,
+        unit=_stated_unit(channel),
+        problem=problem,
+        remark=remark,
+    )
+
+
+def _stated_unit(channel: Any) -> str | None:
+    stated = (str(channel.properties[key]) for key in _UNITS if key in channel.properties)
+    return next(stated, NOT_STATED)
+
+
+def _begin(channel: Any) -> Any:
+    """Time of day at which a waveform begins; none where nobody set it."""
+    begin = channel.properties.get("wf_start_time", NOT_STATED)
+    return NOT_STATED if begin == _UNSET_BEGIN else begin
+
+
+def _waveform(channel: Any, begins: set[Any]) -> Axis:
+    """Axis of a waveform, as far as its properties state one."""
+    stated = channel.properties
+    step, start = stated.get("wf_increment"), stated.get("wf_start_offset")
+    if step is None or step in _UNSET_STEPS:
+        step = start = NOT_STATED
+    elif len(begins) > 1:  # by the time of day, which all must have then
+        begin, first = _begin(channel), min(begins - {NOT_STATED})
+        start = None if begin is None else (begin - first) / _SECOND + (start or 0.0)
+    unit, quantity = (stated.get(key) or NOT_STATED for key in ("wf_xunit_string", "wf_xname"))
+    return Axis(start=start, step=step, times=NOT_STATED, unit=unit, quantity=quantity)
+
+
+def _clock(channel: Any) -> Axis:
+    """Axis of a channel of time stamps."""
+    values = np.asarray(channel[:])
+    if values.dtype.kind == "M":
+        values, unit = (values - np.datetime64(0, "s")) / _SECOND, "s"
     else:
-        return None
-    unit = next((str(channel.properties[k]) for k in _UNITS if k in channel.properties), "")
-    return LoggedChannel(channel.name, unit, n, rate, _in_order(channel))
+        unit = _stated_unit(channel) or split_unit(channel.name)[1]
+    return Axis(
+        start=NOT_STATED,
+        step=NOT_STATED,
+        times=lambda first, last: values[first:last],
+        unit=unit,
+        quantity="time",
+    )
 
 
-def _in_order(channel: Any) -> Callable[[int, int], NDArray[np.generic]]:
+def _in_order(channel: Any) -> Read:
     """Give samples as they come: the library reads a chunk again for each part of it asked for.
 
     Whoever goes back begins with the first chunk again.

@@ -1,95 +1,62 @@
-"""Universal files (UFF, UNV) as raw samples: their time functions, dataset 58.
-
-Channels follow from the units that the file labels, since its data types are often left general.
-Units beside SI (g, degrees, kPa) are turned into it, for the label says what they are; one that is
-no channel's is refused, because a guess would look like a measurement.
-"""
+"""Universal files (UFF, UNV) as channels: their time functions, dataset 58."""
 
 from __future__ import annotations
 
-from collections import Counter
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 
 from models.errors import ParameterError, RecordingError
-from models.recording import Channel
-from models.transfer_functions.uff import TIME_RESPONSE, UffFunction, read_uff_functions
-from models.units import kind_of_unit, known_units
-from noise.recordings.files import RawSamples
+from models.transfer_functions.uff import (
+    TIME_RESPONSE,
+    UFF_ENDINGS,
+    UffFunction,
+    read_uff_functions,
+)  # fmt: skip
+from noise.recordings.formats import Format
+from noise.recordings.formats.logged import NOT_STATED, Axis, LoggedChannel
 
-if TYPE_CHECKING:
-    from pathlib import Path
 
-__all__ = ["read_universal_file"]
-
-
-def read_universal_file(path: Path) -> RawSamples:
-    """Read all time functions of a universal file as channels.
-
-    Parameters
-    ----------
-    path : Path
-        An existing file.
-
-    Returns
-    -------
-    RawSamples
-        Channels named by their kind, in the order of the file; samples in SI.
+@contextmanager
+def open_universal_file(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
+    """Give the time functions of a universal file.
 
     Raises
     ------
     RecordingError
-        The file is damaged, holds no time functions, or these differ in rate or length, or have
-        units that are no channel's; or pyuff is not installed.
+        The file is damaged, or holds no time functions.
     """
-    functions = _functions(path)
-    if not functions:
-        raise RecordingError(f"{path}: holds no time functions (dataset 58, function type 1)")
-    rows, channels = [], []
-    seen: Counter[str] = Counter()
-    first = functions[0]
-    for number, function in enumerate(functions, start=1):
-        kind, factor = _kind(function, f"{path}: function {number} {function.name!r}")
-        if function.y.size != first.y.size or not np.allclose(function.x, first.x, rtol=1e-9):
-            raise RecordingError(
-                f"{path}: function {number} {function.name!r} has other times than the first; "
-                "channels of a recording must be sampled together"
-            )
-        seen[kind] += 1
-        rows.append(factor * function.y.real)
-        channels.append(Channel(kind if seen[kind] == 1 else f"{kind}_{seen[kind]}"))
-    return RawSamples(
-        samples=np.array(rows, dtype=np.float64),
-        rate=_rate(path, first),
-        fractional=False,
-        channels=tuple(channels),
-    )
-
-
-def _functions(path: Path) -> list[UffFunction]:
     try:
-        return read_uff_functions(path, TIME_RESPONSE)
+        functions = read_uff_functions(path, TIME_RESPONSE)
     except ParameterError as error:
         raise RecordingError(str(error)) from None
+    if not functions:
+        raise RecordingError(f"{path}: holds no time functions (dataset 58, function type 1)")
+    yield [_channel(number, function) for number, function in enumerate(functions, start=1)], {}
 
 
-def _kind(function: UffFunction, where: str) -> tuple[str, float]:
-    """Kind of channel, and the factor that turns its samples into SI."""
-    if np.iscomplexobj(function.y):
-        raise RecordingError(f"{where} is complex, expected real samples")
-    if function.unclear:
-        raise RecordingError(f"{where} has unit {function.unclear}")
-    found = kind_of_unit(function.unit)
-    if found is None:
-        raise RecordingError(f"{where} has unit {function.unit!r}, expected {known_units()}")
-    return found
+FORMAT = Format("UFF", UFF_ENDINGS, channels=open_universal_file, library="pyuff", extra="uff")
 
 
-def _rate(path: Path, function: UffFunction) -> float:
-    steps = np.diff(function.x)
-    if steps.size == 0 or not np.allclose(steps, steps[0], rtol=1e-3, atol=0.0) or steps[0] <= 0:
-        raise RecordingError(f"{path}: time does not rise evenly")
-    rate = float((function.x.size - 1) / (function.x[-1] - function.x[0]))
-    whole = round(rate)
-    return float(whole) if abs(whole - rate) < 1e-6 * rate else rate
+def _channel(number: int, function: UffFunction) -> LoggedChannel:
+    return LoggedChannel(
+        name=function.name or f"function {number}",
+        n_samples=function.y.size,
+        read=lambda first, last: function.y[first:last],
+        axes=[
+            Axis(
+                start=NOT_STATED,
+                step=NOT_STATED,
+                times=lambda first, last: function.x[first:last],
+                unit="s",
+                quantity="time",
+            )
+        ],
+        factor=NOT_STATED,  # values are in SI already where their unit is known
+        offset=NOT_STATED,
+        unit=function.unclear or function.unit,
+        problem="is complex, expected real samples" if np.iscomplexobj(function.y) else NOT_STATED,
+        remark=NOT_STATED,
+    )
