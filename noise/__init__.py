@@ -29,9 +29,9 @@ Review: `review`, `Review`, `write_report`, `ReportEntry`.
 
 What goes wrong: `BushingNoiseError`, `ParameterError`, `RecordingError`.
 
-Recordings, runs, sweeps, labels, diagnoses and models show themselves in a notebook, and what says
-something as a picture has a ``plot`` that returns the axes of matplotlib. Names are loaded when
-they are first used, so that ``import noise`` itself is quick.
+Results print themselves in a line or two; tables have a ``to_pandas``, and what says something as a
+picture has a ``plot`` that returns the axes of matplotlib. Names are loaded when they are first
+used, so that ``import noise`` itself is quick.
 """
 
 from __future__ import annotations

@@ -111,11 +111,6 @@ class Run:
 
         return draw_torques(self, ax, start=start, end=end)
 
-    def _repr_html_(self) -> str:
-        from sim.run_display import run_html
-
-        return run_html(self)
-
 
 def simulate(
     rig: Rig,

@@ -9,8 +9,6 @@ import numpy as np
 
 from models.drawing import BLUE, ORANGE, axes_or_new, thinned
 from models.errors import ParameterError
-from models.html_table import html_table
-from models.recording import REFERENCE_PRESSURE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,8 +16,6 @@ if TYPE_CHECKING:
 
     from sim.motion import Motion
     from sim.run import Run
-
-__all__ = ["Curve", "draw_torques", "run_html", "torque_curves"]
 
 _SHOWN = 0.1
 """A run is drawn from so long before its end [s]: slips can still be told apart."""
@@ -44,30 +40,6 @@ def torque_curves(motion: Motion, part: slice) -> list[Curve]:
         (motion.friction_torque[part], ORANGE, "contact", 0.9),
         (motion.torque[part], BLUE, "elastomer", 1.3),
     ]
-
-
-def run_html(run: Run) -> str:
-    """Return a run as two tables: what moved and sounded, and what was recorded.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> from sim.run import simulate
-    >>> table = run_html(simulate(load_material_rig("PDMS"), 5.0, seconds=0.1))
-    >>> "PDMS, 0.279 mm, 2214 Nm/rad, 5 rad/s" in table, table.count("<table>")
-    (True, 2)
-    """
-    motion = run.motion
-    torque, sliding = motion.torque, motion.sliding_speed
-    rows = [
-        ["torque", f"{torque.min():.4g} to {torque.max():.4g} Nm, mean {torque.mean():.4g} Nm"],
-        ["sliding speed", f"{sliding.min():.4g} to {sliding.max():.4g} rad/s"],
-        ["in stick", f"{100 * motion.stuck.mean():.0f} % of the time"],
-        ["sound at the microphone", _level(run.pressure)],
-        ["computed", f"at {motion.rate:g} Hz, after {run.settling:g} s of settling"],
-    ]
-    caption = ", ".join(["Simulated run", *run.recording.condition.words])
-    return html_table(caption, rows)
 
 
 def draw_torques(
@@ -102,11 +74,3 @@ def draw_torques(
         axes.set_title(", ".join(run.recording.condition.words), loc="left")
         axes.legend(loc="best")
     return axes
-
-
-def _level(pressure: NDArray[np.float64]) -> str:
-    """Sound pressure level in words, free of noise."""
-    rms = float(np.sqrt(np.mean(np.square(pressure))))
-    if rms == 0.0:
-        return "none"
-    return f"{20.0 * math.log10(rms / REFERENCE_PRESSURE):.1f} dB re 20 µPa, free of noise"

@@ -162,11 +162,6 @@ class Modes:
 
         return draw_modes(self, ax)
 
-    def _repr_html_(self) -> str:
-        from features.modal.modes_display import modes_html
-
-        return modes_html(self)
-
 
 def modes_of_poles(
     poles: list[Pole],

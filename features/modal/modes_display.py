@@ -8,48 +8,15 @@ import numpy as np
 
 from models.drawing import CURVES, GREY, axes_or_new, frequency_axis
 from models.errors import ParameterError
-from models.html_table import html_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from features.modal.modes import Modes
 
-__all__ = ["draw_modes", "modes_html"]
-
 _POINTS = 2000
 _MARGIN = 0.5
 """Of the lowest natural frequency: where the curve begins on axes that are new."""
-
-
-def modes_html(modes: Modes) -> str:
-    """Return modes as a table.
-
-    Parameters
-    ----------
-    modes : Modes
-
-    Returns
-    -------
-    str
-        HTML.
-
-    Examples
-    --------
-    >>> from features.modal.modes import Modes
-    >>> one, none = np.ones(1), np.zeros((1, 4))
-    >>> mode = Modes(100 * one, 0.02 * one, 1j * one[None], none, one, 200.0)
-    >>> "<td ...>2 %</td>" in modes_html(mode).replace(' style="text-align: left"', " ...")
-    True
-    """
-    rows = [
-        [f"{number}", f"{f:.5g} Hz", f"{100 * ratio:.3g} %", f"{orders:.0f}"]
-        for number, (f, ratio, orders) in enumerate(
-            zip(modes.frequency, modes.damping_ratio, modes.orders, strict=True), start=1
-        )
-    ]
-    header = ["mode", "natural frequency", "of critical damping", "orders it stayed through"]
-    return html_table(f"Modes up to {modes.highest:.5g} Hz", rows, header=header)
 
 
 def draw_modes(modes: Modes, ax: Axes | None = None) -> Axes:

@@ -162,8 +162,3 @@ class TransferFunction:
             columns["coherence"] = self.coherence
         lines = zip(*(values.tolist() for values in columns.values()), strict=True)
         return data_frame([*columns], [dict(zip(columns, line, strict=True)) for line in lines])
-
-    def _repr_html_(self) -> str:
-        from models.transfer_functions.transfer_function_display import transfer_function_html
-
-        return transfer_function_html(self)

@@ -145,15 +145,6 @@ class Classifier:
         }
         save_model(path, _KIND, header, self.trees.arrays())
 
-    def _repr_html_(self) -> str:
-        from noise.base.model_display import model_display
-
-        facts = [
-            ["labels", ", ".join(LABELS)],
-            ["features", f"{len(self.feature_names)} of windows"],
-        ]
-        return model_display("Classifier", facts, self.card)
-
 
 def at_sensitivity(
     thresholds: tuple[float, float, float], sensitivity: float

@@ -150,8 +150,3 @@ class Diagnosis:
 
         effects = as_json(self)["effects"]
         return data_frame([*effects[0]] if effects else ["name"], effects)
-
-    def _repr_html_(self) -> str:
-        from noise.diagnosis.text.diagnosis_display import diagnosis_html
-
-        return diagnosis_html(self)

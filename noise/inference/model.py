@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.registry import recording_features
-from models.html_table import html_table
 from models.show import short_repr
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import QuantileForest
@@ -93,18 +92,9 @@ class Inferred(dict[str, Interval]):
     Examples
     --------
     >>> found = Inferred(interference=Interval(0.279e-3, 0.25e-3, 0.31e-3))
-    >>> "0.279 mm" in found._repr_html_()
-    True
+    >>> found["interference"].high
+    0.00031
     """
-
-    def _repr_html_(self) -> str:
-        rows = []
-        for name, found in self.items():
-            factor, unit = _UNITS[name]
-            values = [f"{factor * x:.4g} {unit}" for x in (found.value, found.low, found.high)]
-            rows.append([name.replace("_", " "), *values])
-        header = ["condition", "value", "lowest", "highest"]
-        return html_table("Inferred, with bounds of 90 %", rows, header=header)
 
 
 @short_repr
@@ -224,11 +214,6 @@ class Inference:
         low, high = np.quantile(self.prior[index], [0.05, 0.95])
         width = values[:, -1 - outside[1]] - values[:, outside[0]]
         return np.asarray(width < _NARROWER * (high - low))
-
-    def _repr_html_(self) -> str:
-        from noise.base.model_display import model_display
-
-        return model_display("Inference of " + ", ".join(QUANTITIES), [], self.card)
 
     def save(self, path: str | Path) -> None:
         """Write the model into an NPZ file, whole or not at all.

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from models.drawing import axes_or_new
 from models.errors import ParameterError
-from models.html_table import html_table
 from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
 from noise.base.label_names import NAMED
 
@@ -16,19 +15,6 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from noise.labels.segments import Segment
-
-__all__ = [
-    "ASSUMED",
-    "MOST_TRACKS",
-    "assumes_material",
-    "draw_tracks",
-    "labels_in",
-    "naming_row",
-    "result_lines",
-    "segments_html",
-    "table_html",
-]
 
 ASSUMED = "assuming a fluorocarbon bushing like the shipped one"
 """What inferred conditions say of themselves where no material was logged."""
@@ -213,84 +199,8 @@ def _result_words(row: Mapping[str, object]) -> Iterator[str]:
         yield f"p {probability:.2f}" + (f" ({name} {p:.2f})" if less else "")
 
 
-def segments_html(segments: Sequence[Segment]) -> str:
-    """Return the labelled segments of a recording as a table in HTML.
-
-    Examples
-    --------
-    >>> from noise.labels.segments import Segment
-    >>> creak = Segment("all", 0.0, 1.0, "creak", {"creak": 0.9}, 152.0, 78.0, None)
-    >>> "78.0 dB" in segments_html([creak])
-    True
-    """
-    rows = [
-        [
-            one.label,
-            f"{one.start:.2f} to {one.end:.2f} s",
-            one.channel,
-            f"{100 * one.probabilities[one.label]:.0f} %",
-            "" if one.frequency is None else f"{one.frequency:.4g} Hz",
-            _level(one.level, one.level_dbfs),
-        ]
-        for one in segments
-    ]
-    header = ["label", "time", "channel", "probability", "frequency", "level"]
-    return html_table("Labelled segments", rows, header=header)
-
-
-def table_html(table: Sequence[Mapping[str, object]]) -> str:
-    """Return a label table as a table in HTML.
-
-    Examples
-    --------
-    >>> rows = [{"file": "b.wav", "label": None, "error": "is empty"}]
-    >>> "refused: is empty" in table_html(rows)
-    True
-    """
-    rows = [
-        [
-            str(row["file"]),
-            str(row["label"] or f"refused: {row['error']}"),
-            _time(row.get("start_s"), row.get("end_s")),
-            _level(row.get("level_db"), row.get("level_dbfs")),
-            _condition(row, "speed_rad_s", "rad/s"),
-            _condition(row, "interference_mm", "mm"),
-            _condition(row, "support_stiffness_Nm_rad", "Nm/rad"),
-        ]
-        for row in table
-    ]
-    header = ["file", "label", "time", "level", "speed", "interference", "support stiffness"]
-    caption = f"Labels of {len({row['file'] for row in table})} files"
-    if any(assumes_material(row) for row in table):
-        caption += f"; conditions with bounds are inferred, {ASSUMED} where no material is logged"
-    return html_table(caption, rows, header=header)
-
-
 def _length(row: Mapping[str, object]) -> float:
     start, end = row.get("start_s"), row.get("end_s")
     if isinstance(start, int | float) and isinstance(end, int | float):
         return float(end - start)
     return 0.0
-
-
-def _time(start: object, end: object) -> str:
-    if isinstance(start, float) and isinstance(end, float):
-        return f"{start:.2f} to {end:.2f} s"
-    return ""
-
-
-def _level(level: object, level_dbfs: object) -> str:
-    if isinstance(level, float):
-        return f"{level:.1f} dB"
-    return f"{level_dbfs:.1f} dBFS" if isinstance(level_dbfs, float) else ""
-
-
-def _condition(row: Mapping[str, object], column: str, unit: str) -> str:
-    """Return a condition with its bounds where it is inferred."""
-    value, low, high = (row.get(f"{column}{part}") for part in ("", "_low", "_high"))
-    if not isinstance(value, float):
-        return ""
-    words = f"{value:.4g} {unit}"
-    if isinstance(low, float) and isinstance(high, float):
-        words += f" ({low:.4g} to {high:.4g})"
-    return words

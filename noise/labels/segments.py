@@ -96,8 +96,8 @@ class Segments(list[Segment]):
     Examples
     --------
     >>> found = Segments([Segment("all", 0.0, 1.0, "creak", {"creak": 0.9}, 152.0, 78.0, None)])
-    >>> found[0].label, "152 Hz" in found._repr_html_()
-    ('creak', True)
+    >>> found[0].label, found[0].frequency
+    ('creak', 152.0)
     """
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -145,11 +145,6 @@ class Segments(list[Segment]):
         shown = [f"{one.label} {one.start:.4g} to {one.end:.4g} s" for one in self[:_MOST_SHOWN]]
         more = ["..."] * (len(self) > _MOST_SHOWN)
         return f"Segments({len(self)}: {', '.join(shown + more)})"
-
-    def _repr_html_(self) -> str:
-        from noise.labels.label_display import segments_html
-
-        return segments_html(self)
 
 
 def label_recording(

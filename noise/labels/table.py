@@ -140,11 +140,6 @@ class LabelTable(list[dict[str, object]]):
         found = ", ".join(f"{number} {label}" for label, number in counts.most_common())
         return f"LabelTable({files}; segments: {found or 'none'})"
 
-    def _repr_html_(self) -> str:
-        from noise.labels.label_display import table_html
-
-        return table_html(self)
-
 
 def own_columns(rows: Iterable[Mapping[str, object]]) -> tuple[str, ...]:
     """Return the columns of rows that are not of a label table, such as a remark of one's own.

@@ -1,4 +1,4 @@
-"""Result of a screening, which shows itself in a notebook and draws its maps."""
+"""Result of a screening, which draws its maps."""
 
 from __future__ import annotations
 
@@ -187,12 +187,6 @@ class Screening:
             there = ", ".join(name.removesuffix(".csv") for name in tables)
             raise ParameterError(f"there is no table {table!r}; there are {there}")
         return data_frame(*tables[f"{table}.csv"])
-
-    def _repr_html_(self) -> str:
-        """Show the ranking."""
-        from noise.screening.tables.screening_display import screening_html
-
-        return screening_html(self)
 
 
 def _check_index(what: str, index: int, there: int) -> None:

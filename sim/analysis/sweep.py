@@ -22,7 +22,7 @@ from models.show import short_repr
 from sim.acquisition import Acquisition, sample
 from sim.analysis.sweep_features import FEATURES, motion_features, plain_features
 from sim.analysis.sweep_systems import packed_systems
-from sim.analysis.swept import SweptFeatures, conditions_html
+from sim.analysis.swept import SweptFeatures
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import friction_law
@@ -162,9 +162,6 @@ class Sweep:
         columns = self._columns()
         rows = self._each(columns, range(columns[0].size), decimated)
         return np.array(rows, dtype=np.float32).reshape(*columns[0].shape, -1)
-
-    def _repr_html_(self) -> str:
-        return conditions_html(dict(zip(_CONDITIONS, self._columns(), strict=True)), self.seconds)
 
     def _columns(self) -> tuple[NDArray[Any], ...]:
         """Rig, speed, interference and support stiffness of all runs, as arrays of one shape."""

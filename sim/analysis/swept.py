@@ -14,7 +14,6 @@ import numpy as np
 from models.condition import Condition
 from models.drawing import CURVES, axes_or_new
 from models.errors import ParameterError
-from models.html_table import html_table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from pandas import DataFrame
 
-__all__ = ["FEATURE_WORDS", "SweptFeatures", "conditions_html"]
+__all__ = ["FEATURE_WORDS", "SweptFeatures"]
 
 FEATURE_WORDS = {
     "slip_count": "Number of slips",
@@ -166,50 +165,6 @@ class SweptFeatures(dict[str, "NDArray[np.float64]"]):
         shape = " x ".join(map(str, self.conditions["rig"].shape)) or "one"
         return f"SweptFeatures({', '.join(self)}; {shape} runs)"
 
-    def _repr_html_(self) -> str:
-        columns = [self[name].ravel() for name in self]
-        rows = [
-            [", ".join(_words(run)), *(f"{column[index]:.4g}" for column in columns)]
-            for index, run in enumerate(_runs(self.conditions))
-        ]
-        header = ["condition", *(FEATURE_WORDS.get(name, name) for name in self)]
-        return html_table(f"Sweep of {len(rows)} runs", rows, header=header)
-
-
-def conditions_html(conditions: Mapping[str, NDArray[np.object_]], seconds: float) -> str:
-    """Return what a sweep will simulate, as a table.
-
-    Parameters
-    ----------
-    conditions : mapping of str to ndarray
-        As `SweptFeatures` has them.
-    seconds : float
-        How long each run is looked at [s].
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> from sim.analysis.sweep import Sweep
-    >>> "1 to 5 rad/s" in Sweep(load_material_rig("PDMS"), [1.0, 5.0])._repr_html_()
-    True
-    """
-    rigs = dict.fromkeys(rig.material for rig in conditions["rig"].ravel())
-    speeds = conditions["speed"].ravel()
-    constant = [speed for speed in speeds if isinstance(speed, float)]
-    rows = [
-        ["material", ", ".join(rigs)],
-        ["speed", _span(constant, 1.0, "rad/s") if constant else "changes in a run"],
-        ["interference", _span(conditions["interference"].ravel().tolist(), 1e3, "mm")],
-        ["support stiffness", _span(conditions["support_stiffness"].ravel().tolist(), 1, "Nm/rad")],
-        ["each run", f"{seconds:g} s"],
-    ]
-    shape = " x ".join(map(str, conditions["rig"].shape))
-    return html_table(f"Sweep of {speeds.size} conditions ({shape or 'one'})", rows)
-
 
 def _runs(conditions: Mapping[str, NDArray[np.object_]]) -> list[dict[str, Any]]:
     flat = {name: values.ravel() for name, values in conditions.items()}
@@ -229,8 +184,3 @@ def _condition(run: Mapping[str, Any]) -> Condition:
 def _words(run: Mapping[str, Any]) -> list[str]:
     words = _condition(run).words
     return words if isinstance(run["speed"], float) else [*words, str(run["speed"])]
-
-
-def _span(values: list[float], factor: float, unit: str) -> str:
-    low, high = factor * min(values), factor * max(values)
-    return f"{low:.4g} {unit}" if low == high else f"{low:.4g} to {high:.4g} {unit}"

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import soundfile
 
-import noise
 from models.errors import ParameterError
 from noise.audio.gain import loudness
 from noise.base.label_looks import LABEL_LOOKS
@@ -323,12 +322,6 @@ def test_a_screen_brings_a_map_a_design_and_sounds_of_every_label(tmp_path):
 def test_patterns_and_marks_tell_labels_apart_without_colour():
     assert len({look.pattern for look in LABEL_LOOKS.values()}) == len(LABEL_LOOKS)
     assert len({look.mark for look in LABEL_LOOKS.values()}) == len(LABEL_LOOKS)
-
-
-def test_a_notebook_shows_the_page(campaign):
-    shown = noise.review(campaign, campaign / "review.html")._repr_html_()
-    assert shown.startswith("<iframe srcdoc=")
-    assert '"' not in shown.split('srcdoc="')[1].split('" style=')[0]
 
 
 def test_inferred_bounds_stand_in_plain_digits_and_say_what_is_assumed():

@@ -5,54 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from models.drawing import BLUE, GREY, axes_or_new
-from models.html_table import html_table
-from noise.diagnosis.text.sentences import location_sentence
-from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
-from noise.diagnosis.text.words import STAGES, cause_of, floors, p_number, percent
+from noise.diagnosis.text.verdict_sentences import headline
+from noise.diagnosis.text.words import cause_of, percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from noise.diagnosis.outcome import Diagnosis
 
-__all__ = ["diagnosis_html", "draw_causes"]
-
 _SHOWN = 10
 """Causes that are drawn and listed, the most probable; assumed."""
-
-
-def diagnosis_html(diagnosis: Diagnosis) -> str:
-    """Return a diagnosis as two tables: the answer, and the stages.
-
-    Examples
-    --------
-    >>> from noise.diagnosis.outcome import Diagnosis
-    >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
-    >>> "No gap" in diagnosis_html(nothing)
-    True
-    """
-    likely = ", ".join(
-        f"{cause_of(name).name} {percent(chance)}" for name, chance in _most_probable(diagnosis)
-    )
-    facts = [
-        ["verdict", verdict_sentence(diagnosis)],
-        ["where", location_sentence(diagnosis)],
-        ["gap", f"{floors(diagnosis.gap)} floors; "
-                f"{p_number(diagnosis.p_value)}"],
-        ["causes", likely],
-        ["to measure next", diagnosis.next_measurement],
-        *(["note", note] for note in diagnosis.notes),
-    ]  # fmt: skip
-    stages = [
-        [f"{name} ({STAGES[name]})" if name in STAGES else name, floors(stage.gap),
-         percent(stage.share), p_number(stage.p_value)]
-        for name, stage in diagnosis.stages.items()
-    ]  # fmt: skip
-    answer = html_table(headline(diagnosis), [row for row in facts if row[1]])
-    if not stages or diagnosis.bench:
-        return answer
-    header = ["stage", "gap", "share of the gap", "chance between repeats"]
-    return answer + html_table("Gap by stage", stages, header=header)
 
 
 def draw_causes(diagnosis: Diagnosis, ax: Axes | None = None) -> Axes:

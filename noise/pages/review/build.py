@@ -65,13 +65,6 @@ class Review:
     shortened: float | None
     refused: tuple[Refusal, ...]
 
-    def _repr_html_(self) -> str:
-        """Show the page in a notebook."""
-        from html import escape
-
-        page = escape(self.path.read_text(encoding="utf-8"), quote=True)
-        return f'<iframe srcdoc="{page}" style="width: 100%; height: 45rem; border: 0"></iframe>'
-
 
 def review(
     paths: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
@@ -116,7 +109,6 @@ def review(
     Returns
     -------
     Review
-        Shows itself in a notebook.
 
     Raises
     ------

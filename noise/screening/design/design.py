@@ -140,12 +140,6 @@ class Design:
     use: Use = Use()
     tolerances: tuple[Tolerance, ...] = ()
 
-    def _repr_html_(self) -> str:
-        """Show the rig, the use, and the tolerances."""
-        from noise.screening.tables.screening_display import design_html
-
-        return design_html(self)
-
 
 def load_design(given: str | Path) -> Design:
     """Read a design file, or take a material by its name.

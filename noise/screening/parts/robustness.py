@@ -99,7 +99,7 @@ class Robustness:
     >>> from noise.screening.design.design import load_design
     >>> design = load_design("PDMS")
     >>> found = robustness(design, np.random.default_rng(0), half_width=0.1, samples=64)
-    >>> found.clear.value, found.margin, "assumed" in found._repr_html_()
+    >>> found.clear.value, found.margin, found.assumed
     (1.0, inf, True)
     """
 
@@ -113,12 +113,6 @@ class Robustness:
     noise_advice: tuple[Advice, ...]
     risk: int
     assumed: bool
-
-    def _repr_html_(self) -> str:
-        """Show what parts do, what matters, and what helps."""
-        from noise.screening.tables.screening_display import robustness_html
-
-        return robustness_html(self)
 
 
 def robustness(
