@@ -14,6 +14,31 @@ FIXED = math.inf
 _SAME = 1e-3  # relative difference
 
 
+LENGTH_SLIPS = ((1e3, "metres"), (1e-3, "micrometres"))
+STIFFNESS_SLIPS = ((1e-3, "Nmm/rad"), (180.0 / math.pi, "Nm/degree"), (1e3, "kNm/rad"))
+
+# Up to 19.75 rad/s at the rig (5.1.3); a bar that swings by 30 degrees at 6 Hz reaches 20.
+_SPEED = Quantity("speed_rad_s", 1.0, "rad/s", -1e6, 1e6, (-25.0, 25.0))
+# 0.127 to 0.381 mm at the rig (3.1.3); strains of rubber of 1 to 30 %.
+_FIT = Quantity("interference_mm", 1e-3, "mm", 1e-6, 10.0, (0.02, 3.0), LENGTH_SLIPS, 0.279)
+# 2214 and 3745 Nm/rad at the rig (Table 3.2).
+_SUPPORT = Quantity(
+    "support_stiffness_Nm_rad",
+    1.0,
+    "Nm/rad",
+    1e-3,
+    1e12,
+    (1e3, 2e5),
+    STIFFNESS_SLIPS,
+    2214.0,
+    infinite="fixed",
+)
+# From a car's cold start to beside its exhaust.
+_TEMPERATURE = Quantity(
+    "temperature_C", 1.0, "degree Celsius", ABSOLUTE_ZERO, 2000.0, (-40.0, 150.0), default=23.0
+)
+
+
 @dataclass(frozen=True)
 class Condition:
     """Operating condition; ``None`` where it is not known.
@@ -39,58 +64,11 @@ class Condition:
     True
     """
 
-    speed: Annotated[
-        float | None,
-        Quantity(  # up to 19.75 at the rig (5.1.3); a bar that swings by 30 degrees at 6 Hz: 20
-            "speed_rad_s",
-            unit="rad/s",
-            low=-1e6,
-            high=1e6,
-            usual=(-25.0, 25.0),
-            help="speed of the shaft, of either sign",
-        ),
-    ] = None
-    interference: Annotated[
-        float | None,
-        Quantity(  # 0.127 to 0.381 at the rig (3.1.3); strains of rubber of 1 to 30 %
-            "interference_mm",
-            1e-3,
-            "mm",
-            low=1e-6,
-            high=10.0,
-            usual=(0.02, 3.0),
-            slips=((1e3, "metres"), (1e-3, "micrometres")),
-            default=0.279,
-            help="interference fit",
-        ),
-    ] = None
-    support_stiffness: Annotated[
-        float | None,
-        Quantity(  # 2214 and 3745 at the rig (Table 3.2)
-            "support_stiffness_Nm_rad",
-            unit="Nm/rad",
-            low=1e-3,
-            high=1e12,
-            usual=(1e3, 2e5),
-            slips=((1e-3, "Nmm/rad"), (180.0 / math.pi, "Nm/degree"), (1e3, "kNm/rad")),
-            infinite="fixed",
-            default=2214.0,
-            help="torsional stiffness of the beams",
-        ),
-    ] = None
+    speed: Annotated[float | None, _SPEED] = None
+    interference: Annotated[float | None, _FIT] = None
+    support_stiffness: Annotated[float | None, _SUPPORT] = None
     material: Annotated[str | None, Text("material")] = None
-    temperature: Annotated[
-        float | None,
-        Quantity(  # from a car's cold start to beside its exhaust
-            "temperature_C",
-            unit="degree Celsius",
-            low=ABSOLUTE_ZERO,
-            high=2000.0,
-            usual=(-40.0, 150.0),
-            default=23.0,
-            help="ambient temperature",
-        ),
-    ] = None
+    temperature: Annotated[float | None, _TEMPERATURE] = None
 
     @property
     def words(self) -> list[str]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 from models.bushing import Sleeve, TemperatureDependence, shore_modulus
+from models.condition import LENGTH_SLIPS, STIFFNESS_SLIPS
 from models.errors import ParameterError
 from models.schema import (
     Entry,
@@ -49,7 +50,10 @@ FEWEST_MODES, MOST_MODES = 5, 5000
 MOST_SOLVED_MODES, MOST_UNLIKE_MODES = 1500, 600
 """Where modes are solved for, and where opposite edges are unlike as well: 4 to 8 seconds."""
 
+_STIFFNESS, _DAMPING = "elastomer_stiffness_Nm_rad", "damping_Nms_rad"
+_ELASTOMER = "elastomer_inertia_kgm2"
 _TORQUE_SLIPS = ((1e-3, "Nmm"), (1e3, "kNm"))
+_DAMPING_SLIPS = ((1e-3, "Nmm s/rad"), (180.0 / math.pi, "Nm s/degree"))
 _INERTIA_SLIPS = ((1e-4, "kg cm2"), (1e-6, "kg mm2"))
 
 
@@ -221,62 +225,24 @@ class Fit:
     """
 
     interference: Annotated[
-        float,
-        Quantity(  # 0.127 to 0.381 at the rig (3.1.3); strains of rubber of 1 to 30 %
-            "interference_mm",
-            1e-3,
-            "mm",
-            low=1e-6,
-            high=100.0,
-            usual=(0.02, 3.0),
-            slips=((1e3, "metres"), (1e-3, "micrometres")),
-        ),
+        float,  # 0.127 to 0.381 at the rig (3.1.3); strains of rubber of 1 to 30 %
+        Quantity("interference_mm", 1e-3, "mm", 1e-6, 100.0, (0.02, 3.0), LENGTH_SLIPS),
     ]
     elastomer_stiffness: Annotated[
-        float,
-        Quantity(  # 430 to 1011 at the rig (Table 5.3); rings of 10 to 50 mm, G = 0.4 to 6 MPa
-            "elastomer_stiffness_Nm_rad",
-            unit="Nm/rad",
-            low=1e-3,
-            high=1e8,
-            usual=(20.0, 2e4),
-            slips=((1e-3, "Nmm/rad"), (180.0 / math.pi, "Nm/degree"), (1e3, "kNm/rad")),
-        ),
+        float,  # 430 to 1011 at the rig (Table 5.3); rings of 10 to 50 mm, G = 0.4 to 6 MPa
+        Quantity(_STIFFNESS, 1.0, "Nm/rad", 1e-3, 1e8, (20.0, 2e4), STIFFNESS_SLIPS),
     ]
     critical_torque: Annotated[
-        float,
-        Quantity(  # 5 to 40 at the rig (Appendix F); friction 0.1 to 2 at 0.1 to 5 MPa
-            "critical_torque_Nm",
-            unit="Nm",
-            low=1e-6,
-            high=1e7,
-            usual=(0.3, 500.0),
-            slips=_TORQUE_SLIPS,
-        ),
+        float,  # 5 to 40 at the rig (Appendix F); friction 0.1 to 2 at 0.1 to 5 MPa
+        Quantity("critical_torque_Nm", 1.0, "Nm", 1e-6, 1e7, (0.3, 500.0), _TORQUE_SLIPS),
     ]
     kinetic_torque: Annotated[
-        float,
-        Quantity(
-            "kinetic_torque_Nm",
-            unit="Nm",
-            low=1e-6,
-            high=1e7,
-            usual=(0.2, 500.0),
-            slips=_TORQUE_SLIPS,
-        ),
+        float, Quantity("kinetic_torque_Nm", 1.0, "Nm", 1e-6, 1e7, (0.2, 500.0), _TORQUE_SLIPS)
     ]
     damping: Annotated[
-        Mapping[float, float],
+        Mapping[float, float],  # 0.08 to 0.24 at the rig (Table 5.5)
         _BySupport(
-            "damping_Nms_rad",
-            Quantity(  # 0.08 to 0.24 at the rig (Table 5.5); loss factors of rubber reach 1
-                "damping_Nms_rad",
-                unit="Nm s/rad",
-                low=1e-9,
-                high=1e3,
-                usual=(2e-3, 1.5),
-                slips=((1e-3, "Nmm s/rad"), (180.0 / math.pi, "Nm s/degree")),
-            ),
+            _DAMPING, Quantity(_DAMPING, 1.0, "Nm s/rad", 1e-9, 1e3, (2e-3, 1.5), _DAMPING_SLIPS)
         ),
     ]
 
@@ -709,26 +675,12 @@ class Rig:
     name: Annotated[str, Text("name")]
     material: Annotated[str, Text("material")]
     elastomer_inertia: Annotated[
-        float,
-        Quantity(  # 1.5e-5 at the rig (Appendix F); 5 g at 10 mm to 2 kg at 50 mm
-            "elastomer_inertia_kgm2",
-            unit="kg m2",
-            low=1e-12,
-            high=1e3,
-            usual=(5e-7, 5e-3),
-            slips=_INERTIA_SLIPS,
-        ),
+        float,  # 1.5e-5 at the rig (Appendix F); 5 g at 10 mm to 2 kg at 50 mm
+        Quantity(_ELASTOMER, 1.0, "kg m2", 1e-12, 1e3, (5e-7, 5e-3), _INERTIA_SLIPS),
     ]
     clamp_inertia: Annotated[
-        float,
-        Quantity(  # 8.3e-4 at the rig (Appendix F); 50 g at 20 mm to 50 kg at 100 mm
-            "clamp_inertia_kgm2",
-            unit="kg m2",
-            low=1e-12,
-            high=1e4,
-            usual=(2e-5, 0.5),
-            slips=_INERTIA_SLIPS,
-        ),
+        float,  # 8.3e-4 at the rig (Appendix F); 50 g at 20 mm to 50 kg at 100 mm
+        Quantity("clamp_inertia_kgm2", 1.0, "kg m2", 1e-12, 1e4, (2e-5, 0.5), _INERTIA_SLIPS),
     ]
     fits: Annotated[tuple[Fit, ...], _Fits("fit")]
     friction: Annotated[LawSpec, _Law("friction")]

@@ -201,19 +201,17 @@ class Quantity(Entry):
         Shown behind values.
     low, high : float
         Between which a value is possible, as wide as numbers still mean something [`unit`].
-    closed : bool
-        Whether `low` itself is possible; 0 is where it is not stated.
     usual : tuple of float
         Outside of which a value is used with a remark [`unit`]: from the thesis's rig to bushings
         of a wiper and of a lorry's spring eye.
     slips : tuple of (float, str)
         Factors that bring a value in a wrong unit to the right one, and that unit.
-    infinite : str
-        Word that stands for infinity.
     default : float
         Where nothing is stated [`unit`].
-    help : str
-        What it is, in words for an option.
+    closed : bool, optional
+        Whether `low` itself is possible; by default, unless it is 0.
+    infinite : str
+        Word that stands for infinity.
 
     Examples
     --------
@@ -229,12 +227,11 @@ class Quantity(Entry):
     unit: str = ""
     low: float = 0.0
     high: float = math.inf
-    closed: bool | None = None
     usual: tuple[float, float] = (-math.inf, math.inf)
     slips: tuple[tuple[float, str], ...] = ()
-    infinite: str = ""
     default: float = math.nan
-    help: str = ""
+    closed: bool | None = None
+    infinite: str = ""
 
     def possible(self, value: float) -> bool:
         """Whether a value [`unit`] can be."""

@@ -24,35 +24,23 @@ from models.units import CHANNEL_UNITS
 
 FROM_RECORDINGS = "from recordings"
 
-_RANGES = {  # of full scale at the rig, Appendices B to E, and of what the field has
-    "torque": ((0.05, 1e4), (1e-9, 1e9)),  # +-102.5; cells of 0.1 Nm to 10 kNm
-    "acceleration": ((5.0, 1e6), (1e-6, 1e9)),  # +-977; sensors of 0.5 to 1e5 g
-    "pressure": ((0.02, 2e4), (1e-9, 1e8)),  # +-28.9; microphones to 180 dB
-    "angle": ((1e-3, 1e4), (1e-9, 1e9)),  # +-12.4
-    "speed": ((0.1, 1e4), (1e-6, 1e9)),
-    "force": ((1.0, 1e6), (1e-6, 1e12)),  # hammers of 20 N to 200 kN
+_USUAL = {  # full scale, of the rig (Appendices B to E) and of the field; most noise
+    "torque": (0.05, 1e4, 0.5),  # +-102.5; cells of 0.1 Nm to 10 kNm
+    "acceleration": (5.0, 1e6, 5.0),  # +-977; sensors of 0.5 to 1e5 g
+    "pressure": (0.02, 2e4, 0.15),  # +-28.9; microphones to 180 dB
+    "angle": (1e-3, 1e4, 0.06),  # +-12.4
+    "speed": (0.1, 1e4, 0.5),
+    "force": (1.0, 1e6, 5.0),  # hammers of 20 N to 200 kN
 }
-_NOISE = {  # largest usual standard deviation: ten steps of the rig's 12 bits (3.1.2)
-    "torque": 0.5,
-    "acceleration": 5.0,
-    "pressure": 0.15,
-    "angle": 0.06,
-    "speed": 0.5,
-    "force": 5.0,
-}
-_BITS = Quantity("bits", unit="bit", low=2.0, high=32.0, usual=(8.0, 24.0))
-_ANTIALIAS = Quantity(  # below half of 30 kHz at the rig (3.1.2); slips repeat above 100 Hz
-    "antialias_hz", unit="Hz", low=1.0, high=1e9, usual=(500.0, 1e5), slips=((1e3, "kHz"),)
-)
+"""Noise: ten steps of the rig's 12 bits (3.1.2)."""
+
+# Below half of 30 kHz at the rig (3.1.2); slips repeat above 100 Hz.
+_ANTIALIAS = Quantity("antialias_hz", 1.0, "Hz", 1.0, 1e9, (500.0, 1e5), ((1e3, "kHz"),))
 SENSOR_QUANTITIES = {
     kind: {
-        "full_scale": Quantity(
-            f"range.{kind}", 1.0, unit, *_RANGES[kind][1], usual=_RANGES[kind][0]
-        ),
-        "noise": Quantity(
-            f"noise.{kind}", 1.0, unit, 0.0, 1e9, closed=True, usual=(0.0, _NOISE[kind])
-        ),
-        "bits": _BITS,
+        "full_scale": Quantity(f"range.{kind}", 1.0, unit, 1e-9, 1e12, _USUAL[kind][:2]),
+        "noise": Quantity(f"noise.{kind}", 1.0, unit, 0, 1e9, (0, _USUAL[kind][2]), closed=True),
+        "bits": Quantity("bits", 1.0, "bit", 2.0, 32.0, (8.0, 24.0)),
         "antialias": _ANTIALIAS,
     }
     for kind, unit in CHANNEL_UNITS.items()

@@ -38,7 +38,12 @@ def dataclasses_by_name():
 
 
 def names_in(annotation):
-    return re.findall(r"[A-Z]\w+", str(annotation))
+    return re.findall(r"[A-Z]\w+", kind_of(annotation))
+
+
+def kind_of(annotation):
+    """The type in words, without what else is declared beside it."""
+    return str(annotation.__origin__ if hasattr(annotation, "__metadata__") else annotation)
 
 
 def public():
@@ -73,7 +78,7 @@ def filled(cls, depth=0):
     """An instance whose arrays, tables and texts are long, and that nobody could have made."""
     one = object.__new__(cls)
     for field in dataclasses.fields(cls):
-        object.__setattr__(one, field.name, _long(str(field.type), depth))
+        object.__setattr__(one, field.name, _long(kind_of(field.type), depth))
     return one
 
 

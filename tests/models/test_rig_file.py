@@ -297,7 +297,7 @@ def fit(old, new):
         ("[sensors]\nragne = { torque = 1 }", ("'ragne'", "did you mean 'range'")),
         ("[sensors]\nrange = { torqe = 1 }", ("sensors, range", "did you mean 'torque'")),
         ("[sensors]\nrange = 50", ("range = 50", "{ torque = 50 }")),
-        ("[sensors]\nrange = { torque = -1 }", ("range.torque = -1", "from 1e-09 to 1e+09 N m")),
+        ("[sensors]\nrange = { torque = -1 }", ("range.torque = -1", "from 1e-09 to 1e+12 N m")),
         ('[sensors]\nrange = { torque = "50 Nm" }', ("torque = '50 Nm'", "a number")),
         ("[sensors]\nbits = 12", ("bits without a range", "range = { torque = ... }")),
         ("[sensors]\nrange = { torque = 50 }\nbits = { pressure = 12 }", ("bits of pressure",)),
