@@ -71,7 +71,7 @@ _EXPORTS = {
     "noise.screening.outcome": ("Screening",),
     "noise.screening.screen": ("screen",),
     "noise.pages.report": ("ReportEntry", "write_report"),
-    "noise.pages.review.build": ("Review", "review"),
+    "noise.pages.review": ("Review", "review"),
     "sim.acquisition": ("Acquisition",),
     "sim.analysis.critical_damping": ("critical_damping",),
     "sim.analysis.critical_speeds": ("critical_speeds",),

@@ -1,25 +1,32 @@
-"""The app's door: a request without the token, for another host or from another site gets nothing.
+"""The app's gate: a request without the token, for another host or from another site gets nothing.
 
 Any page that a browser shows may send requests to the loopback address, and a name on the network
 may be made to point there (DNS rebinding). So a request needs the token that only the printed
 address has, or the cookie that this address sets; its Host is the loopback address itself; and what
 changes something comes from the app's own pages. Each of these tells the token of its address: the
-cookie may be that of a program which came after it at the same port.
+cookie may be that of a program which came after it at the same port. Bodies are JSON objects of a
+size that a page of ours sends.
 """
 
 from __future__ import annotations
 
 import hmac
-from typing import TYPE_CHECKING
+import json
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs
 
+from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse
 
+from models.errors import ParameterError
+
 if TYPE_CHECKING:
+    from starlette.requests import Request
+    from starlette.responses import Response
     from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-__all__ = ["Gate"]
 
 _POLICY = (
     "default-src 'none'; script-src 'self'; connect-src 'self'; img-src 'self' data: blob:; "
@@ -92,11 +99,48 @@ class Gate:
         if origin is None and headers.get("sec-fetch-site", "none") not in {"same-origin", "none"}:
             return "wrong origin"
         # Of several, each has to be right: none is passed on to be read in another way.
-        said = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
-        said += headers.getlist("page-token")
-        if not said:
+        given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
+        given += headers.getlist("page-token")
+        if not given:
             # Other programs on this machine set cookies here as well, of whatever form.
             pairs = (one.strip().partition("=") for one in headers.get("cookie", "").split(";"))
-            said = [value for name, _, value in pairs if name == self._cookie]
-        right = [hmac.compare_digest(one.encode(), self._token.encode()) for one in said]
+            given = [value for name, _, value in pairs if name == self._cookie]
+        right = [hmac.compare_digest(one.encode(), self._token.encode()) for one in given]
         return None if right and all(right) else "wrong token"
+
+
+_MOST = 4 << 20
+"""Longest body [byte]."""
+
+
+def body(
+    answer: Callable[[Request, dict[str, Any]], Response],
+) -> Callable[[Request], Awaitable[Response]]:
+    """Return the endpoint that answers a request and the JSON object in it.
+
+    Parameters
+    ----------
+    answer : callable
+        From request and body to response; it runs in a thread, so it may take its time.
+
+    Raises
+    ------
+    ParameterError
+        The body is too long or no JSON object.
+    """
+
+    async def endpoint(request: Request) -> Response:
+        read = bytearray()
+        async for piece in request.stream():
+            read += piece
+            if len(read) > _MOST:
+                raise ParameterError(f"the request is longer than {_MOST} bytes")
+        try:
+            content = json.loads(bytes(read) or b"{}")
+        except (ValueError, RecursionError):
+            content = None
+        if not isinstance(content, dict):
+            raise ParameterError("the request is no JSON object")
+        return await run_in_threadpool(answer, request, content)
+
+    return endpoint

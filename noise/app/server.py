@@ -1,4 +1,4 @@
-"""The server: which views there are, and the page that they stand in."""
+"""The server of the app: its views, and the page that they stand in."""
 
 from __future__ import annotations
 
@@ -7,42 +7,76 @@ import secrets
 import signal
 import socket
 import threading
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from importlib import import_module
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING
 
 from jinja2 import Environment, PackageLoader
 from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
 from starlette.responses import HTMLResponse, JSONResponse
-from starlette.routing import Mount, Route
+from starlette.routing import BaseRoute, Match, Mount, Route, Router
 from starlette.staticfiles import StaticFiles
 
 from models.errors import BushingNoiseError
 from noise.app.gate import Gate
-from noise.app.lazy_routes import LazyRoutes
 from noise.base.label_looks import LABEL_LOOKS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     from starlette.requests import Request
     from starlette.responses import Response
-    from starlette.routing import BaseRoute
-    from starlette.types import ASGIApp
+    from starlette.types import ASGIApp, Receive, Scope, Send
 
     from noise.app.opened import Opened
 
-__all__ = ["VIEWS", "create_app", "serve"]
+
+class LazyRoutes(BaseRoute):
+    """All routes that begin alike.
+
+    Parameters
+    ----------
+    prefix : str
+        That they begin with.
+    make : callable
+        Returns them; called once, in a thread, since it may take its time.
+    """
+
+    def __init__(self, prefix: str, make: Callable[[], Sequence[BaseRoute]]) -> None:
+        self._prefix, self._make = prefix, make
+        self._lock = Lock()
+        self._router: Router | None = None
+
+    def matches(self, scope: Scope) -> tuple[Match, Scope]:
+        """Whether a request is for one of them."""
+        path = scope["path"]
+        mine = path == self._prefix or path.startswith(f"{self._prefix}/")
+        return (Match.FULL if mine and scope["type"] == "http" else Match.NONE), {}
+
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request."""
+        router = await run_in_threadpool(self._made) if self._router is None else self._router
+        await router(scope, receive, send)
+
+    def _made(self) -> Router:
+        with self._lock:
+            if self._router is None:
+                self._router = Router(routes=self._make())
+            return self._router
+
 
 VIEWS = {"labels": "Listen and label", "design": "Design", "jury": "Jury"}
-"""Views in the order of their tabs: module under `noise.app` and script under ``static``, title."""
+"""Views in the order of their tabs: folder under ``static``, title."""
 
-_SHARED = ("sounds",)
-"""Routes that several views use."""
-
-_LATER = {"design": "/api/design"}
-"""Views that take a while to be loaded, and what all their routes begin with."""
+_ROUTES = {
+    "noise.app.sounds": "",
+    "noise.app.label_view": "",
+    "noise.app.design_view": "/api/design",
+    "noise.app.jury_view": "",
+}
+"""Modules of routes; of one that takes a while to be loaded, what all its routes begin with."""
 
 _STATIC = Path(__file__).parent / "static"
 
@@ -76,19 +110,20 @@ def create_app(
         stop()
         return JSONResponse({"stopped": True})
 
-    def routes_of(name: str) -> list[BaseRoute]:
-        found: list[BaseRoute] = import_module(f"noise.app.{name}.routes").routes(opened)
+    def routes_of(module: str) -> list[BaseRoute]:
+        found: list[BaseRoute] = import_module(module).routes(opened)
         return found
 
-    # A rig that is named is read at once: what is wrong with it is told where it was named.
-    later = {} if opened.rigs else _LATER
     routes = [
         Route("/", shown),
         Route("/api/stop", stopped, methods=["POST"]),
         Mount("/static", StaticFiles(directory=_STATIC)),
-        *(route for name in (*_SHARED, *VIEWS) if name not in later for route in routes_of(name)),
-        *(LazyRoutes(prefix, partial(routes_of, name)) for name, prefix in later.items()),
     ]
+    for module, prefix in _ROUTES.items():
+        if prefix and not opened.rigs:
+            routes.append(LazyRoutes(prefix, partial(routes_of, module)))
+        else:  # what is wrong with a rig that is named is told where it was named
+            routes += routes_of(module)
     app = Starlette(routes=routes, exception_handlers={BushingNoiseError: _told})
     return Gate(app, token, port)
 

@@ -154,7 +154,7 @@ def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
 def _write(options: Namespace, diagnosis: Diagnosis) -> list[Path]:
     from models.rig_file import base_name, material_of
     from noise.diagnosis.improved_file import NAME, improved_text
-    from noise.pages.diagnosis.page import write_diagnosis
+    from noise.pages.diagnosis import write_diagnosis
 
     improved, found = None, diagnosis.improvement
     if found is not None:

@@ -99,6 +99,6 @@ def _identified(options: Namespace, tell: Steps) -> tuple[Identification | None,
 
 
 def _write(found: Identification, out: Path) -> None:
-    from noise.pages.identification.page import write_identification
+    from noise.pages.identification import write_identification
 
     write_identification(out, found)

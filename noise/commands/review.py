@@ -68,7 +68,7 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Write the page."""
-    from noise.pages.review.build import page_path, review
+    from noise.pages.review import page_path, review
 
     target = page_path(options.out)
     check_target(target)

@@ -20,10 +20,9 @@ from models.show import short_repr
 from noise.audio.sound import resampled
 from noise.base.label_names import LABELS
 from noise.diagnosis.text.words import percent
-from noise.pages.engine.clips import Clip, full_scale_words
-from noise.pages.engine.entry import RATE, Entry, labels_sentence
-from noise.pages.engine.figures import entry_figures
-from noise.pages.engine.page import page_html, write_page
+from noise.pages.clips import RATE, Clip, Entry, full_scale_words, labels_sentence
+from noise.pages.figures import entry_figures
+from noise.pages.page import page_html, write_page
 from noise.pictures.recorded import recorded_levels, recorded_orders
 
 if TYPE_CHECKING:

@@ -134,26 +134,11 @@ def test_a_correction_by_anybody_is_in_the_list_when_it_is_asked_for_again(page,
 
 def test_it_fits_the_window_and_an_accessibility_checker_finds_nothing(page):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not there")
-    page.locator(".training summary").click()
     for width in (390, 1280):
         page.set_viewport_size({"width": width, "height": 800})
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
         found = axe.Axe().run(page, options={"runOnly": {"type": "tag", "values": RULES}}).response
         assert [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]] == []
-
-
-def test_what_is_checked_next_comes_into_view(page):
-    page.get_by_role("combobox").select_option(label="level, loudest first")
-    places = set()
-    for n in range(1, 4):
-        page.get_by_role("button", name="Next to check").click()
-        page.wait_for_function(
-            "(n) => opens.length === n && list.row(list.at)?.id === opens.at(-1)", arg=n
-        )
-        places.add(page.evaluate("list.at"))
-        row, rows = page.locator(CHOSEN).bounding_box(), page.locator(".rows").bounding_box()
-        assert rows["y"] <= row["y"] <= rows["y"] + rows["height"] - row["height"]
-    assert max(places) > 30
 
 
 @pytest.mark.slow
@@ -192,26 +177,6 @@ def test_labels_arrive_while_they_are_computed_and_the_table_holds_them(browser,
     assert len(table) == 4
 
 
-def test_what_was_learned_is_told_beside_what_was_known_before(page):
-    squeal = {
-        "label": "squeal",
-        "windows": 12,
-        "enough": False,
-        "recall_before": 0.25,
-        "recall": 0.75,
-        "false_names_before": 3,
-        "false_names": 1,
-    }
-    state = {"running": False, "done": 0, "of": 0, "corrected": 4, "message": "Learned."}
-    told = state | {"scores": {"files": 4, "labels": [squeal]}}
-    page.route("**/api/train", lambda route: route.fulfill(json=told))
-    page.locator(".training summary").click()
-    row = page.locator(".training tbody tr")
-    row.wait_for()
-    assert row.inner_text().split() == ["squeal", "*", "12", "25", "%", "75", "%", "3", "1"]
-    assert "grown without its file" in page.locator(".training figcaption").inner_text()
-
-
 def test_of_a_long_path_the_file_is_seen_and_on_a_narrow_screen_nothing_lies_over_the_recording(
     browser, tmp_path
 ):
@@ -229,10 +194,8 @@ def test_of_a_long_path_the_file_is_seen_and_on_a_narrow_screen_nothing_lies_ove
         file = page.query_selector(f"{ROW} b bdi:last-child").bounding_box()
         assert file["x"] + file["width"] <= name["x"] + name["width"] + 1.0
         assert file["width"] > 60.0
-        with page.expect_response("**/api/train"):
-            page.click(".training summary")
         assert page.evaluate(
-            "document.querySelector('.training').getBoundingClientRect().bottom"
+            "document.querySelector('.recording-list').getBoundingClientRect().bottom"
             " <= document.querySelector('.recording').getBoundingClientRect().top"
         )
         page.close()

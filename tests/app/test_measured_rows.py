@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import soundfile
 
-from noise.app.labels.corrections import Correction
-from noise.app.labels.store import Labels
+from noise.app.labels import Correction, Labels
 from noise.base.tables import write_table
 from noise.batch import find_jobs
 from noise.labels.labelling import COLUMNS, Labelling

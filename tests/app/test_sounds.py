@@ -13,10 +13,17 @@ from features.kernels.levels import sound_levels
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from noise.app.opened import open_paths
-from noise.app.sounds.playback import bands, equal, level_course, wav
-from noise.app.sounds.routes import routes
-from noise.app.sounds.sound_cache import SoundCache
-from noise.app.sounds.spectrogram import line, outline, spectrogram
+from noise.app.sounds import (
+    SoundCache,
+    bands,
+    equal,
+    level_course,
+    line,
+    outline,
+    routes,
+    spectrogram,
+    wav,
+)
 from noise.recordings.writing import write_recording
 
 RATE = 48000
@@ -91,7 +98,7 @@ def test_levels_are_those_of_the_meter_of_all_tables(sounds):
 def test_the_meter_does_not_notice_where_it_is_read_in_pieces(sounds, monkeypatch):
     track = sounds.track(0)
     whole = level_course(track)["levels"]
-    monkeypatch.setattr("noise.app.sounds.playback._PIECE", 0.5)
+    monkeypatch.setattr("noise.app.sounds._PIECE", 0.5)
     np.testing.assert_allclose(level_course(track)["levels"], whole, atol=0.02)
 
 

@@ -13,8 +13,7 @@ from features.registry import recording_features
 from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from noise.app.opened import open_paths
-from noise.app.sounds.playback import bands, level_course
-from noise.app.sounds.sound_cache import SoundCache
+from noise.app.sounds import SoundCache, bands, level_course
 from noise.cli import main
 from noise.diagnosis.fit.labels_and_levels import labels_and_levels
 from noise.labels.files import label

@@ -9,7 +9,7 @@ import pytest
 
 from models.condition import FIXED
 from noise.diagnosis.evidence.friction_curves import friction_curves
-from noise.pages.diagnosis.contact_figures import contact_panels
+from noise.pages.diagnosis_evidence import contact_panels
 from tests.helpers.small_rigs import RIG, at, only, run
 
 FIT = RIG.fits[0]

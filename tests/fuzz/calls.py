@@ -217,7 +217,7 @@ def _samples(path: Path) -> None:
 
 
 def _opened(path: Path) -> None:
-    from noise.app.labels.store import Labels
+    from noise.app.labels import Labels
     from noise.app.opened import open_paths
     from noise.labels.labelling import Labelling
 

@@ -19,7 +19,7 @@ from noise.batch.lines import journal_path
 from noise.batch.work import Done, Job
 from noise.labels.audacity import label_track
 from noise.labels.labelling import COLUMNS, Labelling
-from noise.pages.diagnosis.page import write_diagnosis
+from noise.pages.diagnosis import write_diagnosis
 from noise.training.classifier.described_samples import Sample
 from noise.training.classifier.kept_samples import save_samples
 from tests.helpers.logger_files import WRITERS, Wave

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from noise.app.labels.store import Labels
+from noise.app.labels import Labels
 from noise.batch import find_jobs
 from noise.labels.labelling import Labelling
 from noise.labels.row_places import version

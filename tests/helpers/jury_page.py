@@ -65,15 +65,6 @@ class JuryPage:
             state="attached"
         )
 
-    def go_on(self, number):
-        self.page.get_by_role("button", name=f"Go on with jury {number}").click()
-
-    def is_refused(self):
-        """Take the browser's word for it that a request was refused, or not answered."""
-        assert self.complaints
-        assert all(said.startswith("Failed to load resource") for said in self.complaints)
-        self.complaints.clear()
-
     def close(self):
         assert self.complaints == []
         self.page.close()

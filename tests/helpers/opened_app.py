@@ -75,7 +75,7 @@ def opened_app(*arguments) -> Iterator[OpenedApp]:
 def quick_processes():
     """Processes that need no time to start, as they have read the program."""
     context = multiprocessing.get_context("forkserver")
-    views = [f"noise.app.{view}.routes" for view in ("sounds", "labels", "design", "jury")]
+    views = [f"noise.app.{v}" for v in ("sounds", "label_view", "design_view", "jury_view")]
     context.set_forkserver_preload(["noise.app.server", *views, "uvicorn"])
     return context
 

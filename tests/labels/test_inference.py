@@ -25,8 +25,8 @@ from noise.labels.label_display import ASSUMED, assumes_material
 from noise.labels.labelling import COLUMNS, label_rows
 from noise.labels.segments import Segment
 from noise.labels.table import LabelTable, read_label_table
-from noise.pages.engine.entry import Entry
-from noise.pages.engine.entry_display import facts_of
+from noise.pages.cards import facts_of
+from noise.pages.clips import Entry
 from noise.recordings.blocks import RecordingBlocks
 from noise.training.inference.fit import coverage, draw_run_sample, train_inference
 from noise.training.inference.population import draw_audible_run

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
-from noise.pages.diagnosis.page import write_diagnosis
+from noise.pages.diagnosis import write_diagnosis
 from tests.helpers.browser import refuses_other_sources
 from tests.helpers.made_diagnoses import KINDS
 

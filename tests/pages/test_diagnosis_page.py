@@ -18,12 +18,17 @@ from noise.diagnosis.findings import Illustration, StageFinding
 from noise.diagnosis.outcome import Diagnosis
 from noise.diagnosis.outcome_json import as_json, from_json
 from noise.diagnosis.text.verdict_sentences import verdict_sentence
-from noise.pages.diagnosis.answer_display import cause_rows, parameter_rows, stage_boxes
-from noise.pages.diagnosis.figures import cycle_window, illustration_panels, sixth_octaves
-from noise.pages.diagnosis.page import write_diagnosis
-from noise.pages.diagnosis.sounds import LONGEST, illustration_entries, reported_entries
-from noise.pages.diagnosis.waterfall import waterfall
-from noise.pages.engine.clips import common_gain, make_clips
+from noise.pages.clips import common_gain, make_clips
+from noise.pages.diagnosis import write_diagnosis
+from noise.pages.diagnosis_answer import cause_rows, parameter_rows, stage_boxes, waterfall
+from noise.pages.diagnosis_evidence import (
+    LONGEST,
+    cycle_window,
+    illustration_entries,
+    illustration_panels,
+    reported_entries,
+    sixth_octaves,
+)
 from tests.helpers.made_diagnoses import (
     KINDS,
     none,

@@ -6,9 +6,9 @@ import pytest
 from models.recording import Channel, Recording
 from noise.diagnosis.findings import Illustration
 from noise.labels.segments import Segment
-from noise.pages.diagnosis.sounds import illustration_entries
+from noise.pages.diagnosis_evidence import illustration_entries
 from noise.pages.report import ReportEntry, write_report
-from noise.pages.review.build import review
+from noise.pages.review import review
 from noise.recordings import write_recording
 from tests.pages.test_report import sound
 

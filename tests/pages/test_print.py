@@ -10,7 +10,7 @@ import pytest
 from noise.cli import main
 from noise.identification import law_choice
 from noise.identification.law_candidates import CANDIDATES
-from noise.pages.diagnosis.page import write_diagnosis
+from noise.pages.diagnosis import write_diagnosis
 from noise.recordings import write_recording
 from tests.blind.identify.rigs import make_rig, write_rig
 from tests.helpers.made_diagnoses import KINDS

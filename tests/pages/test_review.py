@@ -15,13 +15,11 @@ from models.errors import ParameterError
 from noise.audio.gain import loudness
 from noise.base.label_looks import LABEL_LOOKS
 from noise.cli import main
-from noise.pages.diagnosis.page import write_diagnosis
-from noise.pages.engine.clips import Gain, common_gain, make_clips
-from noise.pages.engine.entry import Entry
-from noise.pages.engine.entry_display import facts_of
-from noise.pages.engine.equal_loudness import equal_factors
-from noise.pages.review import recorded
-from noise.pages.review.build import review
+from noise.pages import review_inputs as recorded
+from noise.pages.cards import facts_of
+from noise.pages.clips import Entry, Gain, common_gain, equal_factors, make_clips
+from noise.pages.diagnosis import write_diagnosis
+from noise.pages.review import review
 from noise.recordings import write_recording
 from tests.helpers.made_diagnoses import one_effect
 from tests.helpers.made_reviews import (

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from noise.pages.diagnosis.page import write_diagnosis
-from noise.pages.review.build import review
+from noise.pages.diagnosis import write_diagnosis
+from noise.pages.review import review
 from tests.helpers.browser import OpenedPage, refuses_other_sources
 from tests.helpers.made_diagnoses import one_effect
 from tests.helpers.made_reviews import screen_rows, write_campaign, write_screen

@@ -7,14 +7,11 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.pages.engine.cells import areas_of, cells_of
-from noise.pages.engine.maps import axis_of, recorded_maps
-from noise.pages.engine.page import MAP_SIZE
-from noise.pages.review.design_rig import rig_of
-from noise.pages.review.screens import read_screen
-from noise.pages.screening import sounds
-from noise.pages.screening.screen_maps import ScreenPoint, SharedPoint
-from noise.pages.screening.sounds import MOST_SILENT, chosen_points
+from noise.pages import screen_sounds as sounds
+from noise.pages.maps import areas_of, axis_of, cells_of, recorded_maps
+from noise.pages.page import MAP_SIZE
+from noise.pages.review import read_screen, rig_of
+from noise.pages.screen_sounds import MOST_SILENT, ScreenPoint, SharedPoint, chosen_points
 from tests.helpers.made_reviews import row, screen_rows, write_screen
 from tests.helpers.small_rigs import RIG_FILE
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models.rig_file import load_material_rig
-from noise.pages.screening.page import write_screening
+from noise.pages.screening import write_screening
 from noise.screening.design.design import Design, Use
 from noise.screening.screen import screen
 from tests.helpers.browser import OpenedPage

@@ -12,12 +12,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 
 from models.rig_file import load_material_rig
-from noise.pages.engine.cells import cells_of, common_cells
-from noise.pages.screening.comparison import compare_designs
-from noise.pages.screening.page import write_screening
-from noise.pages.screening.ranking_display import ranking_rows
-from noise.pages.screening.screen_maps import screen_maps, shared_points
-from noise.pages.screening.sounds import chosen_points
+from noise.pages.comparison import compare_designs
+from noise.pages.maps import cells_of, common_cells
+from noise.pages.screen_sounds import chosen_points, screen_maps, shared_points
+from noise.pages.screening import ranking_rows, write_screening
 from noise.screening.design.design import Design, Swinging, Use
 from noise.screening.screen import screen
 

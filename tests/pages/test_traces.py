@@ -5,7 +5,7 @@ import pytest
 
 from models.recording import Channel, Recording
 from noise.labels.segments import Segment
-from noise.pages.engine.traces import common_scales, traces
+from noise.pages.figures import common_scales, traces
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE

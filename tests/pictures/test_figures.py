@@ -14,9 +14,8 @@ from models.drawing import styled, thinned
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.labels.segments import Segment
-from noise.pages.engine import figures
-from noise.pages.engine.figures import entry_figures
-from noise.pages.engine.panels import COLUMNS
+from noise.pages import figures
+from noise.pages.figures import COLUMNS, entry_figures
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE
@@ -127,7 +126,7 @@ def test_drawing_leaves_the_callers_settings_alone_and_does_not_depend_on_them()
 
 
 def test_no_plotting_interface_with_state_is_loaded():
-    code = "import sys, noise.pages.engine.figures; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import sys, noise.pages.figures; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 

@@ -8,8 +8,7 @@ import pytest
 
 from models.errors import ParameterError
 from noise.cli import main
-from noise.pages.review.design_rig import rig_of
-from noise.pages.review.screens import read_screen
+from noise.pages.review import read_screen, rig_of
 from noise.screening.design.design import load_design
 from noise.screening.parts.design_variable import DesignVariable
 from noise.screening.parts.robustness import robustness

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from models.rig_file import load_rig
-from noise.app.design.player import RATE
+from noise.app.design_player import RATE
 from sim.acquisition import Acquisition
 from sim.long_run import simulate_blocks
 from tests.helpers.design_page import DESIGN, DesignPage

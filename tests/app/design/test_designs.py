@@ -9,10 +9,8 @@ import pytest
 from models.errors import ParameterError
 from models.foreign_file import parse_toml
 from models.rig_file import load_rig, rig_from
-from noise.app.design.bases import bases_of
-from noise.app.design.controls import controls_of
-from noise.app.design.design import design_of
-from noise.app.design.rig_saving import save_rig
+from noise.app.design import design_of, save_rig
+from noise.app.design_controls import bases_of, controls_of
 from noise.app.opened import open_paths
 from noise.commands.condition import CONDITION
 from noise.commands.options import add_options

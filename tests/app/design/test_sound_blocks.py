@@ -13,10 +13,10 @@ import pytest
 
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
-from noise.app.design.bases import bases_of
-from noise.app.design.design import design_of
-from noise.app.design.player import BLOCK, HEADER, RATE, REFUSED, Player
-from noise.app.design.sound import LiveSounds
+from noise.app.design import design_of
+from noise.app.design_controls import bases_of
+from noise.app.design_player import BLOCK, HEADER, RATE, REFUSED, Player
+from noise.app.design_sound import LiveSounds
 from noise.app.opened import open_paths
 from sim.acquisition import Acquisition
 from sim.long_run import simulate_blocks
@@ -150,7 +150,6 @@ def test_blocks_are_due_one_after_the_other_and_sooner_where_somebody_asks(playe
 @pytest.mark.parametrize(
     "said",
     [
-        None,
         {},
         {"run": 1, "serial": 0},
         {"run": -1, "serial": 0, "design": PLAIN},

@@ -12,13 +12,11 @@ from pathlib import Path
 import pytest
 
 from models.errors import ParameterError
-from noise.app.design.bases import bases_of
-from noise.app.design.chart import suggestions_of
-from noise.app.design.design import design_of
-from noise.app.design.export import DesignExport
-from noise.app.design.requests import ChartRequest, SuggestionRequest
-from noise.app.design.worker_process import WorkerProcess
+from noise.app.design import DesignExport, design_of
+from noise.app.design_chart import ChartRequest, SuggestionRequest, suggestions_of
+from noise.app.design_controls import bases_of
 from noise.app.opened import open_paths
+from noise.app.worker_process import WorkerProcess
 from noise.recordings import read_recording
 
 BASES = bases_of(open_paths([]))
@@ -51,7 +49,7 @@ def test_only_the_newest_question_is_answered_and_each_once():
 
 
 def test_what_cannot_be_answered_is_told_and_the_next_question_is_answered():
-    beside = WorkerProcess("noise.app.design.chart:chart_of")
+    beside = WorkerProcess("noise.app.design_chart:chart_of")
     wrong = ChartRequest(setting({}).rig, -5.0, 23.0)
     try:
         answer, error = waited(lambda: beside.answer_to(wrong))
@@ -65,13 +63,13 @@ def test_what_cannot_be_answered_is_told_and_the_next_question_is_answered():
 @pytest.mark.slow
 def test_the_change_that_is_suggested_ends_the_noise():
     values = {"speed": 5.0}
-    found = suggestions_of(SuggestionRequest.of(setting(values), None))
+    found = suggestions_of(SuggestionRequest.of(setting(values), {}))
     assert found["noise"] == "squawk"
     names = [one["name"] for one in found["changes"]]
     assert "damping" in names
     more = found["changes"][names.index("damping")]["factor"]
     quiet = suggestions_of(
-        SuggestionRequest.of(setting({**values, "change.damping": more * 1.02}), None)
+        SuggestionRequest.of(setting({**values, "change.damping": more * 1.02}), {})
     )
     assert quiet["noise"] == "none"
     assert quiet["changes"] == []

@@ -51,7 +51,6 @@ def test_votes_by_keys_outlive_a_kill_and_go_on_in_the_same_order(browser, folde
         shown = jury.page.locator(".result tbody th").all_text_contents()
         assert shown == list(NAMES)
         assert jury.page.locator(".result svg text", has_text="onerror").count() == 1
-        assert "Kendall's zeta 1.00" in jury.page.locator(".result").text_content()
         with jury.page.expect_download() as downloaded:
             jury.page.get_by_role("link", name="Scale as CSV").click()
         assert len(read_table_of(downloaded.value)) == len(NAMES)
@@ -129,7 +128,7 @@ def test_nothing_is_voted_that_was_not_heard_and_the_last_vote_is_undone(browser
         jury.turn(2)
         assert votes(folder) == ["second"]
         jury.page.get_by_role("button", name="Stop here").click()
-        jury.page.get_by_text("1 of 7 voted").wait_for()
+        jury.page.get_by_text("1 of 6 voted").wait_for()
         jury.close()
 
 
@@ -146,21 +145,6 @@ def test_a_and_b_are_heard_in_step_at_one_gain(browser, folder):
         jury.close()
 
 
-def test_a_jury_begins_only_once_there_are_sounds_to_choose(browser, folder):
-    with opened_app(folder) as app:
-        jury, held = JuryPage(browser, app), []
-        jury.page.route(
-            "**/api/juries", lambda route: route.fallback() if held else held.append(route)
-        )
-        jury.page.reload()
-        jury.begins.wait_for()
-        assert jury.begins.is_disabled()
-        until(jury.page, lambda: held)
-        held[0].continue_()
-        jury.begin()
-        jury.close()
-
-
 def test_sounds_are_chosen_by_label_and_name(browser, folder):
     with opened_app(folder) as app:
         jury = JuryPage(browser, app)
@@ -174,7 +158,7 @@ def test_sounds_are_chosen_by_label_and_name(browser, folder):
         jury.page.get_by_role("combobox", name="With").select_option("")
         jury.page.get_by_label("softer.wav").check()
         chosen.filter(has_text="2 chosen").wait_for()
-        jury.page.get_by_text("All 1 pairs: 1 comparisons").wait_for()
+        jury.page.get_by_text("1 comparisons, about").wait_for()
         jury.begin()
         assert set(pairs(folder)[0]) == {"loudest.wav", "softer.wav"}
         jury.close()

@@ -71,31 +71,27 @@ def test_at_equal_loudness_nothing_is_left_of_the_level(app):
 
 
 def test_votes_are_answered_by_what_is_next_and_undone(app, folder):
-    begun = app.json("api/juries", ASKED | {"listener": "L. Istener", "repeats": 50})
+    begun = app.json("api/juries", ASKED | {"listener": "L. Istener"})
     one = f"api/juries/{begun['jury']}"
     vote = {"place": 0, "vote": "second", "seconds": 2.5}
     assert app.json(f"{one}/vote", vote)["waiting"] == 1
     status, said = app.request(f"{one}/vote", vote)  # pressed twice
     assert (status, b"not the one whose turn it is" in said) == (400, True)
-    last = app.json(one)["last"]
-    assert last["place"] == 0
-    assert app.request(f"{one}/undo", last | {"time": "x"})[0] == 400
+    assert app.request(f"{one}/undo", {"place": 1})[0] == 400
     assert app.request(f"{one}/undo", {})[0] == 400
-    undone = app.json(f"{one}/undo", last)
-    assert (undone["waiting"], undone["last"]) == (0, None)
-    assert begun["total"] == 9
-    assert app.request(f"{one}/undo", last)[0] == 400
+    assert app.json(f"{one}/undo", {"place": 0})["waiting"] == 0
+    assert app.request(f"{one}/undo", {"place": 0})[0] == 400
+    assert begun["total"] == 6
 
 
-def test_the_result_has_names_and_remarks_and_is_a_table(app, folder):
+def test_the_result_has_names_and_is_a_table(app, folder):
     jury = app.json("api/juries", ASKED)["jury"]
     for place, (first, second) in enumerate(planned(folder, jury)):
         said = "first" if NAMES.index(first) < NAMES.index(second) else "second"
         app.json(f"api/juries/{jury}/vote", {"place": place, "vote": said, "seconds": 1})
     found = app.json(f"api/juries/{jury}/result")
     assert [one["sound"] for one in found["sounds"]] == list(NAMES)
-    assert any("chosen in all comparisons: loudest.wav" in one for one in found["remarks"])
-    assert any("Kendall's zeta 1.00" in one for one in found["facts"])
+    assert (found["voted"], found["remarks"]) == (6, [])
     text = app.request(f"api/juries/{jury}/result.csv")[1].decode()
     assert text.splitlines()[1].startswith(f"{jury},,Which is louder?,one gain,loudest.wav,")
 
@@ -110,8 +106,6 @@ def test_the_result_has_names_and_remarks_and_is_a_table(app, folder):
         ({"question": " "}, "must say what is asked"),
         ({"question": "x" * 201}, "at most 200 characters"),
         ({"played": "loud"}, "must be one of one gain, equal loudness"),
-        ({"repeats": 51}, "from 0 to 50"),
-        ({"each": "1"}, "from 2 to 40"),
         ({"sounds": [0, 4], "played": "equal loudness"}, "z-short.wav: has no loudness"),
         ({"sounds": [0, 5]}, "z-torque.wav: has no sound pressure"),
         ({"sounds": [0, 6]}, "z-uncalibrated.wav is not, so they share no gain"),

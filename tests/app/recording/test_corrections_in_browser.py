@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import re
-
 import pytest
 
-from noise.base.tables import write_table
-from noise.labels.labelling import COLUMNS
-from noise.labels.table import read_label_table
 from tests.helpers.browser import until
 from tests.helpers.recording_page import HALF, TONE, OpenPage, in_table
 
@@ -74,37 +69,6 @@ def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
     opened.close()
 
 
-def test_a_label_that_is_given_before_the_segments_have_come_changes_nothing(browser, app, folder):
-    opened = OpenPage(browser, app)
-    before = in_table(folder)
-    go_on = opened.holding("segments")
-    opened.page.get_by_role("option").filter(has_text=TONE).first.click()
-    opened.page.get_by_role("heading", name=TONE).wait_for()
-    opened.press("1")
-    opened.page.locator(".saved").filter(has_text="still being read").wait_for()
-    go_on()
-    opened.page.locator(".strip button").nth(2).wait_for()
-    assert in_table(folder) == before
-    opened.press("1")
-    opened.saved()
-    assert [row[2] for row in in_table(folder)] == ["creak", "squeal", "none"]
-    opened.close()
-
-
-def test_a_label_that_is_given_while_it_is_opened_again_changes_nothing(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    before = in_table(folder)
-    go_on = opened.holding("segments")
-    opened.page.get_by_role("option").filter(has_text=TONE).first.click()
-    opened.page.locator(".strip button").first.wait_for(state="detached")
-    opened.press("1")
-    opened.page.locator(".saved").filter(has_text="still being read").wait_for()
-    go_on()
-    opened.page.locator(".strip button").nth(2).wait_for()
-    assert in_table(folder) == before
-    opened.close()
-
-
 def test_changes_that_wait_are_written_although_another_recording_is_opened(browser, app, folder):
     opened = OpenPage(browser, app).open(TONE)
     go_on = opened.holding("segments")
@@ -138,15 +102,6 @@ def test_what_another_page_has_changed_is_shown_and_not_overwritten(browser, app
         opened.close()
 
 
-def test_labels_that_are_made_anew_are_shown_in_the_recording_that_is_open(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    rows = read_label_table(folder / "labels.csv")
-    write_table(folder / "labels.csv", COLUMNS, [row | {"label": "unknown"} for row in rows])
-    opened.page.locator(".saved").filter(has_text="changed elsewhere").wait_for()
-    assert [label.split(",")[0] for label in opened.segments()] == ["unknown"] * 3
-    opened.close()
-
-
 def test_keys_during_a_save_count_in_their_order(browser, app, folder):
     opened = OpenPage(browser, app).open(TONE)
     go_on = opened.holding("segments")
@@ -159,64 +114,6 @@ def test_keys_during_a_save_count_in_their_order(browser, app, folder):
         ("squeal", "classifier"),
         ("squeal", "human"),
     ]
-    opened.close()
-
-
-def test_a_segment_that_is_split_is_chosen_when_that_is_undone(browser, app):
-    opened = OpenPage(browser, app).open(TONE)
-    opened.page.mouse.move(*opened.at(1.0))
-    opened.press("s")
-    chosen = opened.page.locator(".strip [aria-pressed=true]")
-    chosen.and_(opened.page.locator("[aria-label*='to 1.50']")).wait_for()
-    opened.saved()
-    opened.undo()
-    assert chosen.get_attribute("aria-label") == "squeal, 0.50 to 1.50 s"
-    opened.close()
-
-
-def test_a_label_that_is_given_while_a_border_is_dragged_counts(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    opened.press("]")
-    opened.page.mouse.move(*opened.at(1.5))
-    opened.page.mouse.down()
-    opened.page.mouse.move(*opened.at(1.6), steps=3)
-    opened.press("1")
-    opened.page.mouse.move(*opened.at(1.7), steps=3)
-    opened.page.mouse.up()
-    border = "() => document.querySelectorAll('.handle')[1].getAttribute('aria-valuenow') > 1.65"
-    opened.page.wait_for_function(border)
-    opened.saved()
-    assert in_table(folder)[1][2:] == ("creak", "human")
-    assert in_table(folder)[1][1] == pytest.approx(1.7, abs=0.01)
-    opened.close()
-
-
-def test_a_key_while_another_recording_is_opened_labels_neither(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    before = [in_table(folder, name) for name in (TONE, HALF)]
-    go_on = opened.holding("sounds/*")
-    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
-    opened.press("1")
-    opened.page.locator(".saved").filter(has_text="still being read").wait_for()
-    go_on()
-    opened.page.get_by_role("heading", name=HALF).wait_for()
-    opened.page.locator(".strip button").first.wait_for()
-    assert [in_table(folder, name) for name in (TONE, HALF)] == before
-    opened.close()
-
-
-def test_a_save_says_of_which_recording_it_is_and_leaves_the_mark_on_the_open_one(browser, app):
-    opened = OpenPage(browser, app).open(TONE)
-    go_on = opened.holding("segments")
-    opened.press("1")
-    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
-    opened.page.get_by_role("heading", name=HALF).wait_for()
-    go_on()
-    opened.page.locator(".saved").filter(has_text=re.compile(f"^{TONE}: saved ")).wait_for()
-    corrected = opened.page.get_by_role("option").filter(has_text="corrected")
-    corrected.wait_for()
-    assert TONE in corrected.inner_text()
-    assert HALF in opened.page.locator("[role=option][aria-selected=true]").inner_text()
     opened.close()
 
 

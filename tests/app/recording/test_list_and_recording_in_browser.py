@@ -1,28 +1,14 @@
-"""What of the list is opened next: by the arrow, by doubt."""
+"""The list beside the recording that is open, in a browser."""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.helpers.opened_app import opened_app
-from tests.helpers.recording_page import HALF, ODD, TONE, OpenPage
+from tests.helpers.recording_page import TONE, OpenPage
 
 
-def test_what_is_checked_next_is_opened_at_the_segment_in_doubt(browser, app):
-    opened = OpenPage(browser, app, height=400)
-    for name in (ODD, HALF, TONE):
-        opened.page.get_by_role("button", name="Next to check").first.click()
-        opened.page.get_by_role("heading", name=name).wait_for()
-    chosen = opened.page.locator(".strip [aria-pressed=true]").filter(has_text="squeal")
-    chosen.wait_for()
-    assert chosen.get_attribute("aria-label").startswith("squeal, 0.50 to 1.50 s")
-    assert opened.page.locator(".clock").text_content() == "0.50 s"
-    box = chosen.bounding_box()
-    assert 0.0 <= box["y"] <= 400 - box["height"]
-    opened.close()
-
-
-@pytest.mark.parametrize("sort", ["as found", "least sure first"])
+@pytest.mark.parametrize("sort", ["least sure first"])
 def test_the_arrow_goes_on_to_the_next_after_a_corrected_recording(browser, app, sort):
     opened = OpenPage(browser, app)
     opened.page.get_by_role("combobox", name="Order").select_option(label=sort)
@@ -45,42 +31,6 @@ def test_the_arrow_goes_on_to_the_next_after_a_corrected_recording(browser, app,
     opened.page.get_by_role("listbox").focus()
     opened.press("ArrowDown", "Enter")
     opened.page.get_by_role("heading", name=second).wait_for()
-    opened.close()
-
-
-def test_a_double_click_on_next_to_check_opens_one(browser, app):
-    opened = OpenPage(browser, app)
-    asked = []
-    opened.page.on("request", lambda request: asked.append(request.url))
-    opened.page.get_by_role("button", name="Next to check").first.dblclick()
-    opened.page.get_by_role("heading", name=ODD).wait_for()
-    assert sum("/next" in url for url in asked) == 1
-    opened.close()
-
-
-def test_what_is_chosen_while_the_next_to_check_is_sought_stays_open(browser, app):
-    opened = OpenPage(browser, app).open(TONE)
-    go_on = opened.holding("next*")
-    opened.press("n")
-    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
-    opened.page.get_by_role("heading", name=HALF).wait_for()
-    with opened.page.expect_response("**/next*"):
-        go_on()
-    opened.page.locator(".strip .squeal").wait_for()
-    assert HALF in opened.page.locator("[role=option][aria-selected=true]").inner_text()
-    assert opened.page.get_by_role("heading", name=HALF).is_visible()
-    opened.close()
-
-
-def test_the_next_is_not_split_where_the_pointer_was_on_the_one_before(browser, app):
-    opened = OpenPage(browser, app).open(TONE)
-    opened.page.mouse.move(*opened.at(1.2))
-    opened.press("n")
-    opened.page.get_by_role("heading", name=ODD).wait_for()
-    opened.page.locator(".strip .unknown").wait_for()
-    opened.press("s")
-    opened.page.locator("#status").filter(has_text="split inside it").wait_for()
-    assert len(opened.segments()) == 1
     opened.close()
 
 

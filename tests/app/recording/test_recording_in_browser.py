@@ -8,13 +8,11 @@ from urllib.parse import parse_qs, urlsplit
 import numpy as np
 import pytest
 
-from models.recording import Channel, Recording
 from noise.base.tables import write_table
 from noise.labels.labelling import COLUMNS
-from noise.recordings.writing import write_recording
 from tests.helpers.labelled_folder import made_row
 from tests.helpers.opened_app import opened_app
-from tests.helpers.recording_page import HALF, ODD, RATE, TONE, OpenPage, write_sounds
+from tests.helpers.recording_page import HALF, RATE, TONE, OpenPage, write_sounds
 
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 
@@ -91,14 +89,6 @@ def test_what_the_classifier_gives_less_than_a_half_is_said(browser, shown):
     opened.close()
 
 
-def test_names_are_text(browser, shown):
-    opened = OpenPage(browser, shown).open(ODD)
-    assert opened.page.get_by_role("heading", name=ODD).is_visible()
-    opened.press("b")
-    assert f"B is {ODD}" in opened.page.locator(".gains").text_content()
-    opened.close()
-
-
 def test_conditions_of_a_segment_say_what_they_are_from(browser, folder):
     logged = {
         "speed_rad_s": 5.0,
@@ -118,36 +108,6 @@ def test_conditions_of_a_segment_say_what_they_are_from(browser, folder):
     assert (
         said == "speed 5 rad/s; interference 0.18 to 0.28 mm (inferred); logged as 5, turned at 7"
     )
-
-
-def test_third_octaves_of_one_recording_are_not_shown_beside_another(browser, shown):
-    opened = OpenPage(browser, shown).open(HALF)
-    go_on = opened.holding("bands*")
-    opened.page.get_by_role("option").filter(has_text=TONE).first.click()
-    opened.page.get_by_role("heading", name=TONE).wait_for()
-    octaves = opened.page.locator(".recording").get_by_text("strongest third octave")
-    assert octaves.count() == 0
-    go_on()
-    octaves.wait_for()
-    opened.close()
-
-
-def test_what_is_not_calibrated_is_not_said_to_be_as_in_the_file_at_equal_loudness(
-    browser, tmp_path
-):
-    tone = 0.1 * np.sin(2 * np.pi * 1000 * np.arange(2 * RATE) / RATE)
-    plain = Recording(tone[None], RATE, (Channel("pressure"),), calibrated=False)
-    write_recording(tmp_path / TONE, plain)
-    write_table(tmp_path / "labels.csv", COLUMNS, [made_row(TONE, "none", 0.0, 2.0, p_none=0.97)])
-    with opened_app(tmp_path) as app:
-        opened = OpenPage(browser, app).open(TONE)
-        gains = opened.page.locator(".gains")
-        assert gains.text_content() == "not calibrated: played as it is in the file"
-        for name in ("Equal loudness", "Play"):
-            opened.page.get_by_role("button", name=name, exact=True).click()
-        gains.filter(has_text="Equal loudness, -23 LUFS").wait_for()
-        assert "played as it is" not in gains.text_content()
-        opened.close()
 
 
 def tone_of(samples):

@@ -8,7 +8,7 @@ from itertools import count
 import pytest
 
 from models.errors import ParameterError, RecordingError
-from noise.app.labels.corrections import Correction, read_corrections
+from noise.app.labels import Correction, read_corrections
 from noise.base.tables import write_table
 from noise.batch import find_jobs, open_journal
 from noise.batch.identity import file_identity

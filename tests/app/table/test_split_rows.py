@@ -7,8 +7,7 @@ import pytest
 import soundfile
 
 from models.recording import Channel, Recording
-from noise.app.labels.corrections import Correction
-from noise.app.labels.split_rows import NOT_MEASURED
+from noise.app.labels import NOT_MEASURED, Correction
 from noise.base.tables import write_table
 from noise.labels.files import label
 from noise.labels.label_display import ASSUMED

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from models.errors import ParameterError
-from noise.app.labels.corrections import Correction
+from noise.app.labels import Correction
 from noise.base.tables import write_table
 from noise.labels.kept_corrections import with_corrections
 from noise.labels.labelling import COLUMNS

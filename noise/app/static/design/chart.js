@@ -1,6 +1,6 @@
 // Which noise is where over speed and interference, the point that is heard in it, and what would end its noise.
 import { api } from "../api.js";
-import { made } from "../labels/list.js";
+import { made } from "../dom.js";
 
 const SVG = "http://www.w3.org/2000/svg", AGAIN = 700, AFTER = 1000; // ms
 const WIDTH = 400, HEIGHT = 136, LEFT = 46, ABOVE = 8, BELOW = 30;

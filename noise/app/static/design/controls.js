@@ -1,5 +1,5 @@
 // Sliders, fields, switches and choices, as the server declares them.
-import { made } from "../labels/list.js";
+import { made } from "../dom.js";
 
 const TICKS = 1000;
 

@@ -1,6 +1,6 @@
 // What is kept of a design: a rig file, both designs as WAVs, or as a page to send.
 import { api } from "../api.js";
-import { made } from "../labels/list.js";
+import { made } from "../dom.js";
 
 const AGAIN = 500; // ms
 

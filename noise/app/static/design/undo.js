@@ -1,5 +1,5 @@
 // What a press has dropped, and the way back. Going back can be undone as well.
-import { made } from "../labels/list.js";
+import { made } from "../dom.js";
 
 export class Undo {
   // `state` gives all that can be gone back to, `restore` goes there.

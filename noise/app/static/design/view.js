@@ -1,6 +1,6 @@
 // A design that is heard while it is changed.
 import { api } from "../api.js";
-import { made } from "../labels/list.js";
+import { made, stylesheet } from "../dom.js";
 import { Chart } from "./chart.js";
 import { Controls } from "./controls.js";
 import { Drawings } from "./drawings.js";
@@ -12,7 +12,7 @@ import { Undo } from "./undo.js";
 const LEVELS_EVERY = 500, FACTS_AFTER = 200; // ms
 
 export async function mount(panel) {
-  document.head.append(made("link", { rel: "stylesheet", href: new URL("./design.css", import.meta.url).href }));
+  stylesheet(new URL("./design.css", import.meta.url));
   const about = await api("design");
   const view = made("div", { className: "design-view" });
   const left = made("div", { className: "left" }), right = made("div", { className: "right" });

@@ -1,10 +1,9 @@
-// Begin a jury, or go on with one: which sounds, what is asked, how many comparisons.
+// Begin a jury, or go on with one: which sounds, what is asked, how they are played.
 import { api } from "../api.js";
-import { made } from "../labels/list.js";
+import { made } from "../dom.js";
 
 const KINDS = ["all", "creak", "squawk", "squeal", "none", "unknown", "unlabelled"];
-const AT_FIRST = 20; // sounds that are chosen to begin with
-const EACH = 10; // others that each is compared with
+const AT_FIRST = 12; // sounds that are chosen to begin with
 const SECONDS = 10; // that a comparison takes, about
 
 export class Setup {
@@ -19,7 +18,6 @@ export class Setup {
 
   #build(element) {
     const field = (label, box) => made("label", {}, `${label} `, box);
-    const number = (value, min, max) => made("input", { type: "number", value, min, max });
     this.going = made("ul", { className: "going" });
     this.goingOn = made("section", { hidden: true }, made("h2", { textContent: "Go on" }), this.going);
     this.question = made("input", { type: "text", value: "Which annoys more?", maxLength: 200, className: "wide" });
@@ -27,8 +25,6 @@ export class Setup {
     this.played = made("select", {},
       made("option", { value: "one gain", textContent: "as recorded, all at one gain" }),
       made("option", { value: "equal loudness", textContent: "at equal loudness" }));
-    this.each = number(EACH, 2, 40);
-    this.repeats = number(10, 0, 50);
     this.kind = made("select", {}, ...KINDS.map((kind) => made("option", { value: kind === "all" ? "" : kind, textContent: kind })));
     this.find = made("input", { type: "search", placeholder: "name holds ..." });
     this.sounds = made("ul", { className: "sounds" });
@@ -36,20 +32,17 @@ export class Setup {
     const none = made("button", { type: "button", textContent: "None" });
     this.count = made("output", { className: "count" });
     this.begin = made("button", { type: "button", className: "begin", textContent: "Begin", disabled: true });
-    this.plan = made("p", { className: "plan" });
-    this.progress = made("progress", { hidden: true, ariaLabel: "Sounds prepared" });
+    this.plan = made("p", { className: "plan", role: "status" });
     element.append(this.goingOn, made("section", {},
       made("h2", { textContent: "New jury" }),
       made("p", { className: "soft", textContent: "You hear two sounds at a time, without names and in random order, and choose one. The votes give each sound a place on a scale." }),
-      made("div", { className: "fields" }, field("Question", this.question), field("Listener", this.listener), field("Played", this.played),
-        field("Others that each is compared with, at most", this.each), field("Pairs that come twice [%]", this.repeats)),
+      made("div", { className: "fields" }, field("Question", this.question), field("Listener", this.listener), field("Played", this.played)),
       made("fieldset", {}, made("legend", { textContent: "Sounds" }),
         made("div", { className: "line" }, field("With", this.kind), field("Find", this.find), all, none, this.count),
         this.sounds),
-      made("div", { className: "line" }, this.begin, this.progress, this.plan)));
+      made("div", { className: "line" }, this.begin, this.plan)));
     this.find.addEventListener("input", () => { clearTimeout(this.wait); this.wait = setTimeout(() => this.#list(), 150); });
     this.kind.addEventListener("change", () => this.#list());
-    for (const box of [this.each, this.repeats]) box.addEventListener("change", () => this.#tell());
     all.addEventListener("click", () => { for (const { id } of this.shown) this.chosen.add(id); this.#draw(); });
     none.addEventListener("click", () => { this.chosen.clear(); this.#draw(); });
     this.begin.addEventListener("click", () => this.#begin());
@@ -70,20 +63,13 @@ export class Setup {
     this.sounds.replaceChildren();
   }
 
-  #jury(jury) {
-    const { jury: number, question, listener, total, waiting, sounds, open } = jury;
-    const said = [`${number}. ${question}`, listener, `${sounds} sounds`, `${waiting ?? total} of ${total} voted`].filter(Boolean).join(" · ");
-    const on = made("button", { type: "button", textContent: "Go on", ariaLabel: `Go on with jury ${number}`, disabled: !open });
+  #jury({ jury: number, question, listener, total, waiting, sounds, open }) {
+    const facts = [`${number}. ${question}`, listener, `${sounds} sounds`, `${waiting ?? total} of ${total} voted`, open ? "" : "its sounds are not open"];
+    const on = made("button", { type: "button", textContent: "Go on", ariaLabel: `Go on with jury ${number}`, disabled: !open, hidden: waiting === null });
     const result = made("button", { type: "button", textContent: "Result", ariaLabel: `Result of jury ${number}` });
-    on.addEventListener("click", async () => {
-      await this.#alone(() => this.#prepared(`juries/${number}/prepare`, {}));
-      await this.goes.voting(number);
-    });
+    on.addEventListener("click", () => this.goes.voting(number));
     result.addEventListener("click", () => this.goes.result(number));
-    const row = made("li", {}, made("span", { textContent: open ? said : `${said} · its sounds are not open` }));
-    if (waiting !== null) row.append(on);
-    row.append(result);
-    return row;
+    return made("li", {}, made("span", { textContent: facts.filter(Boolean).join(" · ") }), on, result);
   }
 
   async #list() {
@@ -106,51 +92,23 @@ export class Setup {
     this.#tell();
   }
 
-  async #tell() {
-    const { size } = this.chosen;
+  #tell() {
+    const { size } = this.chosen, pairs = (size * (size - 1)) / 2;
     this.count.textContent = `${size} chosen${this.more ? `; ${this.more} recordings are not shown, find them by name` : ""}${size > this.most ? `: at most ${this.most} can be compared` : ""}`;
-    this.begin.disabled = true;
-    this.plan.textContent = size < 2 ? "Choose two sounds or more; they are the recordings that were opened." : "";
-    if (size < 2 || size > this.most) return;
-    const query = new URLSearchParams({ sounds: size, each: this.each.value, repeats: this.repeats.value });
-    const { pairs, again } = await api(`juries/plan?${query}`);
-    if (size !== this.chosen.size) return;
-    const all = (size * (size - 1)) / 2, minutes = Math.max(1, Math.round(((pairs + again) * SECONDS) / 60));
-    this.plan.textContent = `${pairs === all ? `All ${pairs} pairs` : `${pairs} of ${all} pairs, which join all sounds`}${again ? `, ${again} of them twice` : ""}: ${pairs + again} comparisons, about ${minutes} min. Of each sound at most ${this.longest} s are heard.`;
-    this.begin.disabled = false;
-  }
-
-  // Long work, in steps of which each tells how much is left.
-  async #prepared(path, said) {
-    this.progress.hidden = false;
-    try {
-      for (let left = true; left;) {
-        const { done, total } = await api(path, said);
-        Object.assign(this.progress, { max: total, value: done });
-        left = done < total;
-      }
-    } finally {
-      this.progress.hidden = true;
-    }
-  }
-
-  // Until it is done nothing else is begun, nor anything changed in what is.
-  async #alone(work) {
-    this.element.inert = true;
-    try {
-      return await work();
-    } finally {
-      this.element.inert = false;
-    }
+    this.begin.disabled = size < 2 || size > this.most;
+    this.plan.textContent = size < 2 ? "Choose two sounds or more; they are the recordings that were opened."
+      : `${pairs} comparisons, about ${Math.max(1, Math.round((pairs * SECONDS) / 60))} min; whoever stops goes on later. Of each sound at most ${this.longest} s are heard.`;
   }
 
   async #begin() {
-    const sounds = [...this.chosen];
-    const said = { sounds, question: this.question.value, listener: this.listener.value, played: this.played.value, each: this.each.value, repeats: this.repeats.value };
-    const { jury } = await this.#alone(async () => {
-      await this.#prepared("juries/prepare", { sounds });
-      return api("juries", said);
-    });
-    await this.goes.voting(jury);
+    this.element.inert = true; // all sounds are measured first
+    this.plan.textContent = "The sounds are being measured.";
+    try {
+      const { jury } = await api("juries", { sounds: [...this.chosen], question: this.question.value, listener: this.listener.value, played: this.played.value });
+      await this.goes.voting(jury);
+    } finally {
+      this.element.inert = false;
+      this.#tell();
+    }
   }
 }

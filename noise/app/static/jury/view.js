@@ -1,11 +1,11 @@
-// The view of a jury: begin or go on, vote blind, see what was said.
-import { made } from "../labels/list.js";
+// The view of a jury: begin or go on, vote blind, see the scale.
+import { made, stylesheet } from "../dom.js";
 import { Result } from "./result.js";
 import { Setup } from "./setup.js";
 import { Voting } from "./voting.js";
 
 export function mount(panel) {
-  document.head.append(made("link", { rel: "stylesheet", href: new URL("./jury.css", import.meta.url).href }));
+  stylesheet(new URL("./jury.css", import.meta.url));
   const parts = ["setup", "voting", "result"].map((name) => made("section", { className: `jury ${name}`, hidden: true }));
   panel.replaceChildren(...parts);
   const show = (shown) => { for (const part of parts) part.hidden = part !== shown; panel.scrollTop = 0; };

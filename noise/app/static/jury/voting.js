@@ -1,7 +1,7 @@
 // Two sounds without names, in step; a vote is in the table before the next two come.
-import { GONE, api, told } from "../api.js";
+import { api, told } from "../api.js";
+import { made } from "../dom.js";
 import { listen } from "../labels/keys.js";
-import { made } from "../labels/list.js";
 import { Player } from "../labels/player.js";
 import { wav } from "../labels/sounds.js";
 
@@ -42,8 +42,7 @@ export class Voting {
     this.looped = button("Loop", () => this.loop());
     this.votes = [["A", 1], ["No difference", 0], ["B", 2]].map(([text, key]) => button(`${text} (${key})`, () => this.vote(VOTES[key])));
     this.undone = button("Undo (U)", () => this.undo());
-    this.saved = made("p", { className: "saved" });
-    this.saved.setAttribute("role", "status");
+    this.saved = made("p", { className: "saved", role: "status" });
     this.gain = made("p", { className: "soft" });
     element.append(this.stage, made("div", { className: "line" }, this.count, this.progress),
       made("div", { className: "sides" }, this.a, this.b),
@@ -56,13 +55,12 @@ export class Voting {
   get voted() { return this.state ? this.state.waiting ?? this.state.total : 0; }
 
   async open(number) {
+    Object.assign(this, { number, ready: false, state: null });
     const shown = ++this.shown;
-    this.number = number;
-    this.ready = false;
+    this.kept.clear();
+    this.player.kept.clear();
     this.#playing();
-    this.#forget();
     this.saved.textContent = "";
-    this.state = null;
     told(""); // what went wrong before may name a sound
     const state = await api(`juries/${number}`);
     if (shown !== this.shown) return;
@@ -71,22 +69,14 @@ export class Voting {
     this.stage.focus();
   }
 
-  #forget() {
-    this.kept.clear();
-    this.player.kept.clear();
-  }
-
   async #show(state) {
-    const shown = ++this.shown;
+    const shown = ++this.shown, place = state.waiting;
     this.player.stop();
-    this.state = state;
+    Object.assign(this, { state, heard: new Set(), ready: false });
     this.stage.textContent = state.question;
     this.progress.max = state.total;
     this.progress.value = this.voted;
-    const place = state.waiting;
     this.count.textContent = place === null ? `all ${state.total} voted` : `${place + 1} of ${state.total}`;
-    this.heard = new Set();
-    this.ready = false;
     this.player.active = "a";
     this.player.position = 0;
     this.#playing();
@@ -155,41 +145,32 @@ export class Voting {
   }
 
   async vote(vote) {
-    if (!this.ready || this.busy) return;
+    if (!this.ready) return;
     if (this.heard.size < 2) {
       this.saved.textContent = "Listen to both first.";
       return;
     }
     const seconds = (performance.now() - this.began) / 1000;
-    await this.#write(() => api(`juries/${this.number}/vote`, { place: this.state.waiting, vote, seconds }), "saved");
+    await this.#write("vote", { place: this.state.waiting, vote, seconds }, "saved");
   }
 
-  // Of the last vote that is shown, whatever another page has done since.
   async undo() {
-    if (!this.voted || this.busy) return;
-    await this.#write(() => api(`juries/${this.number}/undo`, this.state.last), "undone");
+    if (this.voted) await this.#write("undo", { place: this.voted - 1 }, "undone");
   }
 
-  async #write(ask, word) {
-    const { number, shown, state: { waiting } } = this;
+  // What is shown afterwards is what the table has, whatever became of it.
+  async #write(what, body, word) {
+    if (this.busy) return;
     this.busy = true;
-    let state, said;
-    try {
-      state = await ask();
-      said = `${word} ${new Date().toTimeString().slice(0, 8)}`;
-      told(""); // what was refused before no longer matters
-    } catch ({ message }) {
-      state = await api(`juries/${number}`).catch(() => null);
-      const lost = state && message === GONE; // one answer was, and the next was not
-      if (lost) told("");
-      const reason = lost ? "no answer" : message;
-      said = state && state.waiting !== waiting ? `${reason}; shown is what is saved` : `not ${word}: ${reason}`;
-      if (shown === this.shown) this.#forget();
-    } finally {
-      this.busy = false;
-    }
+    const { number, shown } = this;
+    let text = `${word} ${new Date().toTimeString().slice(0, 8)}`;
+    const state = await api(`juries/${number}/${what}`, body).catch(({ message }) => {
+      text = `not ${word}: ${message}`;
+      return api(`juries/${number}`).catch(() => null);
+    });
+    this.busy = false;
     if (shown !== this.shown) return;
-    this.saved.textContent = said;
+    this.saved.textContent = text;
     if (state) await this.#show(state);
   }
 

@@ -1,6 +1,6 @@
 // The parts of the page of one recording: names, tools, lanes, the chosen segment.
 import { helpDialog } from "./keys.js";
-import { made } from "./list.js";
+import { made } from "../dom.js";
 
 export const LABELS = ["creak", "squawk", "squeal", "none", "unknown"];
 const WINDOWS = { "": "by zoom", 0.01: "10 ms", 0.02: "20 ms", 0.04: "40 ms", 0.08: "80 ms", 0.16: "160 ms", 0.32: "320 ms" };
@@ -63,7 +63,7 @@ export function build(element) {
     plot: canvas("plot"), marks: canvas("marks"), frequencies: canvas("axis frequencies"), legend: canvas("legend", "Colours of levels"),
     course: canvas("course", "A-weighted level over time, Fast"), courseAxis: canvas("axis course"), times: canvas("times"),
     chosen: made("div", { className: "chosen" }), labels: group("Label of the segment"), shares: made("dl", { className: "shares" }), source: made("p"), conditions: made("p", { className: "conditions" }),
-    split: button("Split", "S: at the cursor, or where it is played"), join: button("Join", "Delete: to the segment before it"), undo: button("Undo", "U"), next: button("Next to check", "N"),
+    split: button("Split", "S: at the cursor, or where it is played"), join: button("Join", "Delete: to the segment before it"), undo: button("Undo", "U"),
     bands: canvas("bands", "Third octaves"), bandsText: made("p", { className: "facts" }), dialog: helpDialog(),
   };
   for (const [at, label] of LABELS.entries()) {
@@ -89,7 +89,7 @@ export function build(element) {
       group("Playing", parts.play, parts.loop, parts.clock),
       group("Comparing", parts.a, parts.b, parts.keep, parts.equal),
       group("View", parts.out, parts.in, parts.left, parts.right, parts.whole, parts.fit, parts.harmonic),
-      group("Correcting", parts.split, parts.join, parts.undo, parts.next, parts.help)),
+      group("Correcting", parts.split, parts.join, parts.undo, parts.help)),
     parts.lanes,
     made("div", { className: "under" }, parts.readout, parts.levelRead, parts.legend),
     made("div", { className: "below" },

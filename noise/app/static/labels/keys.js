@@ -1,5 +1,5 @@
 // Keys of the view, and the dialog that tells them.
-import { made } from "./list.js";
+import { made } from "../dom.js";
 
 const TOLD = [
   ["Space", "play, pause"],
@@ -10,7 +10,6 @@ const TOLD = [
   ["S", "split at the cursor, or where it is played"],
   ["Delete", "join to the segment before it"],
   ["U", "undo the last correction"],
-  ["N", "next to check"],
   ["+ −", "zoom in, out; also by the wheel"],
   ["0 F", "all; the chosen segment"],
   ["H", "multiples of the frequency under the cursor"],

@@ -1,7 +1,7 @@
 // The list of recordings: filter, order, rows as they scroll into view, labels as they arrive.
-import { api, told } from "../api.js";
+import { api } from "../api.js";
+import { made, onceShown } from "../dom.js";
 import { fillRow } from "./list_row.js";
-import { mountTraining } from "./training.js";
 
 const PAGE = 200; // rows of one request
 const ROW = 46; // height of a row [px], as in list.css
@@ -25,30 +25,6 @@ export async function refresh() { await list.load(); }
 
 export function openRecording(id) { list.open(id); }
 
-// Open the recording that is best checked next; where there is none, say so.
-export async function openNext(after) {
-  const { marked } = list;
-  const { id, ...segment } = await api(`next${after === undefined || after === null ? "" : `?after=${after}`}`);
-  if (list.marked !== marked) return id; // another one was opened meanwhile
-  if (id === null) told("Nothing is left to check.");
-  else { list.open(id, segment); await list.reveal(id); }
-  return id;
-}
-
-export function made(tag, properties = {}, ...children) {
-  const { data, ...rest } = properties;
-  const node = Object.assign(document.createElement(tag), rest);
-  Object.assign(node.dataset, data);
-  node.append(...children);
-  return node;
-}
-
-// Act where a node is in the page, else once it is: of a view that is not shown nothing is asked for.
-export function onceShown(node, act) {
-  if (node.isConnected) act();
-  else document.addEventListener("view-shown", () => onceShown(node, act), { once: true });
-}
-
 class RecordingList {
   constructor(element, onOpen, onSeen) {
     Object.assign(this, { onOpen, onSeen });
@@ -64,9 +40,6 @@ class RecordingList {
   }
 
   #build(element) {
-    if (!document.getElementById("list-style")) {
-      document.head.append(made("link", { id: "list-style", rel: "stylesheet", href: new URL("./list.css", import.meta.url).href }));
-    }
     this.find = made("input", { type: "search", placeholder: "name holds ...", ariaLabel: "Find by name" });
     this.order = made("select", { ariaLabel: "Order" });
     for (const [value, text] of ORDERS) this.order.append(made("option", { value, textContent: text }));
@@ -82,8 +55,8 @@ class RecordingList {
     this.stateLine = made("span");
     this.labelButton = made("button", { type: "button", hidden: true });
     this.labelButton.addEventListener("click", async () => { await api("label", {}); this.load(); });
-    this.nextButton = made("button", { type: "button", textContent: "Next to check" });
-    this.nextButton.addEventListener("click", ({ detail }) => { if (detail < 2) openNext(this.marked); }); // a double click is one
+    this.learnButton = made("button", { type: "button", hidden: true, title: "Grow the classifier anew, with what was corrected; then label all else anew by it. The first time takes some twenty minutes." });
+    this.learnButton.addEventListener("click", async () => { await api("train", {}); this.load(); });
     this.box = made("div", { className: "rows", tabIndex: 0, id: "recordings" });
     this.box.setAttribute("role", "listbox");
     this.box.setAttribute("aria-label", "Recordings");
@@ -91,13 +64,11 @@ class RecordingList {
     this.space.setAttribute("role", "presentation");
     this.box.append(this.space);
     this.pool = [];
-    const training = made("details", { className: "training" });
     element.replaceChildren(made("div", { className: "recording-list" },
       made("div", { className: "line" }, this.find, this.order),
       this.kinds,
-      made("div", { className: "line" }, this.nextButton, this.labelButton, this.stateLine, this.progress),
-      this.box, training));
-    this.training = mountTraining(training, () => this.load());
+      made("div", { className: "line" }, this.labelButton, this.learnButton, this.stateLine, this.progress),
+      this.box));
     let wait;
     this.find.addEventListener("input", () => { clearTimeout(wait); wait = setTimeout(() => this.#ask(() => {}), 120); });
     this.order.addEventListener("change", () => this.#ask(() => {}));
@@ -130,21 +101,14 @@ class RecordingList {
     return `recordings?${new URLSearchParams(said)}`;
   }
 
-  // Bring a recording into view, where it is among those that are shown.
-  async reveal(id) {
-    const place = await this.#placeOf(id);
-    if (place !== null) this.#goTo(place);
-    this.draw();
-  }
-
   async #placeOf(id) {
     const { place } = await api(`${this.#query(0)}&place=${id}`);
     return place;
   }
 
-  open(id, segment) {
+  open(id) {
     this.marked = id;
-    this.onOpen(id, segment);
+    this.onOpen(id);
     this.draw();
   }
 
@@ -225,12 +189,14 @@ class RecordingList {
     this.running = state.running;
     this.progress.hidden = !state.running;
     this.progress.max = Math.max(1, state.total);
-    this.progress.value = state.done;
+    if (state.learning) this.progress.removeAttribute("value");
+    else this.progress.value = state.done;
     this.labelButton.hidden = state.running || !left;
     this.labelButton.textContent = state.done ? `Label ${left.toLocaleString("en")} more` : `Label ${left.toLocaleString("en")}`;
-    this.stateLine.textContent = state.running ? `${state.done.toLocaleString("en")} of ${state.total.toLocaleString("en")} labelled` : state.message || (state.classifier ? `by ${state.classifier}` : "");
+    this.stateLine.textContent = state.learning ? state.message : state.running ? `${state.done.toLocaleString("en")} of ${state.total.toLocaleString("en")} labelled` : state.message || (state.classifier ? `by ${state.classifier}` : "");
     this.box.setAttribute("aria-label", `Recordings, ${this.total}`);
-    this.training.tell(counts.corrected ?? 0);
+    this.learnButton.hidden = state.running || !counts.corrected;
+    this.learnButton.textContent = `Learn from ${(counts.corrected ?? 0).toLocaleString("en")} corrected`;
   }
 
   row(at) {

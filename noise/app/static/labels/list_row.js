@@ -1,5 +1,5 @@
 // A row of the list: the recording's name, every label in it, its figures.
-import { made } from "./list.js";
+import { made } from "../dom.js";
 
 // Nothing is known of a recording that is on its way.
 export function fillRow(node, shown) {

@@ -5,7 +5,8 @@ import { joinHere, label, splitHere, undo } from "./editing.js";
 import { build, LABELS } from "./frame.js";
 import { listen } from "./keys.js";
 import { Bands, LevelCourse } from "./levels.js";
-import { made, onceShown, openNext, refresh } from "./list.js";
+import { made, onceShown } from "../dom.js";
+import { refresh } from "./list.js";
 import { Outline } from "./outline.js";
 import { Player } from "./player.js";
 import { follow } from "./pointer.js";
@@ -15,7 +16,7 @@ import { about } from "./sounds.js";
 import { Spectrogram } from "./spectrogram.js";
 import { drawTimes, Timeline } from "./timeline.js";
 
-const ZOOM = 1.6, PAN = 0.3, NARROW = 0.05; // the share of a recording below which a segment is zoomed to
+const ZOOM = 1.6, PAN = 0.3;
 const POLL = 1500; // while labels are awaited [ms]
 
 export class RecordingPage {
@@ -43,8 +44,8 @@ export class RecordingPage {
     this.#keys();
   }
 
-  // Of the segments the first is chosen, or one that is named. Why it cannot be shown is thrown.
-  async open(id, segment = null) {
+  // Why it cannot be shown is thrown.
+  async open(id) {
     const { parts } = this;
     this.id = id;
     this.sound = this.pointed = null; // nothing is done to one that is not there, nor where the pointer was on another
@@ -71,7 +72,6 @@ export class RecordingPage {
     this.player.position = 0;
     await Promise.all([seen, this.outline.load(id, this.channel), this.#labels(id)]);
     if (id !== this.id) return;
-    if (segment) this.#reveal(segment);
     await this.levels.load(id, this.channel);
     this.#chosen();
   }
@@ -82,14 +82,6 @@ export class RecordingPage {
     await this.corrections.open({ ...this.sound, id }).catch(() => null); // it is told, and tried again
     if (id !== this.id || this.corrections.rows.length) return;
     this.timer = setTimeout(() => onceShown(this.element, () => { if (id === this.id && !this.corrections.rows.length) this.#labels(id); }), POLL);
-  }
-
-  #reveal({ channel, start_s: start }) {
-    this.segments.chooseStart(channel, start);
-    const { chosen } = this.segments;
-    if (chosen && chosen.end_s - chosen.start_s < NARROW * this.timeline.duration) this.fit();
-    this.seek(start);
-    this.parts.lanes.scrollIntoView({ block: "nearest" });
   }
 
   #slot() {
@@ -242,7 +234,7 @@ export class RecordingPage {
       a: () => this.changeOver("a"), b: () => this.changeOver("b"), keep: () => this.keepAsB(),
       in: () => timeline.zoom(ZOOM), out: () => timeline.zoom(1 / ZOOM), left: () => timeline.pan(-PAN), right: () => timeline.pan(PAN),
       whole: () => timeline.whole(), fit: () => this.fit(), help: () => parts.dialog.showModal(),
-      split: () => splitHere(this), join: () => joinHere(this), undo: () => undo(this), next: ({ detail }) => { if (detail < 2) openNext(this.id); }, unfiltered: () => this.filter(0, 0),
+      split: () => splitHere(this), join: () => joinHere(this), undo: () => undo(this), unfiltered: () => this.filter(0, 0),
     };
     for (const [name, action] of Object.entries(actions)) parts[name].addEventListener("click", (event) => { if (this.sound) action(event); });
     for (const button of parts.labels.children) button.addEventListener("click", () => label(this, button.dataset.label));
@@ -265,18 +257,18 @@ export class RecordingPage {
     const beside = (sign) => () => { segments.choose(segments.at + sign); if (segments.chosen) timeline.go(segments.chosen.start_s); };
     const actions = {
       " ": () => this.toggle("play"), l: () => this.toggle("looping"), e: () => this.toggle("equal"), h: () => this.toggle("harmonic"),
-      x: () => this.changeOver(), b: () => this.keepAsB(), s: () => splitHere(this), u: () => undo(this), n: ({ repeat }) => { if (!repeat) openNext(this.id); },
+      x: () => this.changeOver(), b: () => this.keepAsB(), s: () => splitHere(this), u: () => undo(this),
       Delete: () => joinHere(this), Backspace: () => joinHere(this), ArrowLeft: step(-1), ArrowRight: step(1), "[": beside(-1), "]": beside(1),
       "+": () => timeline.zoom(ZOOM), "=": () => timeline.zoom(ZOOM), "-": () => timeline.zoom(1 / ZOOM), 0: () => timeline.whole(), f: () => this.fit(),
       Escape: () => timeline.select(null), "?": () => this.parts.dialog.showModal(),
     };
     for (const [at, name] of LABELS.entries()) actions[at + 1] = () => label(this, name);
-    listen(this.element, Object.fromEntries(Object.entries(actions).map(([key, action]) => [key, (event) => this.#act(key, action, event)])));
+    listen(this.element, Object.fromEntries(Object.entries(actions).map(([key, action]) => [key, (event) => this.#act(action, event)])));
   }
 
   // What is done before a recording is there would be done to another.
-  #act(key, action, event) {
-    if (this.sound || key === "n") action(event);
+  #act(action, event) {
+    if (this.sound) action(event);
     else if (this.id !== undefined) this.parts.saved.textContent = "not done: the recording is still being read";
   }
 }

@@ -1,6 +1,6 @@
 // What is known of the chosen segment: its place, level, frequency, how sure its label is, and its conditions.
 import { LABELS } from "./frame.js";
-import { made } from "./list.js";
+import { made } from "../dom.js";
 
 const HALF = 0.5;
 

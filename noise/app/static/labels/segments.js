@@ -1,6 +1,6 @@
 // Segments over the lanes: coloured regions, their names, borders that are dragged or moved by keys.
 import { borders, limits, moved } from "./edits.js";
-import { made } from "./list.js";
+import { made } from "../dom.js";
 import { seconds } from "./timeline.js";
 
 const STEP = 0.01; // of an arrow key on a border [s]
@@ -24,11 +24,6 @@ export class Segments {
     this.known.length = length;
     this.draw();
     this.onChosen(this.chosen);
-  }
-
-  chooseStart(track, start) {
-    if (this.corrections.tracks.includes(track)) this.corrections.show(track);
-    this.choose(this.corrections.shown.findIndex((row) => row.start_s === start));
   }
 
   chooseAt(time) {

@@ -1,17 +1,18 @@
 // The view of recordings: their list beside the page of the one that is open.
-import { made, mountList, openRecording } from "./list.js";
+import { made, stylesheet } from "../dom.js";
+import { mountList, openRecording } from "./list.js";
 import { RecordingPage } from "./recording.js";
 
 export function mount(panel) {
-  document.head.append(made("link", { rel: "stylesheet", href: new URL("./labels.css", import.meta.url).href }));
+  for (const name of ["labels", "list"]) stylesheet(new URL(`./${name}.css`, import.meta.url));
   const list = made("div", { className: "beside" });
   const page = made("article", { className: "recording", hidden: true });
   const empty = made("p", { className: "empty", textContent: "Open a recording of the list." });
   panel.replaceChildren(made("div", { className: "labels-view" }, list, made("div", { className: "page" }, empty, page)));
-  const open = async (id, segment) => {
+  const open = async (id) => {
     page.hidden = false;
     empty.hidden = true;
-    try { await recording.open(id, segment); } catch (error) {
+    try { await recording.open(id); } catch (error) {
       if (id !== recording.id || recording.sound) throw error;
       recording.player.stop();
       page.hidden = true; // what it shows is of another one

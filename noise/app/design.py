@@ -1,0 +1,387 @@
+"""A design: a base and what is changed about it, as a rig, a setting of a run, and saved files."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from models.change import changed_rig
+from models.errors import ParameterError
+from models.radiation.rig_response import anchor_arm
+from models.rig import LawSpec, damping_at, parse_spec
+from models.rig_file import changed_rig_text
+from noise.app.commands import Command
+from noise.app.design_controls import (
+    Base,
+    base_of,
+    heard_table,
+    motion_of,
+    motion_options,
+    read_values,
+)
+from noise.app.design_player import RATE
+from noise.base.atomic import atomic
+from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
+from noise.screening.map.provenance import fits_remark
+from sim.effects import EFFECTS
+from sim.live_setting import Setting
+from sim.temperature import at_temperature
+
+if TYPE_CHECKING:
+    from models.rig import Rig
+
+Values = Mapping[str, float | bool | str]
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """What the controls say.
+
+    Parameters
+    ----------
+    base : Base
+    values : mapping of str to float, bool or str
+        Of all controls [unit of each].
+    setting : Setting
+        Of the run that is heard.
+    changes : dict of str to str or float
+        As ``[change]`` has them.
+    friction : LawSpec or None
+        The law where it is another than the base's.
+    """
+
+    base: Base
+    values: Values
+    setting: Setting
+    changes: Mapping[str, str | float]
+    friction: LawSpec | None
+
+    @property
+    def rig(self) -> Rig:
+        """The rig with all its changes."""
+        return self.setting.rig
+
+    @property
+    def options(self) -> str:
+        """The condition as options of a command."""
+        support = "fixed" if self.values["fixed"] else f"{self.values['support']:g}"
+        words = [
+            motion_options(self.values), f"--interference {self.values['interference']:g}",
+            f"--support-stiffness {support}",
+        ]  # fmt: skip
+        if self.values["temperature"] != 23.0:
+            words.append(f"--temperature {self.values['temperature']:g}")
+        return " ".join(words)
+
+    def text(self, folder: Path, name: str) -> str:
+        """Return the rig file called `name` that a folder is to hold."""
+        notes = [f"bushing-noise simulate --rig {name} {self.options}"]
+        return changed_rig_text(
+            self.base.named_in(folder), self.changes, self.rig.effects, {}, notes,
+            friction=self.friction, heard=heard_table(self.base.controls, self.values),
+        )  # fmt: skip
+
+    @property
+    def words(self) -> str:
+        """What differs from the base, as the rig file has it, and the motion that is heard."""
+        own = [str(spec) for spec in self.base.rig.effects]
+        effects = [str(spec) for spec in self.rig.effects]
+        changed = [f"{key} {_amount(value)}" for key, value in self.changes.items()]
+        changed += [] if self.friction is None else [f"law {self.friction}"]
+        changed += [f"effect {spec}" for spec in effects if spec not in own]
+        named = {spec.name for spec in self.rig.effects}
+        changed += [f"no {spec.name}" for spec in self.base.rig.effects if spec.name not in named]
+        of_base = f"with {', '.join(changed)}" if changed else "unchanged"
+        return f"{self.base.name} {of_base} ({self.options})"
+
+    def facts(self) -> dict[str, str]:
+        """Return what the bushing's quantities have become, with their units, by short name."""
+        setting = self.setting
+        fit = at_temperature(setting.rig, setting.temperature).fit(setting.interference)
+        found = {
+            "critical_torque": (fit.critical_torque, "Nm"),
+            "kinetic_torque": (fit.kinetic_torque, "Nm"),
+            "elastomer_stiffness": (fit.elastomer_stiffness, "Nm/rad"),
+            "damping": (damping_at(fit, setting.support_stiffness), "Nm s/rad"),
+            "elastomer_inertia": (setting.rig.elastomer_inertia, "kg m2"),
+            "clamp_inertia": (setting.rig.clamp_inertia, "kg m2"),
+        }
+        if (sleeve := setting.rig.sleeve) is not None:
+            found["wall"] = (1e3 * sleeve.wall, "mm")
+            found["length"] = (1e3 * sleeve.length, "mm")
+            found["youngs_modulus"] = (1e-6 * sleeve.youngs_modulus, "MPa")
+        return {name: f"{value:.4g} {unit}" for name, (value, unit) in found.items()}
+
+    def remarks(self) -> list[str]:
+        """Say what the listener should know: what lies outside the usual or was not measured."""
+        setting = self.setting
+        times = np.linspace(0.0, 60.0, 4001)
+        found = use_remarks(
+            setting.rig,
+            speed=[float(np.abs(setting.shaft.speed(times)).max())],
+            interference=[setting.interference],
+            support_stiffness=[setting.support_stiffness],
+            temperature=[setting.temperature],
+        )
+        found.append(fits_remark(setting.rig, [setting.interference]))
+        found.append(temperature_remark(setting.rig, setting.temperature))
+        found += effect_remarks(setting.rig, EFFECTS)
+        left_out = [
+            e.name for e in setting.rig.effects if e.name in EFFECTS and not EFFECTS[e.name].goes_on
+        ]
+        if left_out:
+            found.append(
+                f"effect {', '.join(left_out)}: acts on a run as a whole, so it is not heard "
+                "here, but in what is saved"
+            )
+        return [text for text in found if text]
+
+
+def _amount(value: str | float) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
+
+
+def design_of(stated: object, bases: dict[str, Base]) -> Design:
+    """Read a design that a request states: ``{"base": ..., "values": {...}}``.
+
+    Raises
+    ------
+    ParameterError
+        It states something that cannot be.
+    """
+    if not isinstance(stated, dict):
+        raise ParameterError("design: must be an object with base and values")
+    base = base_of(stated.get("base"), bases)
+    values = read_values(base.controls, stated.get("values", {}))
+    own = {control.key: control.value for control in base.controls}
+    friction, changes = _friction(values, own)
+    changes |= {
+        key.removeprefix("change."): f"x{value:g}"
+        for key, value in values.items()
+        if key.startswith("change.") and value != own[key]
+    }
+    rig = replace(base.rig, effects=_effects(base.rig, values, own))
+    if friction is not None:
+        rig = replace(rig, friction=friction)
+    rig = changed_rig(rig, changes, "design")
+    if not values["fixed"]:
+        anchor_arm(rig.beams, rig.plate, float(values["support"]))  # refuses what is off the plate
+    setting = Setting(
+        rig,
+        motion_of(values),
+        1e-3 * float(values["interference"]),
+        math.inf if values["fixed"] else float(values["support"]),
+        float(values["temperature"]),
+    )
+    return Design(base, values, setting, changes, friction)
+
+
+def _friction(values: Values, own: Values) -> tuple[LawSpec | None, dict[str, str | float]]:
+    """Return the law where it is another one, and else what is changed about its parameters."""
+    law = str(values["law"])
+    stated = {
+        key.removeprefix(f"law.{law}."): float(value)
+        for key, value in values.items()
+        if key.startswith(f"law.{law}.") and (law != own["law"] or value != own[key])
+    }
+    if law != own["law"]:
+        return LawSpec(law, stated), {}
+    return None, {f"friction.{name}": value for name, value in stated.items()}
+
+
+def _effects(rig: Rig, values: Values, own: Values) -> tuple[LawSpec, ...]:
+    """Return those of the base as they have become, then those that are new."""
+    stated = {spec.name: spec for spec in rig.effects}
+    found = []
+    for name in dict.fromkeys([*stated, *EFFECTS]):
+        if name not in EFFECTS:  # which is told where it is used
+            found.append(stated[name])
+            continue
+        if not values[f"effect.{name}"]:
+            continue
+        start = f"effect.{name}."
+        keys = [key for key in values if key.startswith(start)]
+        if name in stated and all(values[key] == own[key] for key in keys):
+            found.append(stated[name])
+            continue
+        changed = {key.removeprefix(start): values[key] for key in keys}
+        # Through its text, since that is what a rig file holds.
+        found.append(parse_spec(str(LawSpec(name, changed)), "design, effect"))
+    return tuple(found)
+
+
+_NAME = re.compile(r"[\w][\w .+-]{0,79}")
+
+
+def name_of(asked: dict[str, Any]) -> str:
+    """Return a name for files that a request states, without ending.
+
+    Raises
+    ------
+    ParameterError
+        It is none, or leads elsewhere.
+
+    Examples
+    --------
+    >>> name_of({"name": "softer"})
+    'softer'
+    """
+    name = asked.get("name")
+    if not isinstance(name, str) or not _NAME.fullmatch(name) or name.endswith((".", " ")):
+        raise ParameterError(
+            "name: must begin with a letter or digit and hold letters, digits, spaces, and . _ + - "
+            "alone, 80 at most"
+        )
+    return name.removesuffix(".toml")
+
+
+def save_rig(asked: dict[str, Any], bases: dict[str, Base], folder: Path) -> dict[str, str]:
+    """Write a design as a rig file, and tell where and how it is simulated.
+
+    Raises
+    ------
+    ParameterError
+        The design or its name cannot be, or a file has that name that is another's.
+    """
+    design, name = design_of(asked, bases), f"{name_of(asked)}.toml"
+    target = folder / name
+    again = asked.get("replace") is True
+    if target.exists() and not again:
+        raise ParameterError(f"{name} is there already; take another name, or save again over it")
+    if any(base.file is not None and base.file.absolute() == target for base in bases.values()):
+        raise ParameterError(f"{name} is a rig file that is open; take another name")
+    with atomic(target) as part:
+        part.write_text(design.text(folder, name), encoding="utf-8")
+    return {
+        "file": str(target),
+        "command": f"bushing-noise simulate --rig {name} {design.options} --out heard",
+    }
+
+
+_SLOTS = ("A", "B")
+_LONGEST = 60.0
+"""Of each sound [s]."""
+
+
+class DesignExport:
+    """One set at a time, command by command.
+
+    Parameters
+    ----------
+    bases : dict of str to Base
+        That designs name.
+    folder : Path
+        Where sets go, each into a folder of its own.
+    """
+
+    def __init__(self, bases: dict[str, Base], folder: Path) -> None:
+        self._bases, self._folder = bases, folder
+        self._lock = Lock()
+        self._steps: list[list[str]] = []
+        self._done = self._total = 0
+        self._command: Command | None = None
+        self._stopped = False
+        self._error = ""
+        self._result: Path | None = None
+
+    def start(self, asked: dict[str, Any]) -> dict[str, object]:
+        """Begin to keep designs, and tell the state.
+
+        Parameters
+        ----------
+        asked : dict
+            ``{"name": ..., "designs": {"A": ..., "B": ...}, "seconds": 4, "page": false}``, with
+            ``"replace": true`` where a set of that name may be written over.
+
+        Raises
+        ------
+        ParameterError
+            Something of it cannot be, or a set is being kept.
+        """
+        name = name_of(asked)
+        stated, seconds = asked.get("designs"), asked.get("seconds", 4.0)
+        if not isinstance(stated, dict) or not stated or not set(stated) <= set(_SLOTS):
+            raise ParameterError("set: designs must be A, B or both")
+        if isinstance(seconds, bool) or not isinstance(seconds, int | float):
+            raise ParameterError("set: seconds must be a number")
+        if not 0.5 <= seconds <= _LONGEST:
+            raise ParameterError(f"set: seconds must be from 0.5 to {_LONGEST:g}")
+        designs = {slot: design_of(stated[slot], self._bases) for slot in sorted(stated)}
+        target, page = self._folder / name, self._folder / f"{name}.html"
+        wanted = page if asked.get("page") is True else target
+        for one in (target, wanted):
+            if one.exists() and asked.get("replace") is not True:
+                raise ParameterError(
+                    f"{one.name} is there already; take another name, or save again over it"
+                )
+        with self._lock:
+            if self._steps or (self._command is not None and self._command.running):
+                raise ParameterError("set: another one is being kept; wait until it is done")
+            steps = []
+            for slot, design in designs.items():
+                rig = target / f"{slot}.toml"
+                with atomic(rig) as part:
+                    part.write_text(design.text(target, rig.name), encoding="utf-8")
+                options = design.options.split()
+                if "--seconds" not in options:
+                    options += ["--seconds", f"{seconds:g}"]
+                recording = target / "recordings" / slot
+                steps.append(
+                    ["simulate", "--rig", str(rig), *options, "--rate", str(RATE),
+                     "--out", str(recording)]
+                )  # fmt: skip
+            recordings = str(target / "recordings")
+            if wanted == page:
+                told = "; ".join(f"{slot}: {design.words}" for slot, design in designs.items())
+                steps.append(
+                    ["review", recordings, "--title", f"{name}. {told}", "--out", str(page)]
+                )
+            else:
+                steps.append(["render", recordings, "--out", str(target / "sounds")])
+            self._steps, self._total, self._done = steps, len(steps), 0
+            self._error, self._result = "", wanted
+            self._next()
+        return self.state()
+
+    def state(self) -> dict[str, object]:
+        """Return what is done of how much [-], what went wrong, and where the result is."""
+        with self._lock:
+            running = bool(self._steps)
+            done = not running and self._total > 0 and not self._error
+            return {
+                "running": running,
+                "done": self._done,
+                "total": self._total,
+                "error": self._error,
+                "result": str(self._result) if done and self._result else None,
+            }
+
+    def stop(self) -> None:
+        """End what is being done."""
+        with self._lock:
+            self._stopped, command = True, self._command
+        if command is not None:
+            command.stop()
+
+    def _next(self) -> None:
+        command = Command(lambda code: self._ended(command, code))
+        self._command = command
+        command.start(self._steps[0])
+
+    def _ended(self, command: Command, code: int) -> None:
+        with self._lock:
+            self._done += 1
+            if code != 0 or self._stopped:
+                self._error = command.message or "it was ended"
+                self._steps = []
+                return
+            self._steps = self._steps[1:]
+            if self._steps:
+                self._next()

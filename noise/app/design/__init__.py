@@ -1,1 +1,0 @@
-"""Of the app: a rig that is heard while it is changed."""

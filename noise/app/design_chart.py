@@ -1,0 +1,168 @@
+"""The map of noises of a design over speed and interference, and the changes that end a noise.
+
+Both are what ``bushing-noise screen`` says, of few points; they take seconds, so they are asked of
+a process beside the sound.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.errors import ParameterError
+from noise.base.label_names import NAMED
+from noise.screening.design.design import Design as Screened, Use
+from noise.screening.map.batches import batch_evaluator
+from noise.screening.map.grid import shared_grid
+from noise.screening.map.mapping import map_design
+from noise.screening.parts.advice import remove_noise
+from noise.screening.parts.population import outcomes
+from noise.screening.parts.robustness import DESIGN_VARIABLES
+from noise.screening.parts.variation import UsePoint
+
+if TYPE_CHECKING:
+    from models.rig import Rig
+    from sim.live_setting import Setting
+
+
+_LEAST, _MOST = 0.05, 200.0
+"""Speeds at which a noise is looked for [rad/s]."""
+
+
+@dataclass(frozen=True)
+class ChartRequest:
+    """What a chart is of; speed and interference are its axes.
+
+    Parameters
+    ----------
+    rig : Rig
+    support_stiffness : float
+        [Nm/rad]
+    temperature : float
+        [degree Celsius]
+    """
+
+    rig: Rig
+    support_stiffness: float
+    temperature: float
+
+    @classmethod
+    def of(cls, setting: Setting) -> ChartRequest:
+        """Return what is asked of a setting."""
+        return cls(setting.rig, setting.support_stiffness, setting.temperature)
+
+
+@dataclass(frozen=True)
+class SuggestionRequest:
+    """What a change is to end the noise of: one condition.
+
+    Parameters
+    ----------
+    chart : ChartRequest
+    interference : float
+        [m]
+    speed : float
+        [rad/s]
+    """
+
+    chart: ChartRequest
+    interference: float
+    speed: float
+
+    @classmethod
+    def of(cls, setting: Setting, asked: dict[str, Any]) -> SuggestionRequest:
+        """Return what is asked of a setting, at the speed that a request may state with it.
+
+        Raises
+        ------
+        ParameterError
+            That is no speed.
+        """
+        stated = asked.get("speed")
+        if stated is None:
+            speed = float(np.abs(setting.shaft.speed(np.zeros(1)))[0])
+        elif isinstance(stated, int | float) and abs(stated) <= _MOST:
+            speed = abs(float(stated))
+        else:
+            raise ParameterError(f"speed {str(stated)[:20]}: must be a number up to {_MOST:g}")
+        return cls(ChartRequest.of(setting), setting.interference, max(speed, _LEAST))
+
+
+_SPEEDS, _FITS = 16, 7
+_SIMULATIONS = 60
+_FASTEST = 13.0
+"""Of a chart of a bushing that states none [rad/s]."""
+
+
+def chart_of(asked: ChartRequest) -> dict[str, object]:
+    """Return labels over interference (rows) and speed, with both axes.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from noise.app.design_chart import ChartRequest
+    >>> found = chart_of(ChartRequest(load_material_rig("PDMS"), 2214.0, 23.0))
+    >>> found["interference_mm"][0], found["speed_rad_s"][-1], found["labels"][0][0]
+    (0.254, 17.0, 'none')
+    """
+    rig = asked.rig
+    low, high = rig.interference_range
+    fastest = rig.fastest_fitted if math.isfinite(rig.fastest_fitted) else _FASTEST
+    use = Use(
+        speed=tuple(np.linspace(fastest / 2.0 / _SPEEDS, fastest, _SPEEDS).tolist()),
+        interference=tuple(np.linspace(low, high, _FITS).tolist()) if high > low else (low,),
+        support_stiffness=(asked.support_stiffness,),
+        temperature=(asked.temperature,),
+    )
+    grid = shared_grid([Screened("design", rig)], use)
+    with batch_evaluator(workers=1) as evaluate:
+        found = map_design(rig, grid, evaluate, design="design", most=_SIMULATIONS)
+    return {
+        "speed_rad_s": list(grid.speed),
+        "interference_mm": [round(1e3 * fit, 6) for fit in grid.interference],
+        "labels": found.label[0, 0].tolist(),
+        "levels_dba": [[_level(one) for one in row] for row in found.level[0, 0]],
+    }
+
+
+def suggestions_of(asked: SuggestionRequest) -> dict[str, object]:
+    """Return the noise at a condition, and the least change of each quantity that ends it.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from noise.app.design_chart import ChartRequest, SuggestionRequest
+    >>> chart = ChartRequest(load_material_rig("PDMS"), 2214.0, 23.0)
+    >>> suggestions_of(SuggestionRequest(chart, 0.279e-3, 5.0))
+    {'noise': 'none', 'speed_rad_s': 5.0, 'changes': []}
+    """
+    chart = asked.chart
+    design = Screened("design", chart.rig)
+    point = UsePoint(
+        asked.speed, asked.interference, chart.support_stiffness, chart.temperature,
+        (0.5 * asked.speed, asked.speed),
+    )  # fmt: skip
+    fixed = math.isinf(chart.support_stiffness)
+    variables = [v for v in DESIGN_VARIABLES if not (fixed and v.name == "support_stiffness")]
+    names = [variable.name for variable in variables]
+
+    def labels(factors: NDArray[np.float64]) -> NDArray[np.str_]:
+        found = outcomes(design, factors, names=names, point=point, critical="none", workers=1)
+        return found.labels
+
+    noise = str(labels(np.ones((1, len(names))))[0])
+    advice = remove_noise(labels, variables, NAMED) if noise in NAMED else ()
+    enough = sorted((one for one in advice if one.enough), key=lambda one: not one.steady)
+    changes = [
+        {"name": one.name, "factor": float(f"{one.value:.4g}"), "steady": one.steady}
+        for one in enough
+    ]
+    return {"noise": noise, "speed_rad_s": asked.speed, "changes": changes}
+
+
+def _level(value: float) -> float | None:
+    return round(float(value), 1) if math.isfinite(value) else None

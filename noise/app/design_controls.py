@@ -1,0 +1,535 @@
+"""Controls of a design: what can be changed about its base, with bounds, for page and server.
+
+Laws and effects come from their registries with the parameters that they declare, so that a new one
+appears by itself. A base is a shipped material or a rig file that was opened. The condition that a
+design was heard at stands in its rig file, where the view begins when the file is opened::
+
+    [design.heard]
+    motion = "run_up"                  # or "constant" with speed_rad_s, or "swing"
+    run_up.start_rad_s = 0
+    run_up.end_rad_s = 12
+    run_up.seconds = 6
+    interference_mm = 0.279
+    support_stiffness_Nm_rad = 2214    # or "fixed"
+    temperature_C = 23
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.condition import CONDITION
+from models.errors import ParameterError
+from models.rig_file import base_name, load_material_rig, material_names, read_toml, rig_from
+from models.schema import as_table, refuse_unknown
+from sim.effects import EFFECTS
+from sim.effects.effect import Stage
+from sim.friction import LAWS, friction_law
+from sim.parameters import resolve
+from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
+
+if TYPE_CHECKING:
+    from models.rig import Rig
+    from noise.app.opened import Opened
+    from sim.parameters import Parameter
+    from sim.shaft import ShaftMotion
+
+
+@dataclass(frozen=True)
+class RunUp:
+    """Up from one speed to another and down again, over and over.
+
+    Parameters
+    ----------
+    start, end : float
+        [rad/s]
+    seconds : float
+        From one to the other [s].
+
+    Examples
+    --------
+    >>> RunUp(0.0, 10.0, 2.0).speed(np.array([0.0, 1.0, 3.0, 5.0]))
+    array([0., 5., 5., 5.])
+    """
+
+    start: float
+    end: float
+    seconds: float
+
+    def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Angular speed [rad/s] at `time` [s], both of one shape."""
+        share = np.abs((time / self.seconds + 1.0) % 2.0 - 1.0)
+        return np.asarray(self.start + (self.end - self.start) * share)
+
+
+def motion_of(values: Mapping[str, float | bool | str]) -> ShaftMotion:
+    """Return the motion that values of controls describe.
+
+    Examples
+    --------
+    >>> motion_of({"motion": "swing", "swing.degrees": 180.0, "swing.hz": 2.0})
+    Oscillation(amplitude=3.141592653589793, frequency=2.0)
+    """
+    if values["motion"] == "run_up":
+        of = [float(values[f"run_up.{name}"]) for name in ("start", "end", "seconds")]
+        return RunUp(*of)
+    if values["motion"] == "swing":
+        return Oscillation(math.radians(float(values["swing.degrees"])), float(values["swing.hz"]))
+    return ConstantSpeed(float(values["speed"]))
+
+
+def once(shaft: ShaftMotion) -> tuple[ShaftMotion, float]:
+    """Return the motion of a recording of it, and how long that has to be at least [s].
+
+    Examples
+    --------
+    >>> once(RunUp(0.0, 10.0, 6.0))
+    (SpeedRamp(start=0.0, end=10.0, duration=6.0), 6.0)
+    """
+    if isinstance(shaft, RunUp):
+        return SpeedRamp(shaft.start, shaft.end, shaft.seconds), shaft.seconds
+    return shaft, 0.0
+
+
+def motion_options(values: Mapping[str, float | bool | str]) -> str:
+    """Return the motion as options of a command.
+
+    Examples
+    --------
+    >>> motion_options({"motion": "constant", "speed": 5.0})
+    '--speed 5'
+    """
+    if values["motion"] == "run_up":
+        start, end, seconds = (values[f"run_up.{name}"] for name in ("start", "end", "seconds"))
+        return f"--speed {start:g}..{end:g} --seconds {seconds:g}"
+    if values["motion"] == "swing":
+        return f"--oscillate {values['swing.degrees']:g},{values['swing.hz']:g}"
+    return f"--speed {values['speed']:g}"
+
+
+_SUPPORT = "support_stiffness_Nm_rad"
+_NAMES = {
+    "motion": "motion",
+    "speed": "speed_rad_s",
+    "run_up.start": "run_up.start_rad_s",
+    "run_up.end": "run_up.end_rad_s",
+    "run_up.seconds": "run_up.seconds",
+    "swing.degrees": "swing.amplitude_deg",
+    "swing.hz": "swing.frequency_hz",
+    "interference": "interference_mm",
+    "support": _SUPPORT,
+    "temperature": "temperature_C",
+}
+"""Of controls, in files."""
+
+
+def heard_table(
+    controls: Iterable[Control], values: Mapping[str, float | bool | str]
+) -> dict[str, str | float]:
+    """Return what a rig file says of the condition that values of controls describe.
+
+    Examples
+    --------
+    >>> from noise.app.design_controls import Base
+    >>> controls = Base("PDMS").controls
+    >>> heard_table(controls, {one.key: one.value for one in controls})
+    {'motion': 'constant', 'speed_rad_s': 5.0, 'interference_mm': 0.279,
+     'support_stiffness_Nm_rad': 2214.0, 'temperature_C': 23.0}
+    """
+    found: dict[str, str | float] = {}
+    for one in controls:
+        if not one.condition or (one.only and values[one.only[0]] != one.only[1]):
+            continue
+        if one.key != "fixed":
+            found[_NAMES[one.key]] = values[one.key]
+        elif values["fixed"]:
+            found[_SUPPORT] = "fixed"
+    return found
+
+
+def heard_values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """Return what a rig file says of the condition by control, as it stands there.
+
+    Parameters
+    ----------
+    content : mapping
+        Of the whole file.
+    where : str
+        What messages call the file.
+
+    Raises
+    ------
+    ParameterError
+        Something is no table, or a key unknown.
+
+    Examples
+    --------
+    >>> heard_values({"design": {"heard": {"support_stiffness_Nm_rad": "fixed"}}}, "rig.toml")
+    {'fixed': True}
+    """
+    design = as_table(content.get("design", {}), "design", where)
+    where = f"{where}, design"
+    stated: dict[str, Any] = {}
+    for name, value in as_table(design.get("heard", {}), "heard", where).items():
+        inner = value if isinstance(value, Mapping) else {}
+        stated |= {f"{name}.{key}": one for key, one in inner.items()} or {name: value}
+    refuse_unknown(stated, set(_NAMES.values()), f"{where}.heard")
+    found = {key: stated[name] for key, name in _NAMES.items() if name in stated}
+    if found.get("support") == "fixed":
+        del found["support"]
+        found["fixed"] = True
+    return found
+
+
+MOTIONS = {"constant": "constant speed", "run_up": "run-up", "swing": "swing"}
+"""How the shaft turns."""
+
+_FACTORS = {
+    "critical_torque": ("Critical torque", "at which the contact breaks"),
+    "kinetic_torque": ("Kinetic torque", "while it slides"),
+    "elastomer_stiffness": ("Stiffness", "torsional, of the elastomer"),
+    "damping": ("Damping", "of bushing and beams together"),
+    "elastomer_inertia": ("Inertia of the elastomer", ""),
+    "clamp_inertia": ("Inertia of the clamp", ""),
+}
+_SLEEVE = {
+    "wall": ("Wall of the rubber", "torques, stiffness and inertia follow"),
+    "length": ("Length of the rubber", "torques, stiffness and inertia follow"),
+    "youngs_modulus": ("Young's modulus of the rubber", "torques and stiffness follow"),
+}
+_REACH = 20.0
+"""A slider of a parameter reaches from so many times below its value to so many times above."""
+
+
+@dataclass(frozen=True)
+class Control:
+    """One thing that can be changed.
+
+    Parameters
+    ----------
+    key : str
+        Of its value in a state.
+    kind : str
+        ``number``, ``switch`` or ``choice``.
+    group, label, meaning : str
+        What it is called, and where it stands.
+    value : float, bool or str
+        That of the base [`unit`].
+    unit : str
+    low, high : float
+        Ends of the slider, within which a value is plausible [`unit`].
+    least, most : float
+        Between which it is taken [`unit`].
+    log : bool
+        Whether equal ways of the slider are equal ratios.
+    choices : dict of str to str
+        What can be chosen, and how it is called.
+    only : tuple of (str, str) or None
+        Key and value of another control with which this one counts.
+    condition : bool
+        Whether it is of how the rig is run, and stays where another base is taken.
+    """
+
+    key: str
+    kind: str
+    group: str
+    label: str
+    value: float | bool | str
+    meaning: str = ""
+    unit: str = ""
+    low: float = 0.0
+    high: float = 1.0
+    least: float = 0.0
+    most: float = 1.0
+    log: bool = False
+    choices: Mapping[str, str] | None = None
+    only: tuple[str, str | bool] | None = None
+    condition: bool = False
+
+    def as_json(self) -> dict[str, object]:
+        """Return it as the page reads it."""
+        return asdict(self)
+
+    def read(self, stated: object) -> float | bool | str:
+        """Return a value that a request says.
+
+        Raises
+        ------
+        ParameterError
+            It is none that this control takes.
+        """
+        if self.kind == "switch":
+            if isinstance(stated, bool):
+                return stated
+            raise ParameterError(f"{self.label}: must be on or off")
+        if self.kind == "choice":
+            if isinstance(stated, str) and stated in (self.choices or {}):
+                return stated
+            raise ParameterError(f"{self.label}: must be one of {', '.join(self.choices or {})}")
+        number = isinstance(stated, int | float) and not isinstance(stated, bool)
+        if not number or not self.least <= float(stated) <= self.most:  # type: ignore[arg-type]
+            raise ParameterError(
+                f"{self.label} {str(stated)[:40]}: must be a number from {self.least:g} to "
+                f"{self.most:g} {self.unit}".rstrip()
+            )
+        return float(f"{stated:.6g}")  # as a rig file writes it
+
+
+def controls_of(rig: Rig, heard: Mapping[str, object] | None = None) -> list[Control]:
+    """List what can be changed about a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    heard : mapping of str to float, bool or str, optional
+        Values of the condition that are other than usual [unit of each].
+
+    Raises
+    ------
+    ParameterError
+        A control does not take what `heard` says.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> keys = [control.key for control in controls_of(load_material_rig("PDMS"))]
+    >>> keys[:3], "law.lugre.stribeck_speed" in keys, "effect.slip_pulse.amplitude" in keys
+    (['motion', 'speed', 'run_up.start'], True, True)
+    """
+    stated = heard or {}
+    conditions = [
+        replace(one, condition=True, value=one.read(stated.get(one.key, one.value)))
+        for one in (*_motion(rig), *_condition(rig))
+    ]
+    return [*conditions, *_bushing(rig), *_law(rig), *_effects(rig)]
+
+
+def read_values(controls: list[Control], stated: object) -> dict[str, float | bool | str]:
+    """Return the values of all controls: those that a request says, else those of the base.
+
+    Raises
+    ------
+    ParameterError
+        A key is unknown, or a value cannot be taken.
+    """
+    if not isinstance(stated, dict):
+        raise ParameterError("design: the state must be an object of values by control")
+    by_key = {control.key: control for control in controls}
+    for key in stated:
+        if key not in by_key:
+            raise ParameterError(f"design: there is nothing called {str(key)[:60]!r} to change")
+    return {
+        key: control.read(stated[key]) if key in stated else control.value
+        for key, control in by_key.items()
+    }
+
+
+def _number(
+    key: str, group: str, label: str, value: float, unit: str, slider: tuple[float, float],
+    admitted: tuple[float, float], meaning: str = "", *, log: bool = False,
+    only: tuple[str, str | bool] | None = None,
+) -> Control:  # fmt: skip
+    return Control(
+        key, "number", group, label, float(f"{value:.6g}"), meaning, unit, *slider, *admitted,
+        log=log, only=only,
+    )  # fmt: skip
+
+
+def _motion(rig: Rig) -> Iterator[Control]:
+    fastest = CONDITION["speed"].usual[1]
+    usual = min(fastest, 5.0)
+    group, speeds, most = "Motion of the shaft", (0.0, fastest), (-200.0, 200.0)
+    yield Control("motion", "choice", group, "Motion", "constant", choices=MOTIONS)
+    yield _number(
+        "speed", group, "Speed", usual, "rad/s", speeds, most, only=("motion", "constant")
+    )
+    top = min(fastest, 12.0 if math.isinf(rig.fastest_fitted) else rig.fastest_fitted)
+    run_up, swing = ("motion", "run_up"), ("motion", "swing")
+    yield _number("run_up.start", group, "From", 0.0, "rad/s", speeds, most, only=run_up)
+    yield _number("run_up.end", group, "To", top, "rad/s", speeds, most, only=run_up)
+    yield _number(
+        "run_up.seconds", group, "Within", 6.0, "s", (1.0, 30.0), (0.1, 600.0),
+        "and down again in as long", only=run_up,
+    )  # fmt: skip
+    yield _number(
+        "swing.degrees", group, "Amplitude", 15.0, "degrees", (0.5, 60.0), (0.01, 360.0), only=swing
+    )
+    yield _number(
+        "swing.hz", group, "Frequency", 2.0, "Hz", (0.1, 10.0), (0.01, 50.0), log=True, only=swing
+    )
+
+
+def _condition(rig: Rig) -> Iterator[Control]:
+    group = "Condition"
+    low, high = (1e3 * fit for fit in rig.interference_range)
+    fit, support, temperature = (
+        CONDITION[name] for name in ("interference", "support_stiffness", "temperature")
+    )
+    default = min(max(fit.default, low), high)
+    yield _number(
+        "interference", group, "Interference", default, "mm",
+        (round(0.7 * low, 3), round(1.3 * high, 3)), (fit.low, fit.high),
+    )  # fmt: skip
+    yield Control("fixed", "switch", group, "Clamp bolted to the baseplate", False)
+    yield _number(
+        "support", group, "Support stiffness", support.default, "Nm/rad", (1.2e3, 2e4),
+        (support.low, support.high), log=True, only=("fixed", False),
+    )  # fmt: skip
+    yield _number(
+        "temperature", group, "Temperature", temperature.default, "°C", temperature.usual,
+        (temperature.low, temperature.high),
+    )  # fmt: skip
+
+
+def _bushing(rig: Rig) -> Iterator[Control]:
+    named = _FACTORS | (_SLEEVE if rig.sleeve is not None else {})
+    for name, (label, meaning) in named.items():
+        yield _number(
+            f"change.{name}", "Bushing, as a factor of the base", label, 1.0, "x", (0.2, 5.0),
+            (0.01, 100.0), meaning, log=True,
+        )  # fmt: skip
+
+
+def _law(rig: Rig) -> Iterator[Control]:
+    group, own = "Friction law", rig.friction
+    choices = {name: name.replace("_", " ") for name in LAWS}
+    yield Control("law", "choice", group, "Law", own.name, choices=choices)
+    for name in LAWS:
+        law = friction_law(name)
+        stated = own.parameters if name == own.name else {}
+        values = resolve(f"friction law {name!r}", law.parameters, stated)
+        for key, parameter in law.parameters.items():
+            yield _parameter(f"law.{name}.{key}", group, parameter, values[key], ("law", name))
+
+
+def _effects(rig: Rig) -> Iterator[Control]:
+    own = {spec.name: spec for spec in rig.effects}
+    stages = list(Stage)
+    for name, effect in sorted(EFFECTS.items(), key=lambda one: stages.index(one[1].stage)):
+        on, group = name in own, f"Effects of the {effect.stage.value}"
+        active = effect.active(own[name].parameters if on else {})
+        heard = "" if effect.goes_on else "not heard here, but in what is saved"
+        yield Control(f"effect.{name}", "switch", group, name.replace("_", " "), on, heard)
+        only = (f"effect.{name}", True)
+        if len(effect.forms) > 1:
+            forms = {form: form.replace("_", " ") for form in effect.forms}
+            yield Control(
+                f"effect.{name}.form", "choice", group, f"{name.replace('_', ' ')}: form",
+                active.form, choices=forms, only=only,
+            )  # fmt: skip
+        for key, parameter in effect.parameters.items():
+            yield _parameter(
+                f"effect.{name}.{key}", group, parameter, active.values[key], only,
+                f"{name.replace('_', ' ')}: ",
+            )  # fmt: skip
+
+
+def _parameter(
+    key: str, group: str, parameter: Parameter, value: float, only: tuple[str, str | bool],
+    of: str = "",
+) -> Control:  # fmt: skip
+    """Return the control of a declared parameter; its slider reaches about its value."""
+    centre = value or parameter.default
+    low, high, log = parameter.low, parameter.high, False
+    if centre > 0.0:
+        high = min(high, centre * _REACH)
+        if parameter.low > 0.0 or value > 0.0:
+            low, log = max(low, centre / _REACH), True
+        else:
+            low = max(low, 0.0)
+    label = f"{of}{key.rpartition('.')[2].replace('_', ' ')}"
+    return _number(
+        key, group, label, value, parameter.unit, (low, high), (parameter.low, parameter.high),
+        parameter.meaning, log=log, only=only,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Base:
+    """A rig that designs are changes of.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in the browser.
+    file : Path or None
+        None for a material.
+    """
+
+    name: str
+    file: Path | None = None
+
+    @property
+    def _where(self) -> str:
+        return f"rig file {self.file}"
+
+    @cached_property
+    def _content(self) -> dict[str, Any]:
+        return {} if self.file is None else read_toml(self.file, self._where)
+
+    @cached_property
+    def rig(self) -> Rig:
+        """As it was when it was first asked for."""
+        if self.file is None:
+            return load_material_rig(self.name)
+        return rig_from(self._content, self.file.parent, self._where)
+
+    @cached_property
+    def controls(self) -> list[Control]:
+        """What can be changed about it; the condition is that which the file was heard at."""
+        heard = heard_values(self._content, self._where)
+        try:
+            return controls_of(self.rig, heard)
+        except ParameterError as error:
+            raise ParameterError(f"{self._where}, design.heard: {error}") from None
+
+    @property
+    def heard(self) -> bool:
+        """Whether the file says at which condition."""
+        return bool(heard_values(self._content, self._where))
+
+    def named_in(self, folder: Path) -> str:
+        """Name it as ``base`` in a rig file of a folder."""
+        return self.name if self.file is None else base_name(self.file, folder)
+
+
+def bases_of(opened: Opened) -> dict[str, Base]:
+    """Return all bases by what requests call them: rig files by number first, then materials.
+
+    Raises
+    ------
+    BushingNoiseError
+        A rig file cannot be read.
+
+    Examples
+    --------
+    >>> from noise.app.opened import open_paths
+    >>> next(iter(bases_of(open_paths([]))))
+    'fluorocarbon'
+    """
+    found = {f"rig {i}": Base(path.name, path) for i, path in enumerate(opened.rigs)}
+    for named in found.values():
+        _ = named.controls  # what is wrong with it is told where it was named
+    names = sorted(material_names(), key=lambda name: (name != "fluorocarbon", name.lower()))
+    return found | {name: Base(name) for name in names}
+
+
+def base_of(stated: object, bases: dict[str, Base]) -> Base:
+    """Return the base that a request names.
+
+    Raises
+    ------
+    ParameterError
+        There is none.
+    """
+    if not isinstance(stated, str) or stated not in bases:
+        raise ParameterError(f"design: base {str(stated)[:40]!r} is none of {', '.join(bases)}")
+    return bases[stated]

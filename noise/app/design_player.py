@@ -1,0 +1,305 @@
+"""The process that plays designs: it makes the blocks of each run as they are due.
+
+It does nothing else, so nothing that the program does besides keeps the sound waiting. A change is
+heard in the block that is made next; what carries the torque to the microphone takes a while to be
+computed, in a process of its own, and takes over when it is known.
+"""
+
+from __future__ import annotations
+
+import gc
+import signal
+import struct
+import time
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from models.rig_file import load_material_rig
+from noise.app.worker_process import WorkerProcess
+from noise.batch.work import one_thread
+from sim.live import LiveRun
+from sim.live_setting import Setting, paths_key, paths_of
+from sim.shaft import ConstantSpeed
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+    from models.radiation.impulse_responses import ImpulseResponses
+
+RATE = 48000
+"""Of the sound [Hz]."""
+
+
+_NICE = 10
+"""The sound goes on before what carries it is another."""
+
+
+def block_impulse_responses(setting: Setting) -> ImpulseResponses:
+    """Return the impulse responses of a setting at the rate of its blocks."""
+    return paths_of(setting, RATE)
+
+
+def impulse_response_worker() -> WorkerProcess[Setting, ImpulseResponses]:
+    """Return a process that computes impulse responses."""
+    return WorkerProcess(f"{__name__}:block_impulse_responses", _NICE)
+
+
+class LiveTransferPaths:
+    """Impulse responses for one run, computed beside; the first at once."""
+
+    def __init__(self, beside: WorkerProcess[Setting, ImpulseResponses]) -> None:
+        self._beside = beside
+        self._known: tuple[tuple[object, ...], ImpulseResponses] | None = None
+        self._wanted: tuple[Setting, tuple[object, ...]] | None = None
+        self._asked: dict[int, tuple[Setting, tuple[object, ...]]] = {}
+        self._refused: tuple[tuple[object, ...], str] | None = None
+
+    @property
+    def refusal(self) -> str:
+        """Why those of the setting that was asked for last cannot be, as far as that is known."""
+        refused, wanted = self._refused, self._wanted
+        return refused[1] if refused and wanted and refused[0] == wanted[1] else ""
+
+    def __call__(self, setting: Setting) -> ImpulseResponses | None:
+        """Return those of a setting, None while they are not known."""
+        if self._known is None:
+            self._known = paths_key(setting), paths_of(setting, RATE)
+        if self._wanted is None or self._wanted[0] is not setting:
+            self._wanted = setting, paths_key(setting)
+        key = self._wanted[1]
+        if key == self._known[0]:
+            return self._known[1]
+        newest = self._beside.newest
+        mine = None if newest is None else self._asked.pop(id(newest[0]), None)
+        if newest is not None and mine is not None:
+            if newest[1] is not None:
+                self._known = mine[1], newest[1]
+                return newest[1]
+            self._refused = mine[1], newest[2]
+        if self.refusal:  # asking again would bring no other answer
+            return None
+        if mine is None and not any(asked == key for _, asked in self._asked.values()):
+            self._ask(setting, key)
+        elif not self._beside.busy:  # what another page asked for took its place
+            self._asked.clear()
+        return None
+
+    def _ask(self, setting: Setting, key: tuple[object, ...]) -> None:
+        self._asked[id(setting)] = setting, key
+        self._beside.ask(setting)
+
+
+_BEHIND = 0.2
+"""By more than which nobody catches up: the rest comes later [s]."""
+
+
+class Pace:
+    """One block after another, as they are played.
+
+    Parameters
+    ----------
+    step : float
+        From one block to the next [s].
+
+    Examples
+    --------
+    >>> pace = Pace(0.02)
+    >>> pace.early(0, 100.0), pace.early(1, 101.0)
+    (0.0, 0.0)
+    >>> round(pace.early(2, 101.005), 3)
+    0.015
+    >>> pace.sooner(0.01)
+    >>> round(pace.early(2, 101.005), 3)
+    0.005
+    """
+
+    def __init__(self, step: float) -> None:
+        self._step = step
+        self._begun: float | None = None
+
+    def early(self, sequence: int, now: float) -> float:
+        """Return how long to wait for a block, 0 where it is due [s].
+
+        The clock runs once the first is made, which may take longer than all others.
+        """
+        if sequence == 0:
+            return 0.0
+        since = sequence * self._step
+        if self._begun is None or now - self._begun - since > _BEHIND:
+            self._begun = now - since
+        return max(0.0, self._begun + since - now)
+
+    def sooner(self, seconds: float) -> None:
+        """Let all that follow come sooner by so much, later where it is negative [s]."""
+        if self._begun is not None:
+            self._begun -= seconds
+
+
+BLOCK = 960
+"""Samples of a block: 10 ms."""
+
+TORQUE_STEP = 4
+"""Of every so many samples of the torque one is sent, to be drawn."""
+
+HEADER = struct.Struct("<4I2f")
+"""Of a block."""
+
+REFUSED = 0xFFFFFFFF
+"""In place of a sequence: why the change of that serial could not be, as UTF-8 of n bytes."""
+
+
+@dataclass(eq=False)
+class _Run:
+    live: LiveRun
+    paths: LiveTransferPaths
+    serial: int
+    refused: int = -1
+    change: tuple[int, Setting] | None = None
+    sequence: int = 0
+    pace: Pace = field(default_factory=lambda: Pace(BLOCK / RATE))
+
+
+class Player:
+    """Runs that go on, by number."""
+
+    def __init__(self) -> None:
+        self._runs: dict[int, _Run] = {}
+        self.beside = impulse_response_worker()
+
+    def start(self, number: int, serial: int, setting: Setting) -> None:
+        """Begin a run.
+
+        Raises
+        ------
+        ParameterError
+            The setting cannot be used.
+        """
+        paths = LiveTransferPaths(self.beside)
+        live = LiveRun(setting, rate=RATE, n=BLOCK, paths=paths)
+        self._runs[number] = _Run(live, paths, serial)
+
+    def stop(self, number: int) -> None:
+        """End a run, if there is one of that number."""
+        self._runs.pop(number, None)
+
+    def change(self, number: int, serial: int, setting: Setting) -> None:
+        """Let another setting be heard from the next block on."""
+        if run := self._runs.get(number):
+            run.change = serial, setting
+
+    def sooner(self, number: int, seconds: float) -> None:
+        """Let the blocks that follow come sooner by so much [s]."""
+        if run := self._runs.get(number):
+            run.pace.sooner(seconds)
+
+    def due(self, now: float) -> tuple[float, int] | None:
+        """Return in how long which run's block is due [s], None without runs."""
+        waits = ((run.pace.early(run.sequence, now), n) for n, run in self._runs.items())
+        return min(waits, default=None)
+
+    def block(self, number: int) -> bytes:
+        """Return the next block of a run.
+
+        Returns
+        -------
+        bytes
+            Sequence, serial, samples of pressure and of torque as unsigned integers; milliseconds
+            that it took and speed of the shaft [rad/s], then pressure [Pa] and torque [Nm] as
+            floating-point numbers; all of 32 bits, little-endian. Where the change that was to be
+            heard could not be, or what carries it to the microphone cannot, `REFUSED` and why comes
+            before it.
+
+        Raises
+        ------
+        ParameterError
+            The run cannot go on.
+        """
+        run = self._runs[number]
+        started = time.perf_counter()
+        why = b""
+        change, run.change = run.change, None
+        if change is None:
+            made = run.live.block()
+        else:
+            run.serial, setting = change
+            try:
+                made = run.live.block(setting)
+            except ParameterError as error:
+                why = refusal(run.serial, error)
+                made = run.live.block()
+        if run.paths.refusal and run.refused != run.serial:
+            why += refusal(run.serial, run.paths.refusal)
+            run.refused = run.serial
+        pressure = made.pressure.astype("<f4")
+        torque = made.torque[::TORQUE_STEP].astype("<f4")
+        took = 1e3 * (time.perf_counter() - started)
+        sizes = pressure.size, torque.size
+        header = HEADER.pack(run.sequence, run.serial, *sizes, took, made.speed)
+        run.sequence += 1
+        return why + header + pressure.tobytes() + torque.tobytes()
+
+
+def refusal(serial: int, error: ParameterError | str) -> bytes:
+    """Return the message that a change could not be."""
+    why = " ".join(str(error).split()).encode()
+    return HEADER.pack(REFUSED, serial, len(why), 0, 0.0, 0.0) + why
+
+
+def warmed() -> Player:
+    """Return a player that has compiled what it will use."""
+    player = Player()
+    setting = Setting(load_material_rig("fluorocarbon"), ConstantSpeed(5.0), 0.3e-3, 2214.0)
+    player.beside.ask(setting)
+    player.start(0, 0, setting)
+    player.block(0)
+    player.change(0, 1, replace(setting, shaft=ConstantSpeed(6.0), interference=0.31e-3))
+    player.block(0)
+    player.stop(0)
+    gc.collect()
+    gc.freeze()  # or all that is loaded is walked through while it plays
+    return player
+
+
+def play(link: Connection) -> None:
+    """Play what is asked for until None is, or the other end is closed.
+
+    Parameters
+    ----------
+    link : Connection
+        Gives ``(what, number, ...)``: a method of `Player` and its arguments; takes the number of a
+        run in four bytes, little-endian, and a message of it after that: none is left where there
+        is only the number.
+    """
+    with suppress(ValueError):  # a key in the terminal is for the server
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with one_thread(), suppress(EOFError, OSError):
+        player = warmed()
+        try:
+            while True:
+                due = player.due(time.perf_counter())
+                if link.poll(None if due is None else due[0]):
+                    told = link.recv()
+                    if told is None:
+                        return
+                    what, number, *rest = told
+                else:
+                    what, number, rest = "", due[1] if due else 0, []
+                _do(player, link, what, number, rest)
+        finally:
+            player.beside.stop()
+
+
+def _do(player: Player, link: Connection, what: str, number: int, rest: list[object]) -> None:
+    name = number.to_bytes(4, "little")
+    try:
+        if what:
+            getattr(player, what)(number, *rest)
+        else:
+            link.send_bytes(name + player.block(number))
+    except ParameterError as error:
+        player.stop(number)
+        serial = rest[0] if rest and isinstance(rest[0], int) else 0
+        link.send_bytes(name + refusal(serial, error))
+        link.send_bytes(name)

@@ -1,0 +1,202 @@
+"""The sound of a design while it is changed: blocks of one run that goes on, as a stream.
+
+Blocks come as they are due, so that the page has little in reserve and a change is heard soon.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import math
+from collections import deque
+from collections.abc import AsyncIterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from threading import Lock, Thread
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from features.kernels.levels import sound_levels
+from models.errors import ParameterError
+from noise.app.design import Design, design_of
+from noise.app.design_player import BLOCK, HEADER, RATE, REFUSED, play
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+    from noise.app.design_controls import Base
+
+_METER = RATE // BLOCK
+"""Blocks over which the level is told: a second."""
+
+_MOST_RUNS = 4
+"""That go on at once: of pages that are open."""
+
+_UNREAD = 5 * _METER
+"""Blocks that nobody has read, after which nobody will."""
+
+_SOONEST = 2.0
+"""By which blocks may come sooner or later at once [s]."""
+
+
+@dataclass(eq=False)
+class _Stream:
+    loop: asyncio.AbstractEventLoop
+    queue: asyncio.Queue[bytes | None] = field(default_factory=asyncio.Queue)
+    heard: deque[bytes] = field(default_factory=lambda: deque(maxlen=_METER))
+
+    def put(self, message: bytes) -> None:
+        """Hand on what the player made; an empty message ends the stream."""
+        if message and HEADER.unpack_from(message)[0] != REFUSED:
+            self.heard.append(message[HEADER.size : HEADER.size + 4 * BLOCK])
+        given_up = not message or self.queue.qsize() > _UNREAD
+        with suppress(RuntimeError):  # the loop has ended
+            self.loop.call_soon_threadsafe(self.queue.put_nowait, None if given_up else message)
+
+
+class LiveSounds:
+    """Runs that go on, each for one page.
+
+    Parameters
+    ----------
+    bases : dict of str to Base
+        That designs name.
+    """
+
+    def __init__(self, bases: dict[str, Base]) -> None:
+        self._bases = bases
+        self._lock = Lock()
+        self._streams: dict[int, _Stream] = {}
+        self._link: Connection | None = None
+
+    def get_ready(self) -> None:
+        """Start the player, which takes a while, if there is none."""
+        with self._lock:
+            if self._link is not None:
+                return
+            context = get_context("spawn")  # a copy of this process would lack its threads
+            self._link, theirs = context.Pipe()
+            # No daemon, since it has a process beside itself; it ends with the link.
+            process = context.Process(target=play, args=(theirs,))
+            process.start()
+            theirs.close()
+            sound_levels(np.zeros(RATE), RATE)  # compiled now, not while it plays
+            gc.collect()
+            gc.freeze()  # or all that is loaded is walked through while it plays
+            Thread(target=self._read, args=(self._link,), daemon=True).start()
+
+    def stop(self) -> None:
+        """End all streams and the player."""
+        with self._lock:
+            link, self._link = self._link, None
+        if link is not None:
+            with suppress(OSError):
+                link.send(None)
+
+    def started(self, asked: dict[str, Any]) -> tuple[int, int, Design]:
+        """Return number, serial and design of a run that is to begin or to be changed.
+
+        Parameters
+        ----------
+        asked : dict
+            ``{"run": number, "serial": number, "design": {...}}``; `serial` counts changes.
+
+        Raises
+        ------
+        ParameterError
+            Something of it cannot be.
+        """
+        number, serial = (_whole(asked, key) for key in ("run", "serial"))
+        stated = asked.get("design")
+        return number, serial, design_of(stated, self._bases)
+
+    async def stream(self, number: int, serial: int, design: Design) -> AsyncIterator[bytes]:
+        """Give what `noise.app.design.player.Player.block` makes, until nobody listens."""
+        stream = _Stream(asyncio.get_running_loop())
+        while len(self._streams) >= _MOST_RUNS:
+            self._streams.pop(next(iter(self._streams))).put(b"")
+        self._streams[number] = stream
+        try:
+            self.get_ready()
+            self._tell("start", number, serial, design.setting)
+            while (message := await stream.queue.get()) is not None:
+                yield message
+        finally:
+            self._tell("stop", number)
+            if self._streams.get(number) is stream:
+                del self._streams[number]
+
+    def change(self, asked: dict[str, Any]) -> None:
+        """Let another design be heard from the next block on; `asked` is as of `started`.
+
+        Raises
+        ------
+        ParameterError
+            Something of it cannot be; the run goes on as it was.
+        """
+        number, serial, design = self.started(asked)
+        self._known(number)
+        self._tell("change", number, serial, design.setting)
+
+    def pace(self, asked: dict[str, Any]) -> None:
+        """Let the blocks that follow come sooner, or later: ``{"run": number, "sooner": seconds}``.
+
+        Raises
+        ------
+        ParameterError
+            Something of it cannot be.
+        """
+        number = _whole(asked, "run")
+        seconds = asked.get("sooner")
+        if isinstance(seconds, bool) or not isinstance(seconds, int | float):
+            raise ParameterError("sound: sooner must be a number")
+        if not abs(seconds) <= _SOONEST:
+            raise ParameterError(f"sound: sooner must be up to {_SOONEST:g} s")
+        self._known(number)
+        self._tell("sooner", number, float(seconds))
+
+    def levels(self, number: int) -> dict[str, float | None]:
+        """Return levels of the last second of a run, as the tables have them [dB re 20 uPa]."""
+        stream = self._streams.get(number)
+        heard = b"".join(stream.heard.copy()) if stream is not None else b""
+        pressure = np.frombuffer(heard, "<f4").astype(np.float64)
+        if pressure.size < RATE // 4:
+            return {"level_db": None, "level_dba": None, "l_afmax_dba": None}
+        found = sound_levels(pressure, RATE)
+        told = {
+            "level_db": found.level, "level_dba": found.level_a, "l_afmax_dba": found.level_af_max,
+        }  # fmt: skip
+        return {
+            name: round(value, 1) if math.isfinite(value) else None for name, value in told.items()
+        }
+
+    def _known(self, number: int) -> None:
+        if number not in self._streams:
+            raise ParameterError("sound: there is no such run; begin another one")
+
+    def _tell(self, what: str, number: int, *rest: object) -> None:
+        with self._lock, suppress(OSError):  # the player is gone, which ends the streams
+            if self._link is not None:
+                self._link.send((what, number, *rest))
+
+    def _read(self, link: Connection) -> None:
+        with suppress(EOFError, OSError):
+            while True:
+                message = link.recv_bytes()
+                stream = self._streams.get(int.from_bytes(message[:4], "little"))
+                if stream is not None:
+                    stream.put(message[4:])
+        with self._lock:
+            if self._link is link:
+                self._link = None
+        for stream in list(self._streams.values()):
+            stream.put(b"")
+
+
+def _whole(asked: dict[str, Any], key: str) -> int:
+    value = asked.get(key)
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < 1 << 32:
+        raise ParameterError(f"sound: {key} must be a whole number from 0 on")
+    return value

@@ -1,0 +1,115 @@
+"""Routes of the view Design: a rig that is heard while it is changed."""
+
+from __future__ import annotations
+
+import secrets
+from typing import TYPE_CHECKING, Any
+
+from starlette.responses import JSONResponse, Response, StreamingResponse
+from starlette.routing import Route
+
+from models.errors import ParameterError
+from noise.app.design import DesignExport, design_of, save_rig
+from noise.app.design_chart import ChartRequest, SuggestionRequest
+from noise.app.design_controls import base_of, bases_of
+from noise.app.design_player import BLOCK, RATE, TORQUE_STEP
+from noise.app.design_sound import LiveSounds
+from noise.app.gate import body
+from noise.app.worker_process import WorkerProcess
+from sim.live import LOOKAHEAD
+
+if TYPE_CHECKING:
+    from starlette.requests import Request
+    from starlette.routing import BaseRoute
+
+    from noise.app.opened import Opened
+
+
+_CHARTS = "noise.app.design_chart"
+_NICE = 15
+"""Whoever listens goes first."""
+
+
+def routes(opened: Opened) -> list[BaseRoute]:
+    """Return the routes of this view."""
+    bases = bases_of(opened)
+    session = secrets.token_hex(8)  # what a page keeps is of these bases
+    sounds = LiveSounds(bases)
+    charts: WorkerProcess[ChartRequest, dict[str, object]] = WorkerProcess(
+        f"{_CHARTS}:chart_of", _NICE
+    )
+    suggestions: WorkerProcess[SuggestionRequest, dict[str, object]] = WorkerProcess(
+        f"{_CHARTS}:suggestions_of", _NICE
+    )
+    export = DesignExport(bases, opened.folder)
+    for one in (sounds, charts, suggestions, export):
+        opened.leaving.callback(one.stop)
+
+    def listed(_: Request) -> Response:
+        sounds.get_ready()
+        named = [{"id": key, "name": base.name, "heard": base.heard} for key, base in bases.items()]
+        steps = {"rate": RATE, "block": BLOCK, "torque_step": TORQUE_STEP}
+        about = {"bases": named, "session": session, "lookahead_s": LOOKAHEAD}
+        return JSONResponse(about | steps)
+
+    def controls(request: Request) -> Response:
+        base = base_of(request.query_params.get("base"), bases)
+        return JSONResponse({"controls": [one.as_json() for one in base.controls]})
+
+    def sound(_: Request, asked: dict[str, Any]) -> Response:
+        blocks = sounds.stream(*sounds.started(asked))
+        return StreamingResponse(blocks, media_type="application/octet-stream")
+
+    def changed(_: Request, asked: dict[str, Any]) -> Response:
+        sounds.change(asked)
+        return JSONResponse({})
+
+    def paced(_: Request, asked: dict[str, Any]) -> Response:
+        sounds.pace(asked)
+        return JSONResponse({})
+
+    def told(_: Request, asked: dict[str, Any]) -> Response:
+        design = design_of(asked, bases)
+        facts = {"facts": design.facts(), "remarks": design.remarks(), "options": design.options}
+        return JSONResponse(facts)
+
+    def levels(request: Request) -> Response:
+        run = request.query_params.get("run", "")
+        if not run.isdecimal():
+            raise ParameterError(f"sound: run {run[:20]!r} is no number")
+        return JSONResponse(sounds.levels(int(run)))
+
+    def charted(_: Request, asked: dict[str, Any]) -> Response:
+        return _waited(charts.answer_to(ChartRequest.of(design_of(asked, bases).setting)))
+
+    def helped(_: Request, asked: dict[str, Any]) -> Response:
+        return _waited(
+            suggestions.answer_to(SuggestionRequest.of(design_of(asked, bases).setting, asked))
+        )
+
+    def kept(_: Request, asked: dict[str, Any]) -> Response:
+        return JSONResponse(export.start(asked))
+
+    def saved(_: Request, asked: dict[str, Any]) -> Response:
+        return JSONResponse(save_rig(asked, bases, opened.folder))
+
+    return [
+        Route("/api/design", listed),
+        Route("/api/design/controls", controls),
+        Route("/api/design/sound", body(sound), methods=["POST"]),
+        Route("/api/design/change", body(changed), methods=["POST"]),
+        Route("/api/design/pace", body(paced), methods=["POST"]),
+        Route("/api/design/facts", body(told), methods=["POST"]),
+        Route("/api/design/levels", levels),
+        Route("/api/design/chart", body(charted), methods=["POST"]),
+        Route("/api/design/helps", body(helped), methods=["POST"]),
+        Route("/api/design/rig", body(saved), methods=["POST"]),
+        Route("/api/design/set", body(kept), methods=["POST"]),
+        Route("/api/design/set", lambda _: JSONResponse(export.state()), methods=["GET"]),
+    ]
+
+
+def _waited(answer: tuple[dict[str, object] | None, str] | None) -> Response:
+    """Answer what is known by now: the page asks again until it is."""
+    found, error = answer or (None, "")
+    return JSONResponse({"known": answer is not None, "found": found, "error": error})

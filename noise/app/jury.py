@@ -1,0 +1,407 @@
+"""A jury: sounds compared in pairs, blind, in random order; its votes and the scale that they give.
+
+All comparisons are in the table of votes from the beginning, without a vote, so whoever goes on
+with a jury goes on in its order; each vote is in the table before it is answered. The table is read
+anew each time, as others may write it, and written whole or not at all. Columns of one's own stay.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import datetime
+from itertools import combinations, groupby
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.errors import ParameterError, RecordingError
+from noise.base.csv_table import write_csv
+from noise.base.lock import locked
+from noise.base.tables import read_table, write_table
+
+Row = dict[str, Any]
+
+COLUMNS = (
+    *("jury", "listener", "question", "played", "seed"),
+    *("order", "first", "second", "vote", "seconds", "time"),
+)
+"""Of the table of votes, one row a comparison; those that wait have no vote."""
+
+SCALE_COLUMNS = (
+    *("jury", "listener", "question", "played", "sound", "value", "low_95", "high_95"),
+    *("chosen", "not_chosen", "no_difference"),
+)
+"""Of the table of a scale, the highest first."""
+
+VOTES = {"first": 1.0, "second": 0.0, "equal": 0.5}
+"""What is voted for: the sound that is called A, the one that is called B, no difference; and the
+share of the vote that A has."""
+
+_DRAWS = 1000
+"""Of the bootstrap [-]."""
+
+_PRIOR = 0.5
+"""Votes of each sound for and against a sound of value zero: they keep every value finite [-]."""
+
+
+@dataclass(frozen=True)
+class Jury:
+    """Comparisons by one person, in their order, of which the first have been voted.
+
+    Parameters
+    ----------
+    number : int
+        By which it is called.
+    listener, question : str
+    played : str
+        At which gain.
+    pairs : tuple of (str, str)
+        Names of the sounds that are called A and B.
+    votes : tuple of str
+        Of `VOTES`; as many as were voted.
+
+    Examples
+    --------
+    >>> pairs = ("a.wav", "b.wav"), ("c.wav", "b.wav")
+    >>> jury = Jury(1, "", "Which is louder?", "one gain", pairs, ("first",))
+    >>> jury.sounds, jury.waiting
+    (('a.wav', 'b.wav', 'c.wav'), 1)
+    """
+
+    number: int
+    listener: str
+    question: str
+    played: str
+    pairs: tuple[tuple[str, str], ...]
+    votes: tuple[str, ...]
+
+    @property
+    def sounds(self) -> tuple[str, ...]:
+        """Names of all sounds, each once, in the order of their names."""
+        return tuple(sorted({name for pair in self.pairs for name in pair}))
+
+    @property
+    def waiting(self) -> int | None:
+        """Number of the comparison whose turn it is; None where all have been voted."""
+        return len(self.votes) if len(self.votes) < len(self.pairs) else None
+
+
+class Votes:
+    """The table of votes; may be used from several threads and programs.
+
+    Parameters
+    ----------
+    path : Path
+        There, or to be made.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def juries(self) -> list[Jury]:
+        """Return all juries, as they stand in the table.
+
+        Raises
+        ------
+        RecordingError
+            It is no table of votes.
+        """
+        return [_jury(self.path, rows) for rows in self._read()[1].values()]
+
+    def jury(self, number: int) -> Jury:
+        """Return a jury.
+
+        Raises
+        ------
+        ParameterError
+            There is none of this number.
+        RecordingError
+            It is no table of votes.
+        """
+        return _jury(self.path, _rows_of(self._read()[1], number))
+
+    def begin(
+        self, names: Sequence[str], *, listener: str, question: str, played: str, seed: int
+    ) -> Jury:
+        """Write a new jury of all pairs and return it.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Of the sounds.
+        listener, question, played
+            As of `Jury`.
+        seed : int
+            Of the order, with the number of the jury.
+
+        Raises
+        ------
+        ParameterError
+            The table cannot be written.
+        RecordingError
+            What stands there is no table of votes.
+        """
+        about = {"listener": listener, "question": question, "played": played, "seed": seed}
+        with self._changed() as juries:
+            number = max(juries, default=0) + 1
+            pairs = random_pairs(names, np.random.default_rng([seed, number]))
+            juries[number] = [
+                {"jury": number, **about, "order": order, "first": first, "second": second}
+                for order, (first, second) in enumerate(pairs, start=1)
+            ]
+        return self.jury(number)
+
+    def vote(self, number: int, place: int, vote: str, seconds: float) -> Jury:
+        """Write a vote and return the jury with it.
+
+        Parameters
+        ----------
+        number : int
+            Of the jury.
+        place : int
+            Of the comparison, which has to be the one whose turn it is.
+        vote : str
+            One of `VOTES`.
+        seconds : float
+            For which it was listened to [s].
+
+        Raises
+        ------
+        ParameterError
+            It is another's turn, or the table cannot be written; then all is as it was.
+        RecordingError
+            Somebody else has made something of the table that is none.
+        """
+        if vote not in VOTES:
+            raise ParameterError(f"vote {vote!r}: must be one of {', '.join(VOTES)}")
+        with self._changed() as juries:
+            rows = _rows_of(juries, number)
+            if _jury(self.path, rows).waiting != place:
+                raise ParameterError(f"comparison {place + 1} is not the one whose turn it is")
+            now = datetime.now().astimezone().isoformat(timespec="seconds")
+            rows[place] |= {"vote": vote, "seconds": round(seconds, 2), "time": now}
+            return _jury(self.path, rows)
+
+    def undo(self, number: int, place: int) -> Jury:
+        """Take back the last vote of a jury, which is on comparison `place`.
+
+        Raises
+        ------
+        ParameterError
+            That vote is not the last one, or the table cannot be written; then all is as it was.
+        RecordingError
+            Somebody else has made something of the table that is none.
+        """
+        with self._changed() as juries:
+            rows = _rows_of(juries, number)
+            if place != len(_jury(self.path, rows).votes) - 1:
+                raise ParameterError(f"the vote on comparison {place + 1} is not the last one")
+            rows[place] |= {"vote": None, "seconds": None, "time": None}
+            return _jury(self.path, rows)
+
+    @contextmanager
+    def _changed(self) -> Iterator[dict[int, list[Row]]]:
+        """Give the rows of each jury to change, and write them."""
+        with locked(self.path):
+            columns, juries = self._read()
+            yield juries
+            more = tuple(name for name in columns if name not in COLUMNS)
+            write_table(
+                self.path, (*COLUMNS, *more), [row for rows in juries.values() for row in rows]
+            )
+
+    def _read(self) -> tuple[list[str], dict[int, list[Row]]]:
+        if not self.path.exists():
+            return [], {}
+        columns, rows = read_table(self.path)
+        missing = [name for name in COLUMNS if name not in columns]
+        if missing:
+            raise RecordingError(f"{self.path}: is no table of votes; it lacks {missing[0]}")
+        for line, row in enumerate(rows, start=2):
+            for name in ("jury", "order"):
+                text = str(row[name])
+                if not (text.isascii() and text.isdecimal() and 0 < len(text) < 10):
+                    raise RecordingError(f"{self.path}, line {line}: {name} {text!r} is no number")
+        rows.sort(key=_place)
+        return columns, {number: list(of) for number, of in groupby(rows, lambda r: _place(r)[0])}
+
+
+def random_pairs(names: Sequence[str], rng: np.random.Generator) -> list[tuple[str, str]]:
+    """Return all pairs of sounds in random order, either of a pair first.
+
+    Parameters
+    ----------
+    names : sequence of str
+    rng : Generator
+
+    Examples
+    --------
+    >>> random_pairs("abc", np.random.default_rng(1))
+    [('b', 'a'), ('a', 'c'), ('c', 'b')]
+    """
+    pairs = list(combinations(names, 2))
+    found = [pairs[place] for place in rng.permutation(len(pairs))]
+    return [pair[::-1] if rng.random() < 0.5 else pair for pair in found]
+
+
+def bradley_terry(share: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return values of sounds, of which the higher of two is chosen exp(difference) times as often.
+
+    Parameters
+    ----------
+    share : ndarray, shape (..., n, n)
+        Votes for the sound of the row against that of the column, half of one for no difference.
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+        Their mean is zero.
+
+    Notes
+    -----
+    R. A. Bradley, M. E. Terry, Biometrika 39 (1952) 324; the likelihood has one more vote of each
+    sound, half for and half against a sound of value zero, so that one which won all its
+    comparisons has a finite value.
+
+    Examples
+    --------
+    >>> loud, calm = bradley_terry(np.array([[0.0, 700.0], [300.0, 0.0]]))
+    >>> round(float(loud - calm), 2)  # log(7 / 3)
+    0.85
+    """
+    total = share + np.swapaxes(share, -1, -2)
+    value = np.zeros(share.shape[:-1])
+    diagonal = np.eye(share.shape[-1])
+    for _ in range(50):
+        p = 1.0 / (1.0 + np.exp(value[..., None, :] - value[..., :, None]))
+        own = 1.0 / (1.0 + np.exp(-value))
+        slope = (share - total * p).sum(axis=-1) + _PRIOR * (1.0 - 2.0 * own)
+        weight = total * p * (1.0 - p)
+        curvature = weight.sum(axis=-1) + 2.0 * _PRIOR * own * (1.0 - own)
+        step = np.linalg.solve(diagonal * curvature[..., None, :] - weight, slope[..., None])
+        step = np.clip(step[..., 0], -2.0, 2.0)
+        value = value + step
+        if np.abs(step).max() < 1e-9:
+            break
+    return np.asarray(value - value.mean(axis=-1, keepdims=True))
+
+
+def scale(jury: Jury) -> tuple[list[Row], list[str]]:
+    """Return the scale of a jury's sounds, the highest first, and remarks on it.
+
+    Intervals at 95 % are those of a bootstrap: votes on the same pairs are drawn anew by the values
+    found. They say how surely these votes place a sound, not how another person would vote.
+
+    Parameters
+    ----------
+    jury : Jury
+
+    Examples
+    --------
+    >>> pairs = ("calm", "loud"), ("loud", "calm")
+    >>> rows, _ = scale(Jury(1, "", "Which is louder?", "one gain", pairs, ("second", "first")))
+    >>> [row["sound"] for row in rows], rows[0]["chosen"], rows[0]["not_chosen"]
+    (['loud', 'calm'], 2, 0)
+    """
+    from scipy.sparse.csgraph import connected_components
+
+    names = jury.sounds
+    n = len(names)
+    at = {name: number for number, name in enumerate(names)}
+    pairs = np.array([(at[a], at[b]) for a, b in jury.pairs[: len(jury.votes)]], int).reshape(-1, 2)
+    shares = np.array([VOTES[vote] for vote in jury.votes])
+    decided = shares != VOTES["equal"]
+    wins, ties = (_counted(pairs[which], shares[which], n) for which in (decided, ~decided))
+    value = bradley_terry(wins + ties)
+    rng = np.random.default_rng(jury.number)
+    likely = 1.0 / (1.0 + np.exp(value[pairs[:, 1]] - value[pairs[:, 0]]))
+    drawn = (rng.random((_DRAWS, len(pairs))) < likely).astype(float)
+    again = bradley_terry(np.array([_counted(pairs, one, n) for one in drawn]))
+    places = np.column_stack((value, *np.quantile(again, (0.025, 0.975), axis=0)))
+    joined = np.asarray(wins + wins.T + ties) > 0.0
+    compared: list[bool] = np.any(joined, axis=1).tolist()
+    order = sorted(range(n), key=lambda one: (not compared[one], -value[one], names[one]))
+    rows: list[Row] = [
+        {
+            "sound": names[one],
+            **dict.fromkeys(("value", "low_95", "high_95")),
+            **{
+                name: round(float(place), 2) + 0.0
+                for name, place in zip(("value", "low_95", "high_95"), places[one], strict=True)
+                if compared[one]
+            },
+            "chosen": int(wins[one].sum()),
+            "not_chosen": int(wins[:, one].sum()),
+            "no_difference": int(2.0 * ties[one].sum()),
+        }
+        for one in order
+    ]
+    remarks = []
+    groups = connected_components(joined, directed=False)[0] - compared.count(False)
+    if jury.votes and not all(compared):
+        missing = ", ".join(name for name, there in zip(names, compared, strict=True) if not there)
+        remarks.append(f"not compared yet, so not on the scale: {missing}")
+    if groups > 1:
+        remarks.append(
+            f"the votes so far do not join {groups} groups of sounds: go on before you compare "
+            "values of one with those of another"
+        )
+    return rows, remarks
+
+
+def scale_csv(jury: Jury) -> str:
+    """Return the scale of a jury's sounds as a table.
+
+    Examples
+    --------
+    >>> jury = Jury(1, "", "Which?", "one gain", (("=a.wav", "b.wav"),), ("second",))
+    >>> scale_csv(jury).splitlines()[1].split(",")[:6]
+    ['1', '', 'Which?', 'one gain', 'b.wav', '0.76']
+    """
+    about: Row = {
+        "jury": jury.number, "listener": jury.listener, "question": jury.question,
+        "played": jury.played,
+    }  # fmt: skip
+    text = io.StringIO()
+    rows = [about | row for row in scale(jury)[0]]
+    write_csv(text, SCALE_COLUMNS, [[row[column] for column in SCALE_COLUMNS] for row in rows])
+    return text.getvalue()
+
+
+def _counted(pairs: NDArray[np.int64], shares: NDArray[np.float64], n: int) -> NDArray[np.float64]:
+    counts = np.zeros((n, n))
+    np.add.at(counts, (pairs[:, 0], pairs[:, 1]), shares)
+    np.add.at(counts, (pairs[:, 1], pairs[:, 0]), 1.0 - shares)
+    return counts
+
+
+def _place(row: Row) -> tuple[int, int]:
+    return int(str(row["jury"])), int(str(row["order"]))
+
+
+def _rows_of(juries: dict[int, list[Row]], number: int) -> list[Row]:
+    if number not in juries:
+        raise ParameterError(f"there is no jury {number}")
+    return juries[number]
+
+
+def _jury(path: Path, rows: Sequence[Row]) -> Jury:
+    number = _place(rows[0])[0]
+    votes = [str(row["vote"] or "") for row in rows]
+    voted = next((place for place, vote in enumerate(votes) if not vote), len(votes))
+    wrong = next((vote for vote in votes[:voted] if vote not in VOTES), None)
+    if wrong is not None or any(votes[voted:]):
+        what = "a vote after one that is missing" if wrong is None else f"the vote {wrong!r}"
+        raise RecordingError(
+            f"{path}: jury {number} has {what}; votes are {', '.join(VOTES)}, from the first on"
+        )
+    listener, question, played = (str(rows[0][c] or "") for c in ("listener", "question", "played"))
+    pairs = tuple((str(row["first"] or ""), str(row["second"] or "")) for row in rows)
+    if any("" in pair or pair[0] == pair[1] for pair in pairs):
+        raise RecordingError(f"{path}: jury {number} has a row without two different sounds")
+    return Jury(number, listener, question, played, pairs, tuple(votes[:voted]))

@@ -1,1 +1,0 @@
-"""Of the app: sounds compared blind, the votes, and the scale that they tell."""

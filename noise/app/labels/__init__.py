@@ -1,1 +1,0 @@
-"""Of the app: recordings as a list, their labels, corrections."""

@@ -1,0 +1,544 @@
+"""Samples, spectrogram and levels of recordings for the app's views, each recording by its number.
+
+Recordings that are looked at are kept in memory; long ones are read in parts. Samples are played by
+a page that has one gain for all calibrated sounds, so they are given as floating-point numbers, in
+pascals where these are known. The meters are those of the label table.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from threading import Lock
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+from features.kernels.bands import REFERENCES
+from features.kernels.levels import a_weighted, fast_levels, sound_levels
+from models.errors import ParameterError, RecordingError
+from noise.audio.gain import LOUDNESS_BLOCK, loudness
+from noise.audio.sound import playable
+from noise.audio.spectrogram import (
+    HIGHEST,
+    LOWEST,
+    Grid,
+    spectrogram as levels_of,
+    strongest_line,
+)
+from noise.recordings import read_recording
+from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings.wav import wav_bytes
+
+if TYPE_CHECKING:
+    from starlette.requests import Request
+    from starlette.routing import BaseRoute
+
+    from models.recording import Channel
+    from noise.app.opened import Opened
+
+Query = Mapping[str, str]
+Facts = dict[str, object]
+
+
+_KEPT = 6
+"""Recordings in memory: two that are compared, and those beside them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One channel of a recording.
+
+    Parameters
+    ----------
+    channel : Channel
+    calibrated : bool
+    rate : float
+        Sampling rate [Hz].
+    n : int
+        Samples.
+    read : callable
+        From first and last sample to the samples between them, shape (last - first,) [unit of the
+        channel]; from any thread.
+    """
+
+    channel: Channel
+    calibrated: bool
+    rate: float
+    n: int
+    read: Callable[[int, int], NDArray[np.float64]]
+
+    @property
+    def duration(self) -> float:
+        """Of the whole [s]."""
+        return self.n / self.rate
+
+    @property
+    def in_full_scale(self) -> bool:
+        """Whether it is sound whose pressure is not known, in fractions of full scale."""
+        return self.channel.kind == "pressure" and not self.calibrated
+
+    @property
+    def unit(self) -> str:
+        """Of its samples."""
+        return "FS" if self.in_full_scale else self.channel.unit
+
+    @property
+    def reference(self) -> float:
+        """Of its levels [unit of the samples]."""
+        return 1.0 if self.in_full_scale else REFERENCES.get(self.channel.kind, 1.0)
+
+    @property
+    def level_unit(self) -> str:
+        """Of its levels."""
+        if self.in_full_scale:
+            return "dBFS"
+        if self.channel.kind == "pressure":
+            return "dB re 20 µPa"
+        return f"dB re {self.reference:g} {self.unit}"
+
+
+@dataclass
+class _Reading:
+    """A recording that is read once, whoever asks first."""
+
+    path: Path
+    lock: Lock = field(default_factory=Lock)
+    open: ExitStack = field(default_factory=ExitStack)
+    blocks: RecordingBlocks | None = None
+
+    def get(self) -> RecordingBlocks:
+        with self.lock:
+            if self.blocks is None:
+                # It is closed when nobody holds it any more, who may be reading still.
+                long = self.open.enter_context(open_blocks(self.path))
+                self.blocks = long or RecordingBlocks.of(read_recording(self.path))
+            return self.blocks
+
+
+class SoundCache:
+    """The recordings that were opened, of which the last few are kept.
+
+    Parameters
+    ----------
+    opened : Opened
+    """
+
+    def __init__(self, opened: Opened) -> None:
+        self._opened = opened
+        self._lock = Lock()
+        self._kept: OrderedDict[tuple[int, int, int], _Reading] = OrderedDict()
+
+    def blocks(self, index: int) -> RecordingBlocks:
+        """Return a recording, read anew where its file has changed.
+
+        Raises
+        ------
+        ParameterError, RecordingError
+            There is none of this number, or it cannot be read.
+        """
+        return self._reading(index).get()
+
+    def track(self, index: int, name: str = "") -> Track:
+        """Return a channel of a recording; by default the first of sound pressure, or any.
+
+        Raises
+        ------
+        ParameterError, RecordingError
+            There is none, or it cannot be read.
+        """
+        reading = self._reading(index)
+        blocks = reading.get()
+        names = [channel.name for channel in blocks.channels]
+        if name and name not in names:
+            raise ParameterError(f"channel {name!r}: {blocks.name} has {', '.join(names)}")
+        row = names.index(name) if name else blocks.first("pressure") or 0
+
+        def read(first: int, last: int) -> NDArray[np.float64]:
+            with reading.lock:
+                return np.asarray(blocks.read(first, last)[row])
+
+        return Track(blocks.channels[row], blocks.calibrated, blocks.rate, blocks.n_samples, read)
+
+    def _reading(self, index: int) -> _Reading:
+        path = self._opened.job(index).path
+        try:
+            found = path.stat()
+        except OSError as error:
+            raise RecordingError(f"{path.name}: {error.strerror}") from None
+        key = index, found.st_size, found.st_mtime_ns
+        with self._lock:
+            reading = self._kept.setdefault(key, _Reading(path))
+            self._kept.move_to_end(key)
+            while len(self._kept) > _KEPT:
+                self._kept.popitem(last=False)
+        return reading
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Part of a recording.
+
+    Parameters
+    ----------
+    first, last : int
+        Samples.
+    rate : float
+        Sampling rate [Hz].
+    """
+
+    first: int
+    last: int
+    rate: float
+
+    @property
+    def n(self) -> int:
+        """Samples in it."""
+        return self.last - self.first
+
+    @property
+    def start(self) -> float:
+        """Where it begins [s]."""
+        return self.first / self.rate
+
+    @property
+    def end(self) -> float:
+        """Where it ends [s]."""
+        return self.last / self.rate
+
+
+def number(query: Mapping[str, str], key: str, missing: float, low: float, high: float) -> float:
+    """Read a number of a request.
+
+    Parameters
+    ----------
+    query : mapping of str to str
+    key : str
+    missing : float
+        Its value where none is asked for [unit of the key].
+    low, high : float
+        Between which it has to be [unit of the key].
+
+    Raises
+    ------
+    ParameterError
+        It is none, or out of bounds.
+
+    Examples
+    --------
+    >>> number({"low": "50"}, "low", 20.0, 1.0, 100.0), number({}, "low", 20.0, 1.0, 100.0)
+    (50.0, 20.0)
+    """
+    text = query.get(key)
+    if not text:
+        return missing
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not low <= value <= high:
+        raise ParameterError(f"{key} {text[:40]!r}: must be a number from {low:g} to {high:g}")
+    return value
+
+
+def read_stretch(query: Mapping[str, str], track: Track, longest: float = math.inf) -> Stretch:
+    """Read which stretch is asked for, `start` to `end`; by default the whole.
+
+    Parameters
+    ----------
+    query : mapping of str to str
+    track : Track
+    longest : float
+        What is longer is cut there [s].
+
+    Raises
+    ------
+    ParameterError
+        It is none.
+    """
+    start = number(query, "start", 0.0, 0.0, math.inf)
+    end = number(query, "end", track.duration, 0.0, math.inf)
+    first = round(min(start * track.rate, track.n))
+    last = round(min(end * track.rate, track.n, (start + longest) * track.rate))
+    if first >= last:
+        raise ParameterError(
+            f"{start:g} to {end:g} s: must be a stretch of the {track.duration:g} s that there are"
+        )
+    return Stretch(first, last, track.rate)
+
+
+_RATE = 48000
+"""Of samples to play [Hz]."""
+
+_LONGEST_PLAYED = 600.0
+"""Played from one answer [s]."""
+
+_CELL = 0.01
+"""Of levels over time: the largest in each is given [s]."""
+
+_MOST_CELLS = 6000
+"""Of one recording: where it is longer, so is a cell."""
+
+_PIECE, _BEFORE, _AFTER = 60.0, 2.0, 0.2
+"""Weighted at once, and what is read before and after it: a meter has forgotten what was 2 s ago,
+which has fallen by 69 dB [s]."""
+
+_LONGEST_BANDS = 120.0
+"""Of a stretch whose bands are measured [s]."""
+
+
+def wav(track: Track, query: Query) -> bytes:
+    """Return a stretch as a WAV file of floats: pascals, or the channel's own unit."""
+    stretch = read_stretch(query, track, _LONGEST_PLAYED)
+    full_scale = number(query, "full_scale", 1.0, 1e-12, 1e12)
+    sound = playable(track.read(stretch.first, stretch.last), track.rate, _RATE)
+    return wav_bytes(sound / full_scale, _RATE, 32)
+
+
+def level_course(track: Track) -> dict[str, object]:
+    """Return the A-weighted level with the time weighting F, cell by cell."""
+    cell = max(_CELL, track.duration / _MOST_CELLS)
+    count = math.ceil(track.duration / cell)
+    edges = np.minimum(np.rint(np.arange(count + 1) * cell * track.rate).astype(int), track.n)
+    edges = np.unique(np.append(edges, track.n))
+    levels: list[float] = []
+    cells = max(1, round(_PIECE / cell))
+    for at in range(0, edges.size - 1, cells):
+        part = edges[at : at + cells + 1]
+        first = max(0, int(part[0]) - round(_BEFORE * track.rate))
+        last = min(track.n, int(part[-1]) + round(_AFTER * track.rate))
+        weighted = a_weighted(track.read(first, last), track.rate)
+        fast = fast_levels(weighted, track.rate, part - first, reference=track.reference)
+        levels += fast.tolist()
+    return {
+        "cell_s": cell,
+        "unit": _weighted(track),
+        "levels": [_plain(level) for level in levels],
+    }
+
+
+def bands(track: Track, query: Query) -> dict[str, object]:
+    """Return levels and third octaves of a stretch, as the tables have them."""
+    stretch = read_stretch(query, track, _LONGEST_BANDS)
+    signal = track.read(stretch.first, stretch.last)
+    found = sound_levels(signal, track.rate, reference=track.reference)
+    return {
+        "start": stretch.start,
+        "end": stretch.end,
+        "unit": track.level_unit,
+        "level": _plain(found.level),
+        "level_a": _plain(found.level_a),
+        "level_af_max": _plain(found.level_af_max),
+        "third_octaves": {band: _plain(level) for band, level in found.third_octaves.items()},
+    }
+
+
+def equal(track: Track, query: Query) -> dict[str, object]:
+    """Return the loudness of a stretch, and its peak, re one unit of its samples.
+
+    The loudness is None for what is too short or too quiet to have one.
+    """
+    stretch = read_stretch(query, track, _LONGEST_PLAYED)
+    sound = playable(track.read(stretch.first, stretch.last), track.rate, _RATE)
+    peak = float(np.abs(sound).max(initial=0.0))
+    known = None
+    if peak > 0.0 and sound.size >= LOUDNESS_BLOCK * _RATE:
+        # The gate is absolute, so it is put where a sound that just does not clip has it.
+        known = _plain(loudness(sound / peak, _RATE) + 20.0 * math.log10(peak))
+    return {"loudness": known, "peak": peak}
+
+
+def _weighted(track: Track) -> str:
+    return "dBFS(A)" if track.in_full_scale else track.level_unit.replace("dB", "dB(A)", 1)
+
+
+def _plain(level: float) -> float | None:
+    """Return a level as JSON can hold it; None for silence, and for what is not measured."""
+    return round(level, 2) if math.isfinite(level) else None
+
+
+_STEP = 0.5
+"""Of levels in bytes [dB]."""
+
+_ROUND = 5.0
+"""The level of the highest byte is a multiple of it [dB]."""
+
+_WINDOW = (0.01, 0.04)
+"""Shortest and longest frame, where none is asked for [s]."""
+
+_COLUMNS = 8.0
+"""That a frame covers in between [-]."""
+
+_SHORTEST_FRAME, _LONGEST_FRAME = 64, 1 << 15
+"""Of frames [samples]."""
+
+_NEAR = 0.03
+"""How far from the cursor a line is looked for, at least [ratio of frequencies]."""
+
+
+def outline(track: Track, query: Query) -> tuple[Facts, NDArray[np.float32]]:
+    """Return the lowest and the highest sample in each column, shape (2, width)."""
+    stretch = read_stretch(query, track)
+    width = min(stretch.n, int(number(query, "width", 1000, 1, 4000)))
+    edges = np.linspace(stretch.first, stretch.last, width + 1).astype(int)
+    ends = np.empty((2, width), np.float32)
+    columns = max(1, (1 << 22) * width // stretch.n)  # read at once
+    for column in range(0, width, columns):
+        part = edges[column : column + columns + 1]
+        samples = track.read(int(part[0]), int(part[-1]))
+        for row, extreme in enumerate((np.minimum, np.maximum)):
+            ends[row, column : column + columns] = extreme.reduceat(samples, part[:-1] - part[0])
+    facts: Facts = {"start": stretch.start, "end": stretch.end, "unit": track.unit}
+    return facts, ends
+
+
+def spectrogram(track: Track, query: Query) -> tuple[Facts, NDArray[np.uint8]]:
+    """Return levels in steps, the highest frequency first, shape (height, width)."""
+    stretch = read_stretch(query, track)
+    lowest, highest = _frequencies(track, query)
+    width = int(number(query, "width", 1000, 16, 4000))
+    height = int(number(query, "height", 256, 16, 1024))
+    length = _frame(track, query, stretch.n / width)
+    grid = Grid(stretch.first, stretch.last, width, height, lowest, highest, length, padding=2)
+    levels = levels_of(track.read, track.n, track.rate, track.reference, grid)
+    top = _ROUND * math.ceil(float(levels.max()) / _ROUND)
+    floor = top - 255 * _STEP
+    facts: Facts = {
+        "start": stretch.start,
+        "end": stretch.end,
+        "low": lowest,
+        "high": highest,
+        "width": width,
+        "height": height,
+        "floor": floor,
+        "step": _STEP,
+        "unit": track.level_unit,
+        "window_s": length / track.rate,
+    }
+    return facts, np.clip(np.rint((levels - floor) / _STEP), 0, 255).astype(np.uint8)
+
+
+def line(track: Track, query: Query) -> Facts:
+    """Return the strongest line near a moment and a frequency, measured in one frame."""
+    lowest, highest = _frequencies(track, query)
+    time = number(query, "time", 0.0, 0.0, track.duration)
+    frequency = number(query, "frequency", 1000.0, lowest, highest)
+    length = _frame(track, query, number(query, "column", 0.01, 0.0, 1e6) * track.rate)
+    near = max(_NEAR * frequency, 2.0 * track.rate / length)
+    found = strongest_line(
+        track.read,
+        track.n,
+        track.rate,
+        track.reference,
+        middle=round(time * track.rate),
+        length=length,
+        low=frequency - near,
+        high=frequency + near,
+    )
+    if found is None:
+        return {"frequency_hz": None, "level_db": None}
+    return {"frequency_hz": found.frequency, "level_db": found.level}
+
+
+def _frequencies(track: Track, query: Query) -> tuple[float, float]:
+    nyquist = 0.5 * track.rate
+    highest = number(query, "high", min(HIGHEST, nyquist), 0.0, nyquist)
+    lowest = number(query, "low", min(LOWEST, 0.01 * highest), 0.0, nyquist)
+    if not 0.0 < lowest < highest:
+        raise ParameterError(f"low {lowest:g} Hz: must be above zero and below high {highest:g} Hz")
+    return lowest, highest
+
+
+def _frame(track: Track, query: Query, column: float) -> int:
+    """Return the power of two that is nearest to what is asked for [samples]."""
+    shortest, longest = (seconds * track.rate for seconds in _WINDOW)
+    found = min(max(_COLUMNS * column, shortest), longest)
+    wanted = number(query, "window", found / track.rate, 1e-6, 1e3) * track.rate
+    return 1 << round(math.log2(min(max(wanted, _SHORTEST_FRAME), _LONGEST_FRAME)))
+
+
+def routes(opened: Opened) -> list[BaseRoute]:
+    """Return the routes that tell of recordings, each by its number."""
+    sounds = SoundCache(opened)
+
+    def about(request: Request) -> Response:
+        from noise.labels.labelling import labelled_tracks  # which the list comes before
+
+        index = request.path_params["id"]
+        blocks = sounds.blocks(index)
+        tracks = [sounds.track(index, channel.name) for channel in blocks.channels]
+        channels = [
+            {
+                "name": track.channel.name,
+                "kind": track.channel.kind,
+                "unit": track.unit,
+                "level_unit": track.level_unit,
+            }
+            for track in tracks
+        ]
+        heard = sounds.track(index)
+        return JSONResponse(
+            {
+                "id": index,
+                "name": opened.job(index).name,
+                "channels": channels,
+                "tracks": labelled_tracks(opened.job(index).path, len(channels)),
+                "channel": heard.channel.name,
+                "rate": blocks.rate,
+                "duration_s": heard.duration,
+                "calibrated": blocks.calibrated,
+                "conditions": blocks.condition.words,
+            }
+        )
+
+    def of_track(answer: Callable[[Track, Query], Response]) -> Callable[[Request], Response]:
+        def endpoint(request: Request) -> Response:
+            query = request.query_params
+            return answer(sounds.track(request.path_params["id"], query.get("channel", "")), query)
+
+        return endpoint
+
+    def told(answer: Callable[[Track, Query], Facts]) -> Callable[[Request], Response]:
+        return of_track(lambda track, query: JSONResponse(answer(track, query)))
+
+    one_at_a_time = Lock()  # or what is seen of the next recording waits for them all
+
+    def measured(answer: Callable[[Track, Query], Facts]) -> Callable[[Request], Response]:
+        def in_turn(track: Track, query: Query) -> Facts:
+            with one_at_a_time:
+                return answer(track, query)
+
+        return told(in_turn)
+
+    def numbers(
+        answer: Callable[[Track, Query], tuple[Facts, NDArray[np.generic]]],
+    ) -> Callable[[Request], Response]:
+        return of_track(lambda track, query: _framed(*answer(track, query)))
+
+    at = "/api/sounds/{id:int}"
+    return [
+        Route(at, about),
+        Route(f"{at}/audio", of_track(lambda *of: Response(wav(*of), media_type="audio/wav"))),
+        Route(f"{at}/outline", numbers(outline)),
+        Route(f"{at}/spectrogram", numbers(spectrogram)),
+        Route(f"{at}/line", told(line)),
+        Route(f"{at}/levels", measured(lambda track, _: level_course(track))),
+        Route(f"{at}/bands", measured(bands)),
+        Route(f"{at}/loudness", measured(equal)),
+    ]
+
+
+def _framed(facts: Facts, values: NDArray[np.generic]) -> Response:
+    """Return numbers after what they mean: JSON of whole words, whose length stands before it."""
+    head = json.dumps(facts).encode()
+    head += b" " * (-len(head) % 4)
+    content = len(head).to_bytes(4, "little") + head + values.tobytes()
+    return Response(content, media_type="application/octet-stream")

@@ -1,1 +1,0 @@
-"""Of the app: samples, spectrogram and levels of a recording."""

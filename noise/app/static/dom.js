@@ -1,0 +1,24 @@
+// Nodes of a page, and work that waits until a view is shown.
+
+export function made(tag, properties = {}, ...children) {
+  const { data, ...rest } = properties;
+  const node = Object.assign(document.createElement(tag), rest);
+  Object.assign(node.dataset, data);
+  node.append(...children);
+  return node;
+}
+
+export function drawn(tag, attributes = {}, text = "") {
+  const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  if (text) node.textContent = text;
+  return node;
+}
+
+export const stylesheet = (address) => document.head.append(made("link", { rel: "stylesheet", href: address.href }));
+
+// Act where a node is in the page, else once it is: of a view that is not shown nothing is asked for.
+export function onceShown(node, act) {
+  if (node.isConnected) act();
+  else document.addEventListener("view-shown", () => onceShown(node, act), { once: true });
+}

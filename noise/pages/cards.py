@@ -1,0 +1,529 @@
+"""Cards of a page: spectrogram, labels and level over time, order map, and what is known, in words.
+
+Time runs across the whole width of a picture and nothing else does, so that a cursor over it needs
+no more than the fraction of the clip that has been played; the page draws the axes. Frequency is
+logarithmic, as the ear hears it. Colours are levels, the same for all pictures of a page, dark on
+light: that is read on a projector and costs no toner.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.drawing import thinned
+from models.recording import REFERENCE_PRESSURE
+from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
+from noise.labels.label_display import ASSUMED, assumes_material
+from noise.pages.clips import RATE
+from noise.pictures.recorded import level_over_time
+
+if TYPE_CHECKING:
+    from features.kernels.orders import OrderMap
+    from noise.pages.clips import Clip, Entry, FastLevels, Row
+
+Ticks = tuple[tuple[float, str], ...]
+
+
+def round_ticks(low: float, high: float, most: int) -> list[float]:
+    """Return multiples of 1, 2 or 5 times a power of ten, about `most` of them from low to high.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the axis, in its unit, such as [Hz].
+    most : int
+        How many steps the axis is divided into at most.
+
+    Examples
+    --------
+    >>> round_ticks(0.0, 7.9, 6), round_ticks(0.31, 0.36, 5)
+    ([0.0, 2.0, 4.0, 6.0], [0.31, 0.32, 0.33, 0.34, 0.35, 0.36])
+    """
+    least = (high - low) / most
+    decade = 10.0 ** math.floor(math.log10(least))
+    step = next(step * decade for step in (1, 2, 5, 10) if least <= step * decade * (1 + 1e-9))
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    # Rounded, because 3 times 0.1 is not 0.3.
+    return [float(f"{step * n:.12g}") for n in range(first, last + 1)]
+
+
+RANGE = 70.0
+"""From the darkest colour to white [dB]."""
+
+TICKS = {100: "100", 200: "200", 500: "500", 1000: "1k", 2000: "2k", 5000: "5k", 10000: "10k"}
+
+_COLOURS = 16
+
+
+def top(levels: Sequence[NDArray[np.float64]]) -> float:
+    """Return the level of the darkest colour: the highest of all, rounded up to 5 dB.
+
+    Parameters
+    ----------
+    levels : sequence of ndarray, shape (n_rows, n_columns)
+        Of `noise.audio.spectrogram.spectrogram` [dB].
+
+    Returns
+    -------
+    float
+        [dB]
+    """
+    highest = max((float(one.max()) for one in levels), default=0.0)
+    return 5.0 * math.ceil(highest / 5.0)
+
+
+def picture(levels: NDArray[np.float64], highest: float) -> bytes:
+    """Return levels as a PNG file, `highest` the darkest and `RANGE` below it white.
+
+    Parameters
+    ----------
+    levels : ndarray, shape (n_rows, n_columns)
+        Of `noise.audio.spectrogram.spectrogram` [dB].
+    highest : float
+        [dB]
+    """
+    share = np.clip((levels - highest + RANGE) / RANGE, 0.0, 1.0)
+    return _png(np.round(share * (_COLOURS - 1)).astype(np.uint8))
+
+
+def scale_picture() -> bytes:
+    """Return the colours from the lowest level to the highest, one pixel each, as a PNG file."""
+    return _png(np.arange(_COLOURS, dtype=np.uint8)[np.newaxis])
+
+
+def _png(steps: NDArray[np.uint8]) -> bytes:
+    """Write a PNG file of four bits a pixel."""
+    from matplotlib import colormaps
+    from PIL import Image
+
+    colours = (255 * colormaps["magma_r"](np.linspace(0.0, 1.0, _COLOURS))[:, :3]).astype(np.uint8)
+    colours[0] = 255
+    image = Image.fromarray(steps).convert("P")
+    image.putpalette(colours.tobytes())
+    png = io.BytesIO()
+    image.save(png, "PNG", bits=4, optimize=True)
+    return png.getvalue()
+
+
+LEVELS = 60.0
+"""From the highest level of a page's curves down [dB]."""
+
+_STEP = 20.0
+"""Between ticks [dB]."""
+
+_MARGIN = 5.0
+"""Of ticks from the ends of the axis [dB]."""
+
+_AT_END = 0.6
+"""Where the words begin, as a share of the time [-]."""
+
+_COLUMNS, _WIDTH, _HEIGHT = 120, 600, 100
+
+
+class LevelDisplay(NamedTuple):
+    """Level over time: its line in a box of 600 by 100, ticks in per cent from below, and words.
+
+    The largest level is told where the line leaves room at its end: `above` it or below.
+    """
+
+    line: str
+    ticks: Ticks
+    most: str
+    above: bool
+
+
+@dataclass(frozen=True)
+class OrdersDisplay:
+    """An order map.
+
+    Parameters
+    ----------
+    picture : bytes
+        A PNG file, the highest order at the top.
+    speeds, orders : tuple of (float, str)
+        Ticks in % from the left, and from below.
+    words : str
+        What it shows.
+    """
+
+    picture: bytes
+    speeds: Ticks
+    orders: Ticks
+    words: str
+
+
+def level_displays(
+    clips: Mapping[str, Clip],
+    rate: float,
+    reference: float,
+    unit: str,
+    measured: Mapping[str, FastLevels] | None = None,
+) -> dict[str, LevelDisplay]:
+    """Draw the levels of sounds that share an axis.
+
+    Parameters
+    ----------
+    clips : mapping of str to Clip
+        By id.
+    rate : float
+        Sampling rate [Hz].
+    reference : float
+        Of the levels, in the unit of the samples, such as [Pa].
+    unit : str
+        Of the levels.
+    measured : mapping of str to FastLevels, optional
+        Of the recordings that clips were cut from; without it a clip's own are drawn.
+
+    Returns
+    -------
+    dict of str to LevelDisplay
+        Of those in which something is heard.
+
+    Examples
+    --------
+    >>> level_displays({}, 48e3, 2e-5, "dB(A)")
+    {}
+    """
+    curves = {}
+    for key, clip in clips.items():
+        if measured is not None and key in measured:
+            time, level = measured[key]
+            inside = (time >= clip.start) & (time <= clip.end)
+            time, level = thinned(time[inside] - clip.start, level[inside], columns=_COLUMNS)
+        else:
+            time, level = level_over_time(clip.samples, rate, reference, columns=_COLUMNS)
+        if level.size:
+            curves[key] = time * rate / clip.samples.size, level
+    highest = max((float(level.max()) for _, level in curves.values()), default=0.0)
+    top = 5.0 * math.ceil(highest / 5.0)
+    first = _STEP * math.floor((top - _MARGIN) / _STEP)
+    ticks = tuple(
+        (round(100.0 * (1.0 - (top - tick) / LEVELS), 1), _level_words(tick))
+        for tick in np.arange(first, top - LEVELS + _MARGIN, -_STEP)
+    )
+    return {
+        key: LevelDisplay(
+            _line(share, (top - level) / LEVELS),
+            ticks,
+            f"{_level_words(level.max(), 1)} {unit}",
+            bool(level[share > _AT_END].min(initial=top) < top - 0.5 * LEVELS),
+        )
+        for key, (share, level) in curves.items()
+    }
+
+
+def orders_display(orders: OrderMap, highest: float) -> OrdersDisplay:
+    """Draw an order map in the colours of spectrograms whose darkest is `highest` [dB].
+
+    Examples
+    --------
+    >>> from features.kernels.orders import order_map
+    >>> speed = np.linspace(1.0, 11.0, 48000)
+    >>> shown = orders_display(order_map(np.sin(2000 * np.cumsum(speed) / 24e3), 24e3, speed), 90.0)
+    >>> [words for _, words in shown.speeds], [words for _, words in shown.orders]
+    (['2', '4', '6', '8', '10'], ['100', '1k', '10k'])
+    """
+    low, high = float(orders.speed_edges[0]), float(orders.speed_edges[-1])
+    least, most = float(orders.order_edges[0]), float(orders.order_edges[-1])
+    decades = range(math.ceil(math.log10(least)), math.floor(math.log10(most)) + 1)
+    level = np.where(np.isfinite(orders.level), orders.level, -np.inf)[::-1]
+    return OrdersDisplay(
+        picture(np.ascontiguousarray(level), highest),
+        tuple(
+            (round(100.0 * (tick - low) / (high - low), 2), f"{tick:.6g}")
+            for tick in round_ticks(low, high, 6)
+            if low <= tick <= high
+        ),
+        tuple(
+            (
+                round(100.0 * math.log(10.0**decade / least) / math.log(most / least), 2),
+                f"{10**decade}" if decade < 3 else f"{10 ** (decade - 3)}k",
+            )
+            for decade in decades
+        ),
+        f"Order map, {low:.3g} to {high:.3g} rad/s, {least:.2g} to {most:.2g} cycles a revolution",
+    )
+
+
+def _line(across: np.ndarray, down: np.ndarray) -> str:
+    x, y = _WIDTH * across, _HEIGHT * np.clip(down, 0.0, 1.0)
+    return " ".join(f"{a:.0f},{b:.1f}" for a, b in zip(x, y, strict=True))
+
+
+def _level_words(value: float, digits: int = 0) -> str:
+    return f"{value:.{digits}f}".replace("-", "\N{MINUS SIGN}")
+
+
+_MOST_TICKS = 6
+
+
+class Fact(NamedTuple):
+    """What is known of a condition or of a noise: a number in words, and its unit."""
+
+    text: str
+    unit: str = ""
+
+    @property
+    def words(self) -> str:
+        """Number and unit, as they stand in a line of facts."""
+        return "clamp fixed" if self.text == "fixed" else f"{self.text} {self.unit}".strip()
+
+
+class Band(NamedTuple):
+    """A labelled stretch on a card: where, in per cent of the clip, and what."""
+
+    left: float
+    width: float
+    label: str
+    words: str
+
+
+@dataclass(frozen=True)
+class EntryDisplay:
+    """What a page shows of an entry.
+
+    Parameters
+    ----------
+    id : str
+    title : str
+    labels : tuple of str
+        All in it, the longest first.
+    facts : dict of str to Fact
+        Those known of ``speed``, ``interference``, ``stiffness``, ``material``, ``temperature``,
+        ``frequency`` and ``level``.
+    note : str
+    picture : bytes
+        Spectrogram, a PNG file; empty where there is nothing to be heard.
+    duration : float
+        Of the clip [s].
+    tracks : tuple of (str, tuple of Band)
+        Labels in time, by the track that they belong to.
+    ticks : tuple of (float, str)
+        Of the time axis: share of the clip [%], and seconds of the recording.
+    alt : str
+        What the spectrogram shows.
+    level : LevelDisplay, optional
+        A-weighted, Fast, over the time of the clip.
+    orders : OrdersDisplay, optional
+    """
+
+    id: str
+    title: str
+    labels: tuple[str, ...]
+    facts: dict[str, Fact]
+    note: str
+    picture: bytes
+    duration: float
+    tracks: tuple[tuple[str, tuple[Band, ...]], ...]
+    ticks: tuple[tuple[float, str], ...]
+    alt: str
+    level: LevelDisplay | None = None
+    orders: OrdersDisplay | None = None
+
+
+def draw_entries(
+    entries: Mapping[str, Entry], clips: Mapping[str, Clip]
+) -> tuple[dict[str, EntryDisplay], list[str]]:
+    """Lay entries out; calibrated spectrograms share their colours, and so do the others.
+
+    Parameters
+    ----------
+    entries : mapping of str to Entry
+        By id.
+    clips : mapping of str to Clip
+        Of those that can be heard.
+
+    Returns
+    -------
+    displays : dict of str to EntryDisplay
+    scale_words : list of str
+        What the colours are worth.
+
+    Examples
+    --------
+    >>> from noise.pages.clips import Entry
+    >>> displays, scale_words = draw_entries({"s1": Entry("run07")}, {})
+    >>> displays["s1"].title, scale_words
+    ('run07', [])
+    """
+    pictures: dict[str, bytes] = {}
+    over_time: dict[str, LevelDisplay] = {}
+    orders: dict[str, OrdersDisplay] = {}
+    scale_words = []
+    for calibrated, reference, unit in ((True, REFERENCE_PRESSURE, "dB re 20 µPa"),
+                                        (False, 1.0, "dBFS")):  # fmt: skip
+        of_it = {key: clip for key, clip in clips.items() if entries[key].calibrated == calibrated}
+        levels = {key: _levels(clip, reference) for key, clip in of_it.items()}
+        unit_a = "dB(A)" if calibrated else "dBFS(A)"
+        measured = {key: known for key in of_it if (known := entries[key].fast_levels) is not None}
+        over_time |= level_displays(of_it, RATE, reference, unit_a, measured)
+        if levels:
+            highest = top(list(levels.values()))
+            pictures |= {key: picture(one, highest) for key, one in levels.items()}
+            orders |= {
+                key: orders_display(found, highest)
+                for key in levels
+                if (found := entries[key].orders) is not None
+            }
+            words = f"{highest - RANGE:.0f} to {highest:.0f} {unit}"
+            scale_words.append(words.replace("-", "\N{MINUS SIGN}"))
+    displays = {
+        key: replace(
+            entry_display(key, entry, clips.get(key), pictures.get(key, b"")),
+            level=over_time.get(key),
+            orders=orders.get(key),
+        )
+        for key, entry in entries.items()
+    }
+    return displays, scale_words
+
+
+def _levels(clip: Clip, reference: float) -> NDArray[np.float64]:
+    def read(first: int, last: int) -> NDArray[np.float32]:
+        return clip.samples[first:last]
+
+    return spectrogram(read, clip.samples.size, RATE, reference)
+
+
+def frequency_ticks() -> tuple[tuple[float, str], ...]:
+    """Where the spectrograms' frequencies stand, in per cent from the bottom.
+
+    Examples
+    --------
+    >>> frequency_ticks()[0]
+    (11.57, '100')
+    """
+    span = math.log(HIGHEST / LOWEST)
+    return tuple(
+        (round(100.0 * math.log(hertz / LOWEST) / span, 2), words) for hertz, words in TICKS.items()
+    )
+
+
+def entry_display(key: str, entry: Entry, clip: Clip | None, picture: bytes) -> EntryDisplay:
+    """Lay an entry out.
+
+    Examples
+    --------
+    >>> from noise.pages.clips import Entry
+    >>> entry_display("s1", Entry("run07", note="no sound"), None, b"").note
+    'no sound'
+    """
+    start = 0.0 if clip is None else clip.start
+    end = entry.duration if clip is None else clip.end
+    note = entry.note
+    if clip is not None and end - start < entry.duration - 0.02:
+        heard = (
+            f"{_seconds(end - start)} s from {_seconds(start)} s of {_seconds(entry.duration)} s"
+        )
+        note = f"{heard}; {note}" if note else heard
+    ticks = round_ticks(start, end, _MOST_TICKS) if clip is not None and end > start else []
+    return EntryDisplay(
+        id=key,
+        title=entry.title,
+        labels=entry.labels,
+        facts=facts_of(entry),
+        note=note,
+        picture=picture,
+        duration=end - start,
+        tracks=_tracks(entry, start, end) if end > start else (),
+        ticks=tuple((_per_cent(tick, start, end), f"{tick:.6g}") for tick in ticks),
+        alt=_alt(entry, start, end),
+    )
+
+
+def facts_of(entry: Entry) -> dict[str, Fact]:
+    """Return what is known of an entry, the label table before the recording.
+
+    Examples
+    --------
+    >>> from models.condition import FIXED, Condition
+    >>> from noise.pages.clips import Entry
+    >>> facts = facts_of(Entry("run07", condition=Condition(5.0, 0.279e-3, FIXED)))
+    >>> [fact.words for fact in facts.values()]
+    ['5 rad/s', '0.279 mm', 'clamp fixed']
+    """
+    row, condition = entry.row or {}, entry.condition
+    fit, temperature = condition.interference, condition.temperature
+    hertz = row.get("frequency_hz")
+    material = str(row.get("material") or condition.material or "")
+    if not material and assumes_material(row):
+        material = ASSUMED
+    facts = {
+        "speed": _condition_fact(row, "speed_rad_s", condition.speed, "rad/s"),
+        "interference": _condition_fact(
+            row, "interference_mm", None if fit is None else 1e3 * fit, "mm"
+        ),
+        "stiffness": _condition_fact(
+            row, "support_stiffness_Nm_rad", condition.support_stiffness, "Nm/rad"
+        ),
+        "material": Fact(material) if material else None,
+        "temperature": None if temperature is None else _number(temperature, ".3g", "°C"),
+        "frequency": _number(hertz, ".0f" if _at_least(hertz, 100.0) else ".1f", "Hz"),
+        "level": _number(row.get("level_dba"), ".1f", "dB(A)")
+        or _number(row.get("level_db"), ".1f", "dB")
+        or _number(row.get("level_dbfs"), ".1f", "dBFS"),
+    }
+    return {name: fact for name, fact in facts.items() if fact is not None}
+
+
+def _condition_fact(row: Row, column: str, logged: float | None, unit: str) -> Fact | None:
+    low, high = row.get(f"{column}_low"), row.get(f"{column}_high")
+    source = row.get(f"{column}_source")
+    if source in ("inferred", "varied") and isinstance(low, float) and isinstance(high, float):
+        digits = ".2g" if source == "inferred" else ".3g"
+        words = f"{_plain(low, digits)} to {_plain(high, digits)}"
+        return Fact(words, f"{unit} (inferred)" if source == "inferred" else unit)
+    value = row.get(column)
+    return _number(value if isinstance(value, int | float) else logged, ".5g", unit)
+
+
+def _number(value: object, form: str, unit: str) -> Fact | None:
+    if not isinstance(value, int | float):
+        return None
+    return Fact("fixed") if math.isinf(value) else Fact(_plain(value, form), unit)
+
+
+def _plain(value: float, form: str) -> str:
+    words = "fixed" if math.isinf(value) else f"{value:{form}}"
+    if "e+" in words:  # 3400 rather than 3.4e+03
+        words = f"{float(words):.0f}"
+    return words.replace("-", "\N{MINUS SIGN}")
+
+
+def _at_least(value: object, least: float) -> bool:
+    return isinstance(value, int | float) and value >= least
+
+
+def _tracks(entry: Entry, start: float, end: float) -> tuple[tuple[str, tuple[Band, ...]], ...]:
+    tracks: dict[str, list[Band]] = {}
+    for part in entry.parts:
+        low, high = max(part.start, start), min(part.end, end)
+        if high <= low:
+            continue
+        words = f"{part.label}, {_seconds(part.start)} to {_seconds(part.end)} s"
+        width = round(100.0 * (high - low) / (end - start), 3)
+        band = Band(_per_cent(low, start, end, 3), width, part.label, words)
+        tracks.setdefault(part.track, []).append(band)
+    return tuple((track, tuple(bands)) for track, bands in tracks.items())
+
+
+def _per_cent(value: float, start: float, end: float, digits: int = 2) -> float:
+    return round(100.0 * (value - start) / (end - start), digits)
+
+
+def _alt(entry: Entry, start: float, end: float) -> str:
+    parts = [f"{p.label} from {_seconds(p.start)} to {_seconds(p.end)} s" for p in entry.parts]
+    labels = f": {'; '.join(parts[:6])}" if parts else ""
+    more = " and more" if len(parts) > 6 else ""
+    return f"Spectrogram of {entry.title}, {_seconds(start)} to {_seconds(end)} s{labels}{more}"
+
+
+def _seconds(value: float) -> str:
+    return f"{value:.2f}".rstrip("0").rstrip(".")

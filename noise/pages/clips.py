@@ -1,0 +1,465 @@
+"""Sounds of a page: entries, one gain, FLAC, and no longer than the budget allows.
+
+A page is for the ear, so a long recording is represented by the stretch that shows why it has its
+name, not by its beginning. Sixteen bits hold a set whose loudest sound is 60 dB above its quietest
+with 36 dB to spare, and FLAC gives them back bit by bit in about half the space, in every browser
+of today. All calibrated sounds have one full scale, so that what is louder there is louder here;
+those that nobody calibrated have another one, common to them. Where the budget is too small, every
+sound is shortened to the same length, and the page says so. Equal loudness is one factor a sound,
+switched on by the listener who compares characters.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import soundfile
+from numpy.typing import NDArray
+
+from models.condition import Condition
+from models.errors import ParameterError
+from models.recording import REFERENCE_PRESSURE
+from noise.audio.gain import (
+    LOUDNESS_BLOCK,
+    TARGET_LOUDNESS,
+    full_scale_without_clipping,
+    loudness,
+    true_peak,
+)
+from noise.audio.sound import FADE
+from noise.base.label_names import LABELS
+from noise.base.progress import counted
+from noise.labels.label_display import labels_in, naming_row
+from noise.recordings.wav import integers, largest_sample
+
+if TYPE_CHECKING:
+    from features.kernels.orders import OrderMap
+
+Row = Mapping[str, object]
+FastLevels = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+RATE = 48000
+"""Of the sounds on a page [Hz]."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A labelled stretch; `start` and `end` in s of the recording, `track` where there are many."""
+
+    start: float
+    end: float
+    label: str
+    track: str
+
+
+@dataclass(frozen=True, eq=False)
+class Entry:
+    """Something to be heard, or at least to be named.
+
+    Parameters
+    ----------
+    title : str
+    rows : tuple of mapping
+        Of the label table; none where it is not labelled.
+    condition : Condition
+        As the recording says.
+    duration : float
+        Of the whole recording [s].
+    sound : ndarray of float32, shape (n,), optional
+        Sound pressure at `RATE` [Pa], or in fractions of full scale where not `calibrated`; of
+        the whole recording or of a stretch of it.
+    offset : float
+        Where that stretch begins [s].
+    calibrated : bool
+    orders : OrderMap, optional
+        Of a sound whose shaft's speed was recorded and changes.
+    fast_levels : tuple of 2 ndarrays, shape (n,), optional
+        Time [s] and A-weighted level, Fast [dB], where they were measured before the sound was
+        faded and resampled, as by `noise.pictures.recorded.recorded_levels`.
+    note : str
+        Where the labels come from, or why there is no sound.
+    data : mapping of str to str
+        Names under which a program finds the sound on the page again.
+    """
+
+    title: str
+    rows: tuple[Row, ...] = ()
+    condition: Condition = field(default_factory=Condition)
+    duration: float = 0.0
+    sound: NDArray[np.float32] | None = None
+    offset: float = 0.0
+    calibrated: bool = True
+    note: str = ""
+    orders: OrderMap | None = None
+    fast_levels: FastLevels | None = None
+    data: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Labels in time."""
+        return tuple(
+            Part(
+                _number(row.get("start_s"), 0.0),
+                min(_number(row.get("end_s"), self.duration), self.duration),
+                str(row["label"]),
+                "" if row.get("channel") in ("all", None) else str(row["channel"]),
+            )
+            for row in self.rows
+            if row["label"] is not None
+        )
+
+    @property
+    def row(self) -> Row | None:
+        """The row that names the whole."""
+        return naming_row(self.rows)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """All labels in it, the longest first."""
+        return labels_in(self.rows)
+
+
+def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
+    """Where a stretch of `length` begins that shows what a recording is named for [s].
+
+    Examples
+    --------
+    >>> rows = [{"label": "squeal", "start_s": 40.0, "end_s": 42.0}]
+    >>> stretch_start(rows, 60.0, 10.0), stretch_start([], 60.0, 10.0)
+    (36.0, 0.0)
+    """
+    row = naming_row(rows)
+    if row is None or length >= duration:
+        return 0.0
+    start, end = _number(row.get("start_s"), 0.0), _number(row.get("end_s"), duration)
+    wanted = start if end - start >= length else 0.5 * (start + end - length)
+    return float(min(max(wanted, 0.0), duration - length))
+
+
+def label_counts(entries: Iterable[Entry]) -> list[tuple[str, int]]:
+    """Count entries that have a label in them, by label; those without one last, as "".
+
+    Examples
+    --------
+    >>> label_counts([Entry("a"), Entry("b", ({"label": "creak"}, {"label": "none"}))])
+    [('creak', 1), ('none', 1), ('', 1)]
+    """
+    counts = Counter(label for entry in entries for label in entry.labels or ("",))
+    return [(label, counts[label]) for label in (*LABELS, "") if counts[label]]
+
+
+def labels_sentence(entries: Sequence[Entry]) -> str:
+    """Say how many entries have which label in them.
+
+    Examples
+    --------
+    >>> labels_sentence([Entry("a"), Entry("b", ({"label": "creak"},))])
+    '2 recordings: 1 creak, 1 without a label'
+    """
+    words = [f"{number} {label or 'without a label'}" for label, number in label_counts(entries)]
+    return f"{counted(len(entries), 'recording')}: {', '.join(words)}"
+
+
+def _number(value: object, missing: float) -> float:
+    return float(value) if isinstance(value, int | float) else missing
+
+
+SHORTEST = 1.0
+"""No sound is made shorter than this for the sake of the budget [s]."""
+
+BYTES_A_SECOND = 120_000.0
+"""What a second of loud noise takes up on the page at most."""
+
+_ROUNDED_UP, _STEP = 1.05, 100_000.0
+"""What is said to be needed: so much more, in whole steps of so many bytes."""
+
+_BITS = 16
+_BASE64 = 4.0 / 3.0
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What full scale is worth.
+
+    Parameters
+    ----------
+    calibrated : float or None
+        Of calibrated sounds [Pa]; None where there are none.
+    uncalibrated : float or None
+        Of the others, in fractions of their own full scale.
+    stated : bool
+        Whether the caller has set the calibrated one.
+    """
+
+    calibrated: float | None
+    uncalibrated: float | None
+    stated: bool = False
+
+    def of(self, entry: Entry) -> float:
+        """Full scale of an entry's sound, in its unit, such as [Pa]."""
+        return (self.calibrated if entry.calibrated else self.uncalibrated) or 1.0
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What a listener has to know before comparing.
+
+        Examples
+        --------
+        >>> Gain(2.0, None).sentences[0]
+        'Calibrated sounds share one gain and may be compared: full scale = 2 Pa (100 dB peak re 20
+        µPa).'
+        """
+        told = []
+        if self.calibrated is not None:
+            how = "are level-true" if self.stated else "share one gain and may be compared"
+            told.append(f"Calibrated sounds {how}: {full_scale_words(self.calibrated)}.")
+        if self.uncalibrated is not None:
+            decibel = f"{-20.0 * math.log10(self.uncalibrated):+.1f}".replace("-", "\N{MINUS SIGN}")
+            told.append(
+                "Sounds marked dBFS are not calibrated: how loud they were is not known; they "
+                f"share a gain of {decibel} dB among themselves."
+            )
+        return tuple(told)
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A sound as it stands on the page.
+
+    Parameters
+    ----------
+    flac : bytes
+    samples : ndarray of float32, shape (n,)
+        What is in it, in the unit of the entry, such as [Pa].
+    start, end : float
+        Which stretch of the recording it is [s].
+    full_scale : float
+        What full scale of it is worth, in the unit of the entry, such as [Pa].
+    """
+
+    flac: bytes
+    samples: NDArray[np.float32]
+    start: float
+    end: float
+    full_scale: float
+
+
+def full_scale_words(full_scale: float) -> str:
+    """Say what full scale is worth [Pa].
+
+    Examples
+    --------
+    >>> full_scale_words(2.0)
+    'full scale = 2 Pa (100 dB peak re 20 µPa)'
+    """
+    level = 20.0 * math.log10(full_scale / REFERENCE_PRESSURE)
+    return f"full scale = {full_scale:.4g} Pa ({level:.0f} dB peak re 20 µPa)"
+
+
+def common_gain(entries: Iterable[Entry], pascal: float | None = None) -> Gain:
+    """Choose the gain of a set.
+
+    Parameters
+    ----------
+    entries : iterable of Entry
+    pascal : float, optional
+        Full scale of calibrated sounds [Pa]; by default what the loudest of them needs.
+
+    Raises
+    ------
+    ParameterError
+        A sound would clip at the full scale given.
+    """
+    peaks: dict[bool, list[tuple[float, str]]] = {True: [], False: []}  # titles may be alike
+    for entry, largest in _that_may_be_loudest(list(entries)):
+        peak = true_peak(largest.astype(np.float64), RATE)
+        peaks[entry.calibrated].append((peak, entry.title))
+    least = {
+        calibrated: full_scale_without_clipping(max(of)[0]) or 1.0 if of else None
+        for calibrated, of in peaks.items()
+    }
+    if pascal is None:
+        return Gain(least[True], least[False])
+    if (needed := least[True]) is not None and pascal < needed:
+        raise ParameterError(
+            f"{max(peaks[True])[1]}: would clip at {pascal:g} Pa per full scale; "
+            f"{needed:g} Pa is the least that holds all sounds"
+        )
+    return Gain(pascal if peaks[True] else None, least[False], stated=True)
+
+
+def make_clips(
+    entries: Mapping[str, Entry],
+    gain: Gain,
+    *,
+    budget: float = math.inf,
+    beside: float = 0.0,
+    dither: np.random.Generator | None = None,
+) -> tuple[dict[str, Clip], float | None]:
+    """Encode sounds, shortened where they would exceed a budget.
+
+    Parameters
+    ----------
+    entries : mapping of str to Entry
+        By id.
+    gain : Gain
+    budget : float
+        What the page may take up [byte].
+    beside : float
+        What of it is no sound [byte].
+    dither : numpy.random.Generator, optional
+        By default there is no dither, and silence stays digital zero.
+
+    Returns
+    -------
+    clips : dict of str to Clip
+        Of the entries that have a sound.
+    shortened : float or None
+        To how many seconds the longer ones are cut [s]; None where none is cut.
+
+    Raises
+    ------
+    ParameterError
+        Not even `SHORTEST` seconds of each would fit.
+
+    Examples
+    --------
+    >>> from noise.pages.clips import Entry
+    >>> silence = Entry("silence", duration=1.0, sound=np.zeros(RATE, np.float32))
+    >>> clips, shortened = make_clips({"s1": silence}, Gain(1.0, None))
+    >>> clips["s1"].end, shortened
+    (1.0, None)
+    """
+    seeds = [None if dither is None else int(dither.integers(1 << 62)) for _ in entries]
+
+    def cut_to(longest: float) -> dict[str, Clip]:
+        return {
+            key: _clip(entry, entry.sound, longest, gain, seed)
+            for (key, entry), seed in zip(entries.items(), seeds, strict=True)
+            if entry.sound is not None
+        }
+
+    room = budget - beside
+    clips = cut_to(math.inf)
+    if not clips or _weight(clips) <= room:
+        return clips, None
+    length = _length_that_fits(list(clips.values()), room) if room > 0.0 else 0.0
+    if length < SHORTEST:
+        least = math.ceil(_ROUNDED_UP * (beside + _weight(cut_to(SHORTEST))) / _STEP) * _STEP
+        raise ParameterError(
+            f"{len(clips)} sounds of {SHORTEST:g} s each do not fit into {budget / 1e6:.3g} MB; "
+            f"they need about {least / 1e6:.3g} MB; allow more, or name fewer"
+        )
+    while True:
+        clips = cut_to(length)
+        if _weight(clips) <= room or length <= SHORTEST:
+            return clips, length
+        length = max(SHORTEST, 0.9 * length)  # the loud parts were kept
+
+
+def _that_may_be_loudest(
+    entries: Sequence[Entry],
+) -> Iterator[tuple[Entry, NDArray[np.float32]]]:
+    """Sounds with samples within 12 dB of the largest: no peak between samples is as far above."""
+    for calibrated in (True, False):
+        heard = [
+            (entry, entry.sound, float(np.abs(entry.sound).max(initial=0.0)))
+            for entry in entries
+            if entry.sound is not None and entry.calibrated == calibrated
+        ]
+        most = max((largest for _, _, largest in heard), default=0.0)
+        yield from ((entry, sound) for entry, sound, largest in heard if largest >= 0.25 * most)
+
+
+def _clip(
+    entry: Entry, samples: NDArray[np.float32], longest: float, gain: Gain, seed: int | None
+) -> Clip:
+    whole, offset = samples.size / RATE, entry.offset
+    if whole > longest:
+        first = stretch_start(entry.rows, entry.duration, longest) - offset
+        first = min(max(first, 0.0), whole - longest)
+        begin = round(first * RATE)
+        samples = samples[begin : begin + round(longest * RATE)].copy()
+        offset += begin / RATE
+        n = round(FADE * RATE)
+        flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / n) ** 2
+        samples[:n] *= flank
+        samples[samples.size - n :] *= flank[::-1]
+    full_scale = gain.of(entry)
+    largest = largest_sample(_BITS)  # a sample beyond would wrap round
+    fractions = np.clip((samples / full_scale).astype(np.float64), -largest, largest)
+    dither = None if seed is None else np.random.default_rng(seed)
+    steps = np.frombuffer(integers(fractions, _BITS, dither), "<i2")
+    flac = io.BytesIO()
+    soundfile.write(flac, steps, RATE, format="FLAC", subtype="PCM_16")
+    return Clip(flac.getvalue(), samples, offset, offset + samples.size / RATE, full_scale)
+
+
+def _weight(clips: Mapping[str, Clip]) -> float:
+    return sum(_BASE64 * len(clip.flac) for clip in clips.values())
+
+
+def _length_that_fits(clips: Sequence[Clip], budget: float) -> float:
+    """Return the length to which cutting all longer ones brings them below the budget."""
+    rates = [_BASE64 * len(clip.flac) / (clip.end - clip.start) for clip in clips]
+    lengths = [clip.end - clip.start for clip in clips]
+    low, high = 0.0, max(lengths)
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        total = sum(r * min(d, middle) for r, d in zip(rates, lengths, strict=True))
+        low, high = (middle, high) if total <= budget else (low, middle)
+    return low
+
+
+MOST_RAISED = 36.0
+"""A sound that would have to be raised by more is left as it is [dB]."""
+
+_CEILING = -3.0
+"""Largest sample [dB re full scale]: peaks between two samples are seldom 3 dB higher."""
+
+
+def equal_factors(sounds: Mapping[str, NDArray[np.float64]]) -> tuple[dict[str, float], float]:
+    """Return by what each sound is multiplied to be as loud as the others.
+
+    Parameters
+    ----------
+    sounds : mapping of str to ndarray, shape (n_samples,)
+        In fractions of full scale [-], at the rate of the page.
+
+    Returns
+    -------
+    factors : dict of str to float
+        For those that have a loudness and can be raised to that of the others [-].
+    target : float
+        The loudness that they then have [LUFS].
+
+    Examples
+    --------
+    >>> tone = np.sin(2 * np.pi * 997 * np.arange(RATE) / RATE)
+    >>> factors, target = equal_factors({"loud": 0.5 * tone, "soft": 0.05 * tone})
+    >>> round(factors["soft"] / factors["loud"], 3), target
+    (10.0, -23.0)
+    """
+    known = {}
+    for name, fractions in sounds.items():
+        peak = float(np.abs(fractions).max(initial=0.0))
+        if peak > 0.0 and fractions.size >= LOUDNESS_BLOCK * RATE:
+            known[name] = loudness(fractions, RATE), 20.0 * math.log10(peak)
+    audible = {name: pair for name, pair in known.items() if math.isfinite(pair[0])}
+    while audible:
+        target = min(
+            [TARGET_LOUDNESS, *(reached - peak + _CEILING for reached, peak in audible.values())]
+        )
+        softest = min(audible, key=lambda name: audible[name][0])
+        if target - audible[softest][0] <= MOST_RAISED:
+            return {
+                name: 10.0 ** ((target - reached) / 20.0) for name, (reached, _) in audible.items()
+            }, target
+        del audible[softest]
+    return {}, TARGET_LOUDNESS

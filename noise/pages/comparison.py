@@ -1,0 +1,446 @@
+"""Designs compared: their maps side by side over the same axes, and what a script needs for more.
+
+The page itself draws which noise occurs where; its script draws from the same cells how loud it is,
+how each point is known, and what differs between any two designs. Each look has words, or a number,
+on the map as well, so that nothing is told by colour alone.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.rig import Rig
+from noise.base.label_looks import LABEL_LOOKS, Look
+from noise.base.label_names import LABELS
+from noise.base.progress import counted
+from noise.pages.maps import Axis, ConditionMap, Spot, areas_of, axis_of, cells_of, common_cells
+from noise.pages.page import MAP_SIZE
+from noise.pages.screen_sounds import chosen_points, shared_points, simulated_entries
+
+if TYPE_CHECKING:
+    from noise.pages.clips import Entry
+    from noise.pages.maps import Cells
+    from noise.pages.screen_sounds import ScreenMap, ScreenPoint, SharedPoint
+
+
+LEVEL_STEPS = (50.0, 60.0, 70.0, 80.0, 90.0)
+"""Between the colours of levels [dB(A)]."""
+
+LEVELS = {
+    "level-0": Look("#fdf1cf", "#8a6d2f", "plain", "below 50"),
+    "level-1": Look("#fccf96", "#8a6d2f", "plain", "50 to 60"),
+    "level-2": Look("#f89b6c", "#7a3600", "plain", "60 to 70"),
+    "level-3": Look("#dd5f6b", "#6b1f2e", "plain", "70 to 80"),
+    "level-4": Look("#a63a80", "#4b1d3e", "plain", "80 to 90"),
+    "level-5": Look("#5e2379", "#2b0d3e", "plain", "90 and more"),
+}
+"""By steps of the level, from soft to loud."""
+
+DIFFERENCES = {
+    "gone": Look("#3f8fc4", "#dcebf6", "lines", "noise gone"),
+    "softer-much": Look("#8dbfe0", "#3f6f94", "plain", "softer by 10 dB or more"),
+    "softer": Look("#cfe3f1", "#3f6f94", "plain", "softer by 3 to 10 dB"),
+    "alike": Look("#e3e6e9", "#6f7b87", "plain", "within 3 dB"),
+    "louder": Look("#fbdcbc", "#94592a", "plain", "louder by 3 to 10 dB"),
+    "louder-much": Look("#f0a55f", "#94592a", "plain", "louder by 10 dB or more"),
+    "new": Look("#c4571b", "#fbe3d3", "stripes", "noise new"),
+    "quiet": Look("#ffffff", "#c9d0d7", "dots", "none in both"),
+}
+"""Of a design against another."""
+
+WAYS = {
+    "simulated": Look("#41719c", "#1d3a55", "plain", "simulated"),
+    "refined": Look(
+        "#f3e2b0", "#a58a3c", "stripes",
+        "interpolated between simulated points of one noise",
+    ),
+    "stability": Look(
+        "#dcead3", "#7f9a6f", "plain", "silent, as steady sliding is stable there"
+    ),
+    "unchanged": Look(
+        "#dcdfe8", "#767d92", "dots", "as at another temperature or fit"
+    ),
+}  # fmt: skip
+"""By how a point is known."""
+
+SAID = {"refined": "interpolated", "stability": "by stability", "unchanged": "as elsewhere"}
+"""In short, how a point is known whose way of knowing does not say it."""
+
+SUBSTITUTED = Look("none", "#1d2329", "stripes", "the design has no data of its own there")
+"""Over the look of how a point is known."""
+
+
+def way_look(how: str) -> Look:
+    """Return the look of a way of knowing, also of one that no page has heard of.
+
+    Examples
+    --------
+    >>> way_look("simulated").mark, way_look("guessed").mark
+    ('simulated', 'guessed')
+    """
+    return WAYS.get(how, Look("#f6f6f6", "#55606b", "crosses", how or "not told"))
+
+
+_MOST_OPEN = 4
+"""Comparisons that are unfolded when the page opens."""
+
+_MAP_BYTES, _AREA_BYTES = 12_000.0, 120.0
+"""What a map and an area of it take up on a page at most [byte]."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Maps of designs at one place: environment, motion, temperature and support.
+
+    Parameters
+    ----------
+    title : str
+    maps : tuple of ConditionMap
+        One a design.
+    difference : ConditionMap or None
+        An empty one of the same axes, for a script to draw on; None where there is one design.
+    cells : dict
+        For the script: where the cells end, and of each design label, level and how it is known.
+    ways : tuple of str
+        How points are known.
+    note : str
+    """
+
+    title: str
+    maps: tuple[ConditionMap, ...]
+    difference: ConditionMap | None
+    cells: dict[str, object]
+    ways: tuple[str, ...]
+    note: str
+
+
+@dataclass(frozen=True)
+class Compared:
+    """All that is compared.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Of the designs, as they were named.
+    comparisons : tuple of Comparison
+        One an environment, motion, temperature and support.
+    pair : tuple of int
+        Numbers of the designs that are compared until others are chosen.
+    """
+
+    names: tuple[str, ...]
+    comparisons: tuple[Comparison, ...]
+    pair: tuple[int, int]
+
+    @property
+    def n_maps(self) -> int:
+        """How many maps there are."""
+        return sum(len(one.maps) for one in self.comparisons)
+
+    @property
+    def weight(self) -> float:
+        """What the maps take up on a page at most [byte]."""
+        n_areas = sum(len(of.areas) for one in self.comparisons for of in one.maps)
+        return _MAP_BYTES * self.n_maps + _AREA_BYTES * n_areas + len(json.dumps(self.data))
+
+    @property
+    def open(self) -> int:
+        """How many comparisons are unfolded."""
+        return _MOST_OPEN
+
+    @property
+    def looks(self) -> dict[str, Look]:
+        """Of all that is drawn."""
+        ways = {f"how-{n}": way_look(how) for n, how in enumerate(self._ways)}
+        return LABEL_LOOKS | LEVELS | DIFFERENCES | ways | {"substituted": SUBSTITUTED}
+
+    @property
+    def keys(self) -> list[tuple[str, str, list[tuple[str, str]]]]:
+        """Legends: name, what it is of, and each look with its words."""
+        ways = [(f"how-{n}", way_look(how).mark) for n, how in enumerate(self._ways)]
+        ways.append(("substituted", SUBSTITUTED.mark))
+        levels = [(key, look.mark) for key, look in LEVELS.items()]
+        keys = [("level", "L_Aeq in dB(A):", levels), ("how", "How a point is known:", ways)]
+        if len(self.names) > 1:
+            differences = [(key, look.mark) for key, look in DIFFERENCES.items()]
+            keys.append(("difference", "Difference, B against A:", differences))
+        return keys
+
+    @property
+    def data(self) -> dict[str, object]:
+        """For the script."""
+        return {
+            "names": self.names,
+            "labels": LABELS,
+            "marks": [LABEL_LOOKS[label].mark for label in LABELS],
+            "steps": LEVEL_STEPS,
+            "ways": self._ways,
+            "said": [SAID.get(how, how) for how in self._ways],
+            "pair": self.pair,
+            "comparisons": [one.cells for one in self.comparisons],
+        }
+
+    @property
+    def _ways(self) -> list[str]:
+        """How points are known, in one order."""
+        found = {how for one in self.comparisons for how in one.ways}
+        return sorted(found, key=lambda how: (list(WAYS).index(how) if how in WAYS else 9, how))
+
+
+_FEW_ROWS = 8
+"""So many interferences are named by their own numbers."""
+
+_LEAST_HEIGHT, _ROW_HEIGHT = 180.0, 40.0
+"""Of a map of few interferences, and what each adds [px]."""
+
+_MOST_HEARD = 12
+"""Conditions of one map that are heard: more would hide it."""
+
+_TICK_APART = 18.0
+"""Least distance of numbers along the interference [px]."""
+
+
+def compare_designs(
+    maps: Sequence[ScreenMap],
+    rigs: Sequence[Rig | str],
+    *,
+    number: int,
+    seed: int,
+    workers: int = 1,
+    pair: tuple[str, str] | None = None,
+) -> tuple[Compared, dict[str, Entry]]:
+    """Lay maps of designs side by side, and simulate what is heard on them.
+
+    Parameters
+    ----------
+    maps : sequence of ScreenMap
+    rigs : sequence of (Rig or str)
+        Of each map, or why it cannot be heard.
+    number : int
+        Of sounds, of all maps together.
+    seed : int
+    workers : int
+        Threads; -1 is one a core.
+    pair : tuple of str, optional
+        Designs that are compared at first; by default the first two.
+
+    Returns
+    -------
+    compared : Compared
+    heard : dict of str to Entry
+        Sounds by id.
+    """
+    names = list(dict.fromkeys(one.design for one in maps))
+    places = _places(maps)
+    shared = [shared_points([maps[i] for i in members]) for members in places]
+    most = _shares(number, [sum(isinstance(rigs[i], Rig) for i in of) for of in places])
+    chosen = [chosen_points(points, n) if n else [] for points, n in zip(shared, most, strict=True)]
+    jobs: list[tuple[int, ScreenPoint, Rig]] = []
+    for members, points in zip(places, chosen, strict=True):
+        for point in points:
+            for i, own in zip(members, point.points, strict=True):
+                if own is not None and isinstance(rig := rigs[i], Rig):
+                    jobs.append((i, own, rig))
+    heard: dict[str, Entry] = {}
+    keys: dict[tuple[int, float, float], str] = {}
+    silent = {i: rig for i, rig in enumerate(rigs) if isinstance(rig, str)}
+    entries = simulated_entries(
+        [(maps[i], rig, own) for i, own, rig in jobs], seed=seed, workers=workers
+    )
+    for (i, own, _), entry in zip(jobs, entries, strict=True):
+        if isinstance(entry, str):
+            silent.setdefault(i, entry)
+            continue
+        keys[i, own.speed, own.interference] = key = f"m{len(heard) + 1}"
+        heard[key] = entry
+    comparisons = tuple(
+        _laid_out(
+            [maps[i] for i in members],
+            [names.index(maps[i].design) for i in members],
+            [
+                (one, tuple(keys.get((i, one.speed, one.interference), "") for i in members))
+                for one in points
+            ],
+            [silent.get(i, "") for i in members],
+            len(names),
+        )
+        for members, points in zip(places, chosen, strict=True)
+    )
+    first, second = pair or (names[0], names[min(1, len(names) - 1)])
+    return Compared(tuple(names), comparisons, (names.index(first), names.index(second))), heard
+
+
+def _places(maps: Sequence[ScreenMap]) -> list[list[int]]:
+    """Numbers of the maps that are of one environment, motion, temperature and support."""
+    places: dict[str, list[int]] = {}
+    for i, one in enumerate(maps):
+        places.setdefault(one.where, []).append(i)
+    return list(places.values())
+
+
+def _shares(number: int, designs: Sequence[int]) -> list[int]:
+    """Share sounds out: how many conditions are heard at each place, of so many designs there."""
+    shares, left = [0] * len(designs), number
+    while True:
+        before = left
+        for i, n in enumerate(designs):
+            if 0 < n <= left:
+                shares[i] += 1
+                left -= n
+        if left == before:
+            return [min(share, _MOST_HEARD) for share in shares]
+
+
+def _laid_out(
+    maps: Sequence[ScreenMap],
+    designs: Sequence[int],
+    heard: Sequence[tuple[SharedPoint, tuple[str, ...]]],
+    silent: Sequence[str],
+    n_designs: int,
+) -> Comparison:
+    """Lay maps out whose designs have these numbers."""
+    cells = common_cells(
+        [
+            cells_of(
+                np.array([point.speed for point in one.points]),
+                np.array([point.interference for point in one.points]),
+            )
+            for one in maps
+        ]
+    )
+    across = axis_of(cells[0].speed_edges, edges=True)
+    fits = sorted({point.interference for one in maps for point in one.points})
+    height = min(MAP_SIZE[1], _LEAST_HEIGHT + _ROW_HEIGHT * len(fits))
+    up = _fit_axis(cells[0], fits, height)
+    speed = "Largest speed" if maps[0].points[0].frequency is not None else "Speed"
+    laid = [
+        ConditionMap(
+            one.design,
+            across,
+            up,
+            areas_of(of, [p.label for p in one.points], across, up, (MAP_SIZE[0], height)),
+            _spots(across, up, heard, i, designs, n_designs),
+            _own_note(one, why),
+            speed,
+            height,
+            number,
+            compared=True,
+        )
+        for i, (one, of, number, why) in enumerate(zip(maps, cells, designs, silent, strict=True))
+    ]
+    ways = tuple(dict.fromkeys(point.how for one in maps for point in one.points))
+    difference = None
+    if len(maps) > 1:
+        spots = _spots(across, up, heard, None, designs, n_designs)
+        difference = ConditionMap(
+            "Difference", across, up, (), spots, "", speed, height, compared=True
+        )
+    return Comparison(
+        maps[0].where,
+        tuple(laid),
+        difference,
+        {
+            "ways": ways,
+            "x": [round(MAP_SIZE[0] * across.share(float(x)), 2) for x in cells[0].speed_edges],
+            "y": [round(height * (1 - up.share(float(y))), 2) for y in cells[0].interference_edges],
+            "designs": {
+                str(number): _cell_values(one, of, ways)
+                for one, of, number in zip(maps, cells, designs, strict=True)
+            },
+        },
+        ways,
+        _note(maps, heard),
+    )
+
+
+def _cell_values(one: ScreenMap, cells: Cells, ways: Sequence[str]) -> dict[str, object]:
+    """Label, level and how it is known of each cell, the lowest row first."""
+    points = [one.points[i] if i >= 0 else None for i in cells.point.ravel().tolist()]
+    notes = list(dict.fromkeys(["", *(point.note for point in one.points)]))
+    return {
+        # Numbers of labels; -1 where it was not screened.
+        "label": [-1 if point is None else LABELS.index(point.label) for point in points],
+        "level": [
+            None if point is None or point.level is None else round(point.level, 1)
+            for point in points
+        ],
+        "how": [-1 if point is None else ways.index(point.how) for point in points],
+        "notes": notes,
+        "note": [0 if point is None else notes.index(point.note) for point in points],
+    }
+
+
+def _fit_axis(cells: Cells, fits: Sequence[float], height: float) -> Axis:
+    """Axis of interference; few are named by their own numbers, those that have room."""
+    up = axis_of(cells.interference_edges, edges=True)
+    if len(fits) > _FEW_ROWS:
+        return up
+    ticks: list[tuple[float, str]] = []
+    for fit in fits:
+        share = round(up.share(fit), 4)
+        if not ticks or height * (share - ticks[-1][0]) >= _TICK_APART:
+            ticks.append((share, f"{fit:.4g}"))
+    return Axis(up.low, up.high, tuple(ticks))
+
+
+def _spots(
+    across: Axis,
+    up: Axis,
+    heard: Sequence[tuple[SharedPoint, tuple[str, ...]]],
+    own: int | None,
+    designs: Sequence[int],
+    n_designs: int,
+) -> tuple[Spot, ...]:
+    """Spots of one of the maps, or of their difference."""
+    spots = []
+    for shared, keys in heard:
+        point = None if own is None else shared.points[own]
+        if own is not None and (point is None or not keys[own]):
+            continue
+        mates = [""] * n_designs
+        for number, key in zip(designs, keys, strict=True):
+            mates[number] = key
+        where = f"{shared.speed:.3g} rad/s, {shared.interference:.3g} mm"
+        spots.append(
+            Spot(
+                round(across.share(shared.speed), 4),
+                round(up.share(shared.interference), 4),
+                "" if point is None else point.label,
+                where if point is None else point.words,
+                tuple(filter(None, keys)) if own is None else (keys[own],),
+                tuple(mates),
+            )
+        )
+    return tuple(spots)
+
+
+def _own_note(one: ScreenMap, silent: str) -> str:
+    """Say what to know of a map: where its data are not the design's own, and why it is silent."""
+    counts = Counter(part for point in one.points for part in point.note.split("; ") if part)
+    told = [
+        f"{part[0].upper()}{part[1:]}: {'all' if n == len(one.points) else n} points."
+        for part, n in counts.most_common()
+    ]
+    return " ".join([*told, *([f"No sounds: {silent}."] if silent else [])])
+
+
+def _note(maps: Sequence[ScreenMap], heard: Sequence[tuple[SharedPoint, tuple[str, ...]]]) -> str:
+    """How many points there are, how they are known, and how many are heard."""
+    counts = Counter(point.how for one in maps for point in one.points if point.how)
+    how = "; ".join(f"{n} {way_look(how).mark}" for how, n in counts.most_common())
+    n_points = counted(max(len(one.points) for one in maps), "point")
+    of_all = " of each design; of all" if len(maps) > 1 else ""
+    told = [f"{n_points}{of_all}: {how}." if how else f"{n_points}{of_all[:15]}."]
+    n_sounds = sum(bool(key) for _, keys in heard for key in keys)
+    if n_sounds:
+        told.append(
+            f"{counted(n_sounds, 'sound')} simulated at the spots; a click elsewhere plays the "
+            "nearest of the same label."
+        )
+    return " ".join(told)

@@ -1,0 +1,515 @@
+"""Recordings beside their simulations on the page of a diagnosis: figures and sounds.
+
+A before and an after are compared by eye only on common axes, and cycles only where they are
+aligned: each torque is shown around a slip of its own, because no simulation can know when the
+rig began to stick. Bands of a sixth of an octave are wide enough to be still and narrow enough to
+show a resonance. What a missing effect does to loudness is part of what it does; so no loudness is
+matched, and the one full scale is what the loudest of all sounds needs.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import soundfile
+from numpy.typing import NDArray
+
+from features.kernels.bands import band_levels, band_power
+from features.kernels.slip_drops import torque_slips
+from features.kernels.spectra import autospectrum
+from models.drawing import BLUE, VERMILION, padded, styled, thinned
+from models.errors import ParameterError, RecordingError
+from models.foreign_file import LARGEST_JSON, reading, refusing
+from models.recording import Channel
+from noise.audio.sound import audible
+from noise.diagnosis.findings import ROLES
+from noise.diagnosis.text.words import number
+from noise.pages.cards import facts_of
+from noise.pages.clips import RATE, Entry, common_gain, make_clips
+from noise.pages.figures import COLUMNS, Panel, as_svg, new_panel, panel_frequencies
+from noise.pictures.channel_kinds import KINDS
+from noise.pictures.recorded import recorded_levels, recorded_orders
+from noise.recordings.meaning import check_finite
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from models.recording import Recording
+    from noise.diagnosis.evidence.friction_curves import FrictionCurves
+    from noise.diagnosis.findings import Illustration, LabelsAndLevels
+    from noise.diagnosis.outcome import Diagnosis
+    from noise.pages.clips import Clip
+
+
+@dataclass(frozen=True)
+class Curve:
+    """How one of the three is drawn, as no eye takes it for another; `width` in points."""
+
+    label: str
+    colour: str
+    width: float
+    dashed: bool
+
+
+CURVES = {
+    "measured": Curve("measured", "#222222", 2.8, dashed=False),
+    "before": Curve("nominal model", VERMILION, 1.5, dashed=True),
+    "after": Curve("fitted model", BLUE, 1.5, dashed=False),
+}
+"""Near-black, vermilion and blue (Okabe and Ito, Color universal design, 2008), and dashes."""
+
+_LOWEST, _HIGHEST = 25.0, 15e3  # mid-band frequencies [Hz]
+_SHORTEST, _LONGEST = 0.03, 0.05  # of the cycles shown [s]
+_CYCLES = 3.0
+_LEAD = 0.25  # of the window, before the slip
+_RESOLUTION = 1.0  # [Hz]: three bins in the lowest band
+_LEAST_BINS = 2.0
+_RANGE = 70.0  # of a level axis at most [dB]
+_ANTI_ALIAS = 0.9  # of the Nyquist frequency
+_LEAST_SAMPLES = 16
+
+
+def illustration_panels(illustration: Illustration) -> tuple[Panel, ...]:
+    """Draw what an illustration has: cycles of the torque, and one spectrum a kind of channel.
+
+    Parameters
+    ----------
+    illustration : Illustration
+
+    Returns
+    -------
+    tuple of Panel
+        The cycles first, where the recording has a torque.
+
+    Raises
+    ------
+    ParameterError
+        A signal that cannot be analysed.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> from noise.diagnosis.findings import Illustration
+    >>> hiss = Recording(np.random.default_rng(1).normal(size=(1, 9600)), 48e3,
+    ...                  (Channel("pressure"),))
+    >>> (panel,) = illustration_panels(Illustration("hiss", hiss, hiss, None))
+    >>> panel.alt[:46]
+    'Sound pressure in sixth octaves: over all, mea'
+    """
+    runs = {role: run for role in CURVES if (run := getattr(illustration, role)) is not None}
+    measured = illustration.measured
+    with styled():
+        panels = [_cycles(runs)] if measured.first("torque") is not None else []
+        panels += [_spectra(runs, kind) for kind in KINDS if measured.first(kind) is not None]
+    return tuple(panels)
+
+
+def sixth_octaves(
+    signal: NDArray[np.float64], rate: float, reference: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Levels in bands of a sixth of an octave, base ten, from 25 Hz to 15 kHz.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n_samples,)
+        In any unit, such as [Pa].
+    rate : float
+        [Hz]
+    reference : float
+        Of the levels, in the signal's unit, such as [Pa].
+
+    Returns
+    -------
+    middle, level : ndarray, shape (n_bands,)
+        Mid-band frequencies [Hz] and levels [dB], of the bands that the signal is long enough for
+        and that lie below what an anti-aliasing filter takes away.
+
+    Examples
+    --------
+    >>> tone = np.sin(2 * np.pi * 1059 * np.arange(48000) / 48e3)
+    >>> middle, level = sixth_octaves(tone, 48e3, 1.0)
+    >>> round(float(middle[level.argmax()])), round(float(level.max()))
+    (1059, -3)
+    """
+    spectrum = autospectrum(signal, rate, resolution=_RESOLUTION)
+    first, last = np.ceil(20.0 * np.log10(np.array([_LOWEST, _HIGHEST]) / 1e3) - 0.5)
+    middle = 1e3 * 10.0 ** ((np.arange(first, last) + 0.5) / 20.0)
+    low, high = middle / 10.0**0.025, middle * 10.0**0.025
+    level = band_levels(band_power(spectrum, low, high), reference)
+    kept = (high - low >= _LEAST_BINS * spectrum.spacing) & (high <= _ANTI_ALIAS * rate / 2.0)
+    return middle[kept], level[kept]
+
+
+def cycle_window(torque: NDArray[np.float64], rate: float, length: float) -> tuple[float, bool]:
+    """Find where to show a torque.
+
+    Parameters
+    ----------
+    torque : ndarray, shape (n_samples,)
+        [N m]
+    rate, length : float
+        [Hz], [s]
+
+    Returns
+    -------
+    start : float
+        Such that the slip nearest to the middle lies a quarter of `length` behind it [s].
+    aligned : bool
+        False where there is no slip, and the middle is taken.
+
+    Examples
+    --------
+    >>> t = np.arange(30000) / 30e3
+    >>> start, aligned = cycle_window(8.0 + 2.7 * ((100.0 * t) % 1.0), 30e3, 0.04)
+    >>> aligned, round(1e3 * (start + 0.01) % 10.0) % 10
+    (True, 0)
+    """
+    duration = torque.size / rate
+    times = torque_slips(torque, rate).times
+    inside = times[(times >= _LEAD * length) & (times <= duration - (1.0 - _LEAD) * length)]
+    if not inside.size:
+        return max(0.0, 0.5 * (duration - length)), False
+    slip = inside[np.abs(inside - 0.5 * duration).argmin()]
+    return float(slip) - _LEAD * length, True
+
+
+def _signal(recording: Recording, kind: str) -> NDArray[np.float64] | None:
+    row = recording.first(kind)
+    if row is None or recording.samples.shape[1] < _LEAST_SAMPLES:
+        return None
+    return np.asarray(recording.samples[row], dtype=np.float64)
+
+
+def _cycles(runs: dict[str, Recording]) -> Panel:
+    signals = {
+        name: (signal, recording.rate)
+        for name, recording in runs.items()
+        if (signal := _signal(recording, "torque")) is not None
+    }
+    length = _length(*signals["measured"]) if "measured" in signals else _LONGEST
+    figure, axes = new_panel(
+        "Torque, around a slip of each", "Time from the slip [ms]", "Torque [Nm]"
+    )
+    unaligned, low, high = [], np.inf, -np.inf
+    for name, (signal, rate) in signals.items():
+        start, aligned = cycle_window(signal, rate, length)
+        first = round(start * rate)
+        piece = signal[first : first + round(length * rate) + 1]
+        time = (np.arange(first, first + piece.size) / rate - start - _LEAD * length) * 1e3
+        draw(axes, name, *thinned(time, piece, columns=COLUMNS))
+        low, high = min(low, float(piece.min())), max(high, float(piece.max()))
+        if not aligned:
+            unaligned.append(CURVES[name].label)
+    axes.set_xlim(-1e3 * _LEAD * length, 1e3 * (1.0 - _LEAD) * length)
+    axes.set_ylim(*padded(low, high, 0.1))
+    alt = f"Torque over {1e3 * length:.0f} ms around a slip, {low:.3g} to {high:.3g} Nm."
+    if unaligned:
+        text = f"no slip: {', '.join(unaligned)}"
+        axes.set_xlabel(f"Time from the slip [ms]; {text}")
+        if len(unaligned) == len(signals):
+            axes.set_title("Torque, in which nothing slips", loc="left", fontweight="bold")
+            axes.set_xlabel("Time [ms]")
+        alt = f"{alt} There is {text}."
+    return Panel(as_svg(figure), alt)
+
+
+def _length(torque: NDArray[np.float64], rate: float) -> float:
+    """Three cycles, or what of them a panel keeps apart."""
+    slips = torque_slips(torque, rate)
+    wanted = _CYCLES / slips.rate if slips.rate > 0.0 else _LONGEST
+    return float(min(max(wanted, _SHORTEST), _LONGEST, torque.size / rate))
+
+
+def _spectra(runs: dict[str, Recording], kind: str) -> Panel:
+    about = KINDS[kind]
+    reference = about.density.removesuffix("²/Hz").strip("()")
+    figure, axes = new_panel(f"{about.name}, sixth octaves", "Frequency [Hz]", f"dB re {reference}")
+    tops, bottoms, overall = [], [], []
+    for name, recording in runs.items():
+        signal = _signal(recording, kind)
+        if signal is None:
+            continue
+        middle, level = sixth_octaves(signal, recording.rate, about.reference)
+        level = np.where(np.isfinite(level), level, np.nan)
+        draw(axes, name, middle, level)
+        if np.isfinite(level).any():
+            tops.append(float(np.nanmax(level)))
+            bottoms.append(float(np.nanmin(level)))
+        square = float(np.mean((signal - signal.mean()) ** 2))
+        words = f"{float(band_levels(square, about.reference)):.1f} dB" if square else "silent"
+        overall.append(f"{CURVES[name].label} {words}")
+    if tops:
+        top = 5.0 * np.ceil((max(tops) + 3.0) / 5.0)
+        axes.set_ylim(max(5.0 * np.floor((min(bottoms) - 1.0) / 5.0), top - _RANGE), top)
+    panel_frequencies(axes, _LOWEST, _HIGHEST)
+    return Panel(as_svg(figure), f"{about.name} in sixth octaves: over all, {', '.join(overall)}.")
+
+
+def draw(
+    axes: Axes, role: str, x: NDArray[np.float64], y: NDArray[np.float64], marker: str = ""
+) -> None:
+    """Draw a curve as all of its role are drawn.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    role : str
+        A key of `CURVES`.
+    x, y : ndarray, shape (n,)
+        In the units of the axes [-].
+    marker : str
+        Of matplotlib; none by default.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> axes = Figure().subplots()
+    >>> draw(axes, "before", np.zeros(2), np.ones(2))
+    >>> axes.lines[0].get_label()
+    'nominal model'
+    """
+    curve = CURVES[role]
+    style = (0.0, (4.0, 1.6)) if curve.dashed else "-"
+    axes.plot(
+        x, y, color=curve.colour, linewidth=curve.width, linestyle=style, label=curve.label,
+        marker=marker, markersize=3.0,
+    )  # fmt: skip
+
+
+_OVER = {
+    "sliding_speed": ("Friction torque while it slips", "Sliding speed [rad/s]", 1.0),
+    "time_stuck": ("Friction torque as a slip begins", "Time stuck before [ms]", 1e3),
+    "time": ("Friction torque as a slip begins", "Time [s]", 1.0),
+    "angle": ("Friction torque as a slip begins", "Angle turned [rad]", 1.0),
+}
+"""Title, what is across, and its scale."""
+
+
+def contact_panels(contacts: Mapping[str, FrictionCurves]) -> tuple[Panel, ...]:
+    """Draw the friction torque with its 90 % interval.
+
+    Parameters
+    ----------
+    contacts : mapping of str to FrictionCurves
+        By ``measured``, ``before`` and ``after``.
+
+    Returns
+    -------
+    tuple of Panel
+        None where the measured one is not known.
+
+    Examples
+    --------
+    >>> contact_panels({})
+    ()
+    """
+    if "measured" not in contacts:
+        return ()
+    with styled():
+        return tuple(_panel(name, contacts) for name in _OVER)
+
+
+def _panel(over: str, contacts: Mapping[str, FrictionCurves]) -> Panel:
+    title, across, scale = _OVER[over]
+    figure, axes = new_panel(title, across, "Torque [Nm]")
+    words = []
+    for name, friction_curves in contacts.items():
+        torque_curve, curve = getattr(friction_curves, over), CURVES[name]
+        if not torque_curve.x.size:
+            continue
+        x = scale * torque_curve.x
+        axes.fill_between(
+            x, torque_curve.low, torque_curve.high, color=curve.colour, alpha=0.18, linewidth=0
+        )
+        draw(axes, name, x, torque_curve.torque, marker="o")
+        words.append(
+            f"{curve.label} {torque_curve.torque.min():.3g} to {torque_curve.torque.max():.3g} Nm"
+        )
+    return Panel(as_svg(figure), f"{title}, over {across.lower()}: {'; '.join(words)}.")
+
+
+LONGEST = 4.0
+"""Of a sound on the page [s]; what is longer is played from its beginning."""
+
+_NEEDED = {"data-recording", "data-role", "data-full-scale"}
+
+
+def illustration_entries(
+    illustration: Illustration, heard: Sequence[LabelsAndLevels] = ()
+) -> dict[str, Entry]:
+    """Return what is heard of an illustration, by role.
+
+    Parameters
+    ----------
+    illustration : Illustration
+    heard : sequence of LabelsAndLevels
+        Labels and levels, of any recordings.
+
+    Returns
+    -------
+    dict of str to Entry
+        Keys are ``measured``, ``before`` and ``after``, where there is a sound.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> from noise.diagnosis.findings import Illustration
+    >>> hiss = Recording(np.random.default_rng(1).normal(size=(1, 480)), 48e3,
+    ...                  (Channel("pressure"),))
+    >>> found = illustration_entries(Illustration("hiss", hiss, hiss, None))
+    >>> [(role, entry.title) for role, entry in found.items()]
+    [('measured', 'hiss, measured'), ('before', 'hiss, nominal model')]
+    """
+    entries = {}
+    for role in ROLES:
+        recording = getattr(illustration, role)
+        if recording is not None and recording.first("pressure") is not None:
+            sound = audible(recording, RATE)[: round(LONGEST * RATE)].astype(np.float32)
+            entries[role] = replace(
+                _entry(illustration.name, role, sound, heard),
+                orders=recorded_orders(recording),
+                fast_levels=recorded_levels(recording),
+            )
+    return entries
+
+
+def reported_entries(report: Path, diagnosis: Diagnosis) -> list[Entry]:
+    """Take the sounds out of the report of a diagnosis, so that a review plays the very sounds.
+
+    Parameters
+    ----------
+    report : Path
+        None are found where it is not there, or holds none.
+    diagnosis : Diagnosis
+        Has the labels and the levels.
+
+    Raises
+    ------
+    RecordingError
+        A sound is damaged.
+    """
+    try:
+        with reading(report, "report", largest=LARGEST_JSON):
+            found = _Sounds()
+            found.feed(report.read_text(encoding="utf-8"))
+    except ParameterError:
+        return []
+    entries = []
+    for values, content in found.found:
+        name, role = values["data-recording"], values["data-role"]
+        with refusing(f"{report}: {name}", "sound", RecordingError):
+            flac = io.BytesIO(base64.b64decode(content))
+            fractions, _ = soundfile.read(flac, dtype="float32")
+            with np.errstate(over="ignore", invalid="ignore"):  # refused in the next line
+                sound = np.float32(values["data-full-scale"]) * fractions
+            check_finite(report, sound[np.newaxis], RATE, (Channel("pressure"),))
+        note = "from the report of the diagnosis"
+        entries.append(_entry(name, role, sound, diagnosis.labels_and_levels, note))
+    return entries
+
+
+class _Sounds(HTMLParser):
+    """Collects the sounds of a report, each with its attributes."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[tuple[dict[str, str], str]] = []
+        self._open: dict[str, str] | None = None
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Keep the attributes of a sound that says what it is."""
+        values = {name: value or "" for name, value in attrs}
+        self._open = values if tag == "script" and set(values) >= _NEEDED else None
+
+    def handle_data(self, data: str) -> None:
+        """Keep the sound."""
+        if self._open is not None:
+            self.found.append((self._open, data))
+            self._open = None
+
+
+def _entry(
+    name: str,
+    role: str,
+    sound: NDArray[np.float32],
+    heard: Sequence[LabelsAndLevels],
+    note: str = "",
+) -> Entry:
+    known = next((one for one in heard if one.recording == name), None)
+    label, level = (None, None) if known is None else known.of(role)
+    notes = [note] if note else []
+    if level is not None and math.isfinite(level):
+        notes.append(f"{number(level, '.1f')} dB(A)")
+    elif known is not None:
+        notes.append("level not determined")
+    return Entry(
+        f"{name}, {CURVES[role].label if role in CURVES else role}",
+        () if label is None else ({"label": label},),
+        duration=sound.size / RATE,
+        sound=sound,
+        note="; ".join(notes),
+        data={"recording": name, "role": role},
+    )
+
+
+class Comparison(NamedTuple):
+    """One recording beside its simulations; `sounds` are ids by role."""
+
+    name: str
+    condition: str
+    roles: tuple[str, ...]
+    sounds: dict[str, str]
+    panels: tuple[Panel, ...]
+
+
+def draw_comparisons(
+    diagnosis: Diagnosis,
+) -> tuple[dict[str, Entry], dict[str, Clip], dict[str, object]]:
+    """Draw and sound what a diagnosis illustrates.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+
+    Returns
+    -------
+    entries : dict of str to Entry
+        By id.
+    clips : dict of str to Clip
+        Of those that can be heard.
+    contents : dict of str to object
+        What the template names: ``comparisons``, ``curves`` and ``gain``.
+
+    Raises
+    ------
+    ParameterError
+        A signal that cannot be analysed.
+    """
+    entries: dict[str, Entry] = {}
+    comparisons = []
+    for illustration in diagnosis.illustrations:
+        found = illustration_entries(illustration, diagnosis.labels_and_levels)
+        keys = {role: f"s{len(entries) + i}" for i, role in enumerate(found, 1)}
+        entries |= {keys[role]: entry for role, entry in found.items()}
+        known = facts_of(Entry(illustration.name, condition=illustration.measured.condition))
+        comparisons.append(
+            Comparison(
+                illustration.name,
+                ", ".join(fact.words for name, fact in known.items() if name != "material"),
+                ROLES if illustration.after is not None else ROLES[:2],
+                keys,
+                (*illustration_panels(illustration), *contact_panels(illustration.contacts)),
+            )
+        )
+    gain = common_gain(entries.values())
+    clips, _ = make_clips(entries, gain)
+    sentences = gain.sentences if clips else ()
+    return entries, clips, {"comparisons": comparisons, "curves": CURVES, "gain": sentences}

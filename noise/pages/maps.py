@@ -1,0 +1,385 @@
+"""Condition maps to click on: speed across, interference up, coloured by label.
+
+Axes are numbers, not places in a table, so that the maps of a screen and of a campaign can be laid
+beside each other. A map has areas, where a label is known all over, as a screen knows it, and
+spots, where there is something to be heard. Where the points make a grid, a cell ends half-way to
+the neighbours, else a place belongs to the point that is nearest. Maps of different points are laid
+over one another by cutting both along all edges.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from noise.labels.conditions import conditions_map
+from noise.pages.cards import round_ticks
+from noise.pages.page import MAP_SIZE
+from noise.pictures.titles import place_title
+
+if TYPE_CHECKING:
+    from noise.labels.conditions import Place, Range
+
+
+_RASTER = (100, 60)
+"""Into how many cells a map is divided whose points make no grid."""
+
+
+@dataclass(frozen=True)
+class Area:
+    """A rectangle of one label, in units of the drawing, `y` from the top."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    label: str
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Division of a map.
+
+    Parameters
+    ----------
+    speed_edges : ndarray, shape (n_columns + 1,)
+        [rad/s]
+    interference_edges : ndarray, shape (n_rows + 1,)
+        [mm]
+    point : ndarray of int, shape (n_rows, n_columns)
+        Number of the point that each cell belongs to, the lowest row first; -1 where none does.
+    """
+
+    speed_edges: NDArray[np.float64]
+    interference_edges: NDArray[np.float64]
+    point: NDArray[np.int64]
+
+
+def cells_of(speed: NDArray[np.float64], interference: NDArray[np.float64]) -> Cells:
+    """Divide a map among its points.
+
+    Parameters
+    ----------
+    speed, interference : ndarray, shape (n,)
+        [rad/s], [mm]
+
+    Examples
+    --------
+    >>> found = cells_of(np.array([1.0, 3.0, 1.0, 3.0]), np.array([0.2, 0.2, 0.4, 0.4]))
+    >>> found.speed_edges, found.point
+    (array([0., 2., 4.]), array([[0, 1],
+           [2, 3]]))
+    """
+    columns, column = np.unique(speed, return_inverse=True)
+    rows, row = np.unique(interference, return_inverse=True)
+    point = np.full((rows.size, columns.size), -1)
+    point[row, column] = np.arange(speed.size)
+    if (point >= 0).all():
+        return Cells(_edges(columns), _edges(rows), point)
+    x_edges = np.linspace(columns[0], columns[-1], _RASTER[0] + 1)
+    y_edges = np.linspace(rows[0], rows[-1], _RASTER[1] + 1)
+    return Cells(x_edges, y_edges, _nearest(x_edges, y_edges, speed, interference))
+
+
+def common_cells(maps: Sequence[Cells]) -> list[Cells]:
+    """Cut maps along each other's edges, so that all have the same cells.
+
+    Parameters
+    ----------
+    maps : sequence of Cells
+
+    Returns
+    -------
+    list of Cells
+        Each with the same edges, over all that any of them covers.
+
+    Examples
+    --------
+    >>> one = cells_of(np.array([1.0, 3.0]), np.array([0.2, 0.2]))
+    >>> other = cells_of(np.array([2.0, 4.0, 6.0]), np.array([0.2, 0.2, 0.2]))
+    >>> [found.point.tolist() for found in common_cells([one, other])]
+    [[[0, 0, 1, 1, -1, -1]], [[-1, 0, 0, 1, 1, 2]]]
+    """
+    speeds = _merged([one.speed_edges for one in maps])
+    fits = _merged([one.interference_edges for one in maps])
+    return [Cells(speeds, fits, _looked_up(one, speeds, fits)) for one in maps]
+
+
+def areas_of(
+    cells: Cells, labels: Sequence[str], across: Axis, up: Axis, size: tuple[float, float]
+) -> tuple[Area, ...]:
+    """Return what neighbours of one label cover.
+
+    Parameters
+    ----------
+    cells : Cells
+    labels : sequence of str
+        Of the points.
+    across, up : Axis
+        In [rad/s] and [mm].
+    size : tuple of float
+        Width and height of the drawing [px].
+
+    Returns
+    -------
+    tuple of Area
+        Equal neighbours taken together, the lowest row first; nothing where there is no point.
+
+    Examples
+    --------
+    >>> from noise.pages.maps import axis_of
+    >>> cells = cells_of(np.array([1.0, 3.0, 1.0, 3.0]), np.array([0.2, 0.2, 0.4, 0.4]))
+    >>> across, up = axis_of([0.0, 4.0], edges=True), axis_of([0.1, 0.5], edges=True)
+    >>> areas = areas_of(cells, ["creak", "none", "none", "none"], across, up, (500.0, 300.0))
+    >>> [(area.x, area.width, area.label) for area in areas]
+    [(0.0, 250.0, 'creak'), (250.0, 250.0, 'none'), (0.0, 500.0, 'none')]
+    """
+    x = [size[0] * across.share(float(edge)) for edge in cells.speed_edges]
+    y = [size[1] * (1.0 - up.share(float(edge))) for edge in cells.interference_edges]
+    rows = [
+        (number, _runs([labels[one] if one >= 0 else "" for one in row.tolist()]))
+        for number, row in enumerate(cells.point)
+    ]
+    areas = []
+    for runs, group in groupby(rows, key=lambda row: row[1]):
+        alike = [number for number, _ in group]
+        bottom, top = y[alike[0]], y[alike[-1] + 1]
+        for first, last, label in runs:
+            if label:
+                left, width = round(x[first], 2), round(x[last] - x[first], 2)
+                areas.append(Area(left, round(top, 2), width, round(bottom - top, 2), label))
+    return tuple(areas)
+
+
+def _runs(labels: Sequence[str]) -> tuple[tuple[int, int, str], ...]:
+    """First, end and label of equal neighbours."""
+    runs, first = [], 0
+    for label, run in groupby(labels):
+        end = first + len(list(run))
+        runs.append((first, end, label))
+        first = end
+    return tuple(runs)
+
+
+def _edges(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Half-way between neighbours, and as far beyond the outermost, but not below zero."""
+    if values.size == 1:
+        half = 0.25 * abs(values[0]) or 1.0
+        return np.array([values[0] - half, values[0] + half])
+    middles = 0.5 * (values[1:] + values[:-1])
+    first = 2 * values[0] - middles[0]
+    return np.concatenate(
+        ([max(first, 0.0) if values[0] > 0.0 else first], middles, [2 * values[-1] - middles[-1]])
+    )
+
+
+def _nearest(
+    x_edges: NDArray[np.float64],
+    y_edges: NDArray[np.float64],
+    speed: NDArray[np.float64],
+    interference: NDArray[np.float64],
+) -> NDArray[np.int64]:
+    """Nearest point at each place, distances being shares of the axes."""
+    from scipy.spatial import cKDTree
+
+    width = (x_edges[-1] - x_edges[0]) or 1.0
+    height = (y_edges[-1] - y_edges[0]) or 1.0
+    tree = cKDTree(np.column_stack((speed / width, interference / height)))
+    _, found = tree.query(
+        np.stack(np.meshgrid(_middles(x_edges) / width, _middles(y_edges) / height), axis=-1)
+    )
+    return np.asarray(found)
+
+
+def _middles(edges: NDArray[np.float64]) -> NDArray[np.float64]:
+    return 0.5 * (edges[1:] + edges[:-1])
+
+
+def _merged(edges: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """All edges, those that differ by rounding alone once."""
+    every = np.unique(np.concatenate(edges))
+    apart = 1e-9 * max(float(np.ptp(every)), 1e-12)
+    return every[np.concatenate(([True], np.diff(every) > apart))]
+
+
+def _looked_up(
+    cells: Cells, speeds: NDArray[np.float64], fits: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    n_rows, n_columns = cells.point.shape
+    row = np.searchsorted(cells.interference_edges, _middles(fits)) - 1
+    column = np.searchsorted(cells.speed_edges, _middles(speeds)) - 1
+    inside = ((row >= 0) & (row < n_rows))[:, None] & ((column >= 0) & (column < n_columns))
+    point = cells.point[row.clip(0, n_rows - 1)[:, None], column.clip(0, n_columns - 1)]
+    return np.where(inside, point, -1)
+
+
+_MARGIN = 0.12  # of an axis, beyond its outermost spots
+_MOST_TICKS = 7
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Of a map.
+
+    Parameters
+    ----------
+    low, high : float
+        Its ends, in the unit of the axis, such as [rad/s].
+    ticks : tuple of (float, str)
+        Where along it, from 0 to 1 [-], and what stands there.
+    """
+
+    low: float
+    high: float
+    ticks: tuple[tuple[float, str], ...]
+
+    def share(self, value: float) -> float:
+        """Where a value, in the unit of the axis, lies from 0 to 1 [-]."""
+        return (value - self.low) / (self.high - self.low)
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Where something can be heard.
+
+    Parameters
+    ----------
+    x, y : float
+        Along the axes, from 0 to 1 [-].
+    label : str
+    words : str
+        What is there.
+    sounds : tuple of str
+        Ids; one click plays the first, the next one the second.
+    mates : tuple of str
+        Of designs compared, the ids of each one's sound there, empty where it has none.
+    """
+
+    x: float
+    y: float
+    label: str
+    words: str
+    sounds: tuple[str, ...]
+    mates: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ConditionMap:
+    """One map, drawn by the page.
+
+    Parameters
+    ----------
+    title : str
+    speed, interference : Axis
+    areas : tuple of Area
+    spots : tuple of Spot
+    note : str
+    across : str
+        What the speed is.
+    height : float
+        Of the drawing [px].
+    design : int or None
+        Number of the design among those that are compared with one another; None of any other map.
+    compared : bool
+        Whether it is one of several maps of the same axes side by side.
+    """
+
+    title: str
+    speed: Axis
+    interference: Axis
+    areas: tuple[Area, ...]
+    spots: tuple[Spot, ...]
+    note: str = ""
+    across: str = "Speed"
+    height: float = MAP_SIZE[1]
+    design: int | None = None
+    compared: bool = False
+
+
+def axis_of(values: Iterable[float], *, edges: bool) -> Axis:
+    """Return the axis of values.
+
+    Parameters
+    ----------
+    values : iterable of float
+        In any unit, such as [rad/s].
+    edges : bool
+        Whether it ends with the outermost values, because areas do, or leaves room for spots.
+
+    Examples
+    --------
+    >>> axis_of([1.0, 11.0], edges=True).ticks[:2]
+    ((0.1, '2'), (0.3, '4'))
+    """
+    array = np.fromiter(values, dtype=float)
+    low, high = float(array.min()), float(array.max())
+    room = 0.0 if edges else _MARGIN * (high - low)
+    if high - low <= 1e-9 * max(abs(high), 1e-9):
+        room = 0.25 * abs(high) or 1.0
+    low, high = low - room, high + room
+    ticks = tuple(
+        (round((tick - low) / (high - low), 4), f"{tick:.6g}")
+        for tick in round_ticks(low, high, _MOST_TICKS)
+    )
+    return Axis(low, high, ticks)
+
+
+def recorded_maps(
+    rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], heard: Iterable[str]
+) -> tuple[list[ConditionMap], int]:
+    """Lay recordings out by the conditions that were logged with them.
+
+    Parameters
+    ----------
+    rows : sequence of mapping
+        Of a label table whose files are ids.
+    titles : mapping of str to str
+        By id.
+    heard : iterable of str
+        Ids that can be played.
+
+    Returns
+    -------
+    maps : list of ConditionMap
+        One a material and support.
+    left_out : int
+        Recordings whose speed or interference is not known.
+    """
+    playable = set(heard)
+    places = conditions_map(rows)
+    known = [p for p in places if p.speed is not None and p.interference is not None]
+    placed = {one for place in known for one in place.recordings}
+    everything = {one for place in places for one in place.recordings}
+    maps = []
+    for title, group in groupby(known, key=_title):
+        here = list(group)
+        across = axis_of([_middle(place.speed) for place in known], edges=False)
+        up = axis_of([_middle(place.interference) for place in known], edges=False)
+        spots = tuple(_spot(place, across, up, titles, playable) for place in here)
+        maps.append(ConditionMap(title, across, up, (), spots))
+    return maps, len(everything - placed)
+
+
+def _spot(
+    place: Place, across: Axis, up: Axis, titles: Mapping[str, str], playable: set[str]
+) -> Spot:
+    sounds = sorted(place.recordings & playable, key=lambda one: titles[one])
+    names = ", ".join(titles[one] for one in sorted(place.recordings, key=lambda one: titles[one]))
+    speed, fit = _middle(place.speed), _middle(place.interference)
+    words = f"{speed:.3g} rad/s, {fit:.3g} mm: {place.label}; {names}"
+    x, y = round(across.share(speed), 4), round(up.share(fit), 4)
+    return Spot(x, y, place.label, words, tuple(sounds))
+
+
+def _title(place: Place) -> str:
+    return place_title(place.material, place.support_stiffness)
+
+
+def _middle(found: Range | None) -> float:
+    return math.nan if found is None else found.middle

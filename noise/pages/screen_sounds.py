@@ -1,0 +1,396 @@
+"""Maps of a screen, and sounds simulated where a listener will want them.
+
+One map is of one design in one environment, at one temperature, on one support: speed across and
+interference up. A screen knows thousands of conditions, and nobody listens to them all. So a few
+are chosen, and each is heard of every design: where each noise of each design is loudest, where the
+designs differ most, and the middles of the regions in which they differ in the same way; a click
+anywhere else plays the nearest of these.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from joblib import Parallel, delayed
+from numpy.typing import NDArray
+
+from features.kernels.levels import a_weighted_level
+from models.errors import BushingNoiseError
+from noise.audio.sound import audible
+from noise.base.label_names import LABELS
+from noise.base.progress import track
+from noise.batch.work import one_thread
+from noise.pages.clips import RATE, Entry
+from noise.pictures.recorded import recorded_levels
+from noise.pictures.titles import support_words
+from noise.screening.map.point import shaft_motion
+from sim.acquisition import Acquisition
+from sim.run import simulate
+
+if TYPE_CHECKING:
+    from models.rig import Rig
+    from noise.screening.outcome import Screening
+
+
+class ScreenPoint(NamedTuple):
+    """One condition of a screen, and what happens there.
+
+    Parameters
+    ----------
+    speed, interference : float
+        [rad/s], the largest where the shaft swings; [mm]
+    label : str
+    regime, how : str
+        Of friction; how it is known.
+    level, loudness : float or None
+        L_Aeq [dB re 20 uPa] and N5 [sone].
+    frequency : float or None
+        At which the shaft swings [Hz]; None where it turns.
+    note : str
+        What is not the design's own there.
+    """
+
+    speed: float
+    interference: float
+    label: str
+    regime: str = ""
+    level: float | None = None
+    loudness: float | None = None
+    how: str = ""
+    frequency: float | None = None
+    note: str = ""
+
+    @property
+    def words(self) -> str:
+        """What is there, in words."""
+        told = [f"{self.speed:.3g} rad/s, {self.interference:.3g} mm: {self.label}"]
+        told += [self.regime.replace("_", " ")] if self.regime else []
+        told += [f"{self.level:.0f} dB(A)"] if self.level is not None else []
+        told += [f"N5 {self.loudness:.3g} sone"] if self.loudness is not None else []
+        return ", ".join(told)
+
+
+@dataclass(frozen=True)
+class ScreenMap:
+    """Points of one design in one environment, at one temperature, on one support.
+
+    Parameters
+    ----------
+    design, environment, motion : str
+    temperature : float or None
+        [degree Celsius]
+    support_stiffness : float or None
+        [Nm/rad]
+    points : tuple of ScreenPoint
+    """
+
+    design: str
+    environment: str
+    motion: str
+    temperature: float | None
+    support_stiffness: float | None
+    points: tuple[ScreenPoint, ...]
+
+    @property
+    def title(self) -> str:
+        """Name it."""
+        return ", ".join([self.design, *filter(None, [self.where])])
+
+    @property
+    def where(self) -> str:
+        """What it has in common with the maps of other designs."""
+        told = [self.environment] if self.environment else []
+        told += [self.motion] if self.motion not in ("", "steady") else []
+        told += [f"{self.temperature:g} °C"] if self.temperature is not None else []
+        told += [] if self.support_stiffness is None else [support_words(self.support_stiffness)]
+        return ", ".join(told)
+
+
+class SharedPoint(NamedTuple):
+    """One condition, and what happens there with each of several designs.
+
+    Parameters
+    ----------
+    speed, interference : float
+        [rad/s], [mm]
+    points : tuple of (ScreenPoint or None)
+        By design; None where it was not screened there.
+    """
+
+    speed: float
+    interference: float
+    points: tuple[ScreenPoint | None, ...]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Of each design; empty where it was not screened."""
+        return tuple("" if point is None else point.label for point in self.points)
+
+
+def shared_points(maps: Sequence[ScreenMap]) -> list[SharedPoint]:
+    """Lay the points of designs at one place side by side.
+
+    Examples
+    --------
+    >>> old = ScreenMap("old", "dry", "steady", 23.0, 2214.0, (ScreenPoint(5.0, 0.3, "creak"),))
+    >>> new = ScreenMap("new", "dry", "steady", 23.0, 2214.0, (ScreenPoint(5.0, 0.3, "none"),))
+    >>> [one.labels for one in shared_points([old, new])]
+    [('creak', 'none')]
+    """
+    found = [{(p.speed, p.interference): p for p in one.points} for one in maps]
+    return [
+        SharedPoint(*at, tuple(of.get(at) for of in found))
+        for at in dict.fromkeys(at for of in found for at in of)
+    ]
+
+
+def screen_maps(found: Screening) -> list[ScreenMap]:
+    """Cut the maps of a screening by temperature and support.
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import Use
+    >>> from noise.screening.screen import screen
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0, math.inf)))
+    >>> [one.title for one in screen_maps(found)]
+    ['PDMS, dry, 23 °C, 2214 Nm/rad', 'PDMS, dry, 23 °C, clamp fixed']
+    """
+    maps = []
+    for one in found.maps:
+        grid = one.grid
+        for t, k in np.ndindex(one.label.shape[:2]):
+            points = tuple(
+                ScreenPoint(
+                    speed=grid.speed[column],
+                    interference=round(1e3 * grid.interference[row], 9),
+                    label=str(one.label[t, k, row, column]),
+                    regime=str(one.regime[t, k, row, column]),
+                    level=_known(float(one.level[t, k, row, column])),
+                    loudness=_known(float(one.loudness[t, k, row, column])),
+                    how=str(one.how[t, k, row, column]),
+                    frequency=grid.frequency[column] if grid.frequency else None,
+                    note=str(one.note[t, k, row, column]),
+                )
+                for row, column in np.ndindex(one.label.shape[2:])
+            )
+            maps.append(
+                ScreenMap(
+                    one.design, one.environment, one.motion,
+                    grid.temperature[t], grid.support_stiffness[k], points,
+                )
+            )  # fmt: skip
+    return maps
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+SECONDS = 2.0
+"""Of a simulated sound."""
+
+MOST_SILENT = 2
+"""Of the sounds of a map that are ``none`` of every design."""
+
+_NOISES = tuple(label for label in LABELS if label not in ("none", "unknown"))
+
+_SILENCE = 40.0
+"""What a design without a noise counts as, where levels are compared [dB(A)]."""
+
+_NEAR = 0.05
+"""Points of the same labels no farther apart than that sound alike, as a share of the axes."""
+
+INTERPOLATED = "refined"
+"""How a point is known that lies between simulated ones."""
+
+_ITERATIONS = 8
+
+_SUPPORT, _TEMPERATURE = 2214.0, 23.0
+"""Of a screen that tells none [Nm/rad], [degree Celsius]."""
+
+
+def chosen_points(points: Sequence[SharedPoint], most: int) -> list[SharedPoint]:
+    """Choose conditions to be heard.
+
+    Parameters
+    ----------
+    points : sequence of SharedPoint
+    most : int
+        How many at most.
+
+    Returns
+    -------
+    list of SharedPoint
+        First the loudest of each noise, and where levels differ most; then of each combination of
+        labels at least one, if there is room, the others by how many points it has, but no more
+        than `MOST_SILENT` that are ``none`` throughout; those of one combination in the middles of
+        the parts into which they divide its region.
+
+    Examples
+    --------
+    >>> from noise.pages.screen_sounds import ScreenPoint, SharedPoint
+    >>> labels = ["creak"] * 7 + ["none"] * 3
+    >>> line = [SharedPoint(v, 0.3, (ScreenPoint(v, 0.3, label),))
+    ...         for v, label in enumerate(labels)]
+    >>> [(point.speed, point.labels) for point in chosen_points(line, 2)]
+    [(3, ('creak',)), (8, ('none',))]
+    """
+    at = np.array([(point.speed, point.interference) for point in points])
+    span = np.ptp(at, axis=0)
+    at = at / np.where(span > 0.0, span, 1.0)
+    labels = [point.labels for point in points]
+
+    def apart(one: int, chosen: Sequence[int]) -> bool:
+        near = [i for i in chosen if labels[i] == labels[one]]
+        return not near or float(np.linalg.norm(at[near] - at[one], axis=1).min()) > _NEAR
+
+    chosen: list[int] = []
+    for one in _telling(points):
+        if len(chosen) < most and apart(one, chosen):
+            chosen.append(one)
+    counts = Counter(labels)
+    limits = {of: MOST_SILENT if set(of) <= {"none", ""} else n for of, n in counts.items()}
+    shares = Counter(labels[one] for one in chosen)
+    new: Counter[tuple[str, ...]] = Counter()
+    for _ in range(most - len(chosen)):
+        open_ones = [of for of in counts if shares[of] < min(limits[of], counts[of])]
+        if not open_ones:
+            break
+        # The one of which each sound stands for the most points; first those without any.
+        neediest = max(
+            open_ones, key=lambda of: (not shares[of], counts[of] / (shares[of] or 1), of)
+        )
+        shares[neediest] += 1
+        new[neediest] += 1
+    for of, number in new.items():
+        own = np.array([i for i, found in enumerate(labels) if found == of])
+        certain = np.array([_is_certain(points[i]) for i in own])
+        among = certain if certain.any() else ~certain
+        chosen += [int(i) for i in own[_spread(at[own], number, among)] if apart(int(i), chosen)]
+    return sorted((points[i] for i in chosen), key=lambda point: (point.speed, point.interference))
+
+
+def _telling(points: Sequence[SharedPoint]) -> list[int]:
+    """Numbers of the loudest of each noise, where levels differ most, and each design's loudest."""
+    loudest = []
+    for own in zip(*(shared.points for shared in points), strict=True):
+        for label in _NOISES:
+            levels = [
+                (point.level, number)
+                for number, point in enumerate(own)
+                if point is not None and point.label == label and point.level is not None
+            ]
+            loudest += [(*max(levels), label)] if levels else []
+    loudest.sort(reverse=True)
+    of_label: dict[str, int] = {}
+    for _, number, label in loudest:
+        of_label.setdefault(label, number)
+    levels_of = np.array([[_level(point) for point in shared.points] for shared in points])
+    apart = np.nanmax(levels_of, axis=1) - np.nanmin(levels_of, axis=1)
+    certain = np.array([_is_certain(shared) for shared in points])
+    apart = np.where(certain, apart, 0.0) if certain.any() else apart
+    differing = [int(apart.argmax())] if apart.max() > 0.0 else []
+    return list(dict.fromkeys([*of_label.values(), *differing, *(one for _, one, _ in loudest)]))
+
+
+def _is_certain(shared: SharedPoint) -> bool:
+    """Whether label and level of all designs are known there, so that they are those heard."""
+    return all(point is None or point.how != INTERPOLATED for point in shared.points)
+
+
+def _level(point: ScreenPoint | None) -> float:
+    if point is None:
+        return np.nan
+    return _SILENCE if point.label == "none" or point.level is None else point.level
+
+
+def _spread(at: NDArray[np.float64], number: int, among: NDArray[np.bool_]) -> list[int]:
+    """Divide points into so many parts, and return that of some which is nearest to each middle.
+
+    Lloyd's iteration from points that lie as far apart as can be.
+    """
+    picked = [int(np.linalg.norm(at - at.mean(axis=0), axis=1).argmin())]
+    distance = np.linalg.norm(at - at[picked[0]], axis=1)
+    while len(picked) < number:
+        picked.append(int(distance.argmax()))
+        distance = np.minimum(distance, np.linalg.norm(at - at[picked[-1]], axis=1))
+    middles = at[picked]
+    for _ in range(_ITERATIONS):
+        nearest = np.linalg.norm(at[:, None] - middles, axis=2).argmin(axis=1)
+        middles = np.array([at[nearest == part].mean(axis=0) for part in np.unique(nearest)])
+    distance_to = np.linalg.norm(at[:, None] - middles, axis=2)
+    found = np.where(among[:, None], distance_to, np.inf).argmin(axis=0)
+    return list(dict.fromkeys(found.tolist()))
+
+
+def simulated_entries(
+    jobs: Sequence[tuple[ScreenMap, Rig, ScreenPoint]], *, seed: int, workers: int = 1
+) -> list[Entry | str]:
+    """Simulate what is heard at points, all with the same seed.
+
+    Parameters
+    ----------
+    jobs : sequence of (ScreenMap, Rig, ScreenPoint)
+    seed : int
+    workers : int
+        Threads; -1 is one a core.
+
+    Returns
+    -------
+    list of (Entry or str)
+        Of each; why it cannot be heard where it cannot.
+    """
+
+    def entry(job: tuple[ScreenMap, Rig, ScreenPoint]) -> Entry | str:
+        try:
+            return simulated_entry(*job, seed=seed)
+        except BushingNoiseError as error:
+            return str(error)
+
+    if not jobs:
+        return []
+    with one_thread():
+        work = Parallel(n_jobs=workers, prefer="threads", return_as="generator")
+        done = work(delayed(entry)(job) for job in jobs)
+        return list(track(done, "simulating sounds", unit="sound", total=len(jobs)))
+
+
+def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: int) -> Entry:
+    """Simulate what is heard at a point of a screen.
+
+    Raises
+    ------
+    ParameterError
+        The condition cannot be simulated.
+    """
+    support = screened.support_stiffness
+    run = simulate(
+        rig,
+        shaft_motion(point.speed, point.frequency),
+        interference=1e-3 * point.interference,
+        seconds=SECONDS,
+        acquisition=Acquisition(rate=RATE),
+        rng=np.random.default_rng(seed),
+        support_stiffness=_SUPPORT if support is None else support,
+        temperature=_TEMPERATURE if screened.temperature is None else screened.temperature,
+    )
+    sound = audible(run.recording, RATE).astype(np.float32)
+    note = f"simulated, {a_weighted_level(run.recording['pressure'], RATE):.0f} dB(A)"
+    if point.how == INTERPOLATED:
+        level = "" if point.level is None else f", {point.level:.0f} dB(A)"
+        note += f"; the screen interpolates {point.label}{level}"
+    return Entry(
+        title=f"{screened.design}: {point.speed:.3g} rad/s, {point.interference:.3g} mm, "
+        f"{screened.where}",
+        rows=({"label": point.label},),
+        condition=replace(run.recording.condition, material=screened.design),
+        duration=SECONDS,
+        sound=sound,
+        note=note,
+        fast_levels=recorded_levels(run.recording),
+    )

@@ -1,0 +1,204 @@
+"""The report of a screen: the designs ranked in words, their maps side by side, and sounds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.base.progress import counted
+from noise.pages.clips import BYTES_A_SECOND, SHORTEST, common_gain, make_clips
+from noise.pages.comparison import compare_designs
+from noise.pages.page import CARD_BYTES, PAGE_BYTES, page_html, write_page
+from noise.pages.screen_sounds import screen_maps
+from noise.screening.design.environments import environment, in_environment
+from noise.screening.map.batches import LABELS
+from noise.screening.tables.summary import conditions_lines, parts_lines, risk_words
+
+if TYPE_CHECKING:
+    from noise.screening.outcome import Screening
+    from noise.screening.ranking.ranking import Standing
+
+
+@dataclass(frozen=True)
+class RankingRow:
+    """A design in one environment and motion.
+
+    Parameters
+    ----------
+    rank : str
+    design, where : str
+    risk : str
+    shares : tuple of (str, float, str)
+        Label, share of the conditions of use [-], and it in words; those that occur.
+    loudest, margin : str
+    words, hint : str
+    notes : tuple of str
+    """
+
+    rank: str
+    design: str
+    where: str
+    risk: str
+    shares: tuple[tuple[str, float, str], ...]
+    loudest: str
+    margin: str
+    words: str
+    hint: str
+    notes: tuple[str, ...]
+
+
+def ranking_rows(found: Screening) -> list[RankingRow]:
+    """Return the rows, the quietest design first.
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import Use
+    >>> from noise.screening.screen import screen
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
+    >>> row = ranking_rows(found)[0]
+    >>> row.rank, row.shares, row.loudest
+    ('1', (('none', 1.0, '100 %'),), 'quiet')
+    """
+    return [_row(one, found) for one in found.standings]
+
+
+def _row(one: Standing, found: Screening) -> RankingRow:
+    loudest = "quiet" if one.rank is not None else ""
+    if math.isfinite(one.loudest_level):
+        loudest = f"{one.loudest_level:.0f} dB(A)"
+    shares = tuple(
+        (name, one.shares[name], _percent(one.shares[name]))
+        for name in LABELS
+        if one.shares.get(name)
+    )
+    parts = parts_lines(found.statistics_of(one.design, one.environment))
+    return RankingRow(
+        "\N{EN DASH}" if one.rank is None else str(one.rank),
+        one.design,
+        one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}",
+        risk_words(one.risk),
+        shares,
+        loudest,
+        _margin(one),
+        one.words,
+        one.hint,
+        tuple(dict.fromkeys([*parts, *(note for note in one.notes if note != one.never_slips)])),
+    )
+
+
+def _margin(one: Standing) -> str:
+    if math.isnan(one.margin_v_crit2) or one.never_slips:
+        return ""
+    if math.isinf(one.margin_v_crit2):
+        return "nothing vibrates"
+    return f"{one.margin_v_crit2:+.3g} rad/s".replace("-", "\N{MINUS SIGN}")
+
+
+def _percent(share: float) -> str:
+    return "< 1 %" if share < 0.005 else f"{100.0 * share:.0f} %"
+
+
+def write_screening(
+    path: Path,
+    found: Screening,
+    *,
+    sounds: int = 24,
+    megabytes: float = 10.0,
+    seed: int = 0,
+    workers: int = 1,
+) -> None:
+    """Write the report of a screen, whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+    found : Screening
+    sounds : int
+        How many are simulated at most, of all designs together; fewer where they do not fit.
+    megabytes : float
+        Size of the page [MB].
+    seed : int
+        Of all sounds alike, and of the dither.
+    workers : int
+        Threads; -1 is one a core.
+
+    Raises
+    ------
+    ParameterError
+        It cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from noise.screening.design.design import Use
+    >>> from noise.screening.screen import screen
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_screening(Path(folder) / "report.html", found, sounds=0)
+    ...     "quiet" in (Path(folder) / "report.html").read_text(encoding="utf-8")
+    True
+    """
+    rigs = {one.name: one.rig for one in found.designs}
+    maps = screen_maps(found)
+    held = {one.design: one.never_slips for one in found.standings if one.rank is None}
+    # A contact that is wound up without end would set the gain of all others.
+    laid = [
+        held.get(one.design) or in_environment(rigs[one.design], environment(one.environment))
+        for one in maps
+    ]
+    room = 1e6 * megabytes - PAGE_BYTES
+    each = CARD_BYTES + SHORTEST * BYTES_A_SECOND
+    compared, heard = compare_designs(
+        maps, laid, number=min(sounds, int(room / each)), seed=seed, workers=workers,
+        pair=_pair(found),
+    )  # fmt: skip
+    gain = common_gain(heard.values())
+    left = max(room - CARD_BYTES * len(heard) - compared.weight, each * len(heard))
+    clips, shortened = make_clips(heard, gain, budget=left, dither=np.random.default_rng(seed))
+    html = page_html(
+        "screening.html.j2",
+        heard,
+        clips,
+        without_card=heard,
+        title=_title(found),
+        summary=_summary(found),
+        gain=gain.sentences,
+        shortened=shortened,
+        conditions=conditions_lines(found),
+        rows=ranking_rows(found),
+        refused=found.refused,
+        failed=found.failed,
+        compared=compared,
+        seconds=f"{found.seconds + found.statistics_seconds:.1f}",
+    )
+    write_page(path, html)
+
+
+def _pair(found: Screening) -> tuple[str, str]:
+    """Compare the design that was named first with the best of the others."""
+    first = found.maps[0].design
+    others = [one.design for one in found.standings if one.design != first]
+    return first, (others or [first])[0]
+
+
+def _title(found: Screening) -> str:
+    names = list(dict.fromkeys(one.design for one in found.maps))
+    if len(names) <= 2:
+        return f"Screen of {' and '.join(names)}"
+    return f"Screen of {counted(len(names), 'design')}"
+
+
+def _summary(found: Screening) -> str:
+    best = found.standings[0]
+    if best.rank is None:
+        return "No design slips, so none has a rank."
+    names = {one.design for one in found.standings if one.rank == best.rank}
+    quietest = " and ".join(sorted(names))
+    if len({one.design for one in found.standings}) == 1:
+        return ""
+    return f"Least risk of noise: {quietest}."
