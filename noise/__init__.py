@@ -58,7 +58,7 @@ _EXPORTS = {
     "noise.training.inference.fit": ("train_inference",),
     "noise.labels.segments": ("Segment", "Segments", "file_label", "label_recording"),
     "noise.labels.table": ("LabelTable",),
-    "noise.labels.files": ("label",),
+    "noise.labels.labelling": ("label",),
     "noise.pictures.files": ("write_picture",),
     "noise.pictures.run": ("plot_run",),
     "noise.pictures.screening": ("plot_screen",),

@@ -16,13 +16,13 @@ from models.rig_file import load_material_rig
 from noise.audio.gain import QUIETEST_FULL_SCALE, common_full_scale
 from noise.audio.render import write_audio
 from noise.audio.sound import audible
-from noise.base.lock import locked
+from noise.base.files import locked
 from noise.base.progress import say, track
 from noise.base.tables import write_table
 from noise.classifier import load_classifier
 from noise.demo_hits import write_hits
-from noise.labels.kept_corrections import with_corrections
-from noise.labels.labelling import label_rows
+from noise.labels.corrections import with_corrections
+from noise.labels.rows import label_rows
 from noise.labels.segments import file_label, label_recording
 from noise.labels.table import LabelTable
 from noise.pages.report import ReportEntry, write_report

@@ -12,7 +12,7 @@ import numpy as np
 from models.radiation.rig_response import impulse_responses
 from models.rig_file import load_material_rig
 from models.transfer_functions.filtering import convolve
-from noise.base.atomic import atomic
+from noise.base.files import atomic
 
 if TYPE_CHECKING:
     from pathlib import Path

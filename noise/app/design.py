@@ -27,7 +27,7 @@ from noise.app.design_controls import (
     read_values,
 )
 from noise.app.design_player import RATE
-from noise.base.atomic import atomic
+from noise.base.files import atomic
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.map.provenance import fits_remark
 from sim.effects import EFFECTS

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import ParameterError
-from noise.base.label_names import NAMED
+from noise.base.labels import NAMED
 from noise.screening.design.design import Design as Screened, Use
 from noise.screening.map.batches import batch_evaluator
 from noise.screening.map.grid import shared_grid

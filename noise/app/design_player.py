@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
 from noise.app.worker_process import WorkerProcess
-from noise.batch.work import one_thread
+from noise.batch import one_thread
 from sim.live import LiveRun
 from sim.live_setting import Setting, paths_key, paths_of
 from sim.shaft import ConstantSpeed

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError, RecordingError
 from noise.base.csv_table import write_csv
-from noise.base.lock import locked
+from noise.base.files import locked
 from noise.base.tables import read_table, write_table
 
 Row = dict[str, Any]

@@ -19,11 +19,11 @@ from noise.app.commands import Command
 from noise.app.gate import body
 from noise.app.labels import Labels, read_corrections
 from noise.app.opened import Opened
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.base.tables import plain_cell, write_table
-from noise.labels.labelling import COLUMNS, Labelling
-from noise.labels.row_places import version
-from noise.labels.table import HUMAN
+from noise.labels.corrections import version
+from noise.labels.labelling import Labelling
+from noise.labels.table import COLUMNS, HUMAN
 
 Row = dict[str, object]
 

@@ -18,15 +18,22 @@ from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
 from models.recording import REFERENCE_PRESSURE
-from noise.base.label_names import LABELS
-from noise.base.lock import locked
+from noise.base.files import locked
+from noise.base.labels import LABELS
 from noise.batch import JournalReader
-from noise.labels.kept_corrections import with_corrected_rows
-from noise.labels.label_display import ASSUMED, labels_in, naming_row
-from noise.labels.labelling import COLUMNS, CONDITIONS, Labelling
-from noise.labels.row_places import common_time, place, track, version
-from noise.labels.said_segments import said_rows
-from noise.labels.table import HUMAN, LabelTable, read_label_table
+from noise.labels.corrections import common_time, place, track, version, with_corrected_rows
+from noise.labels.labelling import Labelling
+from noise.labels.rows import said_rows
+from noise.labels.table import (
+    ASSUMED,
+    COLUMNS,
+    CONDITIONS,
+    HUMAN,
+    LabelTable,
+    labels_in,
+    naming_row,
+    read_label_table,
+)
 
 if TYPE_CHECKING:
     from noise.batch import Done, Job
@@ -50,7 +57,7 @@ class Correction:
     start, end : float
         [s]
     label : str
-        One of `noise.base.label_names.LABELS`.
+        One of `noise.base.labels.LABELS`.
     channel : str
         ``all``, or a track counted from 1.
     confirmed : bool
@@ -448,7 +455,7 @@ class Labels:
             Of the recording.
         segments : sequence of Correction
         of : str
-            `noise.labels.row_places.version` of the rows that the person saw.
+            `noise.labels.corrections.version` of the rows that the person saw.
         by : str
             The page that the correction comes from.
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.foreign_file import check_plain_file
-from noise.base.atomic import check_target
+from noise.base.files import check_target
 from noise.base.tables import TABLE_ENDINGS, check_table_path
 from noise.batch import find_jobs
 

@@ -23,7 +23,7 @@ from starlette.staticfiles import StaticFiles
 
 from models.errors import BushingNoiseError
 from noise.app.gate import Gate
-from noise.base.label_looks import LABEL_LOOKS
+from noise.base.labels import LABEL_LOOKS
 
 if TYPE_CHECKING:
     from starlette.requests import Request

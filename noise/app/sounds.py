@@ -470,7 +470,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
     sounds = SoundCache(opened)
 
     def about(request: Request) -> Response:
-        from noise.labels.labelling import labelled_tracks  # which the list comes before
+        from noise.labels.rows import labelled_tracks  # which the list comes before
 
         index = request.path_params["id"]
         blocks = sounds.blocks(index)

@@ -39,7 +39,7 @@ from noise.audio.gain import (
     true_peak,
 )
 from noise.audio.sound import FADE, audible, in_band, pressure_channel
-from noise.base.atomic import atomic
+from noise.base.files import atomic
 from noise.recordings.blocks import RecordingBlocks
 from noise.recordings.sidecar import sidecar_text
 from noise.recordings.wav import BITS, largest_sample, wav_bytes, with_full_scale

@@ -16,7 +16,7 @@ import numpy as np
 
 from models.errors import ParameterError
 from models.foreign_file import ExcessError, parse_json, read_arrays, reading
-from noise.base.atomic import atomic
+from noise.base.files import atomic
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -3,27 +3,25 @@
 Standard output belongs to results. The bar is drawn on a terminal only; in a log file there is one
 line that says what is being done, and one a second for a program that reads them (`LINES`). Lines
 and bar do not tread on each other, and a standard error that is closed is no reason to stop.
+
+Names of files may hold anything. Bytes that are no UTF-8 cannot be written as text, characters that
+control a terminal can clear it, or write into its title, and those that turn the direction of
+writing make a name look like another; all are shown as a backslash and their code (`readable`).
 """
 
 from __future__ import annotations
 
 import os
+import re
 import sys
 import threading
 import time
-from collections.abc import Sized
+from collections.abc import Iterable, Iterator, Sized
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, TextIO, TypeVar
 
-from noise.base.readable import readable
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from typing import TextIO
-
+if TYPE_CHECKING:  # which is slow to import
     from tqdm import tqdm
-
-__all__ = ["LINES", "Steps", "counted", "discard", "note", "say", "steps", "track"]
 
 LINES = "BUSHING_NOISE_PROGRESS_LINES"
 """Environment variable that asks for lines ``simulating: 120 of 7360`` where there is no bar."""
@@ -228,3 +226,31 @@ def _in_lines(items: Iterable[_Item], doing: str, total: int | None) -> Iterator
         if time.monotonic() - said >= _EVERY:
             said = time.monotonic()
             say(f"{doing}: {number}" + ("" if total is None else f" of {total}"))
+
+
+_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+
+
+def readable(text: str) -> str:
+    r"""Return a text without what cannot be shown.
+
+    Examples
+    --------
+    >>> print(readable("run07.wav"), readable("\x1b[2J\a.wav"), readable("caf\udce9.wav"))
+    run07.wav \x1b[2J\x07.wav caf\xe9.wav
+    """
+    if not text.isascii():
+        text = _bytes(text).decode("utf-8", "backslashreplace")
+    return _CONTROL.sub(_code, text)
+
+
+def _bytes(text: str) -> bytes:
+    try:
+        return os.fsencode(text)
+    except UnicodeEncodeError:  # of a system whose names are in another code
+        return text.encode("utf-8", "surrogatepass")
+
+
+def _code(found: re.Match[str]) -> str:
+    number = ord(found[0])
+    return f"\\x{number:02x}" if number < 0x100 else f"\\u{number:04x}"

@@ -1,11 +1,11 @@
 """Tables as files: CSV, Excel, JSON Lines or Parquet by the ending; CSV on standard output.
 
 One value is written alike in all formats: nothing where there is none (an undefined number is
-none, too, and an infinite one), texts as `noise.base.readable` shows them, ``true`` and ``false``,
-and numbers with as many digits as give the same number back. In CSV and in a workbook the infinite
-stiffness of a bolted clamp is the word ``fixed``. CSV that is written over another keeps its form,
-see `noise.base.csv_table`. A table appears whole or not at all, and a target that cannot be written
-is refused before the work whose result it is to hold.
+none, too, and an infinite one), texts as `noise.base.progress.readable` shows them, ``true`` and
+``false``, and numbers with as many digits as give the same number back. In CSV and in a workbook
+the infinite stiffness of a bolted clamp is the word ``fixed``. CSV that is written over another
+keeps its form, see `noise.base.csv_table`. A table appears whole or not at all, and a target that
+cannot be written is refused before the work whose result it is to hold.
 """
 
 from __future__ import annotations
@@ -21,14 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError, not_installed
-from models.foreign_file import (
-    LARGEST_TEXT,
-    ExcessError,
-    check_inflation,
-    parse_json,
-    reading,
-)
-from noise.base.atomic import atomic
+from models.foreign_file import LARGEST_TEXT, ExcessError, check_inflation, parse_json, reading
 from noise.base.csv_table import (
     PLAIN,
     CsvForm,
@@ -39,7 +32,8 @@ from noise.base.csv_table import (
     finite_or_fixed,
     write_csv,
 )
-from noise.base.readable import readable
+from noise.base.files import atomic
+from noise.base.progress import readable
 
 Cell = bool | int | float | str | None
 

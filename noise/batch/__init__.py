@@ -4,21 +4,32 @@ Whatever becomes of a process, nothing that was done is lost, nothing is done tw
 is the same, byte for byte, as that of one process that nobody disturbed.
 """
 
-from noise.batch.identity import file_digest, file_identity
-from noise.batch.journal import Journal, JournalReader, open_journal
-from noise.batch.lines import journal_path
-from noise.batch.work import Done, Job, Work, find_jobs, perform_all
+from noise.batch.journal import (
+    Journal,
+    JournalReader,
+    call_identity,
+    file_identity,
+    journal_path,
+    kept_results,
+    open_journal,
+)
+from noise.batch.run import DIED, BatchRows, perform_all
+from noise.batch.work import Done, Job, Work, find_jobs, one_thread
 
 __all__ = [
+    "DIED",
+    "BatchRows",
     "Done",
     "Job",
     "Journal",
     "JournalReader",
     "Work",
-    "file_digest",
+    "call_identity",
     "file_identity",
     "find_jobs",
     "journal_path",
+    "kept_results",
+    "one_thread",
     "open_journal",
     "perform_all",
 ]

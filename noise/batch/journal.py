@@ -1,65 +1,119 @@
-"""The journal of a table: what has been done so far, on disk after each recording.
+"""The journal of a call: its results so far, on disk one by one, for a call that goes on after it.
 
-It is kept as `noise.batch.lines` keeps results, and outlives the table. A line is one recording
-with its rows; many rows of one recording are several lines, which count together or not at all. It
-counts as long as the recording is the same file as then, and the same program does the same work;
-otherwise the recording is done again, and the later line stands.
+It is an SQLite database, hidden beside the table or folder that the call is to write. Each result
+is a row of its own and on the disk before the next is begun, so a process may be killed at any
+moment, and the same call again goes on where it was. Results of other options, or of a program that
+gives other results, are not used; a line says so.
 
-Refused recordings are not in it. They cost little, and what was at fault may have been put right
-since without the file changing: a share that was away, a library that was not installed.
+The journal of a table outlives it. A recording in it counts as long as it is the same file as then.
+Refused recordings are not kept: what was at fault may have been put right since without the file
+changing, such as a share that was away or a library that was not installed.
 """
 
 from __future__ import annotations
 
-import os
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+import json
+import sqlite3
+import uuid
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager, suppress
+from pathlib import Path
+from typing import Any
 
-from noise.batch.identity import file_identity, work_identity
-from noise.batch.lines import header_of, journal_path, open_lines, parsed
-from noise.batch.rows import StoredRows, part_count, parts_of
-from noise.batch.work import Done
+from models.errors import BushingNoiseError, ParameterError
+from noise.base.files import locked
+from noise.base.progress import note
+from noise.batch.work import Done, Job, Work
+from noise.recordings.sidecar import find_sidecar
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from pathlib import Path
+__all__ = [
+    "RESULTS_VERSION",
+    "Journal",
+    "JournalReader",
+    "call_identity",
+    "file_identity",
+    "journal_path",
+    "kept_results",
+    "open_journal",
+]
 
-    from noise.batch.lines import Lines
-    from noise.batch.rows import Cell
-    from noise.batch.work import Job, Work
+RESULTS_VERSION = 1
+"""Of all that a journal holds. To be raised by hand whenever labels, features, measured levels or
+screened points come out differently: a change of code, of a shipped model or of a library."""
 
-    Entries = dict[str, tuple[list[int], Done]]
+_PATIENCE = 30.0
+"""How long who writes waits for who reads [s]."""
 
-__all__ = ["Journal", "JournalReader", "open_journal"]
+_TABLES = """
+    create table if not exists call (version integer, identity text, begun text);
+    create table if not exists result (key text primary key, value text);
+"""
 
 
 class Journal:
-    """What is done of a table; see `open_journal`."""
+    """Results by their keys; see `open_journal` and `kept_results`.
 
-    def __init__(self, lines: Lines, entries: Entries) -> None:
-        self._lines = lines
-        self._entries = entries
+    Parameters
+    ----------
+    path : Path or None
+        None is a file that goes with the journal.
+    """
+
+    def __init__(self, path: Path | None = None) -> None:
+        self._path = path
+        self._database = sqlite3.connect("" if path is None else path, timeout=_PATIENCE)
+        self._database.executescript(_TABLES)
+
+    def begin(self, identity: str, *, fresh: bool = False) -> None:
+        """Forget what is of another call, or all of it."""
+        call = (RESULTS_VERSION, identity)
+        found = self._database.execute("select version, identity from call").fetchone()
+        if found == call and not fresh:
+            return
+        if found is not None and not fresh and self._path is not None and len(self):
+            why = "with other options" if found[0] == RESULTS_VERSION else "by another version"
+            note(f"{self._path}: holds results that were made {why}; all is done again")
+        with self._database:
+            self._database.execute("delete from call")
+            self._database.execute("delete from result")
+            self._database.execute("insert into call values (?, ?, ?)", (*call, uuid.uuid4().hex))
+
+    def get(self, key: str) -> list[Any] | None:
+        """Return the values that are kept by a key; None where there are none."""
+        found = self._database.execute("select value from result where key = ?", (key,)).fetchone()
+        return None if found is None else json.loads(found[0])
+
+    def add(self, key: str, *values: object) -> None:
+        """Keep values as JSON knows them; they are on the disk on return."""
+        try:
+            with self._database:
+                self._database.execute(
+                    "insert or replace into result values (?, ?)", (_ascii(key), json.dumps(values))
+                )
+        except sqlite3.Error as error:
+            raise ParameterError(f"{self._path}: cannot be written ({error})") from None
 
     def find(self, job: Job) -> Done | None:
         """Return what came of a recording, None where it is still to be done."""
-        return _find(self._entries, job)
+        found = self.get(_key(job))
+        return None if found is None else _done(found, job)
 
-    def known(self, jobs: Sequence[Job]) -> dict[int, Done]:
-        """Return what came of those recordings that are done, by their index."""
-        return _known(self._entries, jobs)
+    def rows(self, job: Job) -> list[list[Any]]:
+        """Return the rows of a recording that was done, whatever has become of its file since."""
+        found = self.get(_key(job))
+        return [] if found is None else found[2]
 
-    def add(self, job: Job, identity: list[int] | None, done: Done) -> None:
+    def keep(self, job: Job, identity: list[int] | None, done: Done) -> None:
         """Keep what came of a recording; `identity` is the file's from before it was read."""
-        if identity is None or done.error is not None:
-            return
-        n_parts = part_count(done.rows)
-        self._lines.add(
-            *(
-                [_key(job), identity, done.calibrated, part]
-                + ([] if n_parts == 1 else [number, n_parts])
-                for number, part in enumerate(parts_of(done.rows), start=1)
-            )
-        )
+        if done.error is None:
+            self.add(_key(job), identity, done.calibrated, done.rows)
+
+    def __len__(self) -> int:
+        return int(self._database.execute("select count(*) from result").fetchone()[0])
+
+    def close(self) -> None:
+        """Let the file go."""
+        self._database.close()
 
 
 class JournalReader:
@@ -74,43 +128,38 @@ class JournalReader:
 
     def __init__(self, table: Path, work: Work) -> None:
         self._path = journal_path(table)
-        self._header = header_of(work_identity(work))
-        self._n_columns = len(work.columns)
-        self._begin()
-
-    def _begin(self) -> None:
-        self._read = 0
-        self._reading = _Reading(self._n_columns)
+        self._identity = _work_identity(work)
+        self._begun, self._last = "", 0
 
     def news(self, jobs: Sequence[Job]) -> dict[int, Done]:
         """Return what came of recordings since the last call, by their index."""
-        try:
-            with self._path.open("rb") as file:
-                if file.readline() != self._header:
-                    self._begin()
-                    return {}
-                if os.fstat(file.fileno()).st_size < self._read:  # begun again
-                    self._begin()
-                file.seek(max(self._read, len(self._header)))
-                content = file.read()
-        except OSError:
-            return {}
-        whole = content[: content.rfind(b"\n") + 1]
-        self._read = max(self._read, len(self._header)) + len(whole)
-        found: Entries = {}
-        for line in whole.splitlines():
-            found.update(self._reading.entries(parsed(line)))
-        return _known(found, jobs)
+        by_key = {_key(job): job for job in jobs}
+        found: dict[int, Done] = {}
+        with suppress(sqlite3.Error), closing(self._opened()) as database:
+            call = database.execute("select version, identity, begun from call").fetchone()
+            if call is None or call[:2] != (RESULTS_VERSION, self._identity):
+                return {}
+            if call[2] != self._begun:
+                self._begun, self._last = call[2], 0
+            rows = "select rowid, key, value from result where rowid > ? order by rowid"
+            for place, key, value in database.execute(rows, (self._last,)):
+                self._last = place
+                if key in by_key and (done := _done(json.loads(value), by_key[key])):
+                    found[by_key[key].index] = done
+        return found
+
+    def _opened(self) -> sqlite3.Connection:
+        return sqlite3.connect(f"{self._path.absolute().as_uri()}?mode=ro", uri=True)
 
 
 @contextmanager
-def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Journal]:
+def open_journal(table: Path | None, work: Work, *, fresh: bool = False) -> Iterator[Journal]:
     """Open the journal of a table, with what of this work is in it.
 
     Parameters
     ----------
-    table : Path
-        Parent folders are made.
+    table : Path or None
+        Parent folders are made; None is a table that is not written, of which nothing stays.
     work : Work
     fresh : bool
         Whether to forget what is in it.
@@ -123,8 +172,6 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
     Examples
     --------
     >>> import tempfile
-    >>> from pathlib import Path
-    >>> from noise.batch.work import Job
     >>> from noise.commands.features import Featuring
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     run = Path(folder) / "run07.wav"
@@ -132,64 +179,130 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
     ...     job, work = Job(0, run, "run07.wav"), Featuring()
     ...     done = Done([["run07.wav", *[1.5] * (len(work.columns) - 1)]], True)
     ...     with open_journal(Path(folder) / "t.csv", work) as journal:
-    ...         journal.add(job, file_identity(run), done)
+    ...         journal.keep(job, file_identity(run), done)
     ...     with open_journal(Path(folder) / "t.csv", work) as journal:
     ...         journal.find(job) == done
     True
     """
-    entries: Entries = {}
-    reading = _Reading(len(work.columns))
-
-    def take(found: list[Any]) -> None:
-        entries.update(reading.entries(found))
-
-    with open_lines(table, work_identity(work), take=take, fresh=fresh) as lines:
-        yield Journal(lines, entries)
+    if table is None:
+        with closing(Journal()) as journal:
+            yield journal
+        return
+    with _opened(table, _work_identity(work), fresh=fresh) as journal:
+        yield journal
 
 
-def _find(entries: Entries, job: Job) -> Done | None:
-    entry = entries.get(_key(job))
-    return entry[1] if entry is not None and entry[0] == file_identity(job.path) else None
+@contextmanager
+def kept_results(target: Path | None, identity: str) -> Iterator[Journal | None]:
+    """Keep results until the block ends well, or is refused, and has no more need of them.
+
+    Parameters
+    ----------
+    target : Path, optional
+        The file that the call is to write. Without it nothing is kept.
+    identity : str
+        Of `call_identity`.
+
+    Raises
+    ------
+    ParameterError
+        As of `open_journal`.
+    """
+    if target is None:
+        yield None
+        return
+    done_with, made = False, not target.parent.exists()
+    try:
+        with _opened(target, identity) as journal:
+            try:
+                yield journal
+                done_with = True
+            except BushingNoiseError as error:  # what is refused leaves nothing, a full disk does
+                done_with = not isinstance(error.__context__, OSError | sqlite3.Error)
+                raise
+            finally:
+                done_with |= not len(journal)
+    finally:
+        if done_with:
+            journal_path(target).unlink(missing_ok=True)
+            if made:
+                with suppress(OSError):  # there is something in it
+                    target.parent.rmdir()
 
 
-def _known(entries: Entries, jobs: Sequence[Job]) -> dict[int, Done]:
-    found = {job.index: _find(entries, job) for job in jobs}
-    return {index: done for index, done in found.items() if done is not None}
-
-
-class _Reading:
-    """Recordings from the lines of a journal, as they come."""
-
-    def __init__(self, n_columns: int) -> None:
-        self._n_columns = n_columns
-        self._begun: tuple[list[object], StoredRows] = ([], StoredRows())
-        self._number = 0
-
-    def entries(self, line: list[Any]) -> Entries:
-        """Return the recording that a line completes, by its key."""
+@contextmanager
+def _opened(target: Path, identity: str, *, fresh: bool = False) -> Iterator[Journal]:
+    path = journal_path(target)
+    with locked(path, wait=False):
         try:
-            key, identity, calibrated, rows, *place = line
-            if not (
-                {len(row) for row in rows} <= {self._n_columns} and calibrated in (True, False)
-            ):
-                return {}
-            if not place:
-                return {key: (identity, Done(rows, calibrated))}
-            return self._part([key, identity, calibrated], rows, *place)
-        except (ValueError, TypeError):  # no line of ours
-            return {}
+            try:
+                journal = Journal(path)
+                journal.begin(identity, fresh=fresh)
+            except sqlite3.DatabaseError as error:
+                if isinstance(error, sqlite3.OperationalError):
+                    raise
+                path.unlink()
+                note(f"{path}: is damaged or of an earlier program; all is done again")
+                journal = Journal(path)
+                journal.begin(identity)
+        except sqlite3.Error as error:
+            raise ParameterError(f"{path}: cannot be written ({error})") from None
+        with closing(journal):
+            yield journal
 
-    def _part(self, of: list[Any], rows: list[list[Cell]], number: int, n_parts: int) -> Entries:
-        if number == 1:
-            self._begun = of, StoredRows()
-        elif (of, number) != (self._begun[0], self._number + 1):  # one before it is damaged
-            return {}
-        self._number = number
-        kept = self._begun[1]
-        kept.add(rows)
-        key, identity, calibrated = of
-        return {key: (identity, Done(kept, calibrated))} if number == n_parts else {}
+
+def journal_path(target: Path) -> Path:
+    """Where the results lie that are kept for a file to be written.
+
+    Examples
+    --------
+    >>> journal_path(Path("runs") / "labels.csv").name
+    '.labels.csv.journal'
+    """
+    return target.with_name(f".{target.name}.journal")
+
+
+def file_identity(path: Path) -> list[int] | None:
+    """Size [byte] and time of the last change [ns] of a recording, then those of its sidecar.
+
+    None where the file cannot be looked at.
+
+    Examples
+    --------
+    >>> file_identity(Path("nowhere.wav")) is None
+    True
+    """
+    try:
+        parts = [path, *filter(None, [find_sidecar(path)])]
+        return [value for part in parts for value in (part.stat().st_size, part.stat().st_mtime_ns)]
+    except OSError:
+        return None
+
+
+def call_identity(*decisive: object) -> str:
+    """Return what decides the results of a call, as JSON can hold it.
+
+    Examples
+    --------
+    >>> call_identity("rendering", 48000.0)
+    '["rendering", 48000.0]'
+    """
+    return json.dumps(decisive)
+
+
+def _work_identity(work: Work) -> str:
+    return call_identity(work.doing, list(work.columns), dict(work.identity()))
 
 
 def _key(job: Job) -> str:
-    return f"{job.name}\n{job.path.absolute()}"
+    return _ascii(f"{job.name}\n{job.path.absolute()}")
+
+
+def _ascii(text: str) -> str:
+    """Return a key that SQLite can hold: names of files may be no text."""
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
+def _done(values: list[Any], job: Job) -> Done | None:
+    identity, calibrated, rows = values
+    return Done(rows, calibrated) if identity and identity == file_identity(job.path) else None

@@ -13,19 +13,18 @@ from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from noise.base.atomic import check_target
-from noise.base.lock import locked
+from noise.base.files import check_target, locked
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_number
 
 if TYPE_CHECKING:
     from argparse import Namespace
-    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from noise.batch import Done, Job, Journal, Work
 
-    Rows = Collection[dict[str, object]]
+    Rows = Iterable[dict[str, object]]
 
 
 _INTERRUPTED = 130  # 128 + SIGINT
@@ -99,36 +98,36 @@ def run_batch(
     ParameterError
         The table cannot be written, or the cluster not be used.
     """
-    from noise.batch import open_journal
+    from noise.batch import BatchRows, open_journal
 
     out = options.out
     # Nobody reads a table of forty columns on a terminal; whoever wants it pipes or names it.
     to_read = out is None and lines is not None and sys.stdout is not None and sys.stdout.isatty()
     check_table_path(out, work.columns)
     work.prepare()
-    outcomes: list[Done | None] = [None] * len(jobs)
+    outcomes: dict[int, Done] = {}
     stopped = 0
-    kept = nullcontext() if options.out is None else open_journal(
-        options.out, work, fresh=options.fresh
-    )  # fmt: skip
-    with kept as journal, _termination_as_interrupt():
+    with open_journal(out, work, fresh=options.fresh) as journal, _termination_as_interrupt():
         try:
             for job, done in _progress(options, work, jobs, journal):
-                outcomes[job.index] = done
                 if done.error is not None:
                     refuse(done.error, job.path)
+                    outcomes[job.index] = done
+                else:  # rows are in the journal, of which there may be many
+                    outcomes[job.index] = done._replace(rows=[])
         except KeyboardInterrupt as interrupt:
             stopped = _exit_code(interrupt)
-        there = [done for done in outcomes if done is not None]
-        _note_uncalibrated(there)
+        _note_uncalibrated(outcomes.values())
+        refused = {index: done for index, done in outcomes.items() if done.error is not None}
+        there = [job for job in jobs if job.index in outcomes]
+        made = BatchRows(work.columns, journal, there, refused)
         try:
-            rows, written = _write(options, work, there, also, keep, table=not to_read)
+            rows, written = _write(options, work, made, also, keep, table=not to_read)
         except KeyboardInterrupt as interrupt:
             stopped = _exit_code(interrupt)
-            rows, written = _write(options, work, there, also, keep, table=not to_read)
-    refused = sum(done.error is not None for done in there)
-    read = f"{len(there)} of " * bool(stopped) + counted(len(jobs), "recording")
-    say(f"{'interrupted: ' * bool(stopped)}{read}, {refused} refused")
+            rows, written = _write(options, work, made, also, keep, table=not to_read)
+    read = f"{len(outcomes)} of " * bool(stopped) + counted(len(jobs), "recording")
+    say(f"{'interrupted: ' * bool(stopped)}{read}, {len(refused)} refused")
     if lines is not None and (to_read or out is not None):
         for line in lines(rows):
             print(line)
@@ -139,58 +138,42 @@ def run_batch(
             print(path)
         else:  # standard output is the table
             say(str(path))
-    return stopped or int(refused > 0)
+    return stopped or int(bool(refused))
 
 
 def _progress(
-    options: Namespace, work: Work, jobs: Sequence[Job], journal: Journal | None
+    options: Namespace, work: Work, jobs: Sequence[Job], journal: Journal
 ) -> Iterator[tuple[Job, Done]]:
     """First what earlier calls did, then the rest as it is done."""
     from noise.batch import perform_all
 
-    known = {} if journal is None else journal.known(jobs)
-    left = [job for job in jobs if job.index not in known]
-    yield from ((job, known[job.index]) for job in jobs if job.index in known)
-    if known:
-        say(f"{len(known)} of {counted(len(jobs), 'recording')} are done already")
+    left = []
+    for job in jobs:
+        if (done := journal.find(job)) is None:
+            left.append(job)
+        else:
+            yield job, done
+    if len(left) < len(jobs):
+        say(f"{len(jobs) - len(left)} of {counted(len(jobs), 'recording')} are done already")
     if not left:
         return
     advancing = perform_all(
-        work, left, workers=options.workers, scheduler=options.scheduler, journal=journal
+        work, left, journal, workers=options.workers, scheduler=options.scheduler
     )
     with closing(advancing):
         yield from track(advancing, work.doing, total=len(left))
 
 
-class _Rows:
-    """All rows of a table, each made when it is its turn."""
-
-    def __init__(self, columns: Sequence[str], outcomes: Sequence[Done]) -> None:
-        self._columns, self._outcomes = columns, outcomes
-
-    def __len__(self) -> int:
-        return sum(len(done.rows) for done in self._outcomes)
-
-    def __contains__(self, row: object) -> bool:
-        return any(row == one for one in self)
-
-    def __iter__(self) -> Iterator[dict[str, object]]:
-        for done in self._outcomes:
-            for row in done.rows:
-                yield dict(zip(self._columns, row, strict=True))
-
-
 def _write(
     options: Namespace,
     work: Work,
-    outcomes: Sequence[Done],
+    made: Rows,
     also: Callable[[Rows], Sequence[Path]],
     keep: Callable[[Path | None, Rows], Rows],
     *,
     table: bool,
 ) -> tuple[Rows, list[Path]]:
     columns, out = work.columns, options.out
-    made: Rows = _Rows(columns, outcomes)
     # Nobody may change the table between the look at what stays of it and the writing.
     with nullcontext() if out is None else locked(out):
         rows = keep(out, made)
@@ -201,7 +184,7 @@ def _write(
     return rows, [*([] if out is None else [out]), *also(rows)]
 
 
-def _note_uncalibrated(outcomes: Sequence[Done]) -> None:
+def _note_uncalibrated(outcomes: Iterable[Done]) -> None:
     number = sum(not done.calibrated for done in outcomes)
     if number:
         note(

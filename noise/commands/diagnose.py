@@ -11,10 +11,8 @@ from noise.commands.options import CHANGE, Option, changed, check_folder, seed
 if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Mapping
-    from contextlib import AbstractContextManager
 
     from noise.base.progress import Steps
-    from noise.batch.lines import Results
     from noise.diagnosis.case import Case
     from noise.diagnosis.improvement import Improvement
     from noise.diagnosis.outcome import Diagnosis
@@ -58,11 +56,14 @@ def run(options: Namespace) -> int:
         check_folder(options.out, file="report.html")
     with steps("diagnosing", _QUICK_STEPS if options.quick else _STEPS) as tell:
         case, library, told = _read(options, tell)
-        with _keeping(options, case) as kept:
-            diagnosis = _diagnosed(options, case, library, tell, kept)
-            if options.out is not None:
-                tell("writing the report")
-                written = _write(options, diagnosis)
+        from noise.diagnosis.diagnose import diagnose_case
+
+        diagnosis = diagnose_case(
+            case, quick=options.quick, library=library, seed=options.seed or 0, progress=tell
+        )
+        if options.out is not None:
+            tell("writing the report")
+            written = _write(options, diagnosis)
     if options.out is None:
         import json
 
@@ -98,32 +99,6 @@ def _read(options: Namespace, tell: Steps) -> tuple[Case, Mapping[str, Effect], 
         note(text)
     left_out = {f"{name} was left out: {reason}" for name, reason in case.refused}
     return case, library, {*remarks, *left_out}
-
-
-def _keeping(options: Namespace, case: Case) -> AbstractContextManager[Results | None]:
-    """Keep what is simulated, except by a user's code: nothing tells whether that has changed."""
-    from joblib import hash as digest
-
-    from noise.batch.identity import call_identity
-    from noise.batch.lines import kept_results
-
-    target = None if options.out is None or options.effects else options.out / "report.html"
-    of_case = digest((case.rig, case.recordings))
-    return kept_results(target, call_identity("diagnosing", of_case, options.seed))
-
-
-def _diagnosed(
-    options: Namespace,
-    case: Case,
-    library: Mapping[str, Effect],
-    tell: Steps,
-    kept: Results | None,
-) -> Diagnosis:
-    from noise.diagnosis.diagnose import diagnose_case
-
-    return diagnose_case(
-        case, quick=options.quick, library=library, seed=options.seed or 0, progress=tell, kept=kept
-    )
 
 
 def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:

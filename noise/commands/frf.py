@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError
-from noise.base.atomic import atomic, check_target
+from noise.base.files import atomic, check_target
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.options import Option, band, number, one_of, refuse, seed

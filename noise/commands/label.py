@@ -11,9 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.atomic import check_target
-from noise.base.exports import export_paths
-from noise.base.lock import locked
+from noise.base.files import check_target, export_paths, locked
 from noise.base.progress import counted, note
 from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands.batch import BATCH, check_batch, run_batch
@@ -86,9 +84,9 @@ def run(options: Namespace) -> int:
         export_paths(options.audacity, [job.name for job in jobs], (".txt",), "--audacity")
     if options.plot is not None:
         check_plots(options.plot, jobs)
-    from noise.labels.kept_corrections import with_corrections
-    from noise.labels.label_display import result_lines
+    from noise.labels.corrections import with_corrections
     from noise.labels.labelling import Labelling
+    from noise.labels.table import result_lines
 
     # Or its corrections could not be kept after all the work.
     with_corrections(options.out, [], [job.name for job in jobs])
@@ -137,7 +135,7 @@ def _note_sensitivity(work: Labelling) -> None:
 
 def _note_assumed(rows: list[dict[str, object]]) -> None:
     """Say what inferred conditions rely on where no material was logged."""
-    from noise.labels.label_display import ASSUMED, assumes_material
+    from noise.labels.table import ASSUMED, assumes_material
 
     number = len({row["file"] for row in rows if assumes_material(row)})
     if number:
@@ -149,7 +147,7 @@ def _note_assumed(rows: list[dict[str, object]]) -> None:
 
 def _note_speeds(rows: list[dict[str, object]]) -> None:
     """Name the recordings whose channel tells another speed than was logged."""
-    from noise.labels.segment_speed import OF_CHANNEL
+    from noise.labels.rows import OF_CHANNEL
 
     names = {str(row["file"]): str(row["note"]) for row in rows if OF_CHANNEL in str(row["note"])}
     if names:
@@ -178,9 +176,8 @@ def _check_exports(options: Namespace) -> None:
 
 def _from_tables(options: Namespace) -> int:
     """Join label tables, and write what was asked for."""
-    from noise.labels.kept_corrections import with_corrections
-    from noise.labels.labelling import COLUMNS
-    from noise.labels.table import own_columns, read_label_table
+    from noise.labels.corrections import with_corrections
+    from noise.labels.table import COLUMNS, own_columns, read_label_table
 
     if options.out is None and options.map is None and options.audacity is None:
         raise ParameterError(
@@ -204,7 +201,7 @@ def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
     """Write map and label tracks as asked; return their paths."""
     written: list[Path] = []
     if options.audacity is not None:
-        from noise.labels.audacity import write_label_tracks
+        from noise.labels.tracks import write_label_tracks
 
         write_label_tracks(options.audacity, rows)
         written.append(options.audacity)

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from models.errors import BushingNoiseError, ParameterError
-from noise.base.atomic import check_target
+from noise.base.files import check_target
 from noise.base.progress import say
 
 if TYPE_CHECKING:

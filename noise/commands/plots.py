@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
-from noise.base.atomic import check_target
-from noise.base.exports import export_paths
+from noise.base.files import check_target, export_paths
 from noise.base.progress import note, track
 from noise.commands.options import Option
 from noise.pictures.files import PICTURE_ENDINGS

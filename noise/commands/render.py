@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
-from noise.base.atomic import check_target
+from noise.base.files import check_target
 from noise.base.progress import counted, note, say, track
 from noise.commands.condition import CONDITION
 from noise.commands.options import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from noise.base.atomic import check_target
+from noise.base.files import check_target
 from noise.base.progress import counted, note, say
 from noise.commands.options import (
     CALIBRATION,

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from models.rig import Rig
     from noise.base.progress import Steps
-    from noise.batch.lines import Results
+    from noise.batch import Journal
     from noise.screening.design.design import Swinging, Use
     from noise.screening.outcome import Screening
 
@@ -124,8 +124,7 @@ def run(options: Namespace) -> int:
     """Screen; print the ranking, write tables and pictures."""
     if options.out is not None:
         check_folder(options.out, file="map.csv")
-    from noise.batch.identity import call_identity
-    from noise.batch.lines import kept_results
+    from noise.batch import call_identity, kept_results
     from noise.screening.design.environments import environment
     from noise.screening.design.loading import load_designs
 
@@ -159,7 +158,7 @@ def _screened(
     given: Use,
     environments: list[str],
     tell: Steps,
-    kept: Results | None,
+    kept: Journal | None,
 ) -> Screening:
     tell("preparing")
     import numpy as np

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
-from noise.base.atomic import check_target
+from noise.base.files import check_target
 from noise.base.progress import note, say
 from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.condition import CONDITION, is_long, run_arguments, with_notes

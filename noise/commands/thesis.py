@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.atomic import atomic, check_target
+from noise.base.files import atomic, check_target
 from noise.base.progress import say, track
 from noise.base.tables import TABLE_ENDINGS, check_table_path, table_endings, write_table
 from noise.commands.options import Option, check_folder, seed

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from models.errors import ParameterError
-from noise.base.atomic import check_target
+from noise.base.files import check_target
 from noise.base.progress import counted, say, steps, track
 from noise.base.tables import TABLE_ENDINGS
 from noise.commands.options import Option, one_of, refuse, seed, whole_number
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from noise.base.progress import Steps
-    from noise.batch.lines import Results
     from noise.classifier import Classifier
     from noise.training.classifier.own_samples import OwnSample
 
@@ -73,9 +72,6 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Train, save, and tell the score."""
-    from noise.batch.identity import call_identity
-    from noise.batch.lines import kept_results
-
     _check_model(options.out, "--out", "a classifier")
     if options.keep is not None:
         _check_model(options.keep, "--keep", "what was simulated")
@@ -90,10 +86,8 @@ def run(options: Namespace) -> int:
         tell("preparing")
         added, refused = _own(options.add or ())
         tell("simulating what to learn from")
-        decisive = (options.seed, options.samples, options.surroundings)
-        with kept_results(options.out, call_identity("training", *decisive)) as lines:
-            classifier = _trained(options, added, tell, lines)
-            classifier.save(options.out)
+        classifier = _trained(options, added, tell)
+        classifier.save(options.out)
         if options.inference is not None:
             from noise.training.inference.fit import train_inference
 
@@ -109,9 +103,7 @@ def run(options: Namespace) -> int:
     return int(refused)
 
 
-def _trained(
-    options: Namespace, added: Sequence[OwnSample], tell: Steps, lines: Results | None
-) -> Classifier:
+def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Classifier:
     from noise.training.classifier.fit import N_TEST, N_TRAINING, train
 
     n = options.samples
@@ -122,7 +114,6 @@ def _trained(
         added=added,
         surroundings=options.surroundings,
         keep=options.keep,
-        lines=lines,
         progress=_simulating,
         growing=partial(_growing, tell),
     )

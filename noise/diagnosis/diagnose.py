@@ -34,7 +34,6 @@ from sim.effects.effect import Stage
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from noise.batch.lines import Results
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
     from noise.diagnosis.causes.stage_nulls import StageNulls
@@ -63,7 +62,6 @@ def diagnose_case(
     posterior: Posterior | None = None,
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
-    kept: Results | None = None,
 ) -> Diagnosis:
     """Diagnose a case.
 
@@ -79,8 +77,6 @@ def diagnose_case(
         Of simulations and bootstraps.
     progress : callable, optional
         Told what is being done.
-    kept : Results, optional
-        Of calls with the same of all this, where to keep what is simulated.
 
     Returns
     -------
@@ -94,7 +90,7 @@ def diagnose_case(
     if found:
         return _unlike(case, found, library, time.perf_counter() - started)
     posterior, nulls = posterior or load_posterior(), load_stage_nulls()
-    first = first_answer(case, library, posterior, seed, tell, kept)
+    first = first_answer(case, library, posterior, seed, tell)
     if quick:
         answer = _stated(case, first, first, nulls, library)
         answer = replace(answer, notes=(*answer.notes, *_unasked(case, library)))
@@ -108,7 +104,7 @@ def diagnose_case(
             tell("simulating this rig with each likely cause")
             hypotheses, told = local_answer(
                 case, first.table, posterior, first.hypotheses,
-                library=library, seed=seed, kept=kept,
+                library=library, seed=seed,
             )  # fmt: skip
             first = first.with_hypotheses(hypotheses)
         stages = stage_findings(first.table, nulls, first.flat)

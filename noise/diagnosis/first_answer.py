@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from models.rig import Rig
-    from noise.batch.lines import Results
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.joint import Hypothesis
     from noise.diagnosis.causes.posterior import Posterior
@@ -111,7 +110,6 @@ def first_answer(
     posterior: Posterior,
     seed: int = 0,
     tell: Callable[[str], None] = lambda _text: None,
-    kept: Results | None = None,
 ) -> FirstAnswer:
     """Compare a case with its rig file.
 
@@ -128,14 +126,12 @@ def first_answer(
         Of simulated repeats.
     tell : callable
         Told what is being done.
-    kept : Results, optional
-        As of `CaseComparison`.
     """
     tell("comparing the recordings with the rig file")
     table = case_table(case.recordings, case.rig, library=library, seed=seed)
     tell("measuring the gap against simulated repeats")
     comparison = CaseComparison(
-        case.rig, case.recordings, library, table, posterior.names, posterior.scale, kept=kept
+        case.rig, case.recordings, library, table, posterior.names, posterior.scale
     )
     gap = comparison.gap(seed)
     known = known_effects(case.rig, library)

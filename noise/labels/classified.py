@@ -1,4 +1,4 @@
-"""Windows of a recording, classified page by page, and what is kept of them for its segments.
+"""Windows of a recording, classified page by page, and what they tell of the frequency.
 
 Of a page's hundreds of features a few tell the frequency of a segment later on; the others have
 been used when the classifier has spoken, and are not kept.
@@ -8,26 +8,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from features.named.prepared import ACOUSTIC_KINDS
+from features.windows.declared import WINDOW_FEATURES
 from features.windows.table import HOP, LENGTH
 from models.recording import REFERENCE_PRESSURE
-from noise.base.label_names import LABELS
-from noise.labels.frequencies import TELLING
-from noise.labels.kept_frames import KeptFrames
-from noise.labels.levels import CELL_RATE, sound_levels
-from noise.labels.windows import FRAMES_A_HOP, Pages, columns_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from noise.classifier import Classifier
-    from noise.labels.levels import CellLevels
-    from noise.recordings.blocks import RecordingBlocks
-
-__all__ = ["Classified", "at_a_condition", "classified"]
+from noise.base.labels import LABELS
+from noise.classifier import Classifier
+from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
+from noise.labels.windows import FEATURE_NAMES, FRAMES_A_HOP, KeptFrames, Pages, columns_of
+from noise.recordings.blocks import RecordingBlocks
 
 _SILENT_LEVEL = 10.0
 """Calibrated sound below it is silence [dB re 20 uPa]: below any microphone's own noise."""
@@ -53,7 +46,7 @@ class Classified:
     probabilities : ndarray, shape (n_windows, n_labels)
         [-]; what is silent is ``none``.
     telling : ndarray of float32, shape (n_windows, n_features)
-        By `noise.labels.frequencies.FREQUENCY_NAMES` [unit of each feature].
+        By `FREQUENCY_NAMES` [unit of each feature].
     level, cells
         As `noise.labels.windows.Described` has them.
     frames : KeptFrames
@@ -134,3 +127,95 @@ def _silent_windows(blocks: RecordingBlocks, found: Classified) -> NDArray[np.bo
         else:
             silent[window] = level_dbfs is None or level_dbfs < _SILENT_LEVEL_DBFS
     return silent
+
+
+_WANTED = (
+    "high_period_strength", "high_period_rate", "period_strength", "period_rate", "high_blow_rate",
+    "fundamental", "line_frequency", "line_count",
+)  # fmt: skip
+
+FREQUENCY_NAMES = (
+    *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in _WANTED),
+    "torque_fundamental", "torque_line_frequency",
+)  # fmt: skip
+"""Features of windows by which the frequency is told; of `FEATURE_NAMES`."""
+
+TELLING = [FEATURE_NAMES.index(name) for name in FREQUENCY_NAMES]
+"""Their columns among the others."""
+
+_PERIODIC = 0.3
+"""Least autocorrelation of an envelope for its period to be that of slips."""
+
+_LEAST_BLOWS = math.log2(3.0 / 10.0)
+"""Fewer blows a second tell no rate [octave re 10 Hz]."""
+
+_COLUMN = {name: i for i, name in enumerate(FREQUENCY_NAMES)}
+_DECLARED = {feature.name: feature for feature in WINDOW_FEATURES}
+
+
+def segment_frequency(features: NDArray[np.float32], label: str) -> float | None:
+    """Return slip frequency of creak and squawk, else of the strongest line [Hz].
+
+    Parameters
+    ----------
+    features : ndarray of float32, shape (n_windows, n_features)
+        Of the segment's windows, by `FREQUENCY_NAMES` [unit of each feature].
+    label : str
+
+    Returns
+    -------
+    float or None
+        [Hz], of the torque where most windows have one; ``None`` for ``none``, or where nothing is
+        found.
+
+    Examples
+    --------
+    >>> features = np.full((2, len(FREQUENCY_NAMES)), np.nan, dtype=np.float32)
+    >>> features[:, FREQUENCY_NAMES.index("pressure_line_frequency")] = 1.0
+    >>> features[:, FREQUENCY_NAMES.index("pressure_line_count")] = 1.0
+    >>> segment_frequency(features, "squeal")
+    2000.0
+    """
+    if label == "none":
+        return None
+    slips = label in ("creak", "squawk")
+    torque = "torque_fundamental" if slips else "torque_line_frequency"
+    known = np.isfinite(features[:, _COLUMN[torque]])
+    if 2 * known.sum() > len(known):  # one window in many tells of chance, not of the segment
+        return _median(features, torque)
+    for kind in ("pressure", "acceleration"):
+        found = None
+        if label == "creak":
+            found = _blow_rate(features, kind)
+        if slips and found is None:
+            found = _frequency(features, kind, "fundamental")
+        if found is None:
+            counted = features[features[:, _COLUMN[f"{kind}_line_count"]] > 0]
+            found = _frequency(counted, kind, "line_frequency")
+        if found is not None:
+            return found
+    return None
+
+
+def _blow_rate(features: NDArray[np.float32], kind: str) -> float | None:
+    """Rate of a creak's blows [Hz], of their period where most windows have one."""
+    for part in ("high_", ""):
+        strength = features[:, _COLUMN[f"{kind}_{part}period_strength"]]
+        periodic = features[strength > _PERIODIC]
+        if 2 * len(periodic) > len(features):
+            return _frequency(periodic, kind, f"{part}period_rate")
+    rate = features[:, _COLUMN[f"{kind}_high_blow_rate"]]
+    return _frequency(features[rate > _LEAST_BLOWS], kind, "high_blow_rate")
+
+
+def _frequency(features: NDArray[np.float32], kind: str, name: str) -> float | None:
+    """Median of a window feature that counts in octaves [Hz]."""
+    octave = _median(features, f"{kind}_{name}")
+    return None if octave is None else _DECLARED[name].hertz(octave)
+
+
+def _median(features: NDArray[np.float32], name: str) -> float | None:
+    """Median of what is known of a column, in the column's unit."""
+    values = features[:, _COLUMN[name]]
+    values = values[np.isfinite(values)]
+    return float(np.median(values)) if values.size else None

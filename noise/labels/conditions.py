@@ -16,7 +16,7 @@ import sys
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -104,7 +104,7 @@ def conditions_map(rows: Iterable[Mapping[str, object]]) -> list[Place]:
 
     Examples
     --------
-    >>> from noise.labels.labelling import COLUMNS
+    >>> from noise.labels.table import COLUMNS
     >>> row = dict.fromkeys(COLUMNS) | {"start_s": 0.0, "end_s": 2.0, "interference_mm": 0.279}
     >>> rows = [row | {"file": "a.wav", "speed_rad_s": 4.98, "label": "squawk"},
     ...         row | {"file": "b.wav", "speed_rad_s": -5.0, "label": "squawk"}]

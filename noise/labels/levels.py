@@ -2,7 +2,8 @@
 """Levels of any part of a recording, and of each of its segments over the background.
 
 Unweighted levels are put together from sums over cells of 10 ms, while the recording is read once.
-A-weighted ones are those that `features.kernels.levels` measures of the same samples.
+A-weighted ones are those that `features.kernels.levels` measures of the same samples, the loudness
+N5 that of the library that the field keeps for it.
 
 The background is what is left where no noise is named. Its level is the one exceeded for 90 % of
 that time, L_A90, as the field has it (ISO 1996-1): a door that slams in between does not raise it.
@@ -12,24 +13,25 @@ Digital silence is no background: a gate, a fade or an editor put it there.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from features.kernels.levels import weighted_levels
+from features.sound_quality import SHORTEST, SOUND_QUALITY_RATE, loudness_n5
 from models.compilation import COMPILED
 from models.recording import REFERENCE_PRESSURE
-from noise.base.label_names import NAMED
+from noise.audio.sound import resampled
+from noise.base.labels import NAMED
+from noise.recordings.blocks import RecordingBlocks
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+if TYPE_CHECKING:  # which measures levels of its segments
     from noise.labels.segments import Segment
-    from noise.recordings.blocks import RecordingBlocks
 
-__all__ = ["CELL_RATE", "CellLevels", "background_level", "with_weighted_levels"]
 
 _EXCEEDED = 90.0
 """Share of the time for which the background is louder than its level [%]."""
@@ -257,3 +259,41 @@ def background_level(levels: NDArray[np.float64], silent: float = -math.inf) -> 
 
 def _finite(level: float) -> float | None:
     return level if math.isfinite(level) else None
+
+
+_LONGEST = 600.0
+"""Longest segment that is analysed [s]: a second of sound takes a second."""
+
+
+def with_loudness(blocks: RecordingBlocks, segments: Sequence[Segment]) -> list[Segment]:
+    """Add the loudness N5 of segments, as `noise.audio.assessment.assess` tells it of such a sound.
+
+    Parameters
+    ----------
+    blocks : RecordingBlocks
+        The whole recording; where it is not calibrated or has no sound, nothing is added.
+    segments : sequence of Segment
+
+    Returns
+    -------
+    list of Segment
+
+    Raises
+    ------
+    ParameterError
+        The extra ``sound-quality`` is not installed.
+    """
+    return [_with_loudness(blocks, segment) for segment in segments]
+
+
+def _with_loudness(blocks: RecordingBlocks, segment: Segment) -> Segment:
+    track = blocks if segment.channel == "all" else blocks.track(int(segment.channel) - 1)
+    row = track.first("pressure")
+    first = round(segment.start * track.rate)
+    last = min(round(segment.end * track.rate), track.n_samples)
+    seconds = (last - first) / track.rate
+    if row is None or not track.calibrated or not SHORTEST <= seconds <= _LONGEST:
+        return segment
+    sound = track.read(first, last)[row]
+    at_rate = resampled(sound - sound.mean(), track.rate, SOUND_QUALITY_RATE)
+    return replace(segment, loudness_n5=loudness_n5(at_rate, SOUND_QUALITY_RATE))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from noise.labels.kept_frames import KeptFrames
+    from noise.labels.windows import KeptFrames
 
 __all__ = [
     "NOISES", "QUIET", "change_points", "clearest", "labelled_stretches", "named", "viterbi_path"

@@ -2,33 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.recording import Recording
 from models.show import short_repr
-from noise.base.label_names import LABELS
-from noise.labels.classified import at_a_condition, classified
-from noise.labels.frequencies import segment_frequency
+from noise.base.labels import LABELS
+from noise.classifier import Classifier
+from noise.labels.classified import Classified, at_a_condition, classified, segment_frequency
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
 from noise.labels.segmentation import change_points, labelled_stretches
 from noise.labels.windows import can_be_described, tracks
 from noise.recordings.blocks import RecordingBlocks
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
+if TYPE_CHECKING:  # which are slow to import, or may not be there
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
     from pandas import DataFrame
 
-    from models.recording import Recording
-    from noise.classifier import Classifier
-    from noise.labels.classified import Classified
-
-__all__ = ["Segment", "Segments", "file_label", "label_recording"]
 
 _MOST_SHOWN = 4
 """Segments that are named one by one where they are printed."""
@@ -96,8 +91,8 @@ class Segments(list[Segment]):
     Examples
     --------
     >>> found = Segments([Segment("all", 0.0, 1.0, "creak", {"creak": 0.9}, 152.0, 78.0, None)])
-    >>> found[0].label, found[0].frequency
-    ('creak', 152.0)
+    >>> found
+    Segments(1: creak 0 to 1 s)
     """
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -117,7 +112,7 @@ class Segments(list[Segment]):
         ParameterError
             There are none.
         """
-        from noise.labels.label_display import draw_tracks
+        from noise.labels.tracks import draw_tracks
 
         tracks: dict[str, list[tuple[float, float, str]]] = {}
         for one in self:
@@ -137,7 +132,8 @@ class Segments(list[Segment]):
             pandas is not installed.
         """
         from models.show import data_frame
-        from noise.labels.labelling import SEGMENT_COLUMNS, segment_cells
+        from noise.labels.rows import segment_cells
+        from noise.labels.table import SEGMENT_COLUMNS
 
         return data_frame(SEGMENT_COLUMNS, map(segment_cells, self))
 

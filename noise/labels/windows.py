@@ -8,34 +8,30 @@ at a time needs no more memory for a longer one.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from tempfile import SpooledTemporaryFile
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 from features.named.prepared import ACOUSTIC_KINDS, prepare
 from features.named.torque_features import TORQUE_FEATURES
-from features.windows.blocks import FRAME_RATE, MARGIN, RATE, block_length, resampled_block
-from features.windows.table import HOP, LENGTH, WINDOW_NAMES, describe_windows, window_count
-from models.errors import ParameterError
-from noise.labels.kept_frames import KeptFrames
+from features.windows.blocks import FRAME_RATE, MARGIN, RATE, Block, block_length, resampled_block
+from features.windows.table import (
+    HOP,
+    LENGTH,
+    WINDOW_NAMES,
+    WindowTable,
+    describe_windows,
+    window_count,
+)
+from models.errors import ParameterError, RecordingError
+from noise.classifier.model import Classifier
 from noise.labels.levels import CellLevels
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from features.windows.blocks import Block
-    from features.windows.table import WindowTable
-    from noise.classifier.model import Classifier
-    from noise.recordings.blocks import RecordingBlocks
-
-__all__ = [
-    "FEATURE_NAMES", "FRAMES_A_HOP", "Described", "Page", "Pages", "can_be_described", "columns_of",
-    "describe", "tracks",
-]  # fmt: skip
+from noise.recordings.blocks import RecordingBlocks
 
 FEATURE_NAMES = (
     *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in WINDOW_NAMES),
@@ -319,3 +315,57 @@ def _torque(
         except ParameterError:  # too short to be described
             continue
     return out
+
+
+_IN_MEMORY = 8 << 20
+"""What is kept without a file [byte]: a quarter of an hour."""
+
+
+class KeptFrames:
+    """Rows of one length that are put and had by their numbers.
+
+    Examples
+    --------
+    >>> kept = KeptFrames()
+    >>> kept.put(0, np.zeros((4, 2), dtype=np.float32))
+    >>> kept.put(3, np.ones((2, 2), dtype=np.float32))
+    >>> len(kept), kept[2:4].tolist()
+    (5, [[0.0, 0.0], [1.0, 1.0]])
+    """
+
+    def __init__(self) -> None:
+        self._file = SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115  # goes with this
+        self._columns = self._count = 0
+
+    def __len__(self) -> int:
+        return self._count
+
+    def put(self, first: int, rows: NDArray[np.float32]) -> None:
+        """Put rows from number `first` on, in place of those that are there.
+
+        Parameters
+        ----------
+        first : int
+            At most the number of rows.
+        rows : ndarray of float32, shape (n, n_columns)
+            As `features.windows.table.WindowTable` has them [unit of each column].
+
+        Raises
+        ------
+        RecordingError
+            There is no room for them.
+        """
+        self._columns = rows.shape[1]
+        try:
+            self._file.seek(4 * self._columns * first)
+            self._file.write(np.ascontiguousarray(rows).tobytes())
+        except OSError as error:
+            reason = error.strerror or error
+            raise RecordingError(f"a temporary file cannot be written ({reason})") from error
+        self._count = first + len(rows)
+
+    def __getitem__(self, part: slice) -> NDArray[np.float32]:
+        first, last, _ = part.indices(self._count)
+        self._file.seek(4 * self._columns * first)
+        content = self._file.read(4 * self._columns * max(0, last - first))
+        return np.frombuffer(content, dtype=np.float32).reshape(-1, self._columns)

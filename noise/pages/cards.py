@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from models.drawing import thinned
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
-from noise.labels.label_display import ASSUMED, assumes_material
+from noise.labels.table import ASSUMED, assumes_material
 from noise.pages.clips import RATE
 from noise.pictures.recorded import level_over_time
 

@@ -33,9 +33,9 @@ from noise.audio.gain import (
     true_peak,
 )
 from noise.audio.sound import FADE
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.base.progress import counted
-from noise.labels.label_display import labels_in, naming_row
+from noise.labels.table import labels_in, naming_row
 from noise.recordings.wav import integers, largest_sample
 
 if TYPE_CHECKING:

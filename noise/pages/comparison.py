@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.rig import Rig
-from noise.base.label_looks import LABEL_LOOKS, Look
-from noise.base.label_names import LABELS
+from noise.base.labels import LABEL_LOOKS, LABELS, Look
 from noise.base.progress import counted
 from noise.pages.maps import Axis, ConditionMap, Spot, areas_of, axis_of, cells_of, common_cells
 from noise.pages.page import MAP_SIZE

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.transfer_functions.files import write_transfer_function
-from noise.base.atomic import atomic
+from noise.base.files import atomic
 from noise.diagnosis.findings import ROLES
 from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.improved_file import NAME, RESPONSES, response_files

@@ -12,7 +12,7 @@ import numpy as np
 
 from models.condition import Condition
 from models.drawing import BLUE, GREY, ORANGE, VERMILION, styled
-from noise.base.atomic import atomic
+from noise.base.files import atomic
 from noise.identification.law_candidates import CANDIDATES
 from noise.identification.outcome import as_json
 from noise.identification.quantities import QUANTITIES

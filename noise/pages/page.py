@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from noise.base.atomic import atomic
-from noise.base.label_looks import LABEL_LOOKS
+from noise.base.files import atomic
+from noise.base.labels import LABEL_LOOKS
 from noise.pages.cards import draw_entries, frequency_ticks, scale_picture
 from noise.pages.clips import MOST_RAISED, equal_factors
 

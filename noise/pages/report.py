@@ -18,7 +18,7 @@ import soundfile
 from models.errors import ParameterError, RecordingError
 from models.show import short_repr
 from noise.audio.sound import resampled
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.diagnosis.text.words import percent
 from noise.pages.clips import RATE, Clip, Entry, full_scale_words, labels_sentence
 from noise.pages.figures import entry_figures

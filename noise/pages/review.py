@@ -19,7 +19,7 @@ import numpy as np
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.foreign_file import LARGEST_JSON, parse_json, reading, refusing
 from models.show import short_repr
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.base.progress import counted
 from noise.base.tables import read_table
 from noise.diagnosis.outcome_json import from_json

@@ -20,11 +20,10 @@ from numpy.typing import NDArray
 from models.errors import BushingNoiseError, ParameterError
 from models.show import short_repr
 from noise.audio.sound import LOWEST_HEARD, audible
-from noise.base.progress import track
-from noise.base.readable import readable
+from noise.base.progress import readable, track
 from noise.base.tables import TABLE_ENDINGS, table_columns
 from noise.classifier import load_classifier
-from noise.labels.labelling import label_rows
+from noise.labels.rows import label_rows
 from noise.labels.segments import label_recording
 from noise.labels.table import read_label_table
 from noise.pages.clips import BYTES_A_SECOND, RATE, SHORTEST, Entry, stretch_start

@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 from features.kernels.levels import a_weighted_level
 from models.errors import BushingNoiseError
 from noise.audio.sound import audible
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.base.progress import track
-from noise.batch.work import one_thread
+from noise.batch import one_thread
 from noise.pages.clips import RATE, Entry
 from noise.pictures.recorded import recorded_levels
 from noise.pictures.titles import support_words

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 
 from models.drawing import BLUE, GREEN, VERMILION
-from noise.base.readable import readable
+from noise.base.progress import readable
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

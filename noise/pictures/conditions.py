@@ -14,8 +14,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from models.drawing import styled
 from models.errors import ParameterError
-from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
-from noise.base.label_names import LABELS
+from noise.base.labels import DARK_LABELS, LABEL_COLOURS, LABELS
 from noise.pictures.axes import new_figure
 from noise.pictures.titles import place_title
 

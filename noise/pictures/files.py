@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.atomic import atomic
+from noise.base.files import atomic
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

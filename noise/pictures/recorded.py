@@ -19,7 +19,7 @@ from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
-from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
+from noise.base.labels import DARK_LABELS, LABEL_COLOURS
 from noise.pictures.axes import new_figure
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from models.drawing import axes_or_new, styled
-from noise.base.label_looks import LABEL_COLOURS
+from noise.base.labels import LABEL_COLOURS
 from noise.pictures.axes import new_figure
 from noise.pictures.titles import support_words
 from sim.analysis.regime import Regime

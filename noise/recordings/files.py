@@ -18,8 +18,7 @@ from models.calibration import Calibration
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import reading, refusing
 from models.recording import Channel, Recording
-from noise.base.progress import note
-from noise.base.readable import readable
+from noise.base.progress import note, readable
 from noise.recordings.folders import files_below
 from noise.recordings.formats import RawSamples, check_rate, formats
 from noise.recordings.formats.isolated import open_isolated
@@ -161,8 +160,8 @@ def find_recordings(
     -------
     list of (Path, str)
         Each file with its name relative to the folder named, with forward slashes; the bare name
-        where the file itself was named; what cannot be shown of it as `noise.base.readable` has
-        it. Paths in the order given, sorted within a folder.
+        where the file itself was named; what cannot be shown of it as
+        `noise.base.progress.readable` has it. Paths in the order given, sorted within a folder.
 
     Raises
     ------

@@ -14,7 +14,7 @@ import numpy as np
 
 from models.errors import ParameterError
 from models.recording import Recording
-from noise.base.atomic import atomic
+from noise.base.files import atomic
 from noise.recordings.files import MIN_SAMPLES
 from noise.recordings.formats import formats
 from noise.recordings.sidecar import sidecar_text

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from models.rig import Rig
-    from noise.batch.lines import Results
+    from noise.batch import Journal
     from noise.screening.design.design import Design, Swinging, Use
     from noise.screening.map.batches import Evaluator
     from noise.screening.map.grid import Grid
@@ -64,7 +64,7 @@ def screen(
     workers: int = -1,
     scheduler: str | None = None,
     progress: Callable[[str], None] = lambda _: None,
-    kept: Results | None = None,
+    kept: Journal | None = None,
 ) -> Screening:
     """Map bushing designs over their conditions, and rank them.
 
@@ -94,7 +94,7 @@ def screen(
         Address of a Dask cluster that simulates the maps instead.
     progress : callable
         Is told what is being done.
-    kept : Results, optional
+    kept : Journal, optional
         Where to keep what is simulated of the maps, and what of it is there already.
 
     Returns

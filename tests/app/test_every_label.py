@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.cli import main
 from tests.helpers.labelled_folder import made_row, write_folder
 from tests.helpers.opened_app import opened_app

@@ -9,11 +9,9 @@ from threading import Event, Thread
 import numpy as np
 import pytest
 
-from noise.batch import find_jobs, open_journal
-from noise.batch.identity import file_identity
+from noise.batch import file_identity, find_jobs, open_journal
 from noise.batch.work import Done
-from noise.labels.files import label
-from noise.labels.labelling import Labelling
+from noise.labels.labelling import Labelling, label
 from noise.labels.table import read_label_table
 from tests.helpers.labelled_folder import made_row, write_folder
 from tests.helpers.opened_app import quick_processes, started_app
@@ -38,7 +36,7 @@ def labelled_journal(folder):
     with open_journal(folder / "labels.csv", Labelling()) as journal:
         for job in find_jobs([folder]):
             rows = [list(made_row(job.name).values())]
-            journal.add(job, file_identity(job.path), Done(rows, True))
+            journal.keep(job, file_identity(job.path), Done(rows, True))
 
 
 def kill_while_correcting(processes, folder, rng):

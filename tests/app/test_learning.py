@@ -14,7 +14,7 @@ from noise.app.label_view import LabellingRun
 from noise.app.labels import Correction
 from noise.app.opened import open_paths
 from noise.base.tables import read_table
-from noise.labels.row_places import version
+from noise.labels.corrections import version
 from noise.recordings import write_recording
 from tests.helpers.labelled_folder import made_row, write_folder
 from tests.helpers.opened_app import opened_app

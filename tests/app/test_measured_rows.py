@@ -9,8 +9,9 @@ import soundfile
 from noise.app.labels import Correction, Labels
 from noise.base.tables import write_table
 from noise.batch import find_jobs
-from noise.labels.labelling import COLUMNS, Labelling
-from noise.labels.row_places import version
+from noise.labels.corrections import version
+from noise.labels.labelling import Labelling
+from noise.labels.table import COLUMNS
 from tests.helpers.labelled_folder import made_row
 
 RATE = 8000

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from models.errors import ParameterError
-from noise.base.atomic import atomic, check_target
+from noise.base.files import atomic, check_target
 from noise.commands.options import check_folder
 from noise.recordings import find_recordings
 
@@ -66,7 +66,7 @@ def test_what_a_killed_program_leaves_behind_is_no_recording(tmp_path):
 WRITER = """
 import os, signal, sys
 from pathlib import Path
-from noise.base.atomic import atomic
+from noise.base.files import atomic
 with atomic(Path(sys.argv[1])) as path:
     path.write_text("half")
     if sys.argv[2] == "dies":

@@ -10,11 +10,10 @@ import pytest
 import soundfile
 from hypothesis import given, strategies as st
 
-from noise.base.progress import note, say
-from noise.base.readable import readable
+from noise.base.progress import note, readable, say
 from noise.base.tables import read_table, write_table
 from noise.cli import main
-from noise.labels.kept_corrections import with_corrections
+from noise.labels.corrections import with_corrections
 from noise.labels.table import read_label_table
 from noise.recordings import find_recordings, read_recording
 

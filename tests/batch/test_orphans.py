@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 SCRIPT = """
 import sys, time
 from joblib import Parallel, delayed
-from noise.batch.orphans import ending_with_this
+from noise.batch.pool import ending_with_this
 Parallel(n_jobs=2)(delayed(ending_with_this(time.sleep))(0.01) for _ in range(8))
 print("ready", flush=True)
 Parallel(n_jobs=2)(delayed(ending_with_this(time.sleep))(float(sys.argv[1])) for _ in range(2))

@@ -14,9 +14,8 @@ from models.condition import Condition
 from models.recording import Channel, Recording
 from noise.classifier import LABELS, load_classifier
 from noise.cli import main
-from noise.labels.labelling import COLUMNS
 from noise.labels.segments import Segment
-from noise.labels.table import LabelTable, read_label_table
+from noise.labels.table import COLUMNS, LabelTable, read_label_table
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import read_recording, write_recording
 from noise.recordings.blocks import RecordingBlocks

@@ -14,8 +14,8 @@ from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.findings import EffectFinding
 from noise.diagnosis.outcome import Diagnosis
 from noise.identification.outcome import Identification, Number
-from noise.labels.labelling import COLUMNS
 from noise.labels.segments import Segment
+from noise.labels.table import COLUMNS
 from noise.screening.design.design import Use
 
 pytest.importorskip("pandas")

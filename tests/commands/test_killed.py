@@ -13,10 +13,12 @@ from pathlib import Path
 
 import pytest
 
+import noise
 from noise.batch import journal_path
 from noise.cli import main
 from tests.helpers import dying_command
 from tests.helpers.batch_work import make_recordings
+from tests.helpers.kept import results_in
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="has no SIGKILL")
 
@@ -27,11 +29,6 @@ SHARES = (0.0, 0.1, 0.5, 0.9)
 BENCH = [
     ["simulate", "--speed", str(n), "--seconds", "0.5", "--seed", str(n), "--out", f"bench/{n}"]
     for n in (1, 2, 3)
-]
-MORE = ["--effect", "velocity_weakening:share=0.4", "--effect", "partial_slip:share=0.9"]
-BENCH += [
-    ["simulate", "--speed", str(n), "--seconds", "0.5", *MORE, "--out", f"more/{n}"]
-    for n in (1, 2, 4)
 ]
 MAP = ("--speed", "1,5", "--interference", "0.279", "--support-stiffness", "2214")
 CALLS = {
@@ -49,11 +46,11 @@ _TOOK = re.compile(rb'"seconds": [\d.]+|Screened in [\d.]+ s|Time taken</dt><dd>
 
 
 def contents(folder):
-    """All files of a folder, hidden ones as well, but for journals."""
+    """All files of a folder, hidden ones as well, but for journals and their locks."""
     return {
         path.relative_to(folder).as_posix(): _TOOK.sub(b"", path.read_bytes())
         for path in folder.rglob("*")
-        if path.is_file() and path.suffix != ".journal"
+        if path.is_file() and ".journal" not in path.name
     }
 
 
@@ -80,146 +77,110 @@ def run(folder, call, at=-1):
     return done.returncode, int(told.read_text()) if at < 0 else at
 
 
-def is_as_if_never_killed(call, given, tmp_path, shares, *, twice=True):
-    undisturbed = Path(shutil.copytree(given, tmp_path / "undisturbed"))
-    code, n = run(undisturbed, call)
-    assert code == 0
-    assert n > 3
-    for share in shares:
-        folder = Path(shutil.copytree(given, tmp_path / f"at{share}"))
-        # Twice, since what the first leaves is in the way of the second.
-        ended, _ = run(folder, call, int(share * n))
-        assert ended == -signal.SIGKILL
-        if twice:  # unless what is kept of the first leaves too few moments to die at
-            ended, _ = run(folder, call, min(int(share * n) + 1, n - 1))
-            assert ended in (-signal.SIGKILL, 0)
-        assert run(folder, call)[0] == 0
-        assert contents(folder) == contents(undisturbed)
-
-
-def test_a_set_of_sounds_killed_half_way_comes_out_as_if_it_had_not_been(tmp_path):
-    make_recordings(tmp_path / "given" / "bench", 3, 1, 0.2)
-    (tmp_path / "given" / "bench" / "day1" / "shift1" / "run0001.flac").unlink()
-    is_as_if_never_killed(CALLS["render"], tmp_path / "given", tmp_path, [0.6], twice=False)
-
-
 @pytest.mark.parametrize("command", CALLS)
 @pytest.mark.slow
 def test_a_command_killed_anywhere_comes_out_as_if_it_had_not_been(command, bench, tmp_path):
-    is_as_if_never_killed(CALLS[command], bench, tmp_path, SHARES)
+    undisturbed = Path(shutil.copytree(bench, tmp_path / "undisturbed"))
+    code, n = run(undisturbed, CALLS[command])
+    assert code == 0
+    assert n > 3
+    for share in SHARES:
+        folder = Path(shutil.copytree(bench, tmp_path / f"at{share}"))
+        # Twice, since what the first leaves is in the way of the second.
+        for moment in (int(share * n), min(int(share * n) + 1, n - 1)):
+            ended, _ = run(folder, CALLS[command], moment)
+            assert ended in (-signal.SIGKILL, 0)
+        assert run(folder, CALLS[command])[0] == 0
+        assert contents(folder) == contents(undisturbed)
 
 
 # With a journal
 
 
-def start(call, folder):
-    # Each folder has a cache of its own, where no other diagnosis has kept the cases of a rig.
-    of_its_own = {"HOME": f"{folder}.home", "XDG_CACHE_HOME": f"{folder}.home/.cache"}
+def start(call, folder, **how):
     return subprocess.Popen(
-        [sys.executable, "-m", "noise", *call], cwd=folder, env=ENVIRONMENT | of_its_own,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        [sys.executable, "-m", "noise", *call], cwd=folder, env=ENVIRONMENT,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **how,
     )  # fmt: skip
 
 
-def grown(process, journal, size):
-    """Wait until a journal has a size [byte]; return what is in it."""
-    while not journal.exists() or journal.stat().st_size < size:
+def wait_for(process, journal, number):
+    """Wait until a journal has so many results."""
+    while len(results_in(journal)) < number:
         assert process.poll() is None, process.communicate()
         time.sleep(1e-3)
 
 
-def lines_of(journal):
-    return journal.read_bytes().rpartition(b"\n")[0].splitlines()
-
-
-def goes_on_where_it_was(command, tmp_path, shares, n=36, n_broken=2, seconds=0.2):
-    undisturbed = tmp_path / "undisturbed"
-    make_recordings(undisturbed / "runs", n, n_broken, seconds)
-    call = [command, "runs", "--out", "table.csv"]
-    start(call, undisturbed).communicate()
-    whole = journal_path(undisturbed / "table.csv")
-    for share in shares:
-        folder = tmp_path / f"at{share}"
-        shutil.copytree(undisturbed / "runs", folder / "runs")
-        journal = journal_path(folder / "table.csv")
-        process = start(call, folder)
-        grown(process, journal, share * whole.stat().st_size)
-        process.kill()
-        process.communicate()
-        assert not (folder / "table.csv").exists()
-        kept = lines_of(journal)
-        assert len(kept) >= int(share * (n - n_broken))
-        last = start(call, folder)
-        _, told = last.communicate()
-        assert last.returncode == 1
-        if len(kept) > 1:
-            assert f"{len(kept) - 1} of {n} recordings are done already" in told
-        assert lines_of(journal)[: len(kept)] == kept  # nothing was done again
-        assert len(lines_of(journal)) == len(lines_of(whole))
-        assert contents(folder) == contents(undisturbed)
-
-
-def held(process, journal, size=0):
-    """Wait for a journal as `grown` does; give it a second name, which outlives the call."""
-    grown(process, journal, size)
+def held(journal, process):
+    """Give a journal a second name, which outlives the call."""
+    wait_for(process, journal, 1)
     second = journal.with_name("held.journal")
     if not second.exists():
         os.link(journal, second)
     return second
 
 
-def simulates_and_measures_nothing_again(call, target, given, tmp_path, shares):
-    """Of what a call keeps until it is done."""
-    undisturbed = Path(shutil.copytree(given, tmp_path / "undisturbed"))
-    journal = journal_path(Path(target))
-    process = start(call, undisturbed)
-    whole = held(process, undisturbed / journal)
-    process.communicate()
-    assert process.returncode == 0
-    assert len(lines_of(whole)) > 3
-    for share in shares:
-        folder = Path(shutil.copytree(given, tmp_path / f"at{share}"))
-        process = start(call, folder)
-        kept = held(process, folder / journal, share * whole.stat().st_size)
-        process.kill()
-        process.communicate()
-        before = lines_of(kept)
-        last = start(call, folder)
-        last.communicate()
-        assert last.returncode == 0
-        assert lines_of(kept)[: len(before)] == before
-        assert len(lines_of(kept)) == len(lines_of(whole))  # each once
-        assert contents(folder) == contents(undisturbed)
-        assert not (folder / journal).exists()
-
-
-KEEPING = {
+RUNS = ["runs", "--out", "t.csv"]
+KEEPING = {  # call, what its journal is of, exit code
+    "label": (["label", *RUNS], "t.csv", 1),
+    "features": (["features", *RUNS], "t.csv", 1),
+    "two processes": (["label", *RUNS, "--workers", "2"], "t.csv", 1),
     "screen": (["screen", "fluorocarbon", "PDMS", "--simulations", "200", "--no-tolerances",
-                "--sounds", "1", "--out", "screen"], "screen/map.csv"),
-    "train": (["train", "--samples", "20", "--out", "mine.npz"], "mine.npz"),
+                "--sounds", "1", "--out", "screen"], "screen/map.csv", 0),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("command", KEEPING)
-@pytest.mark.slow
-def test_what_is_kept_until_it_is_done_is_not_done_again(command, bench, tmp_path):
-    simulates_and_measures_nothing_again(*KEEPING[command], bench, tmp_path, SHARES)
+@pytest.mark.parametrize(
+    "command",
+    [pytest.param(name, marks=[pytest.mark.slow] * (name != "label")) for name in KEEPING],
+)
+def test_what_was_done_before_a_kill_is_not_done_again(command, tmp_path):
+    call, target, code = KEEPING[command]
+    undisturbed, killed = tmp_path / "undisturbed", tmp_path / "killed"
+    make_recordings(undisturbed / "runs", 24, 2, 0.2)
+    shutil.copytree(undisturbed / "runs", killed / "runs")
+    process = start(call, undisturbed)
+    whole = held(undisturbed / journal_path(Path(target)), process)
+    process.communicate()
+    assert process.returncode == code
+    n = len(results_in(whole))
+    assert n > 3
+    journal, kept = killed / journal_path(Path(target)), None
+    for share in (0.1, 0.3, 0.6):
+        process = start(call, killed)
+        wait_for(process, journal, max(1, int(share * n)))
+        kept = held(journal, process)
+        process.kill()
+        process.communicate()
+        assert not (killed / target).exists()
+    before = results_in(journal)
+    process = start(call, killed)
+    _, told = process.communicate()
+    assert process.returncode == code, told
+    after = results_in(kept)
+    assert after[: len(before)] == before
+    assert len(after) == len({key for _, key in after}) == n
+    assert contents(killed) == contents(undisturbed)
+    assert journal.exists() == (command != "screen")
 
 
-@pytest.mark.slow
-def test_a_diagnosis_killed_half_way_simulates_nothing_again(bench, tmp_path):
-    call = ["diagnose", "more", "--rig", "rig.toml", "--out", "diagnosis"]
-    simulates_and_measures_nothing_again(call, "diagnosis/report.html", bench, tmp_path, [0.5])
-
-
-def test_labels_go_on_where_half_of_the_journal_was(tmp_path):
-    goes_on_where_it_was("label", tmp_path, [0.5])
-
-
-@pytest.mark.parametrize("command", ["label", "features"])
-@pytest.mark.slow
-def test_tables_go_on_where_the_journal_was(command, tmp_path):
-    goes_on_where_it_was(command, tmp_path, SHARES, 60, 4, 0.5)
+@pytest.mark.parametrize(
+    ("how", "code"),
+    [(signal.SIGTERM, 143), pytest.param(signal.SIGINT, 130, marks=pytest.mark.slow)],
+)
+def test_told_to_end_it_writes_what_it_did_and_ends_its_processes(tmp_path, how, code, capsys):
+    make_recordings(tmp_path / "runs", 40, 4, 0.2)
+    table = tmp_path / "t.csv"
+    process = start(["label", *RUNS, "--workers", "2"], tmp_path, start_new_session=True)
+    wait_for(process, journal_path(table), 5)
+    os.killpg(process.pid, how) if how == signal.SIGINT else process.send_signal(how)
+    _, err = process.communicate(timeout=60)  # its processes have the same standard error
+    assert process.returncode == code
+    assert "interrupted: " in err
+    assert "Traceback" not in err
+    assert len({line.split(",")[0] for line in table.read_text().splitlines()[1:]}) >= 5
+    assert main(["label", str(tmp_path / "runs"), "--out", str(table)]) == 1
+    assert "of 40 recordings are done already" in capsys.readouterr().err
 
 
 def workers_of(process):
@@ -230,17 +191,45 @@ def workers_of(process):
     ]
 
 
-@pytest.mark.parametrize("n", [36, pytest.param(120, marks=pytest.mark.slow)])
 @pytest.mark.skipif(sys.platform != "linux", reason="tells no children of a process")
-def test_one_of_two_workers_is_killed_and_the_table_is_the_same(tmp_path, n):
-    make_recordings(tmp_path / "runs", n, 2, 0.2)
+def test_one_of_two_workers_is_killed_and_the_table_is_the_same(tmp_path):
+    make_recordings(tmp_path / "runs", 36, 2, 0.2)
     process = start(["label", "runs", "--out", "two.csv", "--workers", "2"], tmp_path)
-    grown(process, journal_path(tmp_path / "two.csv"), 500)
+    wait_for(process, journal_path(tmp_path / "two.csv"), 2)
     os.kill(workers_of(process)[0], signal.SIGKILL)
     _, told = process.communicate()
     assert process.returncode == 1, told
-    assert f"{n} recordings, 2 refused" in told
+    assert "36 recordings, 2 refused" in told
     assert main(["label", str(tmp_path / "runs"), "--out", str(tmp_path / "one.csv")]) == 1
     # A file that is refused is named as the call names it.
     said = (tmp_path / "one.csv").read_bytes().replace(os.fsencode(f"{tmp_path}/"), b"")
     assert (tmp_path / "two.csv").read_bytes() == said
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="tells no process that another one is gone")
+def test_the_processes_of_a_killed_command_end_as_well(tmp_path):
+    make_recordings(tmp_path / "runs", 40, 4, 0.2)
+    process = start(["label", *RUNS, "--workers", "2"], tmp_path)
+    wait_for(process, journal_path(tmp_path / "t.csv"), 2)
+    assert len(workers_of(process)) == 2
+    process.kill()
+    process.communicate(timeout=20)  # their standard error is ours
+
+
+def test_later_calls_do_only_what_is_new_or_changed(tmp_path, capsys):
+    make_recordings(tmp_path / "runs", 8, 2, 0.2)
+    table = tmp_path / "t.csv"
+    assert main(["label", str(tmp_path / "runs"), "--out", str(table)]) == 1
+    first = tmp_path / "runs" / "day0" / "shift0" / "run0000.wav"
+    shutil.copy(first, tmp_path / "runs" / "new.wav")
+    (tmp_path / "runs" / "day2" / "shift2" / "run0002.json").write_text(
+        '{"conditions": {"speed_rad_s": 5.0}}'
+    )
+    capsys.readouterr()
+    assert main(["label", str(tmp_path / "runs"), "--out", str(table)]) == 1
+    said = capsys.readouterr().err
+    assert "5 of 9 recordings are done already" in said  # but for 2 refused, 1 new, 1 changed
+    assert main(["label", str(tmp_path / "runs"), "--out", str(tmp_path / "u.csv")]) == 1
+    assert table.read_bytes() == (tmp_path / "u.csv").read_bytes()
+    assert len(noise.label(tmp_path / "runs", out=tmp_path / "u.csv").refused) == 2
+    assert table.read_bytes() == (tmp_path / "u.csv").read_bytes()

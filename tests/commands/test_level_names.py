@@ -16,7 +16,7 @@ from noise.app.opened import open_paths
 from noise.app.sounds import SoundCache, bands, level_course
 from noise.cli import main
 from noise.diagnosis.fit.labels_and_levels import labels_and_levels
-from noise.labels.files import label
+from noise.labels.labelling import label
 from noise.recordings import read_recording, write_recording
 from noise.screening.map import point
 

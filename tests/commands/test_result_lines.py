@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from noise.cli import main
-from noise.labels.label_display import result_lines
+from noise.labels.table import result_lines
 
 SQUEAL = {
     "file": "run07.wav", "channel": "all", "label": "squeal", "start_s": 1.99, "end_s": 6.01,

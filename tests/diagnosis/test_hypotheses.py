@@ -1,6 +1,5 @@
 """Sets of causes are told by their joint probability, and by cases simulated of the very rig."""
 
-import math
 from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
@@ -9,7 +8,6 @@ from hypothesis import given, strategies as st
 
 from models.condition import FIXED
 from models.errors import ParameterError
-from noise.batch.lines import kept_results
 from noise.diagnosis.case import Case
 from noise.diagnosis.causes import local_cases as local
 from noise.diagnosis.causes.hypotheses import local_answer
@@ -223,39 +221,6 @@ def test_another_rig_has_local_cases_of_its_own_and_old_ones_go(posterior, monke
     (entry,) = files[2].read().items()
     assert entry[0] == (frozenset({"clipping"}), 1)
     assert entry[1].tolist() == [1.0, 1.0, 1.0]
-
-
-@pytest.mark.usefixtures("doubtful")
-def test_cases_made_before_a_kill_are_not_simulated_again(posterior, monkeypatch, tmp_path):
-    case, simulated, table_of = _case(conditions=SHORT), [], local._table
-
-    def counted(bench, hypothesis, *given):
-        simulated.append(hypothesis)
-        return table_of(bench, hypothesis, *given)
-
-    def answered(killed_after=math.inf):
-        simulated.clear()
-        with kept_results(tmp_path / "out" / "report.html", "same") as kept:
-            n, add = 0, kept.add
-
-            def adding(*given):
-                nonlocal n
-                add(*given)
-                n += 1
-                if n >= killed_after:
-                    raise KeyboardInterrupt
-
-            kept.add = adding
-            return _answers(case, posterior, kept=kept)[1]
-
-    monkeypatch.setattr(local, "_table", counted)
-    undisturbed = answered()
-    whole = list(simulated)
-    monkeypatch.setattr(LocalCache, "read", lambda _cache: {})
-    with pytest.raises(KeyboardInterrupt):
-        answered(killed_after=5)
-    assert answered() == undisturbed
-    assert simulated == whole[5:]
 
 
 def test_two_processes_make_the_cases_of_one(posterior, monkeypatch):

@@ -12,7 +12,6 @@ from hypothesis import given, settings, strategies as st
 
 from models.condition import FIXED, Condition
 from models.rig import LawSpec
-from noise.batch.lines import kept_results
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.evidence.evidence import scale_of
 from noise.diagnosis.evidence.summary import case_table
@@ -20,7 +19,6 @@ from noise.diagnosis.fit.candidates import drawn_candidates, plain_candidates
 from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.fit_effect import fit_effect
 from noise.diagnosis.fit.fit_parameters import fit_parameters, split
-from noise.diagnosis.simulated.model_runs import ModelRuns
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG, at, only, run
 
@@ -36,9 +34,9 @@ def _scale():
     return names, scale_of(tables, names)
 
 
-def _comparison(recordings, rig=RIG, library=EFFECTS, kept=None):
+def _comparison(recordings, rig=RIG, library=EFFECTS):
     table = case_table(recordings, rig, library=library)
-    return CaseComparison(rig, tuple(recordings), library, table, *_scale(), kept=kept)
+    return CaseComparison(rig, tuple(recordings), library, table, *_scale())
 
 
 def _gap(comparison, model, chosen):
@@ -48,36 +46,6 @@ def _gap(comparison, model, chosen):
 @pytest.fixture(scope="module")
 def plain():
     return _comparison([run(at(v, FIXED), seed=40 + i) for i, v in enumerate(SPEEDS)])
-
-
-def test_what_was_simulated_before_a_kill_is_not_simulated_again(tmp_path, monkeypatch):
-    recordings = [run(at(v, FIXED), seed=40 + i) for i, v in enumerate(SPEEDS)]
-    stiffer = Model(offsets=(0.1,) * len(OFFSETS))
-
-    def compared(rig=RIG):
-        with kept_results(tmp_path / "report.html", "same") as kept:
-            made = _comparison(recordings, rig, kept=kept)
-            found = (made.squared(stiffer, (0, 1)), made.misfits(stiffer, (1, 2)),
-                     made.residuals(stiffer, (0,)))  # fmt: skip
-            kept.add("last")
-            if rig is RIG:
-                raise KeyboardInterrupt(*found)
-            return found
-
-    def never(*_arguments, **_options):
-        raise AssertionError("simulated")
-
-    with pytest.raises(KeyboardInterrupt) as first:
-        compared()
-    with monkeypatch.context() as patched:
-        patched.setattr(ModelRuns, "simulated", never)
-        patched.setattr(ModelRuns, "noise_free_signature", never)
-        with pytest.raises(KeyboardInterrupt) as second:
-            compared()
-        for before, after in zip(first.value.args, second.value.args, strict=True):
-            assert np.array_equal(before, after)
-        with pytest.raises(AssertionError, match="simulated"):
-            compared(with_offsets(RIG, {OFFSETS[0]: 1.1}))
 
 
 WEAK = {"form": "exponential", "share": 0.4, "speed": 5.0}

@@ -13,12 +13,12 @@ import soundfile
 
 from models.transfer_functions.uff import TIME_RESPONSE, UffFunction, write_uff_functions
 from noise.base.tables import write_table
-from noise.batch.identity import file_identity
+from noise.batch import file_identity, journal_path
 from noise.batch.journal import open_journal
-from noise.batch.lines import journal_path
 from noise.batch.work import Done, Job
-from noise.labels.audacity import label_track
-from noise.labels.labelling import COLUMNS, Labelling
+from noise.labels.labelling import Labelling
+from noise.labels.table import COLUMNS
+from noise.labels.tracks import label_track
 from noise.pages.diagnosis import write_diagnosis
 from noise.training.classifier.described_samples import Sample
 from noise.training.classifier.kept_samples import save_samples
@@ -136,7 +136,7 @@ def _write_tables(folder: Path) -> None:
         write_table(folder / f"labels{ending}", COLUMNS, rows)
     with open_journal(folder / "labels.csv", Labelling()) as journal:
         job = Job(0, folder / "float.wav", "run.wav")
-        journal.add(job, file_identity(job.path), Done([list(rows[0].values())], True))
+        journal.keep(job, file_identity(job.path), Done([list(rows[0].values())], True))
     shutil.move(journal_path(folder / "labels.csv"), folder / "labels.csv.journal")
     shutil.move(write_screen(folder / "screen", screen_rows()) / "map.csv", folder / "map.csv")
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from noise.app.labels import Labels
 from noise.batch import find_jobs
+from noise.labels.corrections import version
 from noise.labels.labelling import Labelling
-from noise.labels.row_places import version
 from noise.labels.table import read_label_table
 
 NAMES = ("a.wav", "b.wav", "c.wav")

@@ -6,7 +6,7 @@ import numpy as np
 
 from models.recording import Channel, Recording
 from noise.base.tables import write_table
-from noise.labels.labelling import COLUMNS
+from noise.labels.table import COLUMNS
 from noise.recordings.writing import write_recording
 from tests.helpers.labelled_folder import made_row
 

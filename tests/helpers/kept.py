@@ -1,19 +1,28 @@
-"""Results that stay on disk after the call that they are kept for."""
+"""Results that stay on disk after the call that they are kept for, and a look at them."""
 
 from __future__ import annotations
 
-from contextlib import contextmanager
+import sqlite3
+from contextlib import closing, contextmanager
 
-from noise.batch.lines import Results, open_lines
+from noise.batch import Journal, journal_path
 
 
 @contextmanager
 def staying_results(target):
     """Give the results of earlier calls, which stay."""
-    found = {}
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with closing(Journal(journal_path(target))) as journal:
+        journal.begin("same")
+        yield journal
 
-    def take(line):
-        found[line[0]] = line[1:]
 
-    with open_lines(target, "same", take=take) as lines:
-        yield Results(found, lines)
+def results_in(journal):
+    """Number and key of each result in a journal, in the order in which they came."""
+    if not journal.exists():
+        return []
+    try:
+        with closing(sqlite3.connect(f"{journal.as_uri()}?mode=ro", uri=True)) as database:
+            return database.execute("select rowid, key from result order by rowid").fetchall()
+    except sqlite3.OperationalError:  # it is being made
+        return []

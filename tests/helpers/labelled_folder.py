@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.base.tables import write_table
-from noise.labels.labelling import COLUMNS
+from noise.labels.table import COLUMNS
 
 
 def made_row(name, label="none", start=0.0, end=2.0, **more):

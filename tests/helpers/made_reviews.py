@@ -9,7 +9,7 @@ import numpy as np
 from models.condition import Condition
 from models.recording import Channel, Recording
 from noise.base.tables import write_table
-from noise.labels.labelling import COLUMNS
+from noise.labels.table import COLUMNS
 from noise.recordings import write_recording
 
 RATE = 48_000

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from noise.labels.frequencies import FREQUENCY_NAMES, segment_frequency
+from noise.labels.classified import FREQUENCY_NAMES, segment_frequency
 
 
 def test_one_window_whose_torque_seems_periodic_does_not_tell_the_frequency_of_seven():

@@ -21,10 +21,9 @@ from noise.classifier import LABELS
 from noise.inference import Interval, infer_stretch, load_inference
 from noise.inference.inputs import LONGEST, QUANTITIES, scaled, unscaled
 from noise.labels.conditions import conditions_map
-from noise.labels.label_display import ASSUMED, assumes_material
-from noise.labels.labelling import COLUMNS, label_rows
+from noise.labels.rows import label_rows
 from noise.labels.segments import Segment
-from noise.labels.table import LabelTable, read_label_table
+from noise.labels.table import ASSUMED, COLUMNS, LabelTable, assumes_material, read_label_table
 from noise.pages.cards import facts_of
 from noise.pages.clips import Entry
 from noise.recordings.blocks import RecordingBlocks

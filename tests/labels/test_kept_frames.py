@@ -5,7 +5,7 @@ import pytest
 
 from models.errors import RecordingError
 from noise.labels import kept_frames
-from noise.labels.kept_frames import KeptFrames
+from noise.labels.windows import KeptFrames
 
 
 @pytest.mark.parametrize("in_memory", [1 << 20, 100])

@@ -10,14 +10,13 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError, RecordingError
-from noise.base.exports import export_paths
+from noise.base.files import export_paths
 from noise.base.tables import read_table, write_table
 from noise.classifier import LABELS
 from noise.cli import main
-from noise.labels.audacity import label_track, write_label_tracks
 from noise.labels.conditions import MAP_COLUMNS, conditions_map, map_rows
-from noise.labels.labelling import COLUMNS
-from noise.labels.table import read_label_table
+from noise.labels.table import COLUMNS, read_label_table
+from noise.labels.tracks import label_track, write_label_tracks
 from noise.pictures.conditions import plot_conditions
 
 

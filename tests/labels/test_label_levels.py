@@ -12,9 +12,9 @@ from models.rig_file import load_material_rig
 from noise.audio.assessment import assess
 from noise.classifier import load_classifier
 from noise.cli import main
-from noise.labels.files import label
-from noise.labels.labelling import label_rows
+from noise.labels.labelling import label
 from noise.labels.levels import background_level, with_weighted_levels
+from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, label_recording
 from noise.recordings import write_recording
 from noise.recordings.blocks import RecordingBlocks

@@ -12,8 +12,10 @@ from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from noise.batch.work import refusal
 from noise.classifier import LABELS, load_classifier
-from noise.labels.labelling import COLUMNS, Labelling, label_rows
+from noise.labels.labelling import Labelling
+from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, file_label, label_recording
+from noise.labels.table import COLUMNS
 from sim.run import simulate
 
 CLASSIFIER = load_classifier()

@@ -13,12 +13,11 @@ import numpy as np
 import pytest
 import soundfile
 
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.base.tables import read_table, write_table
 from noise.cli import main
-from noise.labels.labelling import COLUMNS
 from noise.labels.segments import Segment
-from noise.labels.table import read_label_table
+from noise.labels.table import COLUMNS, read_label_table
 
 FILES = ("lager.wav", "prüfstand; 1.wav", "łożysko.wav")
 OWN = {"lager.wav": "left; door, 1", "prüfstand; 1.wav": "24.12", "łożysko.wav": "1,2"}

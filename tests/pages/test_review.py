@@ -13,7 +13,7 @@ import soundfile
 
 from models.errors import ParameterError
 from noise.audio.gain import loudness
-from noise.base.label_looks import LABEL_LOOKS
+from noise.base.labels import LABEL_LOOKS
 from noise.cli import main
 from noise.pages import review_inputs as recorded
 from noise.pages.cards import facts_of

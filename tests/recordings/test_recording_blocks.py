@@ -12,7 +12,7 @@ from hypothesis import given, strategies as st
 from models.errors import RecordingError
 from models.recording import Channel, Recording
 from noise.classifier import load_classifier
-from noise.labels.labelling import label_rows
+from noise.labels.rows import label_rows
 from noise.labels.segments import label_recording
 from noise.recordings import read_recording, write_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks

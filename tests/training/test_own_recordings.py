@@ -12,7 +12,7 @@ from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from noise.classifier import load_classifier
 from noise.cli import main
-from noise.labels.audacity import label_track, read_label_track
+from noise.labels.tracks import label_track, read_label_track
 from noise.recordings import write_recording
 from noise.training.classifier.own_recordings import MOST_WINDOWS, read_labelled
 from noise.training.classifier.own_samples import own_samples

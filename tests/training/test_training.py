@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from noise.batch.lines import journal_path
 from noise.classifier import LABELS, load_classifier
 from noise.classifier.model import has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES
@@ -17,7 +16,6 @@ from noise.training.classifier.fit import learn, train
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
 from noise.training.classifier.real_sounds import load_real_sounds
 from noise.training.classifier.surroundings import may_sound
-from tests.helpers.kept import staying_results
 
 
 def columns(classifier, sample):
@@ -81,34 +79,6 @@ def test_samples_whose_name_hangs_on_a_bound_are_neither_learned_nor_scored(smal
 def test_too_few_samples_to_know_every_label_are_refused():
     with pytest.raises(ParameterError, match="draw more"):
         train(seed=0, n_training=6, n_test=1)
-
-
-def drawn(folder, lasts):
-    """Draw eleven samples, until a kill; return how many were left to draw."""
-    totals = []
-
-    def progress(samples, total):
-        totals.append(total)
-        for n, sample in enumerate(samples):
-            if n == lasts:
-                raise KeyboardInterrupt
-            yield sample
-
-    with staying_results(folder / "mine.npz") as lines:
-        try:
-            train(seed=0, n_training=6, n_test=1, lines=lines, progress=progress)
-        except KeyboardInterrupt:
-            return totals
-        except ParameterError:  # too few to know every label
-            return totals
-    raise AssertionError
-
-
-def test_after_a_kill_only_the_rest_of_the_samples_is_drawn(tmp_path):
-    assert drawn(tmp_path / "undisturbed", None) == [11]
-    assert [drawn(tmp_path, 5), drawn(tmp_path, None), drawn(tmp_path, None)] == [[11], [6], [0]]
-    kept = journal_path(tmp_path / "mine.npz").read_bytes()
-    assert kept == journal_path(tmp_path / "undisturbed" / "mine.npz").read_bytes()
 
 
 def test_every_label_occurs_among_the_samples(samples):

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from noise.batch.lines import Results
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.local_cases import LocalCase
     from noise.diagnosis.causes.posterior import Posterior
@@ -58,7 +57,6 @@ def local_answer(
     library: Mapping[str, Effect] = EFFECTS,
     workers: int = 2,
     seed: int = 0,
-    kept: Results | None = None,
 ) -> tuple[dict[Hypothesis, float], str]:
     """Probability of each hypothesis, judged by cases simulated of this rig at these conditions.
 
@@ -80,8 +78,6 @@ def local_answer(
         Processes.
     seed : int
         Of the cases.
-    kept : Results, optional
-        Of calls with the same of all this, where to keep cases.
 
     Returns
     -------
@@ -102,9 +98,7 @@ def local_answer(
     of_own = [h for h in _hypotheses([*effects, *own]) if h & set(own)]
     bench = bench_of(case, table, library=library, seed=seed)
     wanted = [job for h in (known, of_own) for job in _wanted(h, effects[:LEADERS])]
-    cases = local_cases(
-        bench, posterior, wanted, library=library, workers=workers, seed=seed, kept=kept
-    )
+    cases = local_cases(bench, posterior, wanted, library=library, workers=workers, seed=seed)
     if len(cases) < _ENOUGH * len(wanted):  # those that can be simulated are no fair choice
         return dict(first), (
             f"{len(wanted) - len(cases)} of {len(wanted)} cases of this rig with a likely cause "

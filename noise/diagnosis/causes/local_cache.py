@@ -1,8 +1,8 @@
 """Local cases kept on disk, so that a second diagnosis of a rig starts from the first.
 
 One small file holds what the posterior says of the cases of one rig at its conditions; its name is
-a digest of all that decides that: rig, runs, posterior, and the program itself. What cannot be read
-is made again, what cannot be written is not kept, and the oldest files go.
+a digest of all that decides that: rig, runs, posterior, and the version of results. What cannot be
+read is made again, what cannot be written is not kept, and the oldest files go.
 """
 
 from __future__ import annotations
@@ -58,11 +58,11 @@ class LocalCache:
         """
         from joblib import hash as digest
 
-        from noise.batch.identity import program_identity
+        from noise.batch.journal import RESULTS_VERSION
 
         learned = (posterior.names, posterior.scale, posterior.columns, posterior.trees.arrays())
         with suppress(RuntimeError, OSError):  # a user without a home
-            name = digest((program_identity(), decisive, learned))
+            name = digest((RESULTS_VERSION, decisive, learned))
             return cls(_folder() / f"{name}.npz")
         return None
 

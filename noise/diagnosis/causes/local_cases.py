@@ -17,7 +17,7 @@ import numpy as np
 
 from models.condition import known_condition
 from models.errors import ParameterError
-from noise.batch.orphans import ending_with_this
+from noise.batch.pool import ending_with_this
 from noise.diagnosis.cases.draw import active_effect, draw_offsets, unknown_effect
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.cases.structures import draw_structure
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
     from models.recording import Recording
     from models.rig import Rig
-    from noise.batch.lines import Results
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
     from sim.effects.effect import ActiveEffect, Effect
@@ -172,7 +171,6 @@ def local_cases(
     library: Mapping[str, Effect] = EFFECTS,
     workers: int = 1,
     seed: int = 0,
-    kept: Results | None = None,
 ) -> list[LocalCase]:
     """Simulate cases of a rig, or take those that an earlier diagnosis of it has kept.
 
@@ -188,9 +186,6 @@ def local_cases(
     workers : int
         Processes.
     seed : int
-    kept : Results, optional
-        Where to keep each case as it is made, and what of them is there already, in a call with the
-        same bench, posterior and seed.
 
     Returns
     -------
@@ -203,9 +198,6 @@ def local_cases(
     known = cache.read() if cache is not None else {}
     n_cached = len(known)
     plain = [job for job in wanted if all(EFFECTS.get(c) is library.get(c) for c in job[0])]
-    if kept is not None and shipped:
-        there = {job: kept.found[_key(job)] for job in plain if _key(job) in kept.found}
-        known |= {job: np.array(odds, dtype=np.float64) for job, odds in there.items()}
     # A user's code may not be known to another process; it may be slow as well.
     own = [job for job in wanted if job not in plain]
     of_users = dict(_simulated(bench, posterior, own, library, seed))
@@ -214,19 +206,11 @@ def local_cases(
         made = _simulated_by(workers, bench, posterior, missing, seed)
     else:
         made = _simulated(bench, posterior, missing, library, seed)
-    for job, odds in made:
-        known[job] = odds
-        if kept is not None and shipped:
-            kept.add(_key(job), *odds.tolist())
+    known |= dict(made)
     if cache is not None and len(known) > n_cached:
         cache.write(known)
     known |= of_users
     return [LocalCase(job[0], known[job]) for job in wanted if job in known and known[job].size]
-
-
-def _key(job: Job) -> str:
-    hypothesis, number = job
-    return f"case {number} of {'+'.join(sorted(hypothesis))}"
 
 
 def _simulated_by(

@@ -15,7 +15,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
-from joblib import hash as digest
 
 from models.errors import ParameterError
 from noise.diagnosis.evidence.evidence import aligned
@@ -23,7 +22,6 @@ from noise.diagnosis.evidence.summary import same_channels, summary
 from noise.diagnosis.gap.distance import group_costs, residual_parts
 from noise.diagnosis.gap.floor import references_of, repeat_gap
 from noise.diagnosis.gap.signature import signature
-from noise.diagnosis.simulated.kept_arrays import KeptArrays
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.nominal import condition_key
 from noise.diagnosis.simulated.repeats import Scatter
@@ -36,7 +34,6 @@ if TYPE_CHECKING:
 
     from models.recording import Recording
     from models.rig import Rig
-    from noise.batch.lines import Results
     from noise.diagnosis.evidence.summary import CaseTable
     from noise.diagnosis.fit.forms.form import Form
     from noise.diagnosis.gap.distance import Gap, Reference
@@ -98,8 +95,6 @@ class CaseComparison:
         Further forms of effects, by the name of the effect and their own.
     about : Model
         Whose repeats tell the floor; by default those of the rig as its file has it.
-    kept : Results, optional
-        Of calls with these recordings and this library, where to keep what is simulated.
     """
 
     rig: Rig
@@ -110,20 +105,17 @@ class CaseComparison:
     scale: NDArray[np.float64]
     forms: dict[tuple[str, str], Form] = field(default_factory=dict)
     about: Model = field(default_factory=Model)
-    kept: Results | None = None
     signatures: list[NDArray[np.float64]] = field(init=False)
     references: list[Reference] = field(init=False)
     runs: ModelRuns = field(init=False)
     _threads: int = field(init=False)
     _briefly: list[Recording] = field(init=False)
     _seeds: dict[tuple[float, ...], list[int]] = field(init=False)
-    _signed: KeptArrays = field(init=False)
-    _numbers: KeptArrays = field(init=False)
+    _signed: dict[tuple[object, ...], NDArray[np.float64]] = field(init=False)
+    _numbers: dict[tuple[object, ...], NDArray[np.float64]] = field(init=False)
 
     def __post_init__(self) -> None:
-        rig = digest(self.rig)
-        self._signed = KeptArrays(f"signatures {rig}", self.kept)
-        self._numbers = KeptArrays(f"numbers {rig}", self.kept)
+        self._signed, self._numbers = {}, {}
         self.runs = ModelRuns(self.rig, self.library, self.forms)
         self._threads = min(_THREADS, os.cpu_count() or 1)
         self._briefly = [_brief(recording) for recording in self.recordings]

@@ -108,10 +108,7 @@ def improved_rig(
             made = _made(case, comparison, fitted.model) if after <= CLOSED else None
             if made is None:
                 continue
-            found = first_answer(
-                replace(case, rig=made[1]), comparison.library, posterior, seed,
-                kept=comparison.kept,
-            )  # fmt: skip
+            found = first_answer(replace(case, rig=made[1]), comparison.library, posterior, seed)
             if not found.verdict:
                 before = rms(comparison.squared(Model(), held))
                 return _improvement(case, own, fitted_to, held, fitted, *made, before, after)

@@ -17,8 +17,8 @@ import numpy as np
 from joblib import Parallel, delayed, hash as digest
 
 from models.errors import BushingNoiseError, ParameterError
+from noise.batch import Journal, one_thread
 from noise.batch.cluster import cluster
-from noise.batch.work import one_thread
 from noise.screening.map.point import REGIMES, evaluate_point, shaft_motion
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.rig import Rig
-    from noise.batch.lines import Results
 
 __all__ = ["LABELS", "Batch", "Evaluator", "batch_evaluator", "keeping"]
 
@@ -120,7 +119,7 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
 
         def on_cluster(batch: Batch) -> NDArray[np.float64]:
             pieces = _pieces(batch, _FAR_PIECE)
-            calls = [(batch.part(piece), index) for index, piece in enumerate(pieces)]
+            calls = [(batch.part(piece),) for piece in pieces]
             found: dict[int, NDArray[np.float64] | str | None] = dict(
                 spread(_evaluate_on_cluster, calls)
             )
@@ -135,13 +134,13 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
         yield on_cluster
 
 
-def keeping(evaluate: Evaluator, lines: Results) -> Evaluator:
+def keeping(evaluate: Evaluator, lines: Journal) -> Evaluator:
     """Give an evaluator that keeps what it finds, and does not do again what was kept.
 
     Parameters
     ----------
     evaluate : callable
-    lines : Results
+    lines : Journal
 
     Returns
     -------
@@ -151,8 +150,8 @@ def keeping(evaluate: Evaluator, lines: Results) -> Evaluator:
 
     def kept(batch: Batch) -> NDArray[np.float64]:
         key = digest(tuple(getattr(batch, one.name) for one in fields(batch)))
-        if key in lines.found:
-            return np.array(lines.found[key], dtype=np.float64)
+        if (found := lines.get(key)) is not None:
+            return np.array(found, dtype=np.float64)
         rows = evaluate(batch)
         lines.add(key, *rows.tolist())
         return rows
@@ -174,12 +173,12 @@ def _joined(
     return rows
 
 
-def _evaluate_on_cluster(batch: Batch, index: int) -> tuple[int, NDArray[np.float64] | str]:
+def _evaluate_on_cluster(batch: Batch) -> NDArray[np.float64] | str:
     try:
         with one_thread():
-            return index, _evaluate(batch)
+            return _evaluate(batch)
     except BushingNoiseError as error:
-        return index, str(error)
+        return str(error)
 
 
 def _evaluate(batch: Batch) -> NDArray[np.float64]:

@@ -17,7 +17,7 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from models.errors import ParameterError
-from noise.batch.work import one_thread
+from noise.batch import one_thread
 from noise.screening.map.grid import DEFAULT_SPEEDS
 from noise.screening.map.point import evaluate_point
 from noise.screening.parts.variation import UsePoint, use_point, varied

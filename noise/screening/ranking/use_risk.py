@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from joblib import Parallel, delayed
 
-from noise.batch.work import one_thread
+from noise.batch import one_thread
 from noise.screening.map.grid import grid_of
 from noise.screening.ranking.risk import design_risk, risk_grades
 from sim.analysis.critical_speeds import motion_from_rest

@@ -19,7 +19,7 @@ from joblib import Parallel, delayed
 
 from models.errors import BushingNoiseError
 from models.rig_file import load_material_rig
-from noise.base.atomic import atomic
+from noise.base.files import atomic
 from noise.identification.table_fit import fit_table
 from noise.training.calibrate.report import (
     material_toml,

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from models.errors import ParameterError
-from noise.base.atomic import check_target
+from noise.base.files import check_target
 from noise.base.progress import counted, say, track
 from noise.diagnosis.cases.draw import SHARED
 from noise.diagnosis.causes.stage_nulls import learn_stage_nulls

@@ -19,7 +19,7 @@ from scipy.optimize import minimize
 
 from models.errors import ParameterError
 from models.rig_file import load_rig
-from noise.base.atomic import atomic, check_target
+from noise.base.files import atomic, check_target
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.case import read_case
 from noise.diagnosis.causes.joint import normalised

@@ -15,7 +15,7 @@ from joblib import Parallel, delayed
 
 from models.condition import KnownCondition, known_condition
 from models.errors import ParameterError
-from noise.base.atomic import atomic, check_target
+from noise.base.files import atomic, check_target
 from noise.diagnosis.cases.draw import SHARED
 from noise.diagnosis.cases.truth import Truth
 from noise.diagnosis.evidence.summary import CaseTable

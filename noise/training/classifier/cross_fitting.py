@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.windows.table import HOP
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.classifier.model import Classifier, at_sensitivity, has_more_than_sound
 from noise.labels.segmentation import NOISES, clearest, named as labels_named
 from noise.labels.windows import FEATURE_NAMES, columns_of

@@ -17,13 +17,13 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from models.errors import ParameterError
-from noise.base.label_names import LABELS
-from noise.batch.orphans import ending_with_this
+from noise.base.labels import LABELS
+from noise.batch.pool import ending_with_this
 from noise.labels.segmentation import clearest
 from noise.labels.windows import columns_of
 from noise.training.classifier.cross_fitting import grown, left_out_scores, named, with_trees_of
 from noise.training.classifier.described_samples import draw_sample
-from noise.training.classifier.kept_samples import as_line, load_samples, of_line, save_samples
+from noise.training.classifier.kept_samples import load_samples, save_samples
 from noise.training.classifier.masked_rows import (
     KINDS,
     SUBSETS,
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from noise.batch.lines import Results
     from noise.classifier.model import Classifier
     from noise.training.classifier.described_samples import Sample
 
@@ -65,7 +64,6 @@ def train(
     added: Sequence[OwnSample] = (),
     surroundings: str = "any",
     keep: Path | None = None,
-    lines: Results | None = None,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
     growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
@@ -84,9 +82,6 @@ def train(
     keep : Path, optional
         File that keeps the simulated samples (`noise.training.classifier.kept_samples`): they are
         taken from it where it holds those of the same call by the same program.
-    lines : Results, optional
-        Where to keep each sample as it is simulated, of this call alone, and what of it is there
-        already.
     progress : callable, optional
         ``progress(samples, total)`` passes the samples on and shows how far it is.
     growing : callable, optional
@@ -113,7 +108,7 @@ def train(
     call = (seed, n_training, n_test, surroundings)
     samples = None if keep is None else load_samples(keep, call)
     if samples is None:
-        samples = _drawn(seed, n_made_up, total, surroundings, progress, lines)
+        samples = _drawn(seed, n_made_up, total, surroundings, progress)
         if keep is not None:
             save_samples(keep, call, samples)
     real = load_real_sounds()
@@ -145,21 +140,15 @@ def _drawn(
     total: int,
     surroundings: str,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None,
-    lines: Results | None,
 ) -> list[Sample]:
     seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
     seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
-    known = {} if lines is None else {int(key): of_line(line) for key, line in lines.found.items()}
-    left = [i for i in range(total) if i not in known]
     draw = ending_with_this(draw_sample)
     drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(draw)(seeds[i], bushings=i >= n_made_up, surroundings=surroundings) for i in left
+        delayed(draw)(seeds[i], bushings=i >= n_made_up, surroundings=surroundings)
+        for i in range(total)
     )
-    for i, sample in zip(left, progress(drawn, len(left)) if progress else drawn, strict=True):
-        known[i] = sample
-        if lines is not None:
-            lines.add(str(i), *as_line(sample))
-    return [known[i] for i in range(total)]
+    return list(progress(drawn, total) if progress else drawn)
 
 
 def learn(

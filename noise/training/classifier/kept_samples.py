@@ -2,40 +2,28 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
-from typing import TYPE_CHECKING, Any
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import ParameterError
 from models.foreign_file import read_arrays, reading
-from noise.base.atomic import atomic
-from noise.batch.identity import program_identity
+from noise.base.files import atomic
 from noise.training.classifier.described_samples import Sample
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
-__all__ = ["as_line", "load_samples", "of_line", "save_samples"]
+__all__ = ["load_samples", "save_samples"]
 
-
-def as_line(sample: Sample) -> list[object]:
-    """Return a sample as JSON can hold it.
-
-    Examples
-    --------
-    >>> one = Sample(np.full((2, 3), np.float32(0.1)), "creak", False, "bushing")
-    >>> bool(np.all(of_line(as_line(one)).features == one.features))
-    True
-    """
-    return [sample.features.tolist(), sample.label, sample.ambiguous, sample.name]
-
-
-def of_line(line: Sequence[Any]) -> Sample:
-    """Return the sample of a line."""
-    features, *said = line
-    return Sample(np.array(features, dtype=np.float32), *said)
+_PACKAGES = ("models", "sim", "features", "noise")
+_LIBRARIES = ("librosa", "numba", "numpy", "scikit-learn", "scipy", "soundfile")
+"""What the samples come from."""
 
 
 def save_samples(path: Path, call: Sequence[object], samples: Sequence[Sample]) -> None:
@@ -93,4 +81,16 @@ def load_samples(path: Path, call: Sequence[object]) -> list[Sample] | None:
 
 
 def _said(call: Sequence[object]) -> str:
-    return json.dumps([program_identity(), *call])
+    return json.dumps([_program(), *call])
+
+
+@cache  # a process goes on with the program that it has loaded
+def _program() -> str:
+    """Digest of the program's sources and models, and of the libraries' versions."""
+    digest, root = hashlib.sha256(), Path(__file__).parents[3]
+    for library in _LIBRARIES:
+        digest.update(f"{library} {version(library)}\n".encode())
+    for path in sorted(one for package in _PACKAGES for one in (root / package).rglob("*")):
+        if path.is_file() and path.parent.name != "__pycache__":
+            digest.update(path.relative_to(root).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.classifier.model import has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES
 

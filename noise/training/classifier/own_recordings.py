@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError, RecordingError
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.base.tables import TABLE_ENDINGS
-from noise.labels.audacity import read_label_track
 from noise.labels.table import HUMAN, read_label_table
+from noise.labels.tracks import read_label_track
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 from noise.recordings.folders import files_below, is_file

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.base.label_names import LABELS
+from noise.base.labels import LABELS
 from noise.labels.segmentation import NOISES
 from noise.labels.windows import can_be_described, describe
 from noise.recordings.blocks import RecordingBlocks

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from noise.base.tables import write_table
-from noise.labels.labelling import COLUMNS
+from noise.labels.table import COLUMNS
 from tests.helpers.labelled_folder import made_row
 from tests.helpers.opened_app import opened_app
 from tests.helpers.recording_page import HALF, RATE, TONE, OpenPage, write_sounds

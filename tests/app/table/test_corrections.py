@@ -10,12 +10,11 @@ import pytest
 from models.errors import ParameterError, RecordingError
 from noise.app.labels import Correction, read_corrections
 from noise.base.tables import write_table
-from noise.batch import find_jobs, open_journal
-from noise.batch.identity import file_identity
+from noise.batch import file_identity, find_jobs, open_journal
 from noise.batch.work import Done
-from noise.labels.kept_corrections import with_corrections
-from noise.labels.labelling import COLUMNS, Labelling
-from noise.labels.row_places import version
+from noise.labels.corrections import version, with_corrections
+from noise.labels.labelling import Labelling
+from noise.labels.table import COLUMNS
 from tests.helpers.corrected_table import NAMES, correct, in_table, labels_of
 from tests.helpers.labelled_folder import made_row as row
 
@@ -68,7 +67,7 @@ def test_rows_arrive_from_the_journal_and_never_over_a_correction(folder):
     with open_journal(folder / "labels.csv", work) as journal:
         for job in jobs[:2]:
             rows = [list(row(job.name, "creak").values())]
-            journal.add(job, file_identity(job.path), Done(rows, True))
+            journal.keep(job, file_identity(job.path), Done(rows, True))
         assert [one["label"] for one in labels.summaries()] == ["creak", "squawk", None]
     assert labels_of(folder).rows(0)[0]["label"] == "creak"
     assert labels.undo()[1][0]["label"] == "creak"

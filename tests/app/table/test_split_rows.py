@@ -9,9 +9,8 @@ import soundfile
 from models.recording import Channel, Recording
 from noise.app.labels import NOT_MEASURED, Correction
 from noise.base.tables import write_table
-from noise.labels.files import label
-from noise.labels.label_display import ASSUMED
-from noise.labels.labelling import COLUMNS
+from noise.labels.labelling import label
+from noise.labels.table import ASSUMED, COLUMNS
 from noise.recordings import write_recording
 from tests.helpers.corrected_table import correct, labels_of
 from tests.helpers.labelled_folder import made_row as row, write_folder

@@ -7,9 +7,8 @@ import pytest
 from models.errors import ParameterError
 from noise.app.labels import Correction
 from noise.base.tables import write_table
-from noise.labels.kept_corrections import with_corrections
-from noise.labels.labelling import COLUMNS
-from noise.labels.row_places import version
+from noise.labels.corrections import version, with_corrections
+from noise.labels.table import COLUMNS
 from tests.helpers.corrected_table import NAMES, correct, in_table, labels_of
 from tests.helpers.labelled_folder import made_row as row
 

@@ -1,4 +1,4 @@
-"""Writing of files that appear whole or not at all.
+"""Files as results are written: whole or not at all, by one process at a time, one a recording.
 
 A batch that is killed half-way must not leave half a file that a later run, or another program,
 takes for a result. So every output is written under another name beside its target, on the same
@@ -7,7 +7,8 @@ folder walks leave out, and ends as the target does, because many writers choose
 that ending. A target that cannot be written is refused before the work whose result it is to hold.
 
 A process that is killed while it writes cannot remove what it wrote. So the passing name says whose
-it is, and who next writes into the folder removes what processes left there that are gone.
+it is, and who next writes into the folder removes what processes left there that are gone. A lock
+is freed by the system when a process ends, however it ends, so none is left behind.
 """
 
 from __future__ import annotations
@@ -16,18 +17,17 @@ import hashlib
 import os
 import platform
 import re
+import time
 import uuid
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
-from pathlib import Path
-from typing import TYPE_CHECKING
+from io import FileIO
+from pathlib import Path, PurePosixPath
+from typing import Any
 
 from models.errors import ParameterError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-__all__ = ["atomic", "check_target"]
 
 
 @contextmanager
@@ -169,3 +169,160 @@ def _remove(path: Path) -> None:
     except OSError:
         # The folder itself cannot be used; the error that says so is already on its way.
         return
+
+
+_PATIENCE = 0.05
+"""Between looks at a lock that another has, on Windows [s]."""
+
+
+@contextmanager
+def locked(target: Path, *, wait: bool = True) -> Iterator[None]:
+    """Keep others who take the same lock from a file until the block ends.
+
+    Parameters
+    ----------
+    target : Path
+        The file; it need not exist. The lock is a hidden file beside it, which goes with the lock.
+    wait : bool
+        Whether to wait for another who has it.
+
+    Yields
+    ------
+    None
+
+    Raises
+    ------
+    ParameterError
+        Nothing can be written there, or another has the lock and is not waited for.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with locked(Path(folder) / "labels.csv"):
+    ...         there = [path.name for path in Path(folder).iterdir()]
+    ...     there, list(Path(folder).iterdir())
+    (['.labels.csv.lock'], [])
+    """
+    path = target.with_name(f".{target.name}.lock")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = _held(path, wait=wait)
+    except BlockingIOError:
+        raise ParameterError(
+            f"{target}: is being written by another process; wait for it"
+        ) from None
+    except OSError as error:
+        raise ParameterError(f"{target}: cannot be written ({error.strerror or error})") from None
+    with file:
+        try:
+            yield
+        finally:
+            _free(path)
+
+
+def _held(path: Path, *, wait: bool) -> FileIO:
+    """Open and lock the file that stands there once the lock is held."""
+    while True:
+        file = path.open("a+b", buffering=0)
+        _claim(file, wait=wait)
+        # Who held it before may have removed the file while this process waited for it.
+        try:
+            if os.path.samestat(os.fstat(file.fileno()), path.stat()):
+                return file
+        except FileNotFoundError:
+            pass
+        file.close()
+
+
+def _claim(file: FileIO, *, wait: bool) -> None:
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        _claim_on_windows(file, wait=wait)
+        return
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+    except BlockingIOError:
+        file.close()
+        raise
+    except OSError:  # a file system without locks
+        return
+
+
+def _claim_on_windows(file: FileIO, *, wait: bool) -> None:
+    import msvcrt
+
+    lock: Any = msvcrt
+    while True:
+        try:
+            lock.locking(file.fileno(), lock.LK_NBLCK, 1)
+            return
+        except OSError:
+            if not wait:
+                file.close()
+                raise BlockingIOError from None
+            time.sleep(_PATIENCE)
+
+
+def _free(path: Path) -> None:
+    """Remove the file while it is held; where an open file cannot be removed, it stays."""
+    try:
+        path.unlink(missing_ok=True)
+    except OSError:
+        return
+
+
+def export_paths(
+    target: Path, files: Sequence[str], endings: Sequence[str], option: str
+) -> dict[str, Path]:
+    """Return where the file of each recording goes.
+
+    Parameters
+    ----------
+    target : Path
+        A folder, in which they lie as the recordings do in theirs; or a file of one of the endings,
+        for one recording.
+    files : sequence of str
+        Recordings, as tables call them.
+    endings : sequence of str
+        That a file may have; in a folder, files have the first.
+    option : str
+        Of the command line, that names the target.
+
+    Raises
+    ------
+    ParameterError
+        Two recordings have the same name, or there are several for one file.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> paths = export_paths(Path("tracks"), ["day1/run07.wav"], [".txt"], "--audacity")
+    >>> paths["day1/run07.wav"].as_posix()
+    'tracks/day1/run07.txt'
+    """
+    if target.suffix.lower() in endings:
+        if len(set(files)) > 1:
+            raise ParameterError(
+                f"{option} {target}: is one file, but there are {len(set(files))} recordings; "
+                "name a folder"
+            )
+        return dict.fromkeys(files, target)
+    times = Counter(files)
+    for file in files:
+        if times[file] > 1:
+            raise ParameterError(
+                f"{option} {target}: two recordings are called {file}; name the folder that "
+                "holds them both"
+            )
+        if PurePosixPath(file).is_absolute() or ".." in PurePosixPath(file).parts:
+            raise ParameterError(f"{option} {target}: {file} lies outside of the folder named")
+    # Recordings that differ in the ending alone keep it.
+    short = [PurePosixPath(file).with_suffix(endings[0]) for file in files]
+    alike = Counter(short)
+    return {
+        file: target / (name if alike[name] == 1 else f"{file}{endings[0]}")
+        for file, name in zip(files, short, strict=True)
+    }

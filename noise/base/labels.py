@@ -1,4 +1,4 @@
-"""Colours, patterns and marks of the labels, as all pictures and pages show them.
+"""Labels: their names in the one order that all tables and models have, and how they are shown.
 
 A label is shown by a colour that no eye takes for another's, by a pattern and by two letters: a
 projector washes colours out, a printer drops them, and one man in twelve does not see them.
@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from noise.base.label_names import LABELS
+LABELS = ("creak", "squawk", "squeal", "none", "unknown")
+"""The labels, in the order of all tables of probabilities."""
 
-__all__ = ["DARK_LABELS", "LABEL_COLOURS", "LABEL_LOOKS", "Look"]
+NAMED = LABELS[:3]
+"""Those that are the name of a noise."""
 
 
 class Look(NamedTuple):

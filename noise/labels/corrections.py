@@ -5,19 +5,80 @@ That is what was corrected, and what stands in columns of its own.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from hashlib import blake2b
+from pathlib import Path
 
 from models.errors import ParameterError, RecordingError
-from noise.base.label_names import LABELS
-from noise.base.readable import readable
-from noise.labels.row_places import WHOLE, common_time, place, track
+from noise.base.labels import LABELS
+from noise.base.progress import readable
 from noise.labels.table import HUMAN, own_columns, read_label_table
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-    from pathlib import Path
+Row = Mapping[str, object]
+Place = tuple[str, float, float]
 
-__all__ = ["with_corrected_rows", "with_corrections"]
+
+WHOLE = "all"
+"""The track of what holds for all channels."""
+
+_DECIMALS = 6
+"""Of times that are told apart, as `label` writes them."""
+
+
+def track(row: Row) -> str:
+    """Return the track that a row is of; ``all`` where the table does not say.
+
+    Examples
+    --------
+    >>> track({"channel": None}), track({"channel": "2"})
+    ('all', '2')
+    """
+    return str(row.get("channel") or WHOLE)
+
+
+def place(row: Row) -> Place:
+    """Return track, start and end [s] of a row; all of the recording where the table has no times.
+
+    Examples
+    --------
+    >>> place({"channel": "2", "start_s": 0.5, "end_s": 2.0}), place({})
+    (('2', 0.5, 2.0), ('all', 0.0, inf))
+    """
+    start, end = row.get("start_s"), row.get("end_s")
+    return (
+        track(row),
+        round(start, _DECIMALS) if isinstance(start, float) else 0.0,
+        round(end, _DECIMALS) if isinstance(end, float) else math.inf,
+    )
+
+
+def common_time(one: Place, other: Place) -> float:
+    """Return the time that two places have in common; below zero how far they are apart [s].
+
+    Examples
+    --------
+    >>> common_time(("all", 0.0, 2.0), ("all", 1.5, 4.0)), common_time(place({}), ("all", 1.5, 4.0))
+    (0.5, 2.5)
+    """
+    return min(one[2], other[2]) - max(one[1], other[1])
+
+
+def version(rows: Sequence[Row]) -> str:
+    """Return what is another where a segment, its label, or who gave it is another.
+
+    A table that was written again with the same labels is the same by it.
+
+    Examples
+    --------
+    >>> row = {"start_s": 0.0, "end_s": 2.0, "label": "none", "label_source": "classifier"}
+    >>> version([row]) == version([row | {"p_none": 0.9}])
+    True
+    >>> version([row]) == version([row | {"label": "creak"}])
+    False
+    """
+    said = sorted(repr((*place(row), row["label"], row.get("label_source"))) for row in rows)
+    return blake2b("\n".join(said).encode(), digest_size=8).hexdigest()
 
 
 def with_corrections(

@@ -1,0 +1,397 @@
+"""Rows of the label table: what is known of a segment, linked to the condition it was recorded at.
+
+What was logged stands as it is. What was not is inferred where there is a noise to tell it, with
+the bounds of an interval of 90 %; the material is never. The intervals are those of a fluorocarbon
+bushing like the shipped one: a recording of another material has none, nor has a sound that nothing
+says to be of a rig. Segments that a person has drawn are measured as `label` does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.condition import Condition
+from models.recording import Recording
+from noise.base.labels import NAMED
+from noise.inference import Inference, Interval
+from noise.labels.classified import TELLING, segment_frequency
+from noise.labels.levels import sound_levels, with_weighted_levels
+from noise.labels.segments import Segment
+from noise.labels.table import ASSUMED, COLUMNS, CONDITIONS, HUMAN, assumes_material
+from noise.labels.windows import can_be_described, describe, tracks
+from noise.recordings import read_recording
+from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings.files import names_channels
+from noise.recordings.logged_speed import agrees, as_logged
+from noise.recordings.meaning import PascalPerFullScale
+
+_DIGITS = 4
+"""Of what is inferred, which is known to far fewer."""
+
+
+def labelled_tracks(path: Path, n_channels: int) -> list[str]:
+    """Return what of a recording has labels of its own, as the column ``channel`` names it.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> labelled_tracks(Path("stereo.wav"), 2), labelled_tracks(Path("mono.wav"), 1)
+    (['1', '2'], ['all'])
+    """
+    several = n_channels > 1 and not names_channels(path)
+    return [str(number + 1) for number in range(n_channels)] if several else ["all"]
+
+
+def label_rows(
+    name: str,
+    recording: Recording | RecordingBlocks,
+    segments: list[Segment],
+    inference: Inference | None = None,
+) -> list[dict[str, object]]:
+    """Return one row for each segment.
+
+    Parameters
+    ----------
+    name : str
+        File as found, relative to the folder named.
+    recording : Recording or RecordingBlocks
+        Where the shaft's speed was recorded, each segment gets its mean over that segment.
+    segments : list of Segment
+    inference : Inference, optional
+        By which conditions that were not logged are inferred; by default the one that is shipped.
+
+    Returns
+    -------
+    list of dict
+        By `COLUMNS`; a condition's source is ``logged``, ``inferred`` or ``missing``, and it has
+        bounds where it is inferred. An inferred speed is a magnitude. The bolted clamp's support
+        stiffness is ``inf``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from models.recording import Channel, Recording
+    >>> from noise.base.labels import LABELS
+    >>> turning = Recording(np.array([[0.0, 1.0, 2.0, 3.0]]), 2.0, (Channel("angle"),))
+    >>> part = Segment("all", 0.0, 2.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
+    >>> row, = label_rows("run07.wav", turning, [part])
+    >>> row["speed_rad_s"], row["speed_rad_s_source"], row["material_source"]
+    (2.0, 'logged', 'missing')
+    """
+    blocks = RecordingBlocks.of(recording)
+    return [_row(name, blocks, segment, inference) for segment in segments]
+
+
+def segment_cells(segment: Segment) -> dict[str, object]:
+    """Return what a segment says by itself, by `SEGMENT_COLUMNS`.
+
+    Examples
+    --------
+    >>> from noise.labels.segments import Segment
+    >>> quiet = Segment("all", 0.0, 2.0, "none", {"none": 0.9}, None, 31.234, None)
+    >>> segment_cells(quiet)["level_db"]
+    31.23
+    """
+    return {
+        "channel": segment.channel,
+        "start_s": round(segment.start, 6),
+        "end_s": round(segment.end, 6),
+        "label": segment.label,
+        **{f"p_{label}": round(p, 6) for label, p in segment.probabilities.items()},
+        "frequency_hz": _rounded(segment.frequency, 2),
+        "level_db": _rounded(segment.level, 2),
+        "level_dba": _rounded(segment.level_a, 2),
+        "l_afmax_dba": _rounded(segment.level_af_max, 2),
+        "loudness_n5_sone": _rounded(segment.loudness_n5, 4),
+        "snr_dba": _rounded(segment.snr, 2),
+        "level_dbfs": _rounded(segment.level_dbfs, 2),
+    }
+
+
+def _row(
+    name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
+) -> dict[str, object]:
+    speed = segment_speed(blocks, segment.start, segment.end)
+    condition = replace(blocks.condition, speed=speed)
+    row: dict[str, object] = {
+        **dict.fromkeys(COLUMNS),
+        "file": name,
+        **segment_cells(segment),
+        "calibrated": blocks.calibrated,
+        "material": condition.material,
+        "material_source": "logged" if condition.material else "missing",
+        "label_source": "classifier",
+    }
+    inferred = _inferred(blocks, segment, condition, inference)
+    for column, field in CONDITIONS.items():
+        value = _in_unit(column, getattr(condition, field))
+        row[column] = value
+        row[f"{column}_source"] = "missing" if value is None else "logged"
+        if value is None and field in inferred:
+            interval = inferred[field]
+            row[column] = _inferred_in_unit(column, interval.value)
+            row[f"{column}_low"] = _inferred_in_unit(column, interval.low)
+            row[f"{column}_high"] = _inferred_in_unit(column, interval.high)
+            row[f"{column}_source"] = "inferred"
+    assumed = f"conditions inferred {ASSUMED}" if assumes_material(row) else ""
+    remarks = [text for text in (speed_remark(blocks, speed), assumed) if text]
+    row["note"] = "; ".join(remarks) or None
+    return row
+
+
+def _inferred(
+    blocks: RecordingBlocks, segment: Segment, logged: Condition, inference: Inference | None
+) -> dict[str, Interval]:
+    """Infer what is not logged of a segment whose label tells of it."""
+    unknown = any(getattr(logged, field) is None for field in CONDITIONS.values())
+    if not unknown or segment.label not in NAMED:
+        return {}
+    # Who names a model says by it which rig the recordings are of.
+    if inference is None and not _is_of_a_rig(blocks):
+        return {}
+    from noise.inference import infer_stretch, load_inference
+
+    if segment.channel != "all":
+        blocks = blocks.track(int(segment.channel) - 1)
+    first = round(segment.start * blocks.rate)
+    last = min(round(segment.end * blocks.rate), blocks.n_samples)
+    return infer_stretch(blocks, first, last, logged, inference or load_inference())
+
+
+def _is_of_a_rig(blocks: RecordingBlocks) -> bool:
+    """Whether anything says so: another channel than sound, or a condition.
+
+    A calibration says how loud a sound is, not what made it.
+    """
+    at = blocks.condition
+    stated = (at.material, at.speed, at.interference, at.support_stiffness)
+    others = any(channel.kind != "pressure" for channel in blocks.channels)
+    return others or any(value is not None for value in stated)
+
+
+def _in_unit(column: str, value: float | None) -> float | None:
+    """Return a value in the unit of its column."""
+    millimetres = value is not None and column.endswith("_mm")
+    return _rounded(1e3 * value if millimetres and value is not None else value, 6)
+
+
+def _inferred_in_unit(column: str, value: float) -> float | None:
+    """Return it with as many digits as it is known to: 3745, not 3744.9998."""
+    found = _in_unit(column, value)
+    return None if found is None else float(f"{found:.{_DIGITS}g}")
+
+
+def _rounded(value: float | None, digits: int) -> float | None:
+    return None if value is None or math.isnan(value) else round(value, digits)
+
+
+_SPEED_BLOCK = 0.02
+"""Length over which the angle is averaged before its slope is taken [s]."""
+
+_BLOCKS_AT_ONCE = 500
+"""How many of them are read together."""
+
+OF_CHANNEL = "is that of the channel"
+"""What a remark says of a speed that stands in place of the one that was logged."""
+
+
+def segment_speed(blocks: RecordingBlocks, start: float, end: float) -> float | None:
+    """Mean speed of the shaft over a segment: from its channels, else as it was logged.
+
+    Its magnitude where the shaft swings to and fro, whose mean speed is nothing.
+
+    Parameters
+    ----------
+    blocks : RecordingBlocks
+    start, end : float
+        Of the segment [s].
+
+    Returns
+    -------
+    float or None
+        [rad/s]
+
+    Examples
+    --------
+    >>> from models.condition import Condition
+    >>> from models.recording import Channel, Recording
+    >>> from noise.recordings.blocks import RecordingBlocks
+    >>> angle = 4.999989 * np.arange(2000)[None] / 1e3
+    >>> run = Recording(angle, 1e3, (Channel("angle"),), Condition(speed=5.0))
+    >>> segment_speed(RecordingBlocks.of(run), 0.0, 2.0)
+    5.0
+    """
+    logged, measured = blocks.condition.speed, _measured_speed(blocks, start, end)
+    return logged if measured is None else as_logged(measured, logged)
+
+
+def speed_remark(blocks: RecordingBlocks, speed: float | None) -> str:
+    """Say that the speed of a segment is not the one that was logged; empty where it is.
+
+    Parameters
+    ----------
+    blocks : RecordingBlocks
+    speed : float or None
+        As `segment_speed` gives it [rad/s].
+
+    Examples
+    --------
+    >>> from models.condition import Condition
+    >>> from models.recording import Channel, Recording
+    >>> from noise.recordings.blocks import RecordingBlocks
+    >>> run = Recording(np.zeros((1, 9)), 1e3, (Channel("angle"),), Condition(speed=5.0))
+    >>> speed_remark(RecordingBlocks.of(run), 10.0)
+    'speed 10 rad/s is that of the channel angle; 5 was logged'
+    """
+    logged = blocks.condition.speed
+    if logged is None or speed is None or agrees(speed, logged):
+        return ""
+    channel = "angle" if blocks.first("speed") is None else "speed"
+    return f"speed {speed:g} rad/s {OF_CHANNEL} {channel}; {logged:g} was logged"
+
+
+def _measured_speed(blocks: RecordingBlocks, start: float, end: float) -> float | None:
+    """Mean speed from the channels [rad/s], None where none tells it."""
+    first = round(start * blocks.rate)
+    last = min(round(end * blocks.rate), blocks.n_samples)
+    block = max(1, round(_SPEED_BLOCK * blocks.rate))
+    pieces = blocks.pieces(first, last, _BLOCKS_AT_ONCE * block)
+    speed, angle = blocks.first("speed"), blocks.first("angle")
+    if not blocks.calibrated:
+        return None
+    if speed is not None:
+        return _mean_speed(piece.samples[speed] for piece in pieces)
+    if angle is None or last - first <= block:
+        return None
+    if last - first < 3 * block:
+        time = np.arange(last - first) / blocks.rate
+        return float(np.polyfit(time, blocks.read(first, last)[angle], 1)[0])
+    # Means of blocks first: the difference of single samples would be that of their noise.
+    means = [_block_means(piece.samples[angle], block) for piece in pieces]
+    return _mean_speed([np.diff(np.concatenate(means)) * blocks.rate / block])
+
+
+def _block_means(signal: NDArray[np.float64], block: int) -> NDArray[np.float64]:
+    whole = signal[: signal.size // block * block].reshape(-1, block)
+    return np.asarray(whole.mean(axis=1))
+
+
+def _mean_speed(pieces: Iterable[NDArray[np.float64]]) -> float:
+    n, total, travelled = 0, 0.0, 0.0
+    for speed in pieces:
+        n += speed.size
+        total += float(np.sum(speed))
+        travelled += float(np.sum(np.abs(speed)))
+    mean, magnitude = total / n, travelled / n
+    return mean if abs(mean) > 0.9 * magnitude else magnitude
+
+
+LONGEST_MEASURED = 120.0
+"""No more is measured while a person waits [s]: of a longer recording what is new alone."""
+
+
+def said_rows(
+    path: Path,
+    name: str,
+    segments: Sequence[tuple[str, float, float, str]],
+    full_scale: PascalPerFullScale | None = None,
+    new: Sequence[tuple[str, float, float, str]] | None = None,
+) -> list[dict[str, object]]:
+    """Return a row for each segment of a recording that a person has drawn.
+
+    Parameters
+    ----------
+    path : Path
+    name : str
+        File as the table names it.
+    segments : sequence of (str, float, float, str)
+        Channel, start [s], end [s] and label of all segments.
+    full_scale : float or tuple of float, optional
+        Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+    new : sequence of (str, float, float, str), optional
+        As in `segments`: those that are measured where the recording is longer than
+        `LONGEST_MEASURED`, the shortest of them up to that; by default all segments.
+
+    Returns
+    -------
+    list of dict
+        By `noise.labels.table.COLUMNS`, without probabilities; those that are not measured, of
+        a channel that it does not have, and beyond its end are left out. Where not all are
+        measured, none has a level over the background, which lies in all of them.
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import numpy as np
+    >>> from models.recording import Channel, Recording
+    >>> from noise.recordings import write_recording
+    >>> tone = np.sin(2.0 * np.pi * 800.0 * np.arange(32_000) / 16_000.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     run = Recording(tone[None], 16_000.0, (Channel("pressure"),))
+    ...     path = write_recording(Path(folder) / "run07", run)
+    ...     (row,) = said_rows(path, "run07.wav", [("all", 0.5, 1.5, "squeal")])
+    >>> round(row["frequency_hz"], -1), row["level_db"], row["label_source"], row["p_squeal"]
+    (800.0, 90.97, 'human', None)
+    """
+    with open_blocks(path, full_scale=full_scale) as opened:
+        recording = opened or RecordingBlocks.of(read_recording(path, full_scale=full_scale))
+        whole = recording.n_samples <= LONGEST_MEASURED * recording.rate
+        if not whole:
+            segments = _as_many_as_fit(segments if new is None else new)
+        found = [
+            segment
+            for channel, track in tracks(recording, per_track=not names_channels(path))
+            for segment in with_weighted_levels(track, _measured(track, channel, segments))
+        ]
+        if not whole:
+            found = [replace(segment, snr=None) for segment in found]
+        rows = label_rows(name, recording, found)
+        return [row | {"label_source": HUMAN} for row in rows]
+
+
+def _as_many_as_fit(
+    segments: Sequence[tuple[str, float, float, str]],
+) -> list[tuple[str, float, float, str]]:
+    """Return the shortest of some segments, `LONGEST_MEASURED` together, in order of time."""
+    fit, left = [], LONGEST_MEASURED
+    for segment in sorted(segments, key=lambda one: one[2] - one[1]):
+        left -= segment[2] - segment[1]
+        if left >= 0.0:
+            fit.append(segment)
+    return sorted(fit)
+
+
+def _measured(
+    track: RecordingBlocks, channel: str, segments: Sequence[tuple[str, float, float, str]]
+) -> list[Segment]:
+    measured = []
+    for at, start, end, label in segments:
+        first, last = round(start * track.rate), min(round(end * track.rate), track.n_samples)
+        if at != channel or last - first < 2:
+            continue
+        blocks = RecordingBlocks.of(track.cut(first, last))
+        level = level_dbfs = frequency = None
+        if can_be_described(blocks):
+            found = describe(blocks)
+            frequency = segment_frequency(found.features[:, TELLING], label)
+            row = blocks.first("pressure")
+            if row is not None:
+                level, level_dbfs = sound_levels(
+                    found.cells.rms_db(0, found.cells.count),
+                    calibrated=blocks.calibrated,
+                    full_scale=blocks.channels[row].full_scale,
+                )
+        measured.append(Segment(channel, start, end, label, {}, frequency, level, level_dbfs))
+    return measured
