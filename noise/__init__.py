@@ -18,8 +18,7 @@ Label: `label`, `LabelTable`, `label_recording`, `file_label`, `Segment`, `Segme
 `train_inference`.
 
 Screen: `screen`, `Screening`, `load_design`, `Design`, `Use`, `Swinging`, `Sweep`,
-`plot_screen`, `robustness`, `Robustness`, `SweptFeatures`, `sweep_torque`, `plot_sweep`,
-`critical_speeds`, `critical_damping`.
+`plot_screen`, `robustness`, `Robustness`, `SweptFeatures`, `critical_speeds`, `critical_damping`.
 
 Diagnose: `diagnose`, `Diagnosis`.
 
@@ -59,11 +58,9 @@ _EXPORTS = {
     "noise.labels.segments": ("Segment", "Segments", "file_label", "label_recording"),
     "noise.labels.table": ("LabelTable",),
     "noise.labels.labelling": ("label",),
-    "noise.pictures.files": ("write_picture",),
+    "noise.pictures.figure": ("write_picture",),
     "noise.pictures.run": ("plot_run",),
-    "noise.pictures.screening": ("plot_screen",),
-    "noise.pictures.speeds": ("plot_sweep",),
-    "noise.pictures.sweep": ("sweep_torque",),
+    "noise.pictures.maps": ("plot_screen",),
     "noise.recordings.calibrator": ("read_calibrator",),
     "noise.recordings": ("find_recordings", "read_recording", "write_recording"),
     "noise.screening.design.design": ("Design", "Swinging", "Use", "load_design"),

@@ -17,7 +17,7 @@ from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands.batch import BATCH, check_batch, run_batch
 from noise.commands.options import CALIBRATION, Option, full_scale_of, number, seed
 from noise.commands.plots import PLOT, check_plots, draw_recordings
-from noise.pictures.files import check_picture_path
+from noise.pictures.figure import check_picture_path
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -207,8 +207,8 @@ def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
         written.append(options.audacity)
     if options.map is not None:
         from noise.labels.conditions import MAP_COLUMNS, conditions_map, map_rows
-        from noise.pictures.conditions import plot_conditions
-        from noise.pictures.files import write_picture
+        from noise.pictures.figure import write_picture
+        from noise.pictures.maps import plot_conditions
 
         places = conditions_map(rows)
         if not places:

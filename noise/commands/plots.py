@@ -9,7 +9,7 @@ from models.errors import BushingNoiseError, ParameterError
 from noise.base.files import check_target, export_paths
 from noise.base.progress import note, track
 from noise.commands.options import Option
-from noise.pictures.files import PICTURE_ENDINGS
+from noise.pictures.figure import PICTURE_ENDINGS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -71,8 +71,8 @@ def draw_recordings(
     full_scale : float or tuple of float, optional
         As for `noise.recordings.read_recording`.
     """
-    from noise.pictures.files import write_picture
-    from noise.pictures.recorded import plot_recording
+    from noise.pictures.figure import write_picture
+    from noise.pictures.recording import plot_recording
     from noise.recordings import read_recording
     from noise.recordings.blocks import RecordingBlocks, open_blocks
 

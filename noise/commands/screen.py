@@ -219,8 +219,8 @@ def _swinging(text: str) -> Swinging:
 def _write(options: Namespace, found: Screening, tell: Steps) -> list[Path]:
     from noise.base.tables import write_table
     from noise.pages.screening import write_screening
-    from noise.pictures.files import write_picture
-    from noise.pictures.screening import plot_screen
+    from noise.pictures.figure import write_picture
+    from noise.pictures.maps import plot_screen
     from noise.screening.design.design_files import copy_design_file
     from noise.screening.tables.tables import screening_tables
 

@@ -100,7 +100,7 @@ def run(options: Namespace) -> int:
     if options.plot is options.sound_power is None or options.out is not None:
         _write_or_tell(options.out, recording)
     if options.plot is not None:
-        from noise.pictures.files import write_picture
+        from noise.pictures.figure import write_picture
         from noise.pictures.run import plot_run
 
         write_picture(options.plot, plot_run(simulated))
@@ -184,7 +184,7 @@ def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any])
 
 def _check_plot(path: Path) -> None:
     """Refuse a picture that cannot be drawn, before the run that it shows."""
-    from noise.pictures.files import check_picture_path
+    from noise.pictures.figure import check_picture_path
 
     try:
         check_picture_path(path)

@@ -76,7 +76,7 @@ def _write_table(out: Path | None) -> None:
 
 def _draw(folder: Path) -> None:
     say("preparing")
-    from noise.pictures.files import write_picture
+    from noise.pictures.figure import write_picture
     from noise.pictures.thesis import FIGURES, thesis_pictures
 
     for name, figure in track(thesis_pictures(), "drawing", total=len(FIGURES), unit="picture"):

@@ -22,7 +22,7 @@ from models.recording import REFERENCE_PRESSURE
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.labels.table import ASSUMED, assumes_material
 from noise.pages.clips import RATE
-from noise.pictures.recorded import level_over_time
+from noise.pictures.recording import level_over_time
 
 if TYPE_CHECKING:
     from features.kernels.orders import OrderMap

@@ -81,7 +81,7 @@ class Entry:
         Of a sound whose shaft's speed was recorded and changes.
     fast_levels : tuple of 2 ndarrays, shape (n,), optional
         Time [s] and A-weighted level, Fast [dB], where they were measured before the sound was
-        faded and resampled, as by `noise.pictures.recorded.recorded_levels`.
+        faded and resampled, as by `noise.pictures.recording.recorded_levels`.
     note : str
         Where the labels come from, or why there is no sound.
     data : mapping of str to str

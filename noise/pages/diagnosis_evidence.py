@@ -35,8 +35,8 @@ from noise.diagnosis.text.words import number
 from noise.pages.cards import facts_of
 from noise.pages.clips import RATE, Entry, common_gain, make_clips
 from noise.pages.figures import COLUMNS, Panel, as_svg, new_panel, panel_frequencies
-from noise.pictures.channel_kinds import KINDS
-from noise.pictures.recorded import recorded_levels, recorded_orders
+from noise.pictures.figure import KINDS
+from noise.pictures.recording import recorded_levels, recorded_orders
 from noise.recordings.meaning import check_finite
 
 if TYPE_CHECKING:

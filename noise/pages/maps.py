@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from noise.labels.conditions import conditions_map
 from noise.pages.cards import round_ticks
 from noise.pages.page import MAP_SIZE
-from noise.pictures.titles import place_title
+from noise.pictures.figure import place_title
 
 if TYPE_CHECKING:
     from noise.labels.conditions import Place, Range

@@ -23,7 +23,7 @@ from noise.diagnosis.text.words import percent
 from noise.pages.clips import RATE, Clip, Entry, full_scale_words, labels_sentence
 from noise.pages.figures import entry_figures
 from noise.pages.page import page_html, write_page
-from noise.pictures.recorded import recorded_levels, recorded_orders
+from noise.pictures.recording import recorded_levels, recorded_orders
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -27,7 +27,7 @@ from noise.labels.rows import label_rows
 from noise.labels.segments import label_recording
 from noise.labels.table import read_label_table
 from noise.pages.clips import BYTES_A_SECOND, RATE, SHORTEST, Entry, stretch_start
-from noise.pictures.recorded import recorded_levels, recorded_orders
+from noise.pictures.recording import recorded_levels, recorded_orders
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 from noise.recordings.folders import files_below, is_file

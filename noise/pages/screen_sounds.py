@@ -26,8 +26,8 @@ from noise.base.labels import LABELS
 from noise.base.progress import track
 from noise.batch import one_thread
 from noise.pages.clips import RATE, Entry
-from noise.pictures.recorded import recorded_levels
-from noise.pictures.titles import support_words
+from noise.pictures.figure import support_words
+from noise.pictures.recording import recorded_levels
 from noise.screening.map.point import shaft_motion
 from sim.acquisition import Acquisition
 from sim.run import simulate

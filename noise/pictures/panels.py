@@ -6,38 +6,36 @@ Black is what the thesis measured or printed, colours are what is computed here.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import cycle
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike, NDArray
 
-from models.drawing import BLUE, frequency_axis, padded, styled, thinned
-from noise.pictures.axes import legend_below, new_figure
+from models.drawing import BLUE, GREY, frequency_axis, padded, styled, thinned
+from noise.pictures.figure import legend_below, new_figure
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
-
-__all__ = ["THESIS_COLOUR", "Curve", "Panel", "plot_panels"]
-
-THESIS_COLOUR = "black"
-"""Of what the thesis measured or printed."""
-
+_THESIS_COLOUR = "black"
 _ROW_HEIGHT, _LOWEST_HEIGHT = 2.3, 4.4
 """[inch]"""
 
 
 class Curve(NamedTuple):
-    """A curve or points, in the units of the panel's axes; without a label it is not explained."""
+    """A curve or points, in the units of the panel's axes; without a label it is not explained.
+
+    With `low` it is a pale band from there up to `y`.
+    """
 
     x: NDArray[np.float64]
     y: NDArray[np.float64]
     label: str = ""
     colour: str = BLUE
     style: str = "-"
+    low: NDArray[np.float64] | None = None
 
     @classmethod
     def published(cls, x: ArrayLike, y: ArrayLike, label: str, style: str = "o") -> Curve:
@@ -49,7 +47,7 @@ class Curve(NamedTuple):
         'thesis: 26 K'
         """
         values = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
-        return cls(*values, f"thesis: {label}", THESIS_COLOUR, style)
+        return cls(*values, f"thesis: {label}", _THESIS_COLOUR, style)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +70,8 @@ class Panel:
         What the vertical axis spans at least, and at most down from its top [unit of the axis].
     from_zero : bool
         Whether the vertical axis begins at zero.
+    note : str
+        Said in the panel.
     """
 
     title: str
@@ -84,6 +84,7 @@ class Panel:
     least: float = 0.0
     most: float = math.inf
     from_zero: bool = False
+    note: str = ""
 
 
 def plot_panels(grid: Sequence[Sequence[Panel]], *, title: str) -> Figure:
@@ -112,9 +113,12 @@ def plot_panels(grid: Sequence[Sequence[Panel]], *, title: str) -> Figure:
     with styled():
         figure = new_figure(max(_LOWEST_HEIGHT, 1.4 + _ROW_HEIGHT * len(grid)), title)
         axes = figure.subplots(
-            len(grid), len(columns), squeeze=False,
-            sharex="col" if one_x else False, sharey="row" if one_y else False,
-        )  # fmt: skip
+            len(grid),
+            len(columns),
+            squeeze=False,
+            sharex="col" if one_x else False,
+            sharey="row" if one_y else False,
+        )
         for row, panels in zip(axes, grid, strict=True):
             for place, panel in zip(row, panels, strict=True):
                 _draw(place, panel)
@@ -122,8 +126,10 @@ def plot_panels(grid: Sequence[Sequence[Panel]], *, title: str) -> Figure:
                 place.set_ylabel(panel.up)
             if one_y:
                 _limit(row[0], panels)
-        for place, panel in zip(axes[-1], grid[-1], strict=True):
-            place.set_xlabel(panel.across)
+        for i, (row, panels) in enumerate(zip(axes, grid, strict=True)):
+            if i == len(grid) - 1 or not one_x:
+                for place, panel in zip(row, panels, strict=True):
+                    place.set_xlabel(panel.across)
         for column in axes.T:
             figure.align_ylabels(column)
         if any(place.get_legend_handles_labels()[0] for place in figure.axes):
@@ -132,17 +138,25 @@ def plot_panels(grid: Sequence[Sequence[Panel]], *, title: str) -> Figure:
 
 
 def _draw(axes: Axes, panel: Panel) -> None:
-    for x, y, label, colour, style in panel.curves:
-        line = "-" in style
-        shown = thinned(x, y) if line else (x, y)
+    for x, y, label, colour, style, low in panel.curves:
+        if low is not None:
+            axes.fill_between(x, low, y, color=colour, alpha=0.2, linewidth=0.0, label=label)
+            continue
+        line = "-" in style or style == ":"
+        shown = thinned(x, y) if line and np.all(np.diff(x) >= 0.0) else (x, y)
         axes.plot(
             *shown, style, color=colour, label=label or None, linewidth=1.1, zorder=2 if line else 3
         )
-    for label, value in panel.marks.items():
+    for (label, value), style in zip(panel.marks.items(), cycle((":", "--", "-.")), strict=False):
         axes.axvline(
-            value, color=THESIS_COLOUR, linestyle=":", linewidth=1.2, zorder=1,
+            value,
+            color=_THESIS_COLOUR,
+            linestyle=style,
+            linewidth=1.2,
+            zorder=1,
             label=f"thesis: {label}",
-        )  # fmt: skip
+        )
+    axes.text(0.99, 0.97, panel.note, transform=axes.transAxes, ha="right", va="top", color=GREY)
     axes.set_title(panel.title)
     if panel.log_frequency and panel.span:
         frequency_axis(axes, *panel.span)
@@ -153,7 +167,12 @@ def _draw(axes: Axes, panel: Panel) -> None:
 
 def _limit(axes: Axes, panels: Sequence[Panel]) -> None:
     """Span the vertical axis that the panels share."""
-    drawn = np.concatenate([curve.y for panel in panels for curve in panel.curves])
+    curves = [curve for panel in panels for curve in panel.curves]
+    lows = [curve.low for curve in curves if curve.low is not None]
+    drawn = np.concatenate([np.empty(0), *(curve.y for curve in curves), *lows])
+    drawn = drawn[np.isfinite(drawn)]
+    if not drawn.size:
+        return
     top = float(drawn.max())
     low = max(float(drawn.min()), top - panels[0].most)
     low, high = padded(low, top, panels[0].least)

@@ -2,112 +2,125 @@
 
 Its Figures 5.1 to 5.26 and H1 are measurements, 3.3, 6.1 to 6.10 and G3 computed, B1 and C1 fitted
 to its tables; here all are computed: by the program that it lists, where that can, by its equations
-exactly, and by the calibrated material. Drawings, formulas and photographs (3.1, 3.2, 3.4 to 3.6,
-4.1 to 4.3, 5.10 to 5.12, A1, A2, G1, G2) and the certificate D1 are left out. Where caption and
-text of a figure contradict each other the caption is followed: of 6.1 the text has 3745 Nm/rad, of
-5.16(b) as well.
+exactly, and by the calibrated material. The measured curves are lost; what tables and text say of
+them is drawn in black. Recordings are of the materials as they are shipped, everything else is of
+their constant version. Drawings, formulas and photographs (3.1, 3.2, 3.4 to 3.6, 4.1 to 4.3, 5.10
+to 5.12, A1, A2, G1, G2) and the certificate D1 are left out. Where caption and text of a figure
+contradict each other the caption is followed: of 6.1 the text has 3745 Nm/rad, of 5.16(b) as well.
 
 A further figure is a further entry of `FIGURES`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+
+from matplotlib.figure import Figure
 
 from models.condition import FIXED
-from noise.pictures import thesis_cases as runs
-from noise.pictures.channel_kinds import KINDS
-from noise.pictures.measured import FITS
+from noise.pictures.figure import KINDS, support_words
 from noise.pictures.panels import plot_panels
-from noise.pictures.slips import (
-    plot_damping,
-    plot_slip_histories,
-    plot_slip_orbits,
-    plot_torque_and_clamp,
-)
-from noise.pictures.spectra import plot_spectra, plot_torque_and_spectrum
-from noise.pictures.speeds import plot_sweep, plot_torque_of_fits
 from noise.pictures.thesis_bench import (
     acoustic_responses,
     mode_shapes,
     potentiometer_line,
-    static_tests,
     temperature_distribution,
     torque_cell_line,
 )
-from noise.pictures.thesis_recordings import (
+from noise.pictures.thesis_panels import (
+    FRICTION_TYPES,
+    Grid,
+    by_damping,
     channels,
     friction_types,
+    histories,
+    orbits,
+    spectra,
     spectra_by_support,
-    steady_sliding,
+    static_tests,
+    sweeps_of,
+    torque_and_spectrum,
+    torque_of_fits,
     torque_over_speed,
 )
-from noise.thesis.runs import CALIBRATED, LONG, SHORT, Case
+from noise.pictures.thesis_runs import (
+    CLAMP,
+    DISPLACEMENT,
+    FITS,
+    SHOWN,
+    SLIDING,
+    SUPPORTS,
+    TORQUE,
+    Trace,
+    traces,
+)
+from noise.thesis.runs import (
+    CALIBRATED,
+    LONG,
+    SHORT,
+    Case,
+)
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+SLOW, FAST = Case(1.0, 0.279, LONG), Case(10.0, 0.279, LONG)
+LARGE, DAMPED = Case(1.0, 0.381, SHORT), Case(7.5, 0.279, SHORT)
+"""Cases of Chapter 6."""
 
-    from matplotlib.figure import Figure
-
-__all__ = ["FIGURES", "ThesisFigure", "thesis_pictures"]
-
-
-class ThesisFigure(NamedTuple):
-    """A figure of the thesis: what it is called and says, what it shows, and what draws that."""
-
-    name: str
-    title: str
-    data: Callable[[], object]
-    draw: Callable[..., Figure]
-
-    def picture(self) -> Figure:
-        """Compute what it shows, and draw it."""
-        return self.draw(self.data(), title=self.title)
-
-
-def _figure(
-    number: str, title: str, data: Callable[[], object], draw: Callable[..., Figure] = plot_panels
-) -> ThesisFigure:
-    return ThesisFigure(f"figure-{number}", f"Figure {number}: {title}", data, draw)
-
-
-def _spectra_figure(number: str) -> ThesisFigure:
-    what, columns = runs.SPECTRA[number]
-    return _figure(number, f"torque with increasing {what}", lambda: columns, plot_spectra)
-
-
-def _speeds_figure(fit: float) -> ThesisFigure:
-    title = f"Torque and frequency against speed, fluorocarbon, {fit:g} mm"
-    draw = partial(plot_sweep, interference_mm=fit)
-    return ThesisFigure(f"speeds-{fit:g}mm", title, partial(runs.sweeps_of, fit), draw)
-
-
-def _channels_figure(
-    number: str, title: str, material: str, case: Case,
-    marks: Mapping[str, float] | None = None, names: tuple[str, ...] = ("torque",),
-) -> ThesisFigure:  # fmt: skip
-    words = f"{title}, {case}\nsimulated and recorded, {material}"
-    return _figure(number, words, partial(channels, material, case, names, marks))
-
-
-_PDMS_SLOW = Case(0.25, 0.381, LONG)
-_PDMS_SPEEDS = {LONG: 17.0, FIXED: 17.0}
 _RUBBER = Case(10.0, 0.127, LONG)
-_RUBBER_SPEEDS = {LONG: 19.75, SHORT: 10.0}
-"""Highest speeds of the thesis [rad/s]."""
-
+_PDMS = Case(0.25, 0.381, LONG)
 _NEW, _FILM, _CLEANED = "natural-rubber", "natural-rubber-film", "natural-rubber-film-removed"
 _FILM_MODES = {f"{mode:g} Hz": mode for mode in (900.0, 4500.0, 6000.0)}
 """Of the acceleration beside the first torsional one (5.2.3) [Hz]."""
 
-_SLOW, _FAST = runs.SLOW, runs.FAST
-_CYCLES, _DECAY = partial(runs.slips, _SLOW, 0.05, 1.0), partial(runs.onset, 0.1)
-_SETTLED = partial(runs.traces, _SLOW, 1.0)
+Column = tuple[str, list[tuple[str, Case]]]
 
-_histories = partial(plot_slip_histories, time_label="Time [ms]")
-_against_speed = partial(plot_slip_orbits, phase_plane=False)
-_phase_plane = partial(plot_slip_orbits, phase_plane=True)
+_TYPES = [(f"{name}, {case}", case) for name, case in FRICTION_TYPES.items()]
+
+
+def _at_speeds(mark: str, fit: float, support: float, *speeds: float) -> Column:
+    cases = [(f"{speed:g} rad/s", Case(speed, fit, support)) for speed in speeds]
+    return f"{mark}{fit:g} mm, {support_words(support)}", cases
+
+
+def _at_fits(mark: str, support: float) -> Column:
+    cases = [(f"{fit:g} mm", Case(1.0, fit, support)) for fit in FITS]
+    return f"{mark}1 rad/s, {support_words(support)}", cases
+
+
+def _at_supports(mark: str, fit: float, speed: float) -> Column:
+    cases = [(support_words(one), Case(speed, fit, one)) for one in SUPPORTS]
+    return f"{mark}{fit:g} mm, {speed:g} rad/s", cases
+
+
+def _about_slips(case: Case, shown: float, seconds: float = 0.5) -> list[Trace]:
+    return [trace.about_a_slip(shown) for trace in traces(case, seconds)]
+
+
+def _onset(shown: float) -> list[Trace]:
+    return [trace.during(0.0, shown) for trace in traces(FAST)]
+
+
+class ThesisFigure(NamedTuple):
+    """A figure of the thesis: its name, what it says, and the panels that it shows."""
+
+    name: str
+    title: str
+    panels: Callable[[], Grid]
+
+    def picture(self) -> Figure:
+        """Compute what it shows, and draw it."""
+        return plot_panels(self.panels(), title=self.title)
+
+
+def _figure(number: str, title: str, panels: Callable[..., Grid], *given: object) -> ThesisFigure:
+    return ThesisFigure(f"figure-{number}", f"Figure {number}: {title}", partial(panels, *given))
+
+
+def _recording(number: str, what: str, material: str, case: Case, *more: object) -> ThesisFigure:
+    title = f"{what}, {case}\nsimulated and recorded, {material}"
+    return _figure(number, title, channels, material, case, *more)
+
 
 FIGURES = (
     _figure(
@@ -119,43 +132,69 @@ FIGURES = (
     _figure("5.1", "four types of friction, simulated and recorded in two models", friction_types),
     _figure(
         "5.2", "frequency content of the types of Figure 5.1",
-        lambda: runs.FRICTION_SPECTRA, plot_spectra,
+        spectra, ("stick-slip", _TYPES[:2]), ("oscillations", _TYPES[2:]),
+    ),
+    _figure("5.3", "torque against speed, fluorocarbon, clamp fixed", torque_of_fits),
+    *(
+        ThesisFigure(
+            f"speeds-{fit:g}mm",
+            f"Torque and frequency against speed, fluorocarbon, {fit:g} mm",
+            partial(sweeps_of, fit),
+        )
+        for fit in FITS
     ),
     _figure(
-        "5.3", "torque against speed, fluorocarbon, clamp fixed", runs.sweeps, plot_torque_of_fits
-    ),
-    *map(_speeds_figure, FITS),
-    _figure(
-        "5.4", f"PDMS slides steadily, {_PDMS_SLOW}\nsimulated and recorded",
-        partial(steady_sliding, "PDMS", _PDMS_SLOW),
+        "5.4", f"PDMS slides steadily, {_PDMS}\nsimulated and recorded",
+        partial(channels, with_spectra=False), "PDMS", _PDMS, ("torque", "acceleration"),
     ),
     *(
         _figure(
             number, f"torque against speed, PDMS, {fit:g} mm, simulated",
-            partial(torque_over_speed, "PDMS", fit, _PDMS_SPEEDS, rise=3.0, slowest=0.25),
+            partial(torque_over_speed, rise=3.0, slowest=0.25),
+            "PDMS", fit, {LONG: 17.0, FIXED: 17.0},
         )
         for number, fit in (("5.5", 0.254), ("5.6", 0.381))
     ),
-    _channels_figure("5.7", "natural rubber, new", _NEW, _RUBBER),
-    _channels_figure(
-        "5.8", "natural rubber, new", _NEW, _RUBBER.at(5.0), {"noise to 1250 Hz": 1250.0}
+    _recording("5.7", "natural rubber, new", _NEW, _RUBBER),
+    _recording(
+        "5.8", "natural rubber, new", _NEW, _RUBBER.at(5.0),
+        ("torque",), {"noise to 1250 Hz": 1250.0},
     ),
-    _channels_figure(
-        "5.9", "natural rubber on its transfer film", _FILM, _RUBBER.at(2.5), _FILM_MODES,
-        ("torque", "acceleration"),
+    _recording(
+        "5.9", "natural rubber on its transfer film", _FILM, _RUBBER.at(2.5),
+        ("torque", "acceleration"), _FILM_MODES,
     ),
     _figure(
         "5.13", "torque against speed, natural rubber, film removed, 0.127 mm, simulated",
-        partial(torque_over_speed, _CLEANED, _RUBBER.interference_mm, _RUBBER_SPEEDS),
+        torque_over_speed, _CLEANED, _RUBBER.interference_mm, {LONG: 19.75, SHORT: 10.0},
     ),
-    *map(_spectra_figure, runs.SPECTRA),
-    _channels_figure("5.19", "natural rubber, film removed", _CLEANED, _RUBBER),
+    _figure(
+        "5.14", "torque with increasing speed",
+        spectra, _at_speeds("", 0.279, LONG, 1.0, 2.5, 5.0, 7.5),
+    ),
+    _figure(
+        "5.15", "torque with increasing interference",
+        spectra, _at_fits("(a) ", LONG), _at_fits("(b) ", FIXED),
+    ),
+    _figure(
+        "5.16", "torque with increasing speed", spectra,
+        *(_at_speeds(m, 0.178, k, 1.0, 2.5, 4.0) for m, k in (("(a) ", LONG), ("(b) ", FIXED))),
+    ),
+    _figure(
+        "5.17", "torque with increasing speed",
+        spectra, _at_speeds("", 0.279, FIXED, 1.0, 2.5, 5.0, 7.5),
+    ),
+    _figure(
+        "5.18", "torque with increasing stiffness of the support",
+        spectra, _at_supports("(a) ", 0.178, 2.5), _at_supports("(b) ", 0.279, 7.5),
+    ),
+    _recording("5.19", "natural rubber, film removed", _CLEANED, _RUBBER),
     _figure(
         "5.20", "natural rubber, film removed, torque at 10 rad/s, 0.127 mm, simulated",
-        partial(spectra_by_support, _CLEANED, _RUBBER.speed, _RUBBER.interference_mm),
+        spectra_by_support, _CLEANED, _RUBBER.speed, _RUBBER.interference_mm,
     ),
     *(
-        _channels_figure(number, noise, CALIBRATED, case, {}, tuple(KINDS))
+        _recording(number, noise, CALIBRATED, case, tuple(KINDS))
         for number, noise, case in (
             ("5.21", "creak", Case(1.0, 0.381, LONG)),
             ("5.22", "squawk", Case(5.0, 0.279, LONG)),
@@ -166,35 +205,45 @@ FIGURES = (
     *(
         _figure(
             number, f"torque in a slow turn until it slips or slides, {fit:g} mm, simulated",
-            partial(static_tests, fit),
+            static_tests, fit,
         )
         for number, fit in (("5.25", 0.279), ("5.26", 0.381))
     ),
     _figure(
-        "6.1", f"slips at {_SLOW}", partial(runs.slips, _SLOW, 0.014, 1.0),
-        partial(_histories, peak_speed=24.0),
-    ),
-    _figure("6.2", f"torque against sliding speed at {_SLOW}", _CYCLES, _against_speed),
-    _figure("6.3", f"phase plane at {_SLOW}", _CYCLES, _phase_plane),
-    _figure(
-        "6.4", f"from rest at {_FAST}", partial(runs.onset, 0.02),
-        partial(_histories, peak_speed=18.0, time_label="Time from rest [ms]"),
-    ),
-    _figure("6.5", f"torque against sliding speed at {_FAST}, from rest", _DECAY, _against_speed),
-    _figure("6.6", f"phase plane at {_FAST}, from rest", _DECAY, _phase_plane),
-    _figure(
-        "6.7", f"slips at {runs.LARGE}", partial(runs.slips, runs.LARGE, 0.025),
-        partial(_histories, peak_speed=45.0),
+        "6.1", f"slips at {SLOW}",
+        lambda: histories(_about_slips(SLOW, 0.014, 1.0), peak_speed=24.0),
     ),
     _figure(
-        "6.8", f"torque over time and its autospectrum at {_SLOW}",
-        _SETTLED, plot_torque_and_spectrum,
+        "6.2", f"torque against sliding speed at {SLOW}",
+        lambda: orbits(_about_slips(SLOW, 0.05, 1.0), SLIDING, TORQUE),
     ),
     _figure(
-        "6.9", f"torque and acceleration of the clamp at {_SLOW}",
-        _SETTLED, plot_torque_and_clamp,
+        "6.3", f"phase plane at {SLOW}",
+        lambda: orbits(_about_slips(SLOW, 0.05, 1.0), DISPLACEMENT, SLIDING),
     ),
-    _figure("6.10", f"phase plane by damping, {runs.DAMPED}", runs.damping, plot_damping),
+    _figure(
+        "6.4", f"from rest at {FAST}",
+        lambda: histories(_onset(0.02), across="Time from rest [ms]", peak_speed=18.0),
+    ),
+    _figure(
+        "6.5", f"torque against sliding speed at {FAST}, from rest",
+        lambda: orbits(_onset(0.1), SLIDING, TORQUE),
+    ),
+    _figure(
+        "6.6", f"phase plane at {FAST}, from rest",
+        lambda: orbits(_onset(0.1), DISPLACEMENT, SLIDING),
+    ),
+    _figure(
+        "6.7", f"slips at {LARGE}", lambda: histories(_about_slips(LARGE, 0.025), peak_speed=45.0)
+    ),
+    _figure(
+        "6.8", f"torque over time and its autospectrum at {SLOW}", torque_and_spectrum, SLOW
+    ),
+    _figure(
+        "6.9", f"torque and acceleration of the clamp at {SLOW}",
+        lambda: histories([one.settled(SHOWN) for one in traces(SLOW, 1.0)], (TORQUE, CLAMP)),
+    ),
+    _figure("6.10", f"phase plane by damping, {DAMPED}", by_damping, DAMPED),
     _figure("B1", "calibration of the potentiometer", potentiometer_line),
     _figure("C1", "calibration of the torque cell", torque_cell_line),
     _figure(

@@ -153,7 +153,7 @@ class Screening:
         >>> found.plot(Figure().subplots()).get_ylabel()
         'Interference [mm]'
         """
-        from noise.pictures.screening import plot_map
+        from noise.pictures.maps import plot_map
 
         _check_index("map", number, len(self.maps))
         found = self.maps[number]

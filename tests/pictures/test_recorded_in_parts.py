@@ -10,8 +10,8 @@ import pytest
 
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.pictures import recorded
-from noise.pictures.recorded import (
+from noise.pictures import recording as recorded
+from noise.pictures.recording import (
     plot_recording,
     recorded_levels,
     recorded_orders,

@@ -3,24 +3,18 @@
 import subprocess
 import sys
 import warnings
-from dataclasses import replace
 from functools import cache
 
-import matplotlib as mpl
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from features.kernels.spectra import autospectrum
-from models.drawing import thinned
 from models.errors import ParameterError
-from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from noise.cli import main
-from noise.pictures.files import check_picture_path, write_picture
-from noise.pictures.run import plot_run
-from noise.pictures.window import run_window
+from noise.pictures.figure import check_picture_path, write_picture
+from noise.pictures.run import plot_run, run_window
 from sim.acquisition import Acquisition
 from sim.run import simulate
 from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
@@ -62,14 +56,6 @@ def test_the_whole_run_is_drawn_with_its_extremes():
     assert clamp.max() == 1e3 * run.motion.clamp_angle.max()
     speed = line(panel(figure, ylabel="Speed [rad/s]"), "sliding (shaft - surface)").get_ydata()
     assert speed.max() == run.motion.sliding_speed.max()
-
-
-@pytest.mark.parametrize("material", ["fluorocarbon", "fluorocarbon-thesis"])
-def test_the_surface_goes_as_far_as_its_speed_carries_it(material):
-    run, _ = drawn(material)
-    speed, angle = run.motion.interface_speed, run.motion.interface_angle
-    carried = np.cumsum(0.5 * (speed[1:] + speed[:-1])) / run.motion.rate
-    np.testing.assert_allclose(angle[1:9000] - angle[0], carried[:8999], atol=5e-5)
 
 
 def test_a_few_cycles_are_drawn_sample_by_sample():
@@ -150,12 +136,6 @@ def test_every_material_and_motion_is_drawn_without_a_warning(material, shaft):
     assert "clamp" not in labels  # it is bolted down
 
 
-@pytest.mark.parametrize("effect", ["mains_hum", "slip_pulse", "speed_fluctuation"])
-def test_effects_are_drawn(effect):
-    rig = replace(load_material_rig("fluorocarbon"), effects=(LawSpec(effect, {}),))
-    assert len(plot_run(simulate(rig, 5.0, seconds=0.1)).axes) == 11
-
-
 @pytest.mark.parametrize(("rate", "samples"), [(30e3, 16), (1e3, 200)])
 def test_short_and_slow_recordings_are_drawn(rate, samples):
     with warnings.catch_warnings():
@@ -181,53 +161,12 @@ def test_a_swing_is_enlarged_where_the_beam_shakes_most():
     assert "-3.29 to 3.29 rad/s" in figure.get_suptitle()
 
 
-def test_no_writing_overlaps_and_all_titles_are_inside():
-    _, figure = drawn("fluorocarbon", interference=0.381e-3)
-    renderer = FigureCanvasAgg(figure).get_renderer()
-    figure.draw_without_rendering()
-    for axes in figure.axes:
-        title = axes._left_title.get_window_extent(renderer)
-        legend = axes.get_legend()
-        if legend is not None and axes._left_title.get_text():
-            assert title.x1 < legend.get_window_extent(renderer).x0
-        for text in (axes.xaxis.label, axes.yaxis.label):
-            box = text.get_window_extent(renderer)
-            assert box.x0 >= 0.0
-            assert box.y0 >= 0.0
-            assert box.y1 <= figure.bbox.height
-
-
-def test_a_thinned_curve_keeps_every_peak_in_order():
-    x = np.arange(100_000.0)
-    y = np.zeros_like(x)
-    y[54_321] = 1.0
-    kept, values = thinned(x, y)
-    assert kept[values == 1.0].tolist() == [54_321.0]
-    assert (np.diff(kept) > 0.0).all()
-    assert kept.size <= 2402
-
-
-def test_drawing_leaves_the_callers_settings_alone():
-    before = dict(mpl.rcParams)
-    drawn.__wrapped__(seconds=0.05)
-    assert dict(mpl.rcParams) == before
-
-
 def test_the_command_draws_a_run(tmp_path, capsys):
     path = tmp_path / "new" / "run.png"
     assert main(["simulate", "--speed", "5", "--seconds", "0.1", "--plot", str(path)]) == 0
     assert path.read_bytes().startswith(LETTERS[".png"])
     assert capsys.readouterr().out == f"{path}\n"
     assert list(path.parent.iterdir()) == [path]
-
-
-def test_a_recording_and_its_picture_are_made_together(tmp_path, capsys):
-    out, plot = tmp_path / "run", tmp_path / "run.SVG"
-    arguments = ["--speed", "5", "--seconds", "0.1", "--out", str(out), "--plot", str(plot)]
-    assert main(["simulate", *arguments]) == 0
-    names = capsys.readouterr().out.split("\n")[:-1]
-    assert names == [f"{out}.wav", f"{out}.json", str(plot)]
-    assert plot.read_bytes().startswith(LETTERS[".svg"])
 
 
 @pytest.mark.parametrize("ending", sorted(LETTERS))
@@ -256,14 +195,6 @@ def test_a_picture_that_fails_leaves_the_older_one(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == [path]
 
 
-@pytest.mark.parametrize("name", ["run.jpg", "run", "run.txt"])
-def test_other_endings_are_refused_before_the_work(name, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("sim.run.simulate", None)
-    assert main(["simulate", "--speed", "5", "--plot", str(tmp_path / name)]) == 2
-    (told,) = capsys.readouterr().err.splitlines()
-    assert told.endswith(f"--plot {tmp_path / name}: a picture ends in .png, .svg or .pdf")
-
-
 def test_what_cannot_be_drawn_is_refused_before_the_work(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("sim.run.simulate", None)
     (tmp_path / "folder.png").mkdir()
@@ -285,10 +216,10 @@ def test_matplotlib_is_imported_only_to_draw():
     code = (
         "import sys, pathlib\nfrom noise.cli import main\n"
         "main(['simulate', '--help'])\nmain(['thesis', '--help'])\n"
-        "from noise.pictures.files import check_picture_path\n"
+        "from noise.pictures.figure import check_picture_path\n"
         "check_picture_path(pathlib.Path('a.png'))\n"
         "assert 'matplotlib' not in sys.modules\n"
-        "import noise.pictures.axes\n"
+        "import noise.pictures.panels\n"
         "assert 'matplotlib.figure' in sys.modules\nassert 'matplotlib.pyplot' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

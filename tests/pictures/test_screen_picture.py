@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
-from noise.pictures.screening import plot_screen
+from noise.pictures.maps import plot_screen
 from noise.screening.design.design import Use
 from noise.screening.screen import screen
 

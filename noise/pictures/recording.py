@@ -20,7 +20,7 @@ from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.base.labels import DARK_LABELS, LABEL_COLOURS
-from noise.pictures.axes import new_figure
+from noise.pictures.figure import new_figure
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -32,10 +32,6 @@ if TYPE_CHECKING:
     from features.kernels.orders import OrderMap
     from features.long.parts import Parts, Read
     from models.recording import Recording
-
-__all__ = [
-    "level_over_time", "plot_recording", "recorded_levels", "recorded_orders", "recorded_speed",
-]  # fmt: skip
 
 _RANGE = 70.0
 """Of colours, from the highest down [dB]."""
@@ -153,7 +149,8 @@ def level_over_time(
     >>> round(float(level_over_time(tone, 48e3, 1.0)[1].max()), 1)
     0.0
     """
-    return _levels(lambda first, last: sound[first:last], sound.size, rate, reference, columns)
+    values = sound.astype(np.float64)
+    return _levels(lambda first, last: values[first:last], sound.size, rate, reference, columns)
 
 
 def _levels(
