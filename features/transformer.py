@@ -16,7 +16,7 @@ from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.utils.validation import _check_feature_names_in, validate_data
 
 from features.kernels.conditioning import MIN_SAMPLES
-from features.registry import KINDS, feature_names, feature_vector, recording_features
+from features.table import KINDS, feature_names, feature_vector, recording_features
 from models.errors import ParameterError
 from models.recording import Recording
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.registry import recording_feature_names, recording_features
+from features.table import recording_feature_names, recording_features
 from models.rig_file import load_material_rig
 from noise.audio.gain import QUIETEST_FULL_SCALE, common_full_scale
 from noise.audio.render import write_audio

@@ -115,7 +115,7 @@ def usable_limit(rate: float) -> float:
     return USABLE_SHARE * rate
 
 
-def checked_signal(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
+def checked_signal(signal: ArrayLike, rate: float, first: int = 0) -> NDArray[np.float64]:
     """Return the signal as an array of floats, refused if it can't be analysed.
 
     Parameters
@@ -124,6 +124,8 @@ def checked_signal(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
         One channel, in any unit.
     rate : float
         Sampling rate [Hz].
+    first : int
+        Number of the first sample in its recording, for messages [-].
 
     Returns
     -------
@@ -151,7 +153,9 @@ def checked_signal(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
         )
     if not np.isfinite(x).all():
         bad = int(np.flatnonzero(~np.isfinite(x))[0])
-        raise ParameterError(f"signal: sample {bad} is {x[bad]}; all samples must be finite")
+        raise ParameterError(
+            f"signal: sample {first + bad} is {x[bad]}; all samples must be finite"
+        )
     if not (math.isfinite(rate) and rate > 0):
         raise ParameterError(f"rate is {rate}; a sampling rate is a positive number of hertz")
     return x

@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.long.parts import in_pieces, n_samples_of, reader_of
+from models.blocks import in_pieces, n_samples_of, reader_of
 from models.errors import ParameterError
 from models.rig import effective_stiffness
 from models.rig_file import load_material_rig
 
 if TYPE_CHECKING:
-    from features.long.parts import Parts
+    from models.blocks import Blocks
     from models.recording import Recording
     from models.rig import Rig
 
@@ -41,12 +41,12 @@ _AT_ONCE = 1 << 16
 """Samples looked at together."""
 
 
-def stick_rate_of(recording: Recording | Parts, rig: Rig | None = None) -> float:
+def stick_rate_of(recording: Recording | Blocks, rig: Rig | None = None) -> float:
     """Product of k_EFF and the shaft's speed (thesis, (5.1)).
 
     Parameters
     ----------
-    recording : Recording or Parts
+    recording : Recording or Blocks
         Its condition tells interference and support, and material where no rig is given.
     rig : Rig, optional
         What the elastomer's stiffness is taken from; the shipped one with the recording's material
@@ -78,14 +78,14 @@ def stick_rate_of(recording: Recording | Parts, rig: Rig | None = None) -> float
     return effective_stiffness(fit, condition.support_stiffness) * speed
 
 
-def _speed(recording: Recording | Parts) -> float | None:
+def _speed(recording: Recording | Blocks) -> float | None:
     """Magnitude of the shaft's speed: median of its channels, or as it was set."""
     speed, angle = recording.first("speed"), recording.first("angle")
     n = n_samples_of(recording)
     if recording.calibrated and speed is not None:
         every = 1 + n // _MOST
         pieces = in_pieces(reader_of(recording, speed), n, every * _AT_ONCE)
-        run = [np.abs(piece[::every]) for piece in pieces()]
+        run = [np.abs(piece[::every]) for piece in pieces]
         return float(np.median(np.concatenate(run)))
     block = max(1, round(_BLOCK * recording.rate))
     if recording.calibrated and angle is not None:
@@ -96,7 +96,7 @@ def _speed(recording: Recording | Parts) -> float | None:
             means = np.concatenate(
                 [
                     piece[: piece.size // block * block].reshape(-1, block).mean(axis=1)
-                    for piece in in_pieces(read, n, max(1, _AT_ONCE // block) * block)()
+                    for piece in in_pieces(read, n, max(1, _AT_ONCE // block) * block)
                 ]
             )
             return float(np.median(np.abs(np.diff(means)))) * recording.rate / block

@@ -3,7 +3,7 @@
 The order is that in which `features.windows.table` puts them side by side: how the frames of 32 ms
 follow each other, the lines of the averaged spectrum, the rhythm of all of the sound and of its
 part above 2 kHz, and what lies above 7 kHz. All is A-weighted. They are computed for hours of sound
-at once, in single precision and from other segments than the features of `features.registry`; so
+at once, in single precision and from other segments than the features of `features.table`; so
 what has the same name there is the same idea but another number, and neither can stand in for the
 other.
 """

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from noise.base.progress import note
 from noise.commands.batch import BATCH, check_batch, run_batch
 from noise.commands.options import CALIBRATION, OneOf, Option, full_scale_of, seed
 from noise.commands.plots import PLOT, check_plots, draw_recordings
@@ -29,7 +30,8 @@ _PITCH_COLUMNS = ("pressure_pitch", "pressure_pitch_range", "pressure_voiced_sha
 DESCRIPTION = (
     "Compute the features of recordings: one row a recording, in SI units, levels in dB. "
     "What a recording cannot tell is empty; a file that cannot be read has the reason in the "
-    "column error."
+    "column error. A recording of 2^21 samples or more (44 s at 48 kHz) is described in pieces, "
+    "and a note says so."
 )
 
 OPTIONS = (
@@ -122,8 +124,16 @@ class Featuring:
         with open_blocks(path, full_scale=self.full_scale) as opened:
             read = opened or read_recording(path, full_scale=self.full_scale)
             from features import recording_features
+            from features.table import piece_count
 
-            pitch = _pitch(RecordingBlocks.of(read)) if self.pitch else {}
+            blocks = RecordingBlocks.of(read)
+            if (pieces := piece_count(blocks.n_samples)) > 1:
+                length = blocks.n_samples / pieces / blocks.rate
+                note(
+                    f"{name}: its features are those of {pieces} pieces of {length:.3g} s, put "
+                    "together by their power"
+                )
+            pitch = _pitch(blocks) if self.pitch else {}
             return [{"file": name, **recording_features(read), **pitch}], read.calibrated
 
 

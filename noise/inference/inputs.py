@@ -162,7 +162,7 @@ def segment_features(
     table : ndarray, shape (n, n_names)
         Features of segments [unit of each feature].
     names : sequence of str
-        Of its columns, as `features.registry.recording_feature_names` has them.
+        Of its columns, as `features.table.recording_feature_names` has them.
     known : ndarray, shape (n, 3)
         Conditions as `scaled` gives them, NaN where not logged.
 

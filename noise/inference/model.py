@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.registry import recording_features
+from features.table import recording_features
 from models.show import short_repr
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import QuantileForest

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from features.named.prepared import ACOUSTIC_KINDS
+from features.prepared import ACOUSTIC_KINDS
 from features.windows.declared import WINDOW_FEATURES
 from features.windows.table import HOP, LENGTH
 from models.recording import REFERENCE_PRESSURE

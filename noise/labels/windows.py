@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
-from features.named.prepared import ACOUSTIC_KINDS, prepare
-from features.named.torque_features import TORQUE_FEATURES
+from features.prepared import ACOUSTIC_KINDS, prepare
+from features.table import TORQUE_FEATURES
 from features.windows.blocks import FRAME_RATE, MARGIN, RATE, Block, block_length, resampled_block
 from features.windows.table import (
     HOP,

@@ -14,7 +14,7 @@ import numpy as np
 
 from features.kernels.levels import fast_level_pieces
 from features.kernels.orders import order_map_of, speed_of_angle
-from features.long.parts import in_pieces, n_samples_of, reader_of
+from models.blocks import in_pieces, n_samples_of, reader_of
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from features.kernels.orders import OrderMap
-    from features.long.parts import Parts, Read
+    from models.blocks import Blocks, Read
     from models.recording import Recording
 
 _RANGE = 70.0
@@ -52,13 +52,13 @@ _NAMED = 0.06
 
 
 def plot_recording(
-    recording: Recording | Parts, rows: Sequence[Mapping[str, object]] = ()
+    recording: Recording | Blocks, rows: Sequence[Mapping[str, object]] = ()
 ) -> Figure:
     r"""Draw a recording.
 
     Parameters
     ----------
-    recording : Recording or Parts
+    recording : Recording or Blocks
         In memory, or one of which parts can be had.
     rows : sequence of mapping
         Of the label table, whose segments are shown below the spectrogram.
@@ -184,16 +184,16 @@ def _extremes(
 
 
 def _curve(
-    recording: Recording | Parts, row: int
+    recording: Recording | Blocks, row: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return what is drawn of a channel over time."""
     n = n_samples_of(recording)
-    place, values = _extremes(in_pieces(reader_of(recording, row), n)(), 1 + n // _MOST)
+    place, values = _extremes(in_pieces(reader_of(recording, row), n), 1 + n // _MOST)
     return place / recording.rate, values
 
 
 def recorded_levels(
-    recording: Recording | Parts,
+    recording: Recording | Blocks,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Level over time of a recording's first pressure channel, as `level_over_time` returns it.
 
@@ -209,12 +209,12 @@ def recorded_levels(
     return _levels(read, n_samples_of(recording), recording.rate, _reference(recording))
 
 
-def recorded_speed(recording: Recording | Parts) -> tuple[NDArray[np.float64], float] | None:
+def recorded_speed(recording: Recording | Blocks) -> tuple[NDArray[np.float64], float] | None:
     """Speed of the shaft over time, as it was recorded.
 
     Parameters
     ----------
-    recording : Recording or Parts
+    recording : Recording or Blocks
 
     Returns
     -------
@@ -237,7 +237,7 @@ def recorded_speed(recording: Recording | Parts) -> tuple[NDArray[np.float64], f
     row = angle if speed is None else speed
     n = n_samples_of(recording)
     every = 1 + n // _MOST
-    pieces = in_pieces(reader_of(recording, row or 0), n, every * (1 + _AT_ONCE // every))()
+    pieces = in_pieces(reader_of(recording, row or 0), n, every * (1 + _AT_ONCE // every))
     means = [
         piece[: piece.size // every * every].reshape(-1, every).mean(axis=1) for piece in pieces
     ]
@@ -245,7 +245,7 @@ def recorded_speed(recording: Recording | Parts) -> tuple[NDArray[np.float64], f
     return (values if speed is not None else speed_of_angle(values, rate)), rate
 
 
-def recorded_orders(recording: Recording | Parts) -> OrderMap | None:
+def recorded_orders(recording: Recording | Blocks) -> OrderMap | None:
     """Order map of a recording's sound, else of its torque or acceleration.
 
     Returns
@@ -282,18 +282,18 @@ def recorded_orders(recording: Recording | Parts) -> OrderMap | None:
 _WITH_ORDERS = ("pressure", "torque", "acceleration")
 
 
-def _reference(recording: Recording | Parts) -> float:
+def _reference(recording: Recording | Blocks) -> float:
     sound = recording.first("pressure") is not None
     return REFERENCE_PRESSURE if recording.calibrated and sound else 1.0
 
 
-def _unit(recording: Recording | Parts) -> str:
+def _unit(recording: Recording | Blocks) -> str:
     if recording.first("pressure") is None:
         return "dB re 1 unit"
     return "dB re 20 µPa" if recording.calibrated else "dBFS"
 
 
-def _spectrogram(figure: Figure, axes: Axes, recording: Recording | Parts, row: int) -> None:
+def _spectrogram(figure: Figure, axes: Axes, recording: Recording | Blocks, row: int) -> None:
     n = n_samples_of(recording)
     duration, read = n / recording.rate, reader_of(recording, row)
     level = spectrogram(read, n, recording.rate, _reference(recording))[::-1]
@@ -324,7 +324,7 @@ def _shown(level: NDArray[np.float64], highest: float) -> NDArray[np.float64]:
     return np.where(level < highest - _RANGE, np.nan, level)
 
 
-def _level(axes: Axes, recording: Recording | Parts) -> None:
+def _level(axes: Axes, recording: Recording | Blocks) -> None:
     time, level = recorded_levels(recording)
     axes.plot(time, level, color=BLUE, linewidth=1.2)
     if level.size:

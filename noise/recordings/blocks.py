@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.long.parts import reader_of
+from models.blocks import reader_of
 from models.errors import RecordingError
 from models.foreign_file import refusing
 from models.recording import Channel, Recording

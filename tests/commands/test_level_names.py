@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 
-from features.registry import recording_features
+from features.table import recording_features
 from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from noise.app.opened import open_paths

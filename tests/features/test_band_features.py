@@ -7,7 +7,7 @@ import pytest
 
 from features.kernels.bands import NOMINAL_THIRD_OCTAVES, third_octave_edges
 from features.kernels.levels import sound_levels
-from features.registry import feature_names, feature_vector
+from features.table import feature_names, feature_vector
 
 RATE = 48e3
 OCTAVES = tuple(f"third_octave_{name}" for name in NOMINAL_THIRD_OCTAVES)

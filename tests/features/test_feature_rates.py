@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from scipy import fft, signal
 
-from features.registry import feature_vector, features_of
+from features.table import feature_vector, features_of
 from tests.features.test_feature_sounds import SOUNDS
 
 MASTER_RATE = 192_000

@@ -10,7 +10,7 @@ import pytest
 from scipy import fft
 from scipy.signal import lfilter
 
-from features.registry import KINDS, feature_vector, features_of
+from features.table import KINDS, feature_vector, features_of
 
 MASTER_RATE = 96_000
 RATES = (16_000, 30_000, 44_100, 48_000, 96_000)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import features
-from features.registry import (
+from features.table import (
     FEATURES,
     KINDS,
     feature_names,

@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 from features.kernels.slip_drops import torque_slips
 from features.kernels.slip_pulses import pulses_of
 from features.kernels.slip_speeds import in_intervals, slip_intervals
-from features.named.prepared import prepare
+from features.prepared import prepare
 
 
 def acoustic_slips(x, rate):

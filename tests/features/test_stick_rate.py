@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from features.kernels.stick_rate import stick_rate_of
-from features.registry import recording_features
+from features.table import recording_features
 from features.transformer import RecordingFeatures
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording

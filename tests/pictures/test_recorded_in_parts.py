@@ -93,7 +93,7 @@ def test_a_recording_of_any_name_is_drawn(run_up, name):
 
 
 def test_one_channel_is_read_as_all_of_them_are(run_up, monkeypatch):
-    monkeypatch.setattr("features.long.parts._PIECE", 1_000)
+    monkeypatch.setattr("models.blocks._PIECE", 1_000)
     blocks = RecordingBlocks.of(run_up)
     found = blocks.track(1).part(500, 9_000).read(100, 20_000)
     np.testing.assert_array_equal(found, run_up.samples[1:2, 600:9_000])

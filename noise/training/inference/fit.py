@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from joblib import Parallel, delayed
 
-from features.registry import recording_feature_names, recording_features
+from features.table import recording_feature_names, recording_features
 from noise.inference.inputs import KINDS, QUANTITIES, of_channels, scaled, segment_features
 from noise.inference.model import Inference
 from noise.training.inference.conformal import Runs, calibrate_intervals, interval_coverage, rounded

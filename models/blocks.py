@@ -16,18 +16,13 @@ if TYPE_CHECKING:
     from models.recording import Channel
 
 Read = Callable[[int, int], "NDArray[np.float64]"]
-Pieces = Callable[[], "Iterator[NDArray[np.float64]]"]
-
-__all__ = ["LONG", "Parts", "Pieces", "Read", "in_pieces", "n_samples_of", "reader_of"]
-
-LONG = 1 << 21
-"""Samples of a channel from which on it is described piece by piece: 44 s at 48 kHz."""
+"""From first and last sample of a channel to those between them, shape (n,)."""
 
 _PIECE = 1 << 17
 """Samples of a piece."""
 
 
-class Parts(Protocol):
+class Blocks(Protocol):
     """A recording on disk, such as `noise.recordings.blocks.RecordingBlocks`."""
 
     @property
@@ -62,12 +57,11 @@ class Parts(Protocol):
         """Row of the first channel of a kind."""
 
 
-def n_samples_of(recording: Recording | Parts) -> int:
+def n_samples_of(recording: Recording | Blocks) -> int:
     """Return how many samples each channel of a recording has.
 
     Examples
     --------
-    >>> import numpy as np
     >>> from models.recording import Channel
     >>> n_samples_of(Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),)))
     480
@@ -77,12 +71,12 @@ def n_samples_of(recording: Recording | Parts) -> int:
     return recording.n_samples
 
 
-def reader_of(recording: Recording | Parts, row: int) -> Read:
+def reader_of(recording: Recording | Blocks, row: int) -> Read:
     """Return what gives a part of a channel, from first and last sample.
 
     Parameters
     ----------
-    recording : Recording or Parts
+    recording : Recording or Blocks
     row : int
         Of the channel.
 
@@ -93,7 +87,6 @@ def reader_of(recording: Recording | Parts, row: int) -> Read:
 
     Examples
     --------
-    >>> import numpy as np
     >>> from models.recording import Channel
     >>> run = Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),))
     >>> reader_of(run, 0)(10, 30).size
@@ -116,8 +109,8 @@ def reader_of(recording: Recording | Parts, row: int) -> Read:
     return read
 
 
-def in_pieces(read: Read, n_samples: int, length: int = _PIECE) -> Pieces:
-    """Return what gives a channel piece by piece, anew at each call.
+def in_pieces(read: Read, n_samples: int, length: int = _PIECE) -> Iterator[NDArray[np.float64]]:
+    """Go through a channel piece by piece.
 
     Parameters
     ----------
@@ -128,18 +121,16 @@ def in_pieces(read: Read, n_samples: int, length: int = _PIECE) -> Pieces:
     length : int
         Samples of a piece; the last may be shorter.
 
-    Returns
-    -------
-    callable
-        Gives arrays of shape (n,) [unit of the channel].
+    Yields
+    ------
+    ndarray, shape (n,)
+        [unit of the channel]
 
     Examples
     --------
-    >>> import numpy as np
     >>> ones = np.ones(480)
-    >>> [piece.size for piece in in_pieces(lambda first, last: ones[first:last], 480, 200)()]
+    >>> [piece.size for piece in in_pieces(lambda first, last: ones[first:last], 480, 200)]
     [200, 200, 80]
     """
-    return lambda: (
-        read(first, min(first + length, n_samples)) for first in range(0, n_samples, length)
-    )
+    for first in range(0, n_samples, length):
+        yield read(first, min(first + length, n_samples))

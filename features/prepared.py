@@ -298,6 +298,7 @@ def prepare(
     *,
     calibrated: bool = True,
     stick_rate: float = math.nan,
+    first: int = 0,
 ) -> Prepared:
     """Check a signal and make it ready for features.
 
@@ -313,6 +314,8 @@ def prepare(
         Whether the samples are in physical units.
     stick_rate : float
         Of a torque [N m/s].
+    first : int
+        Number of the first sample in its recording, for messages [-].
 
     Returns
     -------
@@ -328,7 +331,7 @@ def prepare(
     >>> prepare([1.0] * 480, 48e3, "pressure").silent
     True
     """
-    x = checked_signal(signal, rate)
+    x = checked_signal(signal, rate, first)
     largest = float(np.abs(x).max())
     mean = float(x.mean())
     scale = largest if largest > 0.0 else 1.0

@@ -1,1 +1,0 @@
-"""The named features of a recording, declared one by one."""

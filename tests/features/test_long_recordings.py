@@ -1,0 +1,121 @@
+"""Recordings that are described in pieces have the features that they have as a whole."""
+
+import math
+
+import numpy as np
+import pytest
+
+import features.table
+from features.table import features_of, piece_count, recording_features
+from models.condition import Condition
+from models.errors import ParameterError
+from models.recording import Channel, Recording
+from noise.recordings import write_recording
+from noise.recordings.blocks import open_blocks
+from tests.features.test_feature_rates import sawtooth
+from tests.features.test_feature_sounds import SOUNDS
+
+RATE = 48_000.0
+
+
+def stationary(kind, sound, seconds):
+    x = sawtooth(seconds)[::4] if kind == "torque" else SOUNDS[sound](seconds)[::2]
+    return Recording(x[np.newaxis], RATE, (Channel(kind),))
+
+
+def first(run, seconds):
+    return Recording(run.samples[:, : round(seconds * RATE)], RATE, run.channels)
+
+
+def check_alike(kind, run, one, other):
+    """Two descriptions of stretches differ by no more than three stretches of `run` do."""
+    n = run.samples.shape[1] // 3
+    parts = [Recording(run.samples[:, i * n : (i + 1) * n], RATE, run.channels) for i in range(3)]
+    found = [recording_features(part) for part in parts]
+    for feature in features_of(kind):
+        name = f"{kind}_{feature.name}"
+        values = np.array([values[name] for values in found])
+        scatter = float(np.ptp(values)) if not np.isnan(values).any() else 0.0
+        tolerance = max(feature.tolerance[0] * abs(one[name]), feature.tolerance[1], scatter)
+        assert other[name] == pytest.approx(one[name], rel=0.0, abs=tolerance, nan_ok=True), name
+
+
+@pytest.mark.parametrize(
+    ("kind", "sound"), [("pressure", "creak"), ("pressure", "squeal"), ("torque", "")]
+)
+def test_there_is_no_jump_where_pieces_begin(kind, sound):
+    run = stationary(kind, sound, 45.0)
+    shorter = first(run, 41.0)
+    assert (piece_count(round(41 * RATE)), piece_count(round(45 * RATE))) == (1, 5)
+    check_alike(kind, run, recording_features(shorter), recording_features(run))
+
+
+@pytest.mark.parametrize("sound", sorted(SOUNDS))
+def test_pieces_of_a_sound_give_what_the_whole_gives(sound, monkeypatch):
+    run = stationary("pressure", sound, 12.0)
+    whole = recording_features(run)
+    with monkeypatch.context() as patch:
+        patch.setattr(features.table, "LONG", 1)
+        patch.setattr(features.table, "PIECE", 150_000)
+        found = recording_features(run)
+    check_alike("pressure", run, whole, found)
+
+
+def test_a_loud_stretch_counts_by_its_power(monkeypatch):
+    t = np.arange(600_000) / RATE
+    loud = np.where((t > 3.0) & (t < 6.0), 1.0, 1e-3)
+    x = 0.2 + 1e-4 * np.random.default_rng(0).normal(size=t.size)
+    x += loud * np.sin(2 * np.pi * 1200 * t)
+    run = Recording(x[np.newaxis], RATE, (Channel("pressure"),))
+    whole = recording_features(run)
+    monkeypatch.setattr(features.table, "LONG", 1)
+    monkeypatch.setattr(features.table, "PIECE", 100_000)
+    found = recording_features(run)
+    for name in ("level", "level_a", "third_octave_1250", "crest", "hum_share", "line_frequency"):
+        assert found[f"pressure_{name}"] == pytest.approx(whole[f"pressure_{name}"], abs=0.3), name
+    assert found["pressure_kurtosis"] == pytest.approx(whole["pressure_kurtosis"], rel=0.05)
+
+
+def test_mean_and_oscillation_of_a_torque_that_drifts_are_those_of_the_whole(monkeypatch):
+    t = np.linspace(0.0, 1.0, 400_000)
+    run = Recording((5.0 + 3.0 * t + np.sin(9e3 * t))[np.newaxis], RATE, (Channel("torque"),))
+    whole = recording_features(run)
+    monkeypatch.setattr(features.table, "LONG", 1)
+    monkeypatch.setattr(features.table, "PIECE", 90_000)
+    found = recording_features(run)
+    for name in ("mean", "oscillation", "relative_oscillation"):
+        assert found[f"torque_{name}"] == pytest.approx(whole[f"torque_{name}"], rel=1e-9)
+
+
+def test_silence_and_a_constant_torque_are_described_as_ever(monkeypatch):
+    for kind, x in (("pressure", np.zeros(200_000)), ("torque", np.full(200_000, 5.0))):
+        run = Recording(x[np.newaxis], RATE, (Channel(kind),))
+        with monkeypatch.context() as patch:
+            whole = recording_features(run)
+            patch.setattr(features.table, "LONG", 1)
+            patch.setattr(features.table, "PIECE", 60_000)
+            assert recording_features(run) == pytest.approx(whole, nan_ok=True)
+
+
+def test_a_sample_that_is_no_number_is_named():
+    x = np.zeros((1, 1 << 21))
+    x[0, 1_500_000] = math.inf
+    with pytest.raises(ParameterError, match="sample 1500000 is inf"):
+        recording_features(Recording(x, RATE, (Channel("pressure"),)))
+
+
+def test_a_long_file_has_the_features_of_the_recording_in_memory(tmp_path, monkeypatch):
+    n = 300_000
+    samples = np.stack([sawtooth(n / RATE)[::4][:n], 5.0 * np.arange(n) / RATE])
+    known = Condition(5.0, 0.279e-3, 2214.0, "fluorocarbon")
+    run = Recording(
+        samples.astype(np.float32).astype(float), RATE, (Channel("torque"), Channel("angle")), known
+    )
+    path = write_recording(tmp_path / "run.wav", run)
+    monkeypatch.setattr("noise.recordings.blocks._LARGE", 0)
+    monkeypatch.setattr(features.table, "LONG", 1)
+    monkeypatch.setattr(features.table, "PIECE", 100_000)
+    in_memory = recording_features(run)
+    with open_blocks(path) as blocks:
+        assert blocks is not None
+        assert recording_features(blocks) == pytest.approx(in_memory, nan_ok=True)
