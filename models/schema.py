@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
 from difflib import get_close_matches
 from functools import lru_cache
+from reprlib import repr as show
 from typing import Any, TypeVar
 
 from models.errors import ParameterError
@@ -83,7 +84,7 @@ def as_text(value: Any, key: str, where: str) -> str:
     'PDMS'
     """
     if not isinstance(value, str):
-        raise ParameterError(f"{where}: {key} = {value!r} must be a text in quotes")
+        raise ParameterError(f"{where}: {key} = {show(value)} must be a text in quotes")
     return value
 
 
@@ -142,7 +143,7 @@ class Flag(Entry):
     def read(self, value: Any, where: str, old: Any = None) -> Any:  # noqa: ARG002
         """Return the truth value."""
         if not isinstance(value, bool):
-            raise ParameterError(f"{where}: {self.key} = {value!r} must be true or false")
+            raise ParameterError(f"{where}: {self.key} = {show(value)} must be true or false")
         return value
 
 
@@ -156,7 +157,7 @@ class Vector(Entry):
         """Return a tuple of numbers."""
         if not isinstance(value, list) or len(value) != self.size:
             raise ParameterError(
-                f"{where}: {self.key} = {value!r} must be a list of {self.size} numbers"
+                f"{where}: {self.key} = {show(value)} must be a list of {self.size} numbers"
             )
         return tuple(number({self.key: each}, self.key, where, low=-math.inf) for each in value)
 
@@ -263,7 +264,7 @@ class Quantity(Entry):
             with suppress(OverflowError):
                 found = float(value)
         if not self.possible(found):
-            raise ParameterError(f"{where}: {self.key} = {value!r} must be {self.wanted}")
+            raise ParameterError(f"{where}: {self.key} = {show(value)} must be {self.wanted}")
         return self.size * found
 
     def write(self, value: Any) -> Any:

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import json
 import math
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -518,6 +519,7 @@ def write_audio(
         content["audio"] = content.pop("channels")[0] | {"scale": full_scale}
     description = with_full_scale(full_scale) if recording.calibrated else ""
     data = wav_bytes(samples / full_scale, rate, bits, description=description, dither=dither)
+    content["wav_crc32"] = f"{zlib.crc32(data):08x}"
     text = json.dumps(content | dict(about or {}), indent=1) + "\n"
     with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
         wav.write_bytes(data)

@@ -36,7 +36,7 @@ import numpy as np
 from models.calibration import READING_UNITS
 from models.errors import ParameterError, RecordingError
 from models.recording import REFERENCE_PRESSURE, Channel
-from noise.recordings.sidecar import Sidecar, find_sidecar, read_sidecar
+from noise.recordings.sidecar import Sidecar, find_sidecar, sidecar_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -198,8 +198,7 @@ def check_finite(
 
 
 def _sidecar(path: Path) -> Sidecar:
-    found = find_sidecar(path)
-    return Sidecar() if found is None else read_sidecar(found)
+    return sidecar_of(path)
 
 
 def _united(stated: Condition, sidecar: Condition) -> Condition:

@@ -3,42 +3,51 @@
 Everything is checked here, at the edge, and refused in one line that names file, channel and
 field; behind it channels and conditions can be trusted. Keys that are not ours are passed over, so
 an engineer's own notes may stand in the same file, unless they state a condition in another unit
-than ours. Values are never guessed: a number in quotes or
-a torque in kN m is refused, only spellings of the same unit are alike.
+than ours. Values are never guessed: a number in quotes or a torque in kN m is refused, only
+spellings of the same unit are alike. A JSON file of another program, which has nothing that a
+sidecar has, is passed over as a whole.
 
 A channel of which the file holds what the measurement chain read has the unit ``V``, ``mV`` or
 ``counts``; it takes a calibration to make that a torque.
 
 ``"support_stiffness_Nm_rad": null`` is the clamp bolted to the baseplate; elsewhere null is the
 same as a missing key. A direction of any length is made a unit vector.
+
+``wav_crc32`` is the checksum of the WAV file that a sidecar was written with: the sidecar is moved
+into place before its samples, and a program that is killed between the two must not leave a new
+description beside old samples.
 """
 
 from __future__ import annotations
 
 import json
 import math
+import zlib
 from collections import Counter
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
 from reprlib import repr as show
-from typing import TYPE_CHECKING, NoReturn
+from typing import Any
 
 from models.calibration import READING_UNITS
-from models.condition import FIXED, Condition
+from models.condition import CONDITION, FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import LARGEST_JSON, one_line, parse_json, reading
-from models.recording import Channel
-from models.units import CHANNEL_UNITS
+from models.recording import CHANNEL_UNITS, Channel, Recording
+from models.schema import Flag, Quantity, Text, Vector
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from models.recording import Recording
-
-__all__ = ["Sidecar", "find_sidecar", "parse_sidecar", "read_sidecar", "sidecar_text"]
-
-_ABSOLUTE_ZERO = -273.15  # degree Celsius
-
-_CONDITIONS = ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad", "temperature_C")
+_SCALE, _CALIBRATED, _MATERIAL = Quantity("scale"), Flag("calibrated"), Text("material")
+_POSITION, _DIRECTION = Vector("position_m", 3), Vector("direction", 3)
+_SUPPORT = CONDITION["support_stiffness"].key
+_QUANTITIES = {
+    **CONDITION,
+    "interference": replace(CONDITION["interference"], low=0.0, closed=True),
+    "support_stiffness": replace(CONDITION["support_stiffness"], infinite=""),
+}
+_CHECKSUM = "wav_crc32"
+_OURS = ("channels", "conditions", "calibrated", "notes", _CHECKSUM)
 
 
 @dataclass(frozen=True)
@@ -60,6 +69,10 @@ class Sidecar:
         empty where the samples are in the channel's own.
     units : tuple of str
         One a channel, as spelled; empty where not given.
+    checksum : str
+        Of the WAV file that it was written with; empty where it does not say.
+    note : str
+        What should be known of it.
     """
 
     channels: tuple[Channel, ...] | None = None
@@ -68,6 +81,8 @@ class Sidecar:
     calibrated: bool | None = None
     readings: tuple[str, ...] = ()
     units: tuple[str, ...] = ()
+    checksum: str = ""
+    note: str = ""
 
 
 def find_sidecar(recording: Path) -> Path | None:
@@ -75,12 +90,55 @@ def find_sidecar(recording: Path) -> Path | None:
 
     Examples
     --------
-    >>> from pathlib import Path
     >>> find_sidecar(Path("nowhere.wav")) is None
     True
     """
     candidates = (recording.with_suffix(ending) for ending in (".json", ".JSON"))
     return next((path for path in candidates if path.is_file()), None)
+
+
+def sidecar_of(recording: Path) -> Sidecar:
+    """Read the sidecar of a recording, an empty one where it has none.
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read, says something that cannot be used, or was written with other samples.
+
+    Examples
+    --------
+    >>> sidecar_of(Path("nowhere.wav")) == Sidecar()
+    True
+    """
+    path = find_sidecar(recording)
+    if path is None:
+        return Sidecar()
+    sidecar = read_sidecar(path)
+    if sidecar.checksum and sidecar.checksum != _checksum(recording):
+        raise RecordingError(
+            f"{path}: was written with other samples than those of {recording.name} (an "
+            f"interrupted call, or {recording.name} was changed); write both again, or take "
+            f"{_CHECKSUM} out of it if it is right"
+        )
+    return sidecar
+
+
+def _checksum(recording: Path) -> str:
+    try:
+        status = recording.stat()
+        return _checksum_of(recording, status.st_mtime_ns, status.st_size)
+    except OSError as error:
+        reason = error.strerror or error
+        raise RecordingError(f"{recording}: cannot be read ({reason})") from error
+
+
+@lru_cache(maxsize=64)
+def _checksum_of(recording: Path, _changed: int, _size: int) -> str:
+    found = 0
+    with recording.open("rb") as file:
+        while block := file.read(1 << 20):
+            found = zlib.crc32(block, found)
+    return f"{found:08x}"
 
 
 def read_sidecar(path: Path) -> Sidecar:
@@ -99,7 +157,6 @@ def read_sidecar(path: Path) -> Sidecar:
     Examples
     --------
     >>> import tempfile
-    >>> from pathlib import Path
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "run07.json"
     ...     _ = path.write_text('{"conditions": {"interference_mm": 0.25}}')
@@ -123,7 +180,7 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
     Raises
     ------
     RecordingError
-        It is no JSON object, or one of its values cannot be used.
+        It is no JSON, or one of its values cannot be used.
 
     Examples
     --------
@@ -134,32 +191,138 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
     try:
         content = parse_json(data)
     except ValueError as error:
-        _refuse(where, f"is no JSON ({one_line(error)})")
+        raise RecordingError(f"{where}: is no JSON ({one_line(error)})") from None
+    if not _is_sidecar(content):
+        said = "is of another program, as it names no channels and no conditions; passed over"
+        return Sidecar(note=f"{where}: {said}")
+    try:
+        return _sidecar({key: value for key, value in content.items() if value is not None}, where)
+    except ParameterError as error:
+        raise RecordingError(str(error)) from None
+
+
+def _is_sidecar(content: Any) -> bool:
+    """Whether something of a JSON file can be meant as a sidecar's."""
     if not isinstance(content, dict):
-        _refuse(where, f"holds {show(content)}, expected an object {{...}}")
-    calibrated = content.get("calibrated")
-    if calibrated is not None and not isinstance(calibrated, bool):
-        _refuse(where, f"calibrated is {show(calibrated)}, expected true or false")
-    condition = _condition(content.get("conditions"), where)
-    if content.get("channels") is None:
-        return Sidecar(condition=condition, calibrated=calibrated)
-    entries = _channels(content["channels"], where)
-    return Sidecar(
-        channels=tuple(channel for channel, _, _, _ in entries),
-        scales=tuple(scale for _, scale, _, _ in entries),
-        condition=condition,
-        calibrated=calibrated,
-        readings=tuple(reading for _, _, reading, _ in entries),
-        units=tuple(unit for _, _, _, unit in entries),
+        return False
+    channels, conditions = content.get("channels"), content.get("conditions")
+    names = [one.get("name") if isinstance(one, dict) else one for one in _list(channels)]
+    kinds = [str(name).partition("_")[0] for name in names]
+    return (
+        all(key in _OURS for key in content)
+        or any(kind in CHANNEL_UNITS for kind in kinds)
+        or (isinstance(conditions, dict) and any(_stem(key) != key for key in conditions))
+        or isinstance(content.get("calibrated"), bool)
     )
 
 
-def sidecar_text(recording: Recording) -> str:
+def _list(value: object) -> list[Any]:
+    return value if isinstance(value, list) else []
+
+
+def _sidecar(content: Mapping[str, Any], where: str) -> Sidecar:
+    calibrated = content.get("calibrated")
+    entries = content.get("channels")
+    checksum = content.get(_CHECKSUM, "")
+    if not isinstance(checksum, str):
+        raise ParameterError(f"{where}: {_CHECKSUM} = {show(checksum)} must be a text in quotes")
+    known = Sidecar(
+        condition=_condition(content.get("conditions"), where),
+        calibrated=None if calibrated is None else _CALIBRATED.read(calibrated, where),
+        checksum=checksum,
+    )
+    if entries is None:
+        return known
+    if not isinstance(entries, list):
+        raise ParameterError(f"{where}: channels is {show(entries)}, expected a list")
+    found = [_channel(entry, number, where) for number, entry in enumerate(entries, start=1)]
+    channels, scales, readings, units = zip(*found, strict=True) if found else ((), (), (), ())
+    name, times = (
+        Counter(channel.name for channel in channels).most_common(1)[0] if found else ("", 0)
+    )
+    if times > 1:
+        raise ParameterError(f"{where}: channel {name!r} is named {times} times, expected once")
+    return replace(known, channels=channels, scales=scales, readings=readings, units=units)
+
+
+def _channel(entry: object, number: int, where: str) -> tuple[Channel, float | None, str, str]:
+    if not isinstance(entry, dict):
+        raise ParameterError(
+            f"{where}: channel {number} is {show(entry)}, expected an object {{...}}"
+        )
+    name = entry.get("name")
+    try:
+        plain = Channel(name if isinstance(name, str) else "")
+    except ValueError:
+        known = ", ".join(CHANNEL_UNITS)
+        raise ParameterError(
+            f"{where}: channel {number} has name {show(name)}, expected {known} (or ..._2, _3)"
+        ) from None
+    place = f"{where}: channel {plain.name!r}"
+    unit = entry.get("unit", plain.unit)
+    reading = unit if isinstance(unit, str) and unit in READING_UNITS else ""
+    if not isinstance(unit, str) or not (reading or _spelling(unit) == _spelling(plain.unit)):
+        raise ParameterError(f"{place} has unit {show(unit)}, expected {plain.unit!r}")
+    scale, position, direction = (
+        None if entry.get(one.key) is None else one.read(entry[one.key], place)
+        for one in (_SCALE, _POSITION, _DIRECTION)
+    )
+    if direction is not None:
+        length = math.hypot(*direction)
+        if not 0 < length < math.inf:
+            raise ParameterError(f"{place}: direction is {show(direction)}, expected some length")
+        if not math.isclose(length, 1.0, rel_tol=1e-9):
+            direction = tuple(part / length for part in direction)
+    channel = Channel(plain.name, position, direction)
+    return channel, scale, reading, str(entry.get("unit", ""))
+
+
+def _condition(entry: object, where: str) -> Condition:
+    if entry is None:
+        return Condition()
+    if not isinstance(entry, dict):
+        raise ParameterError(f"{where}: conditions is {show(entry)}, expected an object {{...}}")
+    keys = {one.key for one in CONDITION.values()}
+    for key, value in entry.items():
+        if key not in keys and _stem(key) != key and isinstance(value, int | float):
+            ours = next(one for one in keys if _stem(one) == _stem(key))
+            raise ParameterError(
+                f"{where}: conditions has {show(key)}, which is not read; state {ours}"
+            )
+    found: dict[str, Any] = {
+        name: one.read(entry[one.key], where)
+        for name, one in _QUANTITIES.items()
+        if entry.get(one.key) is not None
+    }
+    if _SUPPORT in entry and entry[_SUPPORT] is None:
+        found["support_stiffness"] = FIXED
+    if entry.get("material") is not None:
+        found["material"] = _MATERIAL.read(entry["material"], where)
+        if not found["material"].strip():
+            raise ParameterError(f"{where}: material is {show(entry['material'])}, expected a name")
+    return Condition(**found)
+
+
+def _stem(key: str) -> str:
+    """Return the quantity that a condition's key begins with; it ends with its unit."""
+    for quantity in ("interference", "support", "temperature", "speed"):
+        if key.lower().startswith(quantity):
+            return quantity
+    return key
+
+
+def _spelling(unit: str) -> str:
+    return unit.replace("²", "2").translate({ord(sign): None for sign in " ^·*"})
+
+
+def sidecar_text(recording: Recording, checksum: str = "") -> str:
     """Sidecar of a recording whose samples are written as floating-point values.
 
     Parameters
     ----------
     recording : Recording
+    checksum : str, optional
+        Of the WAV file [CRC-32, as eight hexadecimal digits].
 
     Returns
     -------
@@ -174,7 +337,6 @@ def sidecar_text(recording: Recording) -> str:
     Examples
     --------
     >>> import numpy as np
-    >>> from models.recording import Recording
     >>> tone = Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),), Condition(speed=5.0))
     >>> json.loads(sidecar_text(tone))["conditions"]
     {'speed_rad_s': 5.0}
@@ -186,6 +348,8 @@ def sidecar_text(recording: Recording) -> str:
     }
     if recording.notes:
         content["notes"] = list(recording.notes)
+    if checksum:
+        content[_CHECKSUM] = checksum
     text = json.dumps(content, indent=1, default=float) + "\n"
     try:
         parse_sidecar(text, f"recording {recording.name!r}")
@@ -204,129 +368,13 @@ def _channel_entry(channel: Channel) -> dict[str, object]:
 
 
 def _conditions_entry(condition: Condition) -> dict[str, float | str | None]:
-    fit = condition.interference
-    known = {
-        "speed_rad_s": condition.speed,
-        # Twelve digits, so that 0.279 mm is not written as 0.27899999999999997.
-        "interference_mm": None if fit is None else float(f"{fit * 1e3:.12g}"),
-        "material": condition.material,
-        "temperature_C": condition.temperature,
+    entry: dict[str, float | str | None] = {
+        one.key: one.of(value)
+        for name, one in CONDITION.items()
+        if (value := getattr(condition, name)) is not None
     }
-    entry: dict[str, float | str | None]
-    entry = {key: value for key, value in known.items() if value is not None}
-    if condition.support_stiffness is not None:
-        fixed = condition.support_stiffness == FIXED
-        entry["support_stiffness_Nm_rad"] = None if fixed else condition.support_stiffness
+    if condition.support_stiffness == FIXED:
+        entry[_SUPPORT] = None
+    if condition.material is not None:
+        entry["material"] = condition.material
     return entry
-
-
-def _channels(entries: object, where: str) -> list[tuple[Channel, float | None, str, str]]:
-    if not isinstance(entries, list):
-        _refuse(where, f"channels is {show(entries)}, expected a list")
-    found = [_channel(entry, number, where) for number, entry in enumerate(entries, start=1)]
-    names = [channel.name for channel, _, _, _ in found]
-    if len(set(names)) < len(names):
-        name, times = Counter(names).most_common(1)[0]
-        _refuse(where, f"channel {name!r} is named {times} times, expected once")
-    return found
-
-
-def _channel(entry: object, number: int, where: str) -> tuple[Channel, float | None, str, str]:
-    if not isinstance(entry, dict):
-        _refuse(where, f"channel {number} is {show(entry)}, expected an object {{...}}")
-    name = entry.get("name")
-    try:
-        plain = Channel(name if isinstance(name, str) else "")
-    except ValueError:
-        known = ", ".join(CHANNEL_UNITS)
-        _refuse(where, f"channel {number} has name {show(name)}, expected {known} (or ..._2, _3)")
-    channel = f"{where}: channel {plain.name!r}"
-    unit = entry.get("unit", plain.unit)
-    reading = unit if isinstance(unit, str) and unit in READING_UNITS else ""
-    if not isinstance(unit, str) or not (reading or _spelling(unit) == _spelling(plain.unit)):
-        raise RecordingError(f"{channel} has unit {show(unit)}, expected {plain.unit!r}")
-    scale = _number(entry.get("scale"), f"{channel}: scale", positive=True)
-    position = _vector(entry.get("position_m"), f"{channel}: position_m")
-    direction = _vector(entry.get("direction"), f"{channel}: direction")
-    if direction is not None:
-        direction = _unit_vector(direction, f"{channel}: direction")
-    return Channel(plain.name, position, direction), scale, reading, str(entry.get("unit", ""))
-
-
-def _condition(entry: object, where: str) -> Condition:
-    if entry is None:
-        return Condition()
-    if not isinstance(entry, dict):
-        _refuse(where, f"conditions is {show(entry)}, expected an object {{...}}")
-    for key in entry:
-        ours = next((ours for ours in _CONDITIONS if _stem(key) == _stem(ours)), key)
-        if key != ours and isinstance(entry[key], int | float):
-            _refuse(where, f"conditions has {show(key)}, which is not read; state {ours}")
-    material = entry.get("material")
-    if material is not None and (not isinstance(material, str) or not material.strip()):
-        _refuse(where, f"material is {show(material)}, expected a name in quotes")
-    interference = _number(entry.get("interference_mm"), f"{where}: interference_mm", least=0.0)
-    support = "support_stiffness_Nm_rad"
-    stiffness = _number(entry.get(support), f"{where}: {support}", positive=True)
-    return Condition(
-        speed=_number(entry.get("speed_rad_s"), f"{where}: speed_rad_s"),
-        interference=None if interference is None else interference / 1e3,
-        support_stiffness=FIXED if stiffness is None and support in entry else stiffness,
-        material=material,
-        temperature=_number(
-            entry.get("temperature_C"), f"{where}: temperature_C", least=_ABSOLUTE_ZERO
-        ),
-    )
-
-
-def _stem(key: str) -> str:
-    """Return the quantity that a condition's key begins with; it ends with its unit."""
-    for quantity in ("interference", "support", "temperature", "speed"):
-        if key.lower().startswith(quantity):
-            return quantity
-    return key
-
-
-def _number(
-    value: object, where: str, *, least: float = -math.inf, positive: bool = False
-) -> float | None:
-    if value is None:
-        return None
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        try:
-            number = float(value)
-        except OverflowError:
-            number = math.inf
-        if math.isfinite(number) and number >= least and not (positive and number <= 0):
-            return number
-    expected = "a finite number" if math.isinf(least) else f"a number of {least:g} or more"
-    expected = "a positive number" if positive else expected
-    raise RecordingError(f"{where} is {show(value)}, expected {expected}")
-
-
-def _vector(value: object, where: str) -> tuple[float, float, float] | None:
-    if value is None:
-        return None
-    if isinstance(value, list) and len(value) == 3:
-        x, y, z = (_number(part, where) for part in value)
-        if x is not None and y is not None and z is not None:
-            return x, y, z
-    raise RecordingError(f"{where} is {show(value)}, expected three numbers [x, y, z]")
-
-
-def _unit_vector(vector: tuple[float, float, float], where: str) -> tuple[float, float, float]:
-    length = math.hypot(*vector)
-    if not 0 < length < math.inf:
-        raise RecordingError(f"{where} is {show(list(vector))}, expected a vector with a length")
-    if math.isclose(length, 1.0, rel_tol=1e-9):
-        return vector
-    x, y, z = (part / length for part in vector)
-    return x, y, z
-
-
-def _spelling(unit: str) -> str:
-    return unit.replace("²", "2").translate({ord(sign): None for sign in " ^·*"})
-
-
-def _refuse(where: str, reason: str) -> NoReturn:
-    raise RecordingError(f"{where}: {reason}")

@@ -6,29 +6,23 @@ so what arrives must be just as much; until it has, nothing stands under the fil
 
 from __future__ import annotations
 
+import os
+import zlib
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.condition import Condition
 from models.errors import ParameterError
-from models.recording import Recording
+from models.recording import Channel, Recording
 from noise.base.files import atomic
 from noise.recordings.files import MIN_SAMPLES
 from noise.recordings.formats import formats
 from noise.recordings.sidecar import sidecar_text
 from noise.recordings.wav import wav_header
-
-if TYPE_CHECKING:
-    import os
-    from collections.abc import Callable, Iterable
-
-    from numpy.typing import NDArray
-
-    from models.condition import Condition
-    from models.recording import Channel
-
 
 _BLOCK = 1 << 16  # samples a channel
 
@@ -146,24 +140,26 @@ def _write(
         raise ParameterError(
             f"{target}: the sampling rate is {rate!r} Hz, but WAV holds whole hertz only"
         )
-    text = sidecar_text(about)
+    sidecar_text(about)  # refuses what could not be read back
     try:
         header = wav_header(n_samples, int(rate), 32, n_channels=len(about.channels))
     except ParameterError as error:
         raise ParameterError(f"{target}: {error}") from error
-    # The sidecar is moved into place first: samples are never seen without what they mean.
+    # The sidecar is moved into place first: samples are never seen without what they mean. Its
+    # checksum tells that it belongs to others, should the call end between the two.
     with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
         with wav.open("wb") as file:
             file.write(header)
-            written = 0
+            checksum, written = zlib.crc32(header), 0
             for block in blocks:
-                file.write(_frames(target, block, about.channels).tobytes())
+                data = _frames(target, block, about.channels).tobytes()
+                file.write(data)
+                checksum = zlib.crc32(data, checksum)
                 written += block.shape[1]
         if written != n_samples:
             raise ParameterError(f"{target}: {written} samples arrived, expected {n_samples}")
-        if more := found():
-            text = sidecar_text(replace(about, notes=(*about.notes, *more)))
-        sidecar.write_text(text, encoding="utf-8")
+        about = replace(about, notes=(*about.notes, *found()))
+        sidecar.write_text(sidecar_text(about, f"{checksum:08x}"), encoding="utf-8")
     return target
 
 

@@ -2,15 +2,20 @@ from __future__ import annotations
 
 import json
 import math
+import subprocess
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import soundfile
 from hypothesis import given, strategies as st
 
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from models.units import CHANNEL_UNITS
+from noise.recordings import read_recording, write_recording
 from noise.recordings.sidecar import (
     Sidecar,
     find_sidecar,
@@ -74,8 +79,46 @@ def test_nothing_need_be_said():
     assert parse_sidecar('{"conditions": {}}').condition == Condition()
 
 
-def test_notes_of_others_are_passed_over():
-    assert parse_sidecar('{"operator": "me", "conditions": {"humidity": "wet"}}') == Sidecar()
+OF_OTHERS = [
+    "[]",
+    "null",
+    '"transcript"',
+    '[{"start": 0.0, "end": 1.5, "text": "creak"}]',
+    {"operator": "me", "conditions": {"humidity": "wet"}},
+    {"streams": [{"codec_type": "audio", "channels": 2}], "format": {"duration": "3.0"}},
+    {"channels": 2, "sample_rate": 44100},
+    {"channels": ["L", "R"], "fs": 48000},
+    {"channels": [{"name": "Kanal 1", "unit": "V"}], "device": "logger"},
+    {"conditions": "cloudy", "date": "2024-05-01"},
+    {"calibrated": "2024-05-01", "microphone": "4189"},
+]
+
+
+@pytest.mark.parametrize("content", OF_OTHERS)
+def test_a_file_of_another_program_is_passed_over_with_a_note(tmp_path, content, capsys):
+    text = content if isinstance(content, str) else json.dumps(content)
+    found = parse_sidecar(text, "run07.json")
+    assert "run07.json: is of another program" in found.note
+    assert replace(found, note="") == Sidecar()
+    path = tmp_path / "run07.wav"
+    soundfile.write(path, np.full(480, 0.5), 48_000)
+    path.with_suffix(".json").write_text(text)
+    run = read_recording(path)
+    assert (run.channel_names, run.calibrated) == (("pressure",), False)
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ({"channels": ["torque"], "operator": "me"}, "channel 1 is 'torque'"),
+        ({"channels": [{"name": "torque", "unit": "kN m"}], "operator": "me"}, "has unit 'kN m'"),
+        ({"conditions": {"speed_rpm": 48}, "operator": "me"}, "state speed_rad_s"),
+        ({"conditions": {"speed_rad_s": "5"}, "operator": "me"}, "speed_rad_s = '5'"),
+        ({"calibrated": True, "channels": 2, "operator": "me"}, "channels is 2"),
+    ],
+)
+def test_a_broken_sidecar_of_ours_is_refused_whatever_else_stands_in_it(content, reason):
+    assert reason in refusal(content)
 
 
 def test_null_support_is_the_fixed_clamp_and_a_missing_one_unknown():
@@ -150,10 +193,8 @@ def test_a_direction_is_made_a_unit_vector():
         (b"\xff\xfe\xfa", "is no JSON"),
         ("[" * 100_000, "is no JSON"),
         ('{"a": ' + "1" * 5000 + "}", "is no JSON"),
-        ("[]", "expected an object"),
-        ("null", "expected an object"),
-        ({"calibrated": "yes"}, "calibrated is 'yes', expected true or false"),
-        ({"calibrated": 1}, "calibrated is 1"),
+        ({"calibrated": "yes"}, "calibrated = 'yes' must be true or false"),
+        ({"calibrated": 1}, "calibrated = 1 must be"),
         ({"channels": {}}, "channels is {}, expected a list"),
         ({"channels": ["torque"]}, "channel 1 is 'torque'"),
         ({"channels": [{"unit": "N m"}]}, "channel 1 has name None"),
@@ -161,27 +202,33 @@ def test_a_direction_is_made_a_unit_vector():
         ({"channels": [{"name": "torque_1"}]}, "channel 1 has name 'torque_1'"),
         ({"channels": [{"name": "torque_" + "9" * 5000}]}, "channel 1 has name"),
         ({"channels": [{"name": "angle"}] * 3}, "channel 'angle' is named 3 times"),
-        (one_channel(scale=0), "channel 'torque': scale is 0, expected a positive number"),
-        (one_channel(scale=-1.0), "expected a positive number"),
-        (one_channel(scale="2"), "expected a positive number"),
-        (one_channel(scale=math.nan), "expected a positive number"),
-        (one_channel(position_m=[1, 2]), "expected three numbers"),
-        (one_channel(position_m=[1, 2, None]), "expected three numbers"),
-        (one_channel(position_m=[1, 2, "3"]), "expected a finite number"),
-        (one_channel(position_m=0.08), "expected three numbers"),
-        (one_channel(direction=[0, 0, 0]), "expected a vector with a length"),
+        (one_channel(scale=0), "channel 'torque': scale = 0 must be a number above 0"),
+        (one_channel(scale=-1.0), "scale = -1.0 must be"),
+        (one_channel(scale="2"), "scale = '2' must be"),
+        (one_channel(scale=math.nan), "scale = nan must be"),
+        (one_channel(position_m=[1, 2]), "must be a list of 3 numbers"),
+        (one_channel(position_m=[1, 2, None]), "position_m = None must be a number"),
+        (one_channel(position_m=[1, 2, "3"]), "position_m = '3' must be a number"),
+        (one_channel(position_m=0.08), "must be a list of 3 numbers"),
+        (one_channel(direction=[0, 0, 0]), "expected some length"),
         ({"conditions": []}, "conditions is [], expected an object"),
-        ({"conditions": {"speed_rad_s": "5"}}, "speed_rad_s is '5', expected a finite number"),
-        ({"conditions": {"speed_rad_s": True}}, "speed_rad_s is True"),
-        ({"conditions": {"speed_rad_s": math.nan}}, "speed_rad_s is nan"),
-        ({"conditions": {"speed_rad_s": -math.inf}}, "speed_rad_s is -inf"),
-        ({"conditions": {"speed_rad_s": 10**400}}, "speed_rad_s is 1000"),
-        ({"conditions": {"interference_mm": -0.1}}, "interference_mm is -0.1, expected"),
-        ({"conditions": {"support_stiffness_Nm_rad": 0}}, "expected a positive number"),
-        ({"conditions": {"support_stiffness_Nm_rad": math.inf}}, "expected a positive number"),
+        ({"conditions": {"speed_rad_s": "5"}}, "speed_rad_s = '5' must be a number"),
+        ({"conditions": {"speed_rad_s": True}}, "speed_rad_s = True"),
+        ({"conditions": {"speed_rad_s": math.nan}}, "speed_rad_s = nan"),
+        ({"conditions": {"speed_rad_s": -math.inf}}, "speed_rad_s = -inf"),
+        ({"conditions": {"speed_rad_s": 10**400}}, "speed_rad_s = 1000"),
+        (
+            {"conditions": {"interference_mm": -0.1}},
+            "mm = -0.1 must be a number from 0 to 10 mm",
+        ),
+        ({"conditions": {"support_stiffness_Nm_rad": 0}}, "support_stiffness_Nm_rad = 0 must be"),
+        ({"conditions": {"support_stiffness_Nm_rad": math.inf}}, "support_stiffness_Nm_rad = inf"),
         ({"conditions": {"support_stiffness_Nm_rad": "fixed"}}, "support_stiffness_Nm_rad"),
-        ({"conditions": {"temperature_C": -300}}, "expected a number of -273.15 or more"),
-        ({"conditions": {"material": 3}}, "material is 3"),
+        (
+            {"conditions": {"temperature_C": -300}},
+            "C = -300 must be a number from -273.15",
+        ),
+        ({"conditions": {"material": 3}}, "material = 3 must be a text"),
         ({"conditions": {"material": " "}}, "material is ' '"),
     ],
 )
@@ -207,7 +254,7 @@ finite = st.floats(allow_nan=False, allow_infinity=False, width=32)
 vectors = st.none() | st.tuples(finite, finite, finite)
 conditions = st.builds(
     Condition,
-    speed=st.none() | finite,
+    speed=st.none() | st.floats(-1e6, 1e6),
     interference=st.none() | st.floats(0, 1e-2),
     support_stiffness=st.none() | st.just(FIXED) | st.floats(1.0, 1e6),
     material=st.none() | st.text(min_size=1).filter(str.strip),
@@ -265,3 +312,57 @@ def test_a_sidecar_with_any_value_exchanged_is_read_or_refused(data, value):
         assert "\n" not in str(error)  # noqa: PT017
     else:
         assert isinstance(found, Sidecar)
+
+
+# A sidecar that was written with other samples
+
+DYING = """
+import sys
+from pathlib import Path
+import numpy as np
+import os
+from models.recording import Channel, Recording
+from noise.recordings import write_recording
+
+moved = Path.replace
+def dying(self, target):
+    if str(target).endswith(sys.argv[2]):
+        os._exit(9)
+    return moved(self, target)
+Path.replace = dying
+samples = np.random.default_rng(2).normal(0, 3, (1, 4800))
+write_recording(sys.argv[1], Recording(samples, 48e3, (Channel("acceleration"),), name="run"))
+"""
+
+
+@pytest.fixture
+def torque(tmp_path):
+    samples = np.random.default_rng(1).normal(0, 3, (1, 4800))
+    run = Recording(samples, 48e3, (Channel("torque"),), Condition(speed=5.0), name="run07.wav")
+    return write_recording(tmp_path / "run07", run)
+
+
+def test_a_call_killed_between_sidecar_and_samples_leaves_no_wrong_description(torque):
+    done = subprocess.run([sys.executable, "-c", DYING, torque, ".wav"], check=False)
+    assert done.returncode == 9
+    assert json.loads(torque.with_suffix(".json").read_text())["channels"][0]["unit"] == "m/s^2"
+    with pytest.raises(RecordingError, match=r"run07\.json: was written with other samples"):
+        read_recording(torque)
+
+
+def test_a_call_killed_before_both_leaves_what_was_there(torque):
+    assert (
+        subprocess.run([sys.executable, "-c", DYING, torque, ".json"], check=False).returncode == 9
+    )
+    assert read_recording(torque).channel_names == ("torque",)
+
+
+def test_a_sidecar_without_a_checksum_stays_valid_for_any_samples(torque):
+    sidecar = torque.with_suffix(".json")
+    content = json.loads(sidecar.read_text())
+    soundfile.write(torque, np.ones(960), 48_000, subtype="FLOAT")
+    with pytest.raises(RecordingError, match="take wav_crc32 out of it if it is right"):
+        read_recording(torque)
+    del content["wav_crc32"]
+    sidecar.write_text(json.dumps(content))
+    assert read_recording(torque)["torque"].tolist() == [1.0] * 960
