@@ -23,7 +23,7 @@ from noise.recordings.folders import files_below
 from noise.recordings.formats import RawSamples, check_rate, formats
 from noise.recordings.formats.isolated import open_isolated
 from noise.recordings.meaning import PascalPerFullScale, check_finite, describe
-from noise.recordings.sidecar import find_sidecar, read_sidecar
+from noise.recordings.sidecar import sidecar_of
 from noise.recordings.unwrapping import find_turns
 
 __all__ = ["MIN_SAMPLES", "find_recordings", "names_channels", "read_raw", "read_recording"]
@@ -257,9 +257,9 @@ def names_channels(path: Path) -> bool:
     >>> names_channels(Path("stereo.wav")), names_channels(Path("run07.tdms"))
     (False, True)
     """
-    of, sidecar = formats().get(path.suffix.lower()), find_sidecar(path)
+    of = formats().get(path.suffix.lower())
     logged = of is not None and of.read is None
-    return logged or (sidecar is not None and read_sidecar(sidecar).channels is not None)
+    return logged or sidecar_of(path).channels is not None
 
 
 def say_once(path: Path, notes: Iterable[str]) -> None:

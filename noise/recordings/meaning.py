@@ -128,7 +128,7 @@ def describe(
     ('pressure', 2.0, True)
     """
     options = _by_track(path, full_scale, len(raw.samples))
-    sidecar_path, sidecar = find_sidecar(path), _sidecar(path)
+    sidecar_path, sidecar = find_sidecar(path), sidecar_of(path)
     n_channels = len(raw.samples)
     if sidecar.channels is not None and len(sidecar.channels) != n_channels:
         raise RecordingError(
@@ -139,7 +139,7 @@ def describe(
             f"{sidecar_path}: gives a scale, but {path.name} holds floating-point samples, which "
             f"are in the channel's unit; remove the scale"
         )
-    notes = list(raw.notes)
+    notes = [*raw.notes, *filter(None, [sidecar.note])]
     channels, curves = _interpret(path, raw, sidecar, options, calibrations or {}, notes)
     condition = _united(raw.condition, sidecar.condition)
     curves_or_none = curves or (None,) * n_channels
@@ -195,10 +195,6 @@ def check_finite(
                 f"{path}: channel {channel.name!r} is {row[first]} at sample {start + first} "
                 f"({(start + first) / rate:.6g} s), expected finite numbers up to {_LARGEST:g}"
             )
-
-
-def _sidecar(path: Path) -> Sidecar:
-    return sidecar_of(path)
 
 
 def _united(stated: Condition, sidecar: Condition) -> Condition:

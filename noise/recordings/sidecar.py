@@ -35,8 +35,9 @@ from models.calibration import READING_UNITS
 from models.condition import CONDITION, FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import LARGEST_JSON, one_line, parse_json, reading
-from models.recording import CHANNEL_UNITS, Channel, Recording
+from models.recording import Channel, Recording
 from models.schema import Flag, Quantity, Text, Vector
+from models.units import CHANNEL_UNITS
 
 _SCALE, _CALIBRATED, _MATERIAL = Quantity("scale"), Flag("calibrated"), Text("material")
 _POSITION, _DIRECTION = Vector("position_m", 3), Vector("direction", 3)
@@ -193,8 +194,10 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
     except ValueError as error:
         raise RecordingError(f"{where}: is no JSON ({one_line(error)})") from None
     if not _is_sidecar(content):
-        said = "is of another program, as it names no channels and no conditions; passed over"
-        return Sidecar(note=f"{where}: {said}")
+        return Sidecar(
+            note="the JSON file beside it is of another program, as it names no channels and no "
+            "conditions; passed over"
+        )
     try:
         return _sidecar({key: value for key, value in content.items() if value is not None}, where)
     except ParameterError as error:

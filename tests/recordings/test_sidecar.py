@@ -95,16 +95,17 @@ OF_OTHERS = [
 
 
 @pytest.mark.parametrize("content", OF_OTHERS)
-def test_a_file_of_another_program_is_passed_over_with_a_note(tmp_path, content, capsys):
+def test_a_file_of_another_program_is_passed_over_with_a_note(tmp_path, content):
     text = content if isinstance(content, str) else json.dumps(content)
     found = parse_sidecar(text, "run07.json")
-    assert "run07.json: is of another program" in found.note
+    assert "is of another program" in found.note
     assert replace(found, note="") == Sidecar()
     path = tmp_path / "run07.wav"
     soundfile.write(path, np.full(480, 0.5), 48_000)
     path.with_suffix(".json").write_text(text)
     run = read_recording(path)
     assert (run.channel_names, run.calibrated) == (("pressure",), False)
+    assert run.notes == (found.note,)
 
 
 @pytest.mark.parametrize(

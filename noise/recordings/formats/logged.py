@@ -33,7 +33,7 @@ from models.errors import RecordingError
 from models.recording import Channel
 from models.units import CHANNEL_UNITS, kind_of_unit, known_units, quantity_of_unit, split_unit
 from noise.recordings.formats import RawSamples, check_rate
-from noise.recordings.sidecar import Sidecar, find_sidecar, parse_sidecar, read_sidecar
+from noise.recordings.sidecar import Sidecar, parse_sidecar, sidecar_of
 
 NOT_STATED = None
 """Of what a format, or a file, does not state."""
@@ -216,7 +216,7 @@ def describe_channels(
             left_out.append((not ours, f"{channel.name!r} {error}"))
         else:
             on_time.append(Row(channel, kind, value, start, rate))
-    sidecar = _sidecar(path)
+    sidecar = sidecar_of(path)
     rows = _named_by(sidecar, on_time)
     left_out += [
         (True, f"{row.logged.name!r} {_unit_problem(row.logged)}")
@@ -472,11 +472,6 @@ def packing(
     remark = f"{listed}which is not applied: its samples are taken to be in its unit already"
     stated = numbers.get("scale_factor"), numbers.get("add_offset")
     return *stated, problem if unclear and integers else None, remark if unclear else None
-
-
-def _sidecar(path: Path) -> Sidecar:
-    found = find_sidecar(path)
-    return Sidecar() if found is None else read_sidecar(found)
 
 
 def _named_by(sidecar: Sidecar, on_time: list[Row]) -> list[Row]:
