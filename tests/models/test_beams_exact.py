@@ -64,24 +64,6 @@ def elements(structure, motion, n=40):
     return stiffness, mass, nodes
 
 
-def field(structure, frequency):
-    """Classical transfer matrix of (deflection, slope, moment, shear) from clamp to anchor."""
-    stiffness = bending_stiffness(structure.beams)
-    k = (mass_per_length(structure.beams) * (2 * np.pi * frequency) ** 2 / stiffness) ** 0.25
-    s, c = np.sin(k * structure.length), np.cos(k * structure.length)
-    sh, ch = np.sinh(k * structure.length), np.cosh(k * structure.length)
-    c0, c1, c2, c3 = (ch + c) / 2, (sh + s) / 2 / k, (ch - c) / 2 / k**2, (sh - s) / 2 / k**3
-    a, b = k**4 * stiffness, stiffness
-    return np.array(
-        [
-            [c0, c1, c2 / b, c3 / b],
-            [k**4 * c3, c0, c1 / b, c2 / b],
-            [a * c2, a * c3, c0, c1],
-            [a * c1, a * c2, k**4 * c3, c0],
-        ]
-    )
-
-
 def test_a_beam_without_clamp_is_the_cantilever_of_the_textbook():
     waves = np.array([1.87510407, 4.69409113, 7.85475744, 10.99554073, 14.13716839])
     speed = np.sqrt(bending_stiffness(STEEL) / mass_per_length(STEEL))
@@ -99,48 +81,6 @@ def test_frequencies_are_those_of_many_finite_elements(beams, motion, length):
     expected = np.sqrt(eigh(stiffness, mass, eigvals_only=True)[:6]) / (2 * np.pi)
     found = natural_frequencies(structure, 1.0001 * expected[-1], motion)
     assert found == pytest.approx(expected, rel=3e-5)
-
-
-@given(
-    st.floats(0.06, 0.2), st.floats(2e-4, 3e-3), st.floats(1.0, 1e7), st.floats(1e4, 1e10),
-    st.sampled_from(MOTIONS),
-)  # fmt: skip
-@settings(max_examples=15)
-def test_no_mode_is_missed(length, inertia, rotation, translation, motion):
-    beams = replace(STEEL, anchor_rotation=rotation, anchor_translation=translation)
-    structure = replace(BENCH, beams=beams, length=length, clamp_inertia=inertia)
-    stiffness, mass, _ = elements(structure, motion, n=40)
-    expected = np.sqrt(eigh(stiffness, mass, eigvals_only=True)[:8]) / (2 * np.pi)
-    found = natural_frequencies(structure, 1.0005 * expected[-1], motion)
-    assert found == pytest.approx(expected, rel=1e-3)
-
-
-@pytest.mark.parametrize("frequency", [30.0, 200.0, 700.0, 2000.0, 4000.0])
-def test_forced_response_follows_the_classical_transfer_matrix(frequency):
-    found = forced_response(BENCH, [frequency], [0.0])
-    angle = found.acceleration[0, 0].real / STEEL.lever / -((2 * np.pi * frequency) ** 2)
-    matrix = field(BENCH, frequency)
-    rigid = matrix[:2, :2] @ (STEEL.lever, 1.0) * angle
-    moment, shear = np.linalg.solve(matrix[:2, 2:], -rigid)
-    omega2 = (2 * np.pi * frequency) ** 2
-    dynamic = 750.0 - BENCH.clamp_inertia * omega2
-    assert dynamic * angle + 2 * (STEEL.lever * shear - moment) == pytest.approx(1.0, rel=1e-5)
-    end = matrix @ (STEEL.lever * angle, angle, moment, shear)
-    assert found.anchor_force[0].real == pytest.approx(end[3], rel=1e-5)
-    assert found.anchor_moment[0].real == pytest.approx(-end[2], rel=1e-5)
-
-
-@pytest.mark.parametrize("frequency", [100.0, 1500.0, 4000.0, 9000.0, 14000.0])
-@pytest.mark.parametrize("motion", MOTIONS)
-@pytest.mark.parametrize("beams", [STEEL, SOFT], ids=["rigid", "soft"])
-def test_forced_response_is_that_of_many_finite_elements(beams, motion, frequency):
-    structure = replace(BENCH, beams=beams)
-    stiffness, mass, nodes = elements(structure, motion)
-    dynamic = stiffness * (1 + 0j) - (2 * np.pi * frequency) ** 2 * mass
-    coordinates = np.linalg.solve(dynamic, np.eye(len(mass))[0])
-    expected = -((2 * np.pi * frequency) ** 2) * (nodes @ coordinates)[::20]
-    found = forced_response(structure, [frequency], np.linspace(0, 1, 5), motion=motion)
-    assert found.acceleration[:, 0] == pytest.approx(expected, rel=2e-3, abs=1e-3)
 
 
 @pytest.mark.parametrize("beams", [STEEL, SOFT], ids=["rigid", "soft"])
@@ -174,16 +114,6 @@ def test_the_modal_path_to_sensor_and_anchors_is_the_exact_one(beams, stiffness)
         level = 20 * np.log10(np.abs(found[output]) / np.abs(expected))
         assert np.median(np.abs(level)) < 0.1
         assert np.percentile(np.abs(level), 95) < 0.6
-
-
-def test_stations_are_points_of_clamp_and_beam():
-    stations = [0.02, 0.0449, 0.0449 + 0.25 * beam_length(STEEL, 2214.0)]
-    modal = beam_structure(STEEL, 2214.0, 1 / 1200, 0.005, 40e3, stations)
-    at = modal.frequency_response([600.0])[3:, TORQUE, 0]
-    assert at[0] / at[1] == pytest.approx(0.02 / 0.0449)
-    moved = replace(STEEL, accelerometer=0.25)
-    sensor = beam_structure(moved, 2214.0, 1 / 1200, 0.005, 40e3).frequency_response([600.0])
-    assert at[2] == pytest.approx(sensor[ACCELERATION, TORQUE, 0], rel=1e-9)
 
 
 # Anchors

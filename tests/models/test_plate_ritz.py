@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from models.errors import ParameterError
-from models.rig import Microphone, Plate
+from models.rig import Plate
 from models.structure.plate import acceleration_model, plate_modes
 from models.structure.plate_ritz import ritz_modes
 
@@ -34,20 +33,6 @@ def _square(edges, count, spare_degrees=14):
 )
 def test_square_plates_have_the_converged_frequency_parameters(edges, converged):
     assert _square(edges, len(converged)) == pytest.approx(converged, rel=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("edges", "leissa"),
-    [
-        ("clamped", [35.992, 73.413, 73.413]),
-        ("free", [13.489, 19.789, 24.432, 35.024, 35.024, 61.526, 61.526]),
-        (CANTILEVER, [3.4917, 8.5246, 21.429, 27.331, 31.111, 54.443]),
-    ],
-)
-def test_square_plates_lie_a_little_below_leissas_tables(edges, leissa):
-    ratio = np.array(leissa) / _square(edges, len(leissa))
-    assert np.all(ratio > 1 - 1e-4)
-    assert np.all(ratio < 1.01)
 
 
 def test_trial_functions_find_the_closed_form_of_simply_supported_edges():
@@ -88,13 +73,6 @@ def test_holding_an_edge_more_lowers_no_frequency(edges, held, ratio):
     assert np.all(tighter >= looser[: tighter.size] * (1 - 1e-6) - 1e-6)
 
 
-def test_opposite_cantilevers_are_mirror_images():
-    left = plate_modes(dataclasses.replace(BENCH, edges=CANTILEVER), 1e3)
-    right = plate_modes(dataclasses.replace(BENCH, edges=("free", "clamped", "free", "free")), 1e3)
-    assert left.frequencies == pytest.approx(right.frequencies, rel=1e-9)
-    assert np.abs(left.shape(0.21, 0.1)) == pytest.approx(np.abs(right.shape(-0.21, 0.1)), abs=1e-6)
-
-
 @pytest.mark.parametrize("edges", ["simply_supported", "clamped", "free", CANTILEVER])
 def test_modes_are_orthogonal_with_their_modal_mass(edges):
     modes = plate_modes(dataclasses.replace(BENCH, edges=edges), 2e3)
@@ -115,13 +93,6 @@ def test_slopes_are_the_derivatives_of_shapes(edges, direction):
     assert modes.slope(0.1, 0.05, direction) == pytest.approx(pair, abs=1e-5)
 
 
-def test_clamped_edges_neither_move_nor_turn():
-    modes = plate_modes(dataclasses.replace(BENCH, edges="clamped"), 16e3)
-    assert np.max(np.abs(modes.shape([0.45, 0.1], [0.1, -0.3]))) < 1e-9
-    assert np.max(np.abs(modes.slope(0.45, 0.1))) < 1e-7
-    assert np.max(np.abs(modes.slope(0.1, -0.3, "y"))) < 1e-7
-
-
 def test_a_free_plate_moves_as_a_whole_as_heavy_as_it_is():
     modes = plate_modes(BENCH, 16e3)
     rigid = modes.frequencies == 5.0
@@ -131,7 +102,7 @@ def test_a_free_plate_moves_as_a_whole_as_heavy_as_it_is():
     assert acceleration == pytest.approx(1 / (7850 * 8e-3 * 0.9 * 0.6), rel=1e-9)
 
 
-@pytest.mark.parametrize("edges", ["free", "clamped"])
+@pytest.mark.parametrize("edges", ["free", "clamped", "simply_supported"])
 def test_mean_mobility_does_not_depend_on_the_edges(edges):
     modes = plate_modes(dataclasses.replace(BENCH, edges=edges), 16e3)
     modes = dataclasses.replace(modes, damping_ratios=np.full(modes.frequencies.size, 0.075))
@@ -158,26 +129,3 @@ def test_loss_factors_by_frequency_are_powers_between_entries():
     assert np.count_nonzero(inside) > 5
     assert modes.damping_ratios[inside] == pytest.approx(15 / modes.frequencies[inside], rel=1e-9)
     assert modes.damping_ratios[[0, -1]] == pytest.approx([0.05, 0.015], rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"thickness": -8e-3}, "thickness = -0.008 must be above 0"),
-        ({"edges": "glued"}, "edges = 'glued' must be one of free, simply_supported, clamped"),
-        ({"edges": ("free", "free")}, "a list of four"),
-        ({"poisson_ratio": 0.6}, "poisson_ratio = 0.6"),
-        ({"loss_factor": 0.0}, "loss_factor = 0.0"),
-        ({"loss_factor": ((1e3, 0.1), (1e2, 0.1))}, "rising frequencies"),
-    ],
-)
-def test_a_plate_that_cannot_be_is_refused_by_field(change, message):
-    with pytest.raises(ParameterError) as refused:
-        dataclasses.replace(BENCH, **change)
-    assert message in str(refused.value)
-    assert "\n" not in str(refused.value)
-
-
-def test_a_microphone_inside_the_plate_is_refused():
-    with pytest.raises(ParameterError, match=r"^microphone: position has z = -0.004 m, inside"):
-        Microphone((0.1, 0.1, -0.004))

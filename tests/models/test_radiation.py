@@ -36,24 +36,6 @@ SQUEAKY = 2.79e-4
 TIGHT = 3.81e-4
 
 
-def _third_octaves(spectrum, frequency):
-    centres = 1000 * 2.0 ** (np.arange(-6, 12) / 3)
-    power = [
-        np.mean(np.abs(spectrum[np.abs(np.log2(frequency / centre)) < 1 / 6]) ** 2)
-        for centre in centres
-    ]
-    return 10 * np.log10(power)
-
-
-@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
-@pytest.mark.parametrize("path", ["torque_to_pressure", "pulse_to_pressure"])
-def test_the_rig_answers_over_the_whole_band_to_15_khz(stiffness, path):
-    frequency = np.geomspace(200, 16e3, 2000)
-    spectra = path_spectra(impulse_responses(BENCH, SQUEAKY, stiffness, RATE), frequency)
-    levels = _third_octaves(getattr(spectra, path), frequency)
-    assert levels.min() > levels.max() - 50
-
-
 def test_torque_reaches_the_microphone_through_both_anchors():
     modes = plate_modes(BENCH.plate, 16e3)
     arm = BENCH.beams.lever + beam_length(BENCH.beams, 2214.0)
@@ -86,19 +68,6 @@ def test_acceleration_peaks_at_the_first_torsional_mode(stiffness):
     assert peak == pytest.approx(math.sqrt(stiffness * 1200) / (2 * math.pi), abs=1.5)
 
 
-def test_damping_of_the_fit_sets_the_height_of_the_first_mode():
-    frequency = np.arange(230.0, 290.0, 0.25)
-    peaks = [
-        np.abs(
-            path_spectra(
-                impulse_responses(BENCH, fit, 2214.0, RATE), frequency
-            ).torque_to_acceleration
-        ).max()
-        for fit in (SQUEAKY, TIGHT)
-    ]
-    assert peaks[0] / peaks[1] == pytest.approx(0.236 / 0.105, rel=0.03)
-
-
 def test_bolting_the_clamp_down_silences_the_pulses():
     bolted = impulse_responses(BENCH, TIGHT, FIXED, RATE)
     pulse = np.zeros(4800)
@@ -117,57 +86,12 @@ def test_the_bolted_clamp_has_no_torsional_mode():
     assert np.any(bolted.torque_to_pressure)
 
 
-def test_an_antisymmetric_drive_is_silent_on_the_plane_of_symmetry():
-    centred = dataclasses.replace(
-        BENCH,
-        plate=dataclasses.replace(BENCH.plate, clamp_position=(0.0, 0.04)),
-        microphone=Microphone((0.0, -0.1, 0.8)),
-    )
-    aside = dataclasses.replace(centred, microphone=Microphone((0.2, -0.1, 0.8)))
-    on_plane = impulse_responses(centred, SQUEAKY, 2214.0, 48e3, seconds=0.2).torque_to_pressure
-    off_plane = impulse_responses(aside, SQUEAKY, 2214.0, 48e3, seconds=0.2).torque_to_pressure
-    assert np.abs(on_plane).max() < 1e-9 * np.abs(off_plane).max()
-
-
 def test_sound_arrives_after_its_travel():
     chain = impulse_responses(BENCH, SQUEAKY, 2214.0, RATE)
     nearest = 0.8 / 343.2 * RATE
     for path in (chain.torque_to_pressure, chain.pulse_to_pressure):
         before = np.abs(path[: int(nearest) - 2]).max()
         assert before < 1e-9 * np.abs(path).max()
-
-
-def test_a_slip_of_six_newton_metres_shakes_the_beams_as_its_inertia_allows():
-    time = np.arange(int(0.2 * RATE)) / RATE
-    slip = 6 * np.exp(-(((time - 0.05) / 1e-3) ** 2))
-    acceleration, pressure = radiate(impulse_responses(BENCH, TIGHT, 2214.0, RATE), slip)
-    rigid = 6 * 1200 * 0.0449
-    assert 0.3 * rigid < np.abs(acceleration).max() < 3 * rigid
-    assert 60 < 20 * np.log10(np.abs(pressure).max() / 2e-5) < 110
-
-
-def test_pulses_at_the_rate_of_a_creak_are_heard_from_5_to_15_khz():
-    rate_of_slips = 82.0
-    n = int(0.7 * RATE)
-    pulse = np.zeros(n)
-    time = np.arange(int(50e-6 * RATE) + 1) / RATE
-    pulse[: time.size] = 10 * np.sin(np.pi * time / 50e-6)
-    _, pressure = radiate(impulse_responses(BENCH, TIGHT, 2214.0, RATE), np.zeros(n), pulse)
-    frequency = np.fft.rfftfreq(n, 1 / RATE)
-    band = (frequency > 5e3) & (frequency < 15e3)
-    energy = 2 * np.sum(np.abs(np.fft.rfft(pressure)[band]) ** 2) / n / RATE
-    assert 40 < 10 * np.log10(energy * rate_of_slips / 4e-10) < 60
-
-
-def test_other_rates_give_the_same_response_in_the_common_band():
-    frequency = np.geomspace(150, 5e3, 60)
-    spectra = [
-        path_spectra(impulse_responses(BENCH, SQUEAKY, 3745.0, rate), frequency)
-        for rate in (48e3, 96e3)
-    ]
-    for path in ("torque_to_acceleration", "torque_to_pressure", "pulse_to_pressure"):
-        low, high = (getattr(each, path) for each in spectra)
-        assert np.max(np.abs(low - high)) < 0.05 * np.abs(high).max()
 
 
 def test_shared_responses_cannot_be_overwritten():

@@ -4,22 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-import models.transfer_functions.filtering
 from models.radiation.impulse_responses import ImpulseResponses, radiate
-from models.transfer_functions.filtering import convolve
 
 random = np.random.default_rng(11)
 CHAIN = ImpulseResponses(48e3, *random.normal(size=(4, 300)))
-
-
-@given(st.integers(1, 400), st.integers(1, 120), st.integers(1, 64))
-@settings(max_examples=60)
-def test_blocks_leave_no_trace_in_a_convolution(n, m, block):
-    signal, impulse_response = np.split(np.random.default_rng(n).normal(size=n + m), [n])
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(models.transfer_functions.filtering, "BLOCK", block)
-        found = convolve(signal, impulse_response)
-    assert found == pytest.approx(np.convolve(signal, impulse_response)[:n], abs=1e-10)
 
 
 @pytest.mark.parametrize("torque", [0.0, 8.0, -30.0])

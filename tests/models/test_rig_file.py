@@ -281,6 +281,9 @@ def fit(old, new):
         ("[sleeve]\nwall_mm = 0", ("sleeve: wall_mm = 0",)),
         (CONTRACT + "[sleeve]\nwall_mm = 4", ("inner_radius_mm is missing",)),
         # changes
+        (FIT + "[change]\nwall_mm = 6", ("wall needs a [sleeve] table",)),
+        ("[change]\nwall = 6", ("has no unit; write wall_mm = 6",)),
+        ("[change]\nhardness_shore_A = 90", ("hardness of 90 Shore A",)),
         ('[change]\ndampin = "x2"', ("did you mean 'damping'", "slip_pulse.amplitude")),
         ("[change]\ndamping = 0.1", ("write damping_Nms_rad = 0.1",)),
         ('[change]\ndamping = "20 %"', ("with its sign",)),
