@@ -7,26 +7,22 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from threading import Lock
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from models.change import changed_rig
 from models.errors import ParameterError
 from models.radiation.rig_response import anchor_arm
 from models.rig import LawSpec, damping_at, parse_spec
 from models.rig_file import changed_rig_text
-from noise.app.commands import Command
 from noise.app.design_controls import (
     Base,
     base_of,
+    fastest,
     heard_table,
     motion_of,
     motion_options,
     read_values,
 )
-from noise.app.design_player import RATE
 from noise.base.files import atomic
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.map.provenance import fits_remark
@@ -122,10 +118,9 @@ class Design:
     def remarks(self) -> list[str]:
         """Say what the listener should know: what lies outside the usual or was not measured."""
         setting = self.setting
-        times = np.linspace(0.0, 60.0, 4001)
         found = use_remarks(
             setting.rig,
-            speed=[float(np.abs(setting.shaft.speed(times)).max())],
+            speed=[fastest(self.values)],
             interference=[setting.interference],
             support_stiffness=[setting.support_stiffness],
             temperature=[setting.temperature],
@@ -263,125 +258,3 @@ def save_rig(asked: dict[str, Any], bases: dict[str, Base], folder: Path) -> dic
         "file": str(target),
         "command": f"bushing-noise simulate --rig {name} {design.options} --out heard",
     }
-
-
-_SLOTS = ("A", "B")
-_LONGEST = 60.0
-"""Of each sound [s]."""
-
-
-class DesignExport:
-    """One set at a time, command by command.
-
-    Parameters
-    ----------
-    bases : dict of str to Base
-        That designs name.
-    folder : Path
-        Where sets go, each into a folder of its own.
-    """
-
-    def __init__(self, bases: dict[str, Base], folder: Path) -> None:
-        self._bases, self._folder = bases, folder
-        self._lock = Lock()
-        self._steps: list[list[str]] = []
-        self._done = self._total = 0
-        self._command: Command | None = None
-        self._stopped = False
-        self._error = ""
-        self._result: Path | None = None
-
-    def start(self, asked: dict[str, Any]) -> dict[str, object]:
-        """Begin to keep designs, and tell the state.
-
-        Parameters
-        ----------
-        asked : dict
-            ``{"name": ..., "designs": {"A": ..., "B": ...}, "seconds": 4, "page": false}``, with
-            ``"replace": true`` where a set of that name may be written over.
-
-        Raises
-        ------
-        ParameterError
-            Something of it cannot be, or a set is being kept.
-        """
-        name = name_of(asked)
-        stated, seconds = asked.get("designs"), asked.get("seconds", 4.0)
-        if not isinstance(stated, dict) or not stated or not set(stated) <= set(_SLOTS):
-            raise ParameterError("set: designs must be A, B or both")
-        if isinstance(seconds, bool) or not isinstance(seconds, int | float):
-            raise ParameterError("set: seconds must be a number")
-        if not 0.5 <= seconds <= _LONGEST:
-            raise ParameterError(f"set: seconds must be from 0.5 to {_LONGEST:g}")
-        designs = {slot: design_of(stated[slot], self._bases) for slot in sorted(stated)}
-        target, page = self._folder / name, self._folder / f"{name}.html"
-        wanted = page if asked.get("page") is True else target
-        for one in (target, wanted):
-            if one.exists() and asked.get("replace") is not True:
-                raise ParameterError(
-                    f"{one.name} is there already; take another name, or save again over it"
-                )
-        with self._lock:
-            if self._steps or (self._command is not None and self._command.running):
-                raise ParameterError("set: another one is being kept; wait until it is done")
-            steps = []
-            for slot, design in designs.items():
-                rig = target / f"{slot}.toml"
-                with atomic(rig) as part:
-                    part.write_text(design.text(target, rig.name), encoding="utf-8")
-                options = design.options.split()
-                if "--seconds" not in options:
-                    options += ["--seconds", f"{seconds:g}"]
-                recording = target / "recordings" / slot
-                steps.append(
-                    ["simulate", "--rig", str(rig), *options, "--rate", str(RATE),
-                     "--out", str(recording)]
-                )  # fmt: skip
-            recordings = str(target / "recordings")
-            if wanted == page:
-                told = "; ".join(f"{slot}: {design.words}" for slot, design in designs.items())
-                steps.append(
-                    ["review", recordings, "--title", f"{name}. {told}", "--out", str(page)]
-                )
-            else:
-                steps.append(["render", recordings, "--out", str(target / "sounds")])
-            self._steps, self._total, self._done = steps, len(steps), 0
-            self._error, self._result = "", wanted
-            self._next()
-        return self.state()
-
-    def state(self) -> dict[str, object]:
-        """Return what is done of how much [-], what went wrong, and where the result is."""
-        with self._lock:
-            running = bool(self._steps)
-            done = not running and self._total > 0 and not self._error
-            return {
-                "running": running,
-                "done": self._done,
-                "total": self._total,
-                "error": self._error,
-                "result": str(self._result) if done and self._result else None,
-            }
-
-    def stop(self) -> None:
-        """End what is being done."""
-        with self._lock:
-            self._stopped, command = True, self._command
-        if command is not None:
-            command.stop()
-
-    def _next(self) -> None:
-        command = Command(lambda code: self._ended(command, code))
-        self._command = command
-        command.start(self._steps[0])
-
-    def _ended(self, command: Command, code: int) -> None:
-        with self._lock:
-            self._done += 1
-            if code != 0 or self._stopped:
-                self._error = command.message or "it was ended"
-                self._steps = []
-                return
-            self._steps = self._steps[1:]
-            if self._steps:
-                self._next()

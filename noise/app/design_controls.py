@@ -34,7 +34,7 @@ from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 from sim.friction import LAWS, friction_law
 from sim.parameters import resolve
-from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
+from sim.shaft import ConstantSpeed, Oscillation
 
 if TYPE_CHECKING:
     from models.rig import Rig
@@ -86,17 +86,21 @@ def motion_of(values: Mapping[str, float | bool | str]) -> ShaftMotion:
     return ConstantSpeed(float(values["speed"]))
 
 
-def once(shaft: ShaftMotion) -> tuple[ShaftMotion, float]:
-    """Return the motion of a recording of it, and how long that has to be at least [s].
+def fastest(values: Mapping[str, float | bool | str]) -> float:
+    """Return the largest speed of the motion that values of controls describe [rad/s].
 
     Examples
     --------
-    >>> once(RunUp(0.0, 10.0, 6.0))
-    (SpeedRamp(start=0.0, end=10.0, duration=6.0), 6.0)
+    >>> run_up = {"motion": "run_up", "run_up.start": -30.0, "run_up.end": 2.0}
+    >>> fastest({**run_up, "run_up.seconds": 600.0})
+    30.0
     """
+    shaft = motion_of(values)
     if isinstance(shaft, RunUp):
-        return SpeedRamp(shaft.start, shaft.end, shaft.seconds), shaft.seconds
-    return shaft, 0.0
+        return max(abs(shaft.start), abs(shaft.end))
+    if isinstance(shaft, Oscillation):
+        return 2.0 * math.pi * shaft.frequency * abs(shaft.amplitude)
+    return abs(float(values["speed"]))
 
 
 def motion_options(values: Mapping[str, float | bool | str]) -> str:

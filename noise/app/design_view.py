@@ -9,7 +9,7 @@ from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
 from models.errors import ParameterError
-from noise.app.design import DesignExport, design_of, save_rig
+from noise.app.design import design_of, save_rig
 from noise.app.design_chart import ChartRequest, SuggestionRequest
 from noise.app.design_controls import base_of, bases_of
 from noise.app.design_player import BLOCK, RATE, TORQUE_STEP
@@ -41,8 +41,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
     suggestions: WorkerProcess[SuggestionRequest, dict[str, object]] = WorkerProcess(
         f"{_CHARTS}:suggestions_of", _NICE
     )
-    export = DesignExport(bases, opened.folder)
-    for one in (sounds, charts, suggestions, export):
+    for one in (sounds, charts, suggestions):
         opened.leaving.callback(one.stop)
 
     def listed(_: Request) -> Response:
@@ -87,9 +86,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
             suggestions.answer_to(SuggestionRequest.of(design_of(asked, bases).setting, asked))
         )
 
-    def kept(_: Request, asked: dict[str, Any]) -> Response:
-        return JSONResponse(export.start(asked))
-
     def saved(_: Request, asked: dict[str, Any]) -> Response:
         return JSONResponse(save_rig(asked, bases, opened.folder))
 
@@ -104,8 +100,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/design/chart", body(charted), methods=["POST"]),
         Route("/api/design/helps", body(helped), methods=["POST"]),
         Route("/api/design/rig", body(saved), methods=["POST"]),
-        Route("/api/design/set", body(kept), methods=["POST"]),
-        Route("/api/design/set", lambda _: JSONResponse(export.state()), methods=["GET"]),
     ]
 
 

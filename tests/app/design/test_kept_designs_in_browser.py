@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from models.rig_file import load_rig
 from tests.helpers.design_page import DESIGN, DesignPage
 from tests.helpers.opened_app import opened_app
@@ -42,22 +40,6 @@ def test_a_reload_keeps_both_designs(browser, app):
     opened.close()
 
 
-def test_a_page_of_another_call_of_the_program_begins_anew(browser, app, tmp_path):
-    opened = DesignPage(browser, app)
-    opened.type("speed", 7.5)
-    kept = "JSON.parse(sessionStorage.getItem('bushing-noise design'))"
-    opened.page.evaluate(
-        "([name, value]) => sessionStorage.setItem(name, value)",
-        [
-            "bushing-noise design",
-            opened.page.evaluate(f"JSON.stringify({{...{kept}, session: 0}})"),
-        ],
-    )
-    opened.reload()
-    assert opened.value("speed") == "5"
-    opened.close()
-
-
 def test_another_base_keeps_the_condition_and_tells_what_it_drops(browser, app):
     opened = DesignPage(browser, app)
     condition = {"speed": "7.5", "interference": "0.3", "support": "3745", "temperature": "40"}
@@ -78,22 +60,6 @@ def test_another_base_keeps_the_condition_and_tells_what_it_drops(browser, app):
     opened.page.get_by_role("button", name="Redo").click()
     opened.page.get_by_text("Done again.").wait_for()
     assert opened.page.evaluate(f"{DESIGN}.stated()") == after
-    opened.close()
-
-
-@pytest.mark.parametrize("name", ["As the base", "Copy to the other"])
-def test_what_one_press_replaces_comes_back_by_another(browser, app, name):
-    opened = DesignPage(browser, app)
-    opened.page.get_by_role("button", name="B", exact=True).click()
-    opened.type("change-damping", 2)
-    opened.page.get_by_role("button", name="A", exact=True).click()
-    opened.type("change-damping", 1.5)
-    before = opened.page.evaluate(f"{DESIGN}.both()")
-    opened.page.get_by_role("button", name=name).click()
-    assert opened.page.evaluate(f"{DESIGN}.both()") != before
-    opened.page.get_by_role("button", name="Undo").click()
-    opened.page.get_by_text("Undone.").wait_for()
-    assert opened.page.evaluate(f"{DESIGN}.both()") == before
     opened.close()
 
 

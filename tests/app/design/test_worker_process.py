@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import html
-import json
 import math
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from models.errors import ParameterError
-from noise.app.design import DesignExport, design_of
+from noise.app.design import design_of
 from noise.app.design_chart import ChartRequest, SuggestionRequest, suggestions_of
 from noise.app.design_controls import bases_of
 from noise.app.opened import open_paths
 from noise.app.worker_process import WorkerProcess
-from noise.recordings import read_recording
 
 BASES = bases_of(open_paths([]))
 PATIENCE = 120.0
@@ -88,55 +84,3 @@ def test_charts_are_the_same_whatever_the_motion():
     one = setting({"motion": "swing", "interference": 0.2})
     assert ChartRequest.of(one) == ChartRequest.of(setting({}))
     assert ChartRequest.of(one) != ChartRequest.of(replace(one, temperature=60.0))
-
-
-def kept(keeping, said):
-    keeping.start(said)
-    state = waited(lambda: None if keeping.state()["running"] else keeping.state())
-    assert state["error"] == ""
-    return state["result"]
-
-
-@pytest.mark.slow
-def test_both_designs_are_kept_as_sounds_at_one_gain_and_as_a_page(tmp_path):
-    keeping = DesignExport(BASES, tmp_path)
-    designs = {
-        "A": {"base": "fluorocarbon", "values": {}},
-        "B": {"base": "fluorocarbon", "values": {"change.damping": 2.0, "motion": "swing"}},
-    }
-    said = {"name": "both", "designs": designs, "seconds": 0.5}
-    assert kept(keeping, said) == str(tmp_path / "both")
-    recording = read_recording(tmp_path / "both" / "recordings" / "B.wav")
-    assert recording.rate == 48e3
-    sounds = [tmp_path / "both" / "sounds" / f"{slot}.json" for slot in "AB"]
-    told = [json.loads(path.read_text(encoding="utf-8"))["render"] for path in sounds]
-    assert told[0]["full_scale_Pa"] == told[1]["full_scale_Pa"]
-    with pytest.raises(ParameterError, match="is there already"):
-        keeping.start(said)
-    page = kept(keeping, {**said, "page": True, "replace": True})
-    assert page == str(tmp_path / "both.html")
-    text = html.unescape(Path(page).read_text(encoding="utf-8"))
-    assert "A: fluorocarbon unchanged (--speed 5" in text
-    assert "B: fluorocarbon with damping x2 (--oscillate 15,2" in text
-    saved = bases_of(open_paths([tmp_path / "both" / f"{slot}.toml" for slot in "AB"]))
-    for slot, base in zip("AB", ["rig 0", "rig 1"], strict=True):
-        again = design_of({"base": base, "values": {}}, saved)
-        assert again.options == design_of(designs[slot], BASES).options
-    keeping.stop()
-
-
-@pytest.mark.parametrize(
-    ("said", "told"),
-    [
-        ({"designs": {}}, "A, B or both"),
-        ({"designs": {"C": {}}}, "A, B or both"),
-        ({"seconds": 1e9}, "from 0.5 to 60"),
-        ({"seconds": "4"}, "a number"),
-        ({"name": "../x"}, "must begin"),
-    ],
-)
-def test_sets_that_cannot_be_are_refused_in_a_line(said, told, tmp_path):
-    plain = {"name": "x", "designs": {"A": {"base": "PDMS", "values": {}}}}
-    with pytest.raises(ParameterError, match=told):
-        DesignExport(BASES, tmp_path).start(plain | said)
-    assert list(tmp_path.iterdir()) == []
