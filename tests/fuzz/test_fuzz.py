@@ -27,7 +27,7 @@ import soundfile
 from models.errors import BushingNoiseError
 from noise.base.tables import write_table
 from noise.cli import main
-from noise.pages.diagnosis.page import write_diagnosis
+from noise.pages.diagnosis import write_diagnosis
 from noise.training.classifier.described_samples import Sample
 from noise.training.classifier.kept_samples import load_samples, save_samples
 from tests.helpers.logger_files import WRITERS, Wave, uff
