@@ -11,7 +11,6 @@ import pytest
 from models.errors import ParameterError
 from noise.base.files import atomic, check_target
 from noise.commands.options import check_folder
-from noise.recordings import find_recordings
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -32,13 +31,6 @@ def test_the_file_appears_when_the_block_ends(tmp_path):
     assert list(tmp_path.iterdir()) == [target]
 
 
-def test_parent_folders_are_made(tmp_path):
-    target = tmp_path / "a" / "b" / "table.csv"
-    with atomic(str(target)) as path:
-        path.write_text("whole")
-    assert target.read_text() == "whole"
-
-
 @pytest.mark.parametrize("interruption", [RuntimeError, KeyboardInterrupt])
 def test_an_interrupted_write_leaves_the_old_file(tmp_path, interruption):
     target = tmp_path / "table.csv"
@@ -47,20 +39,6 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path, interruption):
         write_half_and_raise(target, interruption())
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]
-
-
-def test_an_interrupted_first_write_leaves_nothing(tmp_path):
-    with pytest.raises(RuntimeError):
-        write_half_and_raise(tmp_path / "table.csv", RuntimeError())
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_what_a_killed_program_leaves_behind_is_no_recording(tmp_path):
-    with atomic(tmp_path / "run.wav") as path:
-        path.write_bytes(b"half")
-        assert path.parent == tmp_path
-        assert path.suffix == ".wav"
-        assert find_recordings([tmp_path]) == []
 
 
 WRITER = """
@@ -102,18 +80,6 @@ def test_two_writers_of_one_file_do_not_meet(tmp_path):
         one.write_text("one")
         other.write_text("other")
     assert target.read_text() == "one"
-
-
-def test_a_folder_is_no_target(tmp_path):
-    with pytest.raises(ParameterError, match="is a folder"), atomic(tmp_path):
-        pass
-
-
-def test_a_file_in_the_way_of_the_folder_is_named(tmp_path):
-    (tmp_path / "out").write_text("a file")
-    target = tmp_path / "out" / "table.csv"
-    with pytest.raises(ParameterError, match=r"table\.csv: cannot be written"), atomic(target):
-        pass
 
 
 def test_a_full_disk_is_an_error_in_one_line(tmp_path):

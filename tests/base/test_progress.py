@@ -14,7 +14,7 @@ from contextlib import suppress
 
 import pytest
 
-from noise.base.progress import say, steps, track
+from noise.base.progress import say, steps
 
 PATIENCE = 30.0
 """Nothing that a test waits for takes longer [s]."""
@@ -85,32 +85,6 @@ def test_the_bar_of_a_long_step_goes_on_showing_how_long_it_takes(terminal):
             terminal.until_times(3)
 
     terminal.shows(long)
-
-
-def test_the_bar_of_items_goes_on_while_one_takes_long(terminal):
-    def long():
-        for _ in track(["drive"], "computing", unit="row group"):
-            terminal.until_times(3)
-
-    assert "0/1 " in terminal.shows(long)
-
-
-def test_more_steps_than_were_expected_are_never_more_than_all(terminal):
-    def fits():
-        with steps("diagnosing", 1) as tell:
-            for number in range(4):
-                tell(f"fit {number}")
-
-    assert "3/4 " in terminal.shows(fits)
-
-
-def test_fewer_steps_than_were_expected_and_items_in_a_step_end_well(terminal):
-    def train():
-        with steps("training", 9) as tell:
-            tell("simulating")
-            assert list(track([1, 2], "drawing", unit="sample")) == [1, 2]
-
-    assert "drawing" in terminal.shows(train)
 
 
 def test_an_error_ends_the_bar(terminal):

@@ -42,11 +42,6 @@ def test_a_scheduler_that_is_not_there_is_named(tmp_path, monkeypatch):
         performed(Counting(tmp_path / "log"), jobs, scheduler="tcp://127.0.0.1:9")
 
 
-def test_two_ways_to_share_the_work_are_refused(tmp_path, capsys):
-    assert main(["label", str(tmp_path), "--workers", "2", "--scheduler", "x"]) == 2
-    assert "not allowed with" in capsys.readouterr().err
-
-
 @pytest.fixture(scope="module")
 def cluster():
     distributed = pytest.importorskip("distributed")

@@ -74,14 +74,6 @@ def run(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_lines_stand_beside_out_and_before_the_names_of_files(run, capsys):
-    capsys.readouterr()
-    assert main(["label", "run.wav", "--out", "labels.csv"]) == 0
-    line, written = capsys.readouterr().out.splitlines()
-    assert line.startswith("run.wav  squeal 9")
-    assert written == "labels.csv"
-
-
 def test_a_terminal_gets_the_line_and_a_pipe_the_table(run):
     call = [sys.executable, "-m", "noise", "label", "run.wav"]
     piped = subprocess.run(call, capture_output=True, text=True, check=True)

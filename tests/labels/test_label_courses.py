@@ -9,6 +9,7 @@ import pytest
 from models.rig_file import load_material_rig
 from noise.classifier import load_classifier
 from noise.labels.segments import file_label, label_recording
+from noise.noise_definition import label_by_physics
 from sim.run import simulate
 from sim.shaft import Oscillation, SpeedRamp
 
@@ -32,7 +33,7 @@ def run(shaft, interference, stiffness, seconds):
     rig = load_material_rig("fluorocarbon")
     return simulate(
         rig, shaft, interference=interference, support_stiffness=stiffness, seconds=seconds
-    ).recording
+    )
 
 
 def sound_alone(recording):
@@ -44,19 +45,21 @@ def sound_alone(recording):
 def test_conditions_whose_noise_the_thesis_names_carry_its_label(
     interference, stiffness, speed, noise
 ):
-    recording = run(speed, interference, stiffness, 1.0)
+    made = run(speed, interference, stiffness, 1.0)
+    assert label_by_physics(made) == noise
+    recording = made.recording
     for heard in (recording, sound_alone(recording)):
         assert file_label(label_recording(heard, load_classifier())).label == noise
 
 
 def test_a_swing_at_a_tight_fit_is_one_creak():
-    recording = run(Oscillation(np.radians(15.0), 2.0), 0.381e-3, 2214.0, 3.0)
+    recording = run(Oscillation(np.radians(15.0), 2.0), 0.381e-3, 2214.0, 3.0).recording
     for heard in (recording, sound_alone(recording)):
         assert [s.label for s in label_recording(heard, load_classifier())] == ["creak"]
 
 
 def test_a_run_up_goes_from_squawk_to_squeal_to_silence_without_flicker():
-    recording = run(SpeedRamp(0.0, 10.0, 6.0), 0.279e-3, np.inf, 6.0)
+    recording = run(SpeedRamp(0.0, 10.0, 6.0), 0.279e-3, np.inf, 6.0).recording
     segments = label_recording(recording, load_classifier())
     assert [s.label for s in segments[-3:]] == ["squawk", "squeal", "none"]
     assert len(segments) <= 4

@@ -1,17 +1,12 @@
 """Levels in the label table: those that every other table has, and over the background."""
 
-import json
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from features.kernels.levels import a_weighted_level
 from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from noise.audio.assessment import assess
 from noise.classifier import load_classifier
-from noise.cli import main
 from noise.labels.labelling import label
 from noise.labels.levels import background_level, with_weighted_levels
 from noise.labels.rows import label_rows
@@ -22,7 +17,6 @@ from sim.run import simulate
 
 CLASSIFIER = load_classifier()
 RATE = 30_000
-LEVELS = ("level_db", "level_dba", "l_afmax_dba")
 
 
 def recorded(pressure, *, calibrated=True):
@@ -45,31 +39,6 @@ def squeal():
 
 def noise(seconds, rms):
     return rms * np.random.default_rng(0).standard_normal(round(seconds * RATE))
-
-
-def test_a_level_is_the_same_in_every_table_over_the_same_samples(squeal, tmp_path):
-    recording = recorded(np.concatenate([noise(2.0, 0.01), squeal, noise(2.0, 0.01)]))
-    rows = rows_of(recording)
-    assert len(rows) > 1
-    for row in rows:
-        part = slice(round(row["start_s"] * RATE), round(row["end_s"] * RATE))
-        rendered = assess(recorded(recording.samples[0, part])).row(full_scale=1.0)
-        assert {name: row[name] for name in LEVELS} == {name: rendered[name] for name in LEVELS}
-        diagnosed = a_weighted_level(recording.samples[0, part], recording.rate)
-        assert round(diagnosed, 2) == row["level_dba"]
-
-
-def test_simulate_render_and_label_tell_the_same_level(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    squealing = ["simulate", "--speed", "10", "--support-stiffness", "3745"]
-    assert main(squealing) == 0
-    simulated = json.loads(capsys.readouterr().out)
-    assert main([*squealing, "--out", "run"]) == 0
-    assert main(["render", "run.wav", "--out", "heard.wav"]) == 0
-    (rendered,) = json.loads(Path("heard.json").read_text())["parts"]
-    (row,) = label("run.wav")
-    assert simulated["level_db"] == row["level_db"]
-    assert [rendered[name] for name in LEVELS] == [row[name] for name in LEVELS]
 
 
 def test_a_squeal_stands_over_its_background_by_what_it_is_louder(squeal):

@@ -182,3 +182,26 @@ def test_levels_of_what_has_no_square_are_levels_all_the_same():
     constant = CellLevels(1000.0, 1000)
     constant.add(0, 1000, np.full(1000, 0.5), 0)
     assert constant.rms_db(0, 100) is None
+
+
+TOP = FEATURE_NAMES.index("pressure_top_2")
+
+
+def tone_in_noise(n, rate=48_000):
+    noise = np.random.default_rng(0).standard_normal(n)
+    return 0.1 * noise + np.sin(2 * np.pi * 900.0 * np.arange(n) / rate)
+
+
+@pytest.mark.parametrize("stored", [8_000, 16_000, 22_050])
+def test_a_recording_brought_back_to_48_khz_is_described_as_it_was_stored(stored):
+    low = resample_poly(tone_in_noise(96_000), stored, 48_000)
+    back = resample_poly(low, 48_000, stored)
+    a, b = described(low, stored).features, described(back, 48_000).features
+    assert np.array_equal(np.isnan(a), np.isnan(b))
+    known = np.isfinite(a)
+    assert np.median(np.abs(a - b)[known]) < 0.01
+
+
+def test_a_full_recording_is_described_as_far_as_it_reaches():
+    assert np.isfinite(described(tone_in_noise(96_000), 48_000).features[:, TOP]).all()
+    assert np.isnan(described(tone_in_noise(48_000, 24_000), 24_000).features[:, TOP]).all()

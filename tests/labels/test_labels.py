@@ -1,7 +1,12 @@
 """Labels in time, and the table that links them to conditions."""
 
+import csv
 import itertools
 import math
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,10 +17,13 @@ from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from noise.batch.work import refusal
 from noise.classifier import LABELS, load_classifier
+from noise.cli import main
+from noise.labels.classified import FREQUENCY_NAMES, segment_frequency
 from noise.labels.labelling import Labelling
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, file_label, label_recording
 from noise.labels.table import COLUMNS
+from noise.recordings import write_recording
 from sim.run import simulate
 
 CLASSIFIER = load_classifier()
@@ -183,3 +191,49 @@ def test_speed_of_a_swinging_shaft_is_its_mean_magnitude():
     segment = Segment("all", 0.0, 2.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
     (row,) = label_rows("swing.wav", recording, [segment])
     assert row["speed_rad_s"] == pytest.approx(4 * 0.26 * 2.0, rel=0.03)
+
+
+def test_one_window_whose_torque_seems_periodic_does_not_tell_the_frequency_of_seven():
+    features = np.full((7, len(FREQUENCY_NAMES)), np.nan, dtype=np.float32)
+    features[3, FREQUENCY_NAMES.index("torque_fundamental")] = 5.8
+    features[:, FREQUENCY_NAMES.index("pressure_high_period_strength")] = 0.5
+    features[:, FREQUENCY_NAMES.index("pressure_high_period_rate")] = 2.5
+    found = segment_frequency(features, "creak")
+    assert found is not None
+    assert found > 40.0
+
+    features[:, FREQUENCY_NAMES.index("torque_fundamental")] = 54.0
+    assert segment_frequency(features, "creak") == 54.0
+
+
+DATA = os.environ.get("BUSHING_NOISE_REAL_DATA")
+
+
+@pytest.mark.skipif(not DATA, reason="BUSHING_NOISE_REAL_DATA names no folder of real recordings")
+def test_every_real_sound_is_labelled(tmp_path):
+    folder = Path(DATA) / "audio"
+    table = tmp_path / "labels.csv"
+    assert main(["label", str(folder), "--out", str(table)]) == 0
+    with table.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    sounds = {path.relative_to(folder).as_posix() for path in folder.rglob("*.flac")}
+    assert {row["file"] for row in rows} == sounds
+    assert not any(row["error"] for row in rows)
+
+
+_CODE = """
+import sys
+from noise.cli import main
+assert main(["label", sys.argv[1], "--out", sys.argv[2]]) == 0
+unneeded = ("sim.", "noise.training", "noise.diagnosis", "noise.screening", "noise.pages",
+            "sklearn", "matplotlib", "jinja2", "librosa")
+print([name for name in sys.modules if name.startswith(unneeded)], file=sys.stderr)
+"""
+
+
+def test_labelling_loads_neither_simulator_nor_training(tmp_path):
+    noise = np.random.default_rng(0).normal(size=(1, 20_000))
+    path = write_recording(tmp_path / "a", Recording(noise, 20e3, (Channel("pressure"),)))
+    call = [sys.executable, "-c", _CODE, str(path), str(tmp_path / "labels.csv")]
+    said = subprocess.run(call, capture_output=True, text=True, check=True).stderr
+    assert said.splitlines()[-1] == "[]"

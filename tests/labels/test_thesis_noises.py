@@ -42,17 +42,6 @@ def lines(run, channel, highest=2000.0):
     return find_lines(spectrum(run, channel), low=20.0, high=highest)
 
 
-@pytest.mark.parametrize("name", [case.name for case in CASES])
-def test_each_condition_makes_the_noise_that_the_thesis_heard(runs, name):
-    assert label_by_physics(runs[name]) == name
-
-
-@pytest.mark.parametrize("name", [case.name for case in CASES])
-def test_each_recording_is_labelled_with_its_noise(runs, name):
-    segments = label_recording(runs[name].recording, load_classifier())
-    assert file_label(segments).label == name
-
-
 def test_creak_fills_the_bands_from_the_slip_frequency_to_12_5_khz(runs):
     # Slips come at 50 Hz: no harmonic lies in the bands of 40 and 63 Hz.
     nominal = [50, 80, 100, 125, 160, 200, 250, 315, 400, 500, 630, 800, 1000]
@@ -89,16 +78,6 @@ def test_creak_is_largest_right_after_a_slip(runs, channel):
     assert signal[after].std() > 1.25 * signal[~after].std()
 
 
-def test_without_the_plates_blows_a_creak_loses_what_lies_above_2_khz(runs):
-    run = runs["creak"]
-    rate = run.motion.rate
-    whole, rest = (
-        autospectrum(signal, rate) for signal in (run.pressure, run.pressure - run.pulse_pressure)
-    )
-    band = (whole.frequency > 2000.0) & (whole.frequency < 14e3)
-    assert rest.density[band].sum() < 0.1 * whole.density[band].sum()
-
-
 def test_bolting_the_clamp_down_ends_the_creak():
     rig = load_material_rig("fluorocarbon")
     bolted = simulate(rig, 1.0, interference=0.381e-3, support_stiffness=np.inf)
@@ -127,32 +106,6 @@ def test_silence_of_pdms_has_no_oscillation_in_torque_or_acceleration(runs):
     run = runs["none"]
     assert run.motion.torque.std() < 1e-6 * run.motion.torque.mean()
     assert lines(run, "acceleration").frequency.size == 0
-
-
-@pytest.mark.parametrize(
-    ("interference", "stiffness", "speed", "noise"),
-    [
-        *((0.381e-3, k, v, "creak") for k in (2214.0, 3745.0) for v in (1.0, 2.5, 5.0, 7.5, 10.0)),
-        (0.279e-3, 2214.0, 5.0, "squawk"),
-        (0.279e-3, 2214.0, 7.5, "squawk"),
-        (0.279e-3, 3745.0, 5.0, "squawk"),
-        (0.178e-3, 2214.0, 1.0, "squawk"),
-        (0.178e-3, 2214.0, 2.5, "squawk"),
-        (0.279e-3, 3745.0, 10.0, "squeal"),
-        (0.279e-3, 2214.0, 10.0, "none"),
-        (0.178e-3, 2214.0, 5.0, "none"),
-        (0.178e-3, 2214.0, 7.5, "none"),
-        (0.178e-3, 2214.0, 10.0, "none"),
-    ],
-)
-def test_conditions_whose_noise_the_thesis_names_make_it(interference, stiffness, speed, noise):
-    run = simulate(
-        load_material_rig("fluorocarbon"),
-        speed,
-        interference=interference,
-        support_stiffness=stiffness,
-    )
-    assert label_by_physics(run) == noise
 
 
 @pytest.mark.parametrize("interference", [0.254e-3, 0.381e-3])
