@@ -1,23 +1,21 @@
-from .kernels.bands import (
-    NOMINAL_THIRD_OCTAVES as NOMINAL_THIRD_OCTAVES,
-    REFERENCES as REFERENCES,
-    THESIS_BANDS as THESIS_BANDS,
-    a_weighting as a_weighting,
-    band_levels as band_levels,
-    band_power as band_power,
-    overall_level as overall_level,
-    third_octave_edges as third_octave_edges,
-    third_octave_levels as third_octave_levels,
-)
 from .kernels.harmonics import (
     Harmonics as Harmonics,
     analyse_harmonics as analyse_harmonics,
 )
 from .kernels.levels import (
+    NOMINAL_THIRD_OCTAVES as NOMINAL_THIRD_OCTAVES,
+    REFERENCES as REFERENCES,
+    THESIS_BANDS as THESIS_BANDS,
     SoundLevels as SoundLevels,
     a_weighted as a_weighted,
+    a_weighting as a_weighting,
+    band_levels as band_levels,
+    band_power as band_power,
     fast_levels as fast_levels,
+    overall_level as overall_level,
     sound_levels as sound_levels,
+    third_octave_edges as third_octave_edges,
+    third_octave_levels as third_octave_levels,
 )
 from .kernels.lines import (
     Lines as Lines,
@@ -27,12 +25,10 @@ from .kernels.pitch import (
     PitchTrack as PitchTrack,
     pitch_track as pitch_track,
 )
-from .kernels.slip_drops import (
+from .kernels.slips import (
+    Pulses as Pulses,
     TorqueSlips as TorqueSlips,
     torque_slips as torque_slips,
-)
-from .kernels.slip_pulses import (
-    Pulses as Pulses,
 )
 from .kernels.spectra import (
     SpectralShape as SpectralShape,

@@ -15,14 +15,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from features.kernels.bands import (
-    LEAST_SHARE_DB,
-    REFERENCES,
-    THESIS_BANDS,
-    band_power,
-    fine_third_octaves,
-    relative_db,
-)
 from features.kernels.conditioning import (
     ACOUSTIC_FROM,
     NOTHING,
@@ -34,9 +26,17 @@ from features.kernels.conditioning import (
     usable_limit,
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
-from features.kernels.levels import a_weighted_level
+from features.kernels.levels import (
+    LEAST_SHARE_DB,
+    REFERENCES,
+    THESIS_BANDS,
+    a_weighted_level,
+    band_power,
+    fine_third_octaves,
+    relative_db,
+)
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
-from features.kernels.slip_drops import TorqueSlips, torque_slips
+from features.kernels.slips import TorqueSlips, torque_slips
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
 from models.show import short_repr
 
@@ -44,11 +44,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from features.kernels.conditioning import Transform
-    from features.kernels.modulation import Modulation
-    from features.kernels.short_time import ShortTime
-    from features.kernels.slip_pulses import Pulses
-
-__all__ = ["ACOUSTIC_KINDS", "TOP_BANDS", "Prepared", "prepare"]
+    from features.kernels.modulation import Modulation, ShortTime
+    from features.kernels.slips import Pulses
 
 ACOUSTIC_KINDS = ("pressure", "acceleration")
 """Kinds of channel that are described as noise."""
@@ -190,7 +187,7 @@ class Prepared:
     @cached_property
     def short_time(self) -> ShortTime:
         """Tones and levels of its short segments, and how they change from one to the next."""
-        from features.kernels.short_time import short_time
+        from features.kernels.modulation import short_time
 
         x, rate = self.in_band
         return short_time(x, rate, low=self.low, high=self.limit)
@@ -203,7 +200,7 @@ class Prepared:
     @cached_property
     def pulses(self) -> Pulses:
         """Pulses and their rhythm."""
-        from features.kernels.slip_pulses import pulse_band_from, pulses_of
+        from features.kernels.slips import pulse_band_from, pulses_of
 
         high, rate = band_analytic(self.transform, pulse_band_from(self.limit), self.limit)
         start = self.transform.lead / self.rate
@@ -213,7 +210,7 @@ class Prepared:
     def modulation(self) -> Modulation:
         """Modulation of the envelope."""
         from features.kernels.modulation import modulation
-        from features.kernels.slip_pulses import squared
+        from features.kernels.slips import squared
 
         analytic, rate = self.analytic
         return modulation(np.sqrt(squared(analytic)), rate)
@@ -244,7 +241,7 @@ class Prepared:
         Parameters
         ----------
         number : int
-            In `features.kernels.bands.THESIS_BANDS`, from 0.
+            In `features.kernels.levels.THESIS_BANDS`, from 0.
 
         Returns
         -------
@@ -283,7 +280,7 @@ class Prepared:
     def _top_band(self, low: float, high: float) -> TopBand:
         if high > usable_limit(self.rate):
             return TopBand(math.nan, math.nan)
-        from features.kernels.slip_pulses import envelope_kurtosis, squared
+        from features.kernels.slips import envelope_kurtosis, squared
 
         top, _ = band_analytic(self.transform, low, high)
         power = squared(top)

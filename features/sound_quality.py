@@ -28,15 +28,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = [
-    "SHORTEST",
-    "SOUND_QUALITY_RATE",
-    "SoundQuality",
-    "check_available",
-    "loudness_n5",
-    "sound_quality_of",
-]
-
 SOUND_QUALITY_RATE = 48000
 """The sampling rate that the procedures' tables hold for [Hz]."""
 

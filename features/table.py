@@ -22,14 +22,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.bands import (
+from features.kernels.conditioning import usable_limit
+from features.kernels.levels import (
     LEAST_SHARE_DB,
     NOMINAL_THIRD_OCTAVES,
     REFERENCES,
     band_power,
     relative_db,
 )
-from features.kernels.conditioning import usable_limit
 from features.prepared import ACOUSTIC_KINDS, Prepared, prepare
 from models.blocks import Blocks, Read, n_samples_of, reader_of
 from models.errors import ParameterError
@@ -40,18 +40,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from models.rig import Rig
-
-__all__ = [
-    "FEATURES",
-    "KINDS",
-    "Feature",
-    "feature_names",
-    "feature_vector",
-    "features_of",
-    "piece_count",
-    "recording_feature_names",
-    "recording_features",
-]
 
 KINDS = (*ACOUSTIC_KINDS, "torque")
 """Kinds of channel that have features."""
@@ -571,7 +559,7 @@ def recording_features(
     >>> found["pressure_line_count"], found["torque_slip_rate"]
     (0.0, nan)
     """
-    from features.kernels.stick_rate import stick_rate_of
+    from features.kernels.slips import stick_rate_of
 
     found: dict[str, float] = {}
     for kind in KINDS:

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["RecordingFeatures"]
-
 
 class RecordingFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     """Features of waveforms or recordings, one row each.

@@ -25,22 +25,6 @@ from models.errors import ParameterError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = [
-    "ACOUSTIC_FROM",
-    "MIN_SAMPLES",
-    "NOTHING",
-    "USABLE_SHARE",
-    "WORKING_LIMIT",
-    "WORKING_RATE",
-    "Transform",
-    "band_analytic",
-    "band_signal",
-    "checked_signal",
-    "edge_fade",
-    "forward",
-    "usable_limit",
-]
-
 WORKING_RATE = 16_000.0
 """Sampling rate [Hz] at which features that must not depend on the recording's are computed."""
 

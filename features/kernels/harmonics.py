@@ -1,20 +1,24 @@
-"""Harmonic structure of a vibration: its fundamental, the power in its harmonics, its lines.
+"""Harmonic structure of a vibration: its period, its fundamental, the power in its harmonics.
 
-The period comes from the autocorrelation (`features.kernels.periodicity` says why) and is then
-refined by the discrete lines that lie on its harmonics: the autocorrelation never errs by an octave
-because a line is missing, the lines are exact where they are. Harmonicity counts the power above
-the local noise floor, so that noise which happens to fall on a dense grid of harmonics counts for
-nothing.
+A friction vibration may repeat five times a second or seven thousand times, and the line at its
+fundamental may be the weakest of all: in stick-slip with feedback from the beams the third or
+fourth harmonic of the slip frequency leads (thesis, 5.2.1). So the period is that of the
+autocorrelation, of the signal whitened by half (in decibels) in one-third octaves, so that one
+strong resonance does not hide it, and divided by the energy it is taken over, so that a burst is
+not mistaken for an aperiodic signal. Of the maxima nearly as high as the highest the one at the
+shortest lag is the period. The discrete lines that lie on its harmonics then refine it. Harmonicity
+counts the power above the local noise floor, so that noise which happens to fall on a dense grid of
+harmonics counts for nothing.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy import ndimage
+from scipy import fft, ndimage
 
 from features.kernels.conditioning import (
     NOTHING,
@@ -29,23 +33,214 @@ from features.kernels.lines import (
     RANGE_DB,
     Lines,
     find_lines,
+    interpolated,
     line_powers,
     line_resolution,
     noise_floor,
 )
-from features.kernels.periodicity import Period, strongest_period
 from features.kernels.spectra import welch
 from models.errors import ParameterError
 from models.show import short_repr
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike, NDArray
 
     from features.kernels.spectra import Spectrum
 
-__all__ = ["HIGHEST", "LOWEST", "Harmonics", "analyse_harmonics"]
+_NEARLY = 0.9
+"""A maximum this high relative to the highest is the period if its lag is shorter."""
+
+_PERIODS = 2.0
+"""Periods that a signal must hold."""
+
+_WHITENING = 0.5
+"""Share of the level differences between one-third octaves that whitening removes."""
+
+_SIXTH_OCTAVE = 2.0 ** (1.0 / 6.0) - 1.0
+
+_LEAST_REACH = 20.0
+"""Half the width over which whitening averages where one-third octaves are narrower [Hz]."""
+
+_OVERSAMPLING = 2
+"""Values of an autocorrelation a lag."""
+
+_TRACK_OVERSAMPLING = 4
+
+
+class Period(NamedTuple):
+    """Repetition of a signal.
+
+    Parameters
+    ----------
+    frequency : float
+        Repetitions in a second [Hz]; NaN if there are none.
+    strength : float
+        Normalised autocorrelation at the period [-]: 1 where every period is like the one before, 0
+        where there is none.
+    """
+
+    frequency: float
+    strength: float
+
+
+_NONE = Period(math.nan, 0.0)
+
+
+def strongest_period(
+    x: NDArray[np.float64], rate: float, *, lowest: float, highest: float, whiten: bool = True
+) -> Period:
+    """Period of a whole signal.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n_samples,)
+        Mean removed, in any [unit].
+    rate : float
+        Sampling rate [Hz].
+    lowest, highest : float
+        Limits of the search [Hz]. The signal must hold two periods, which may raise `lowest`.
+    whiten : bool
+        Whether to whiten, as an envelope need not be.
+
+    Returns
+    -------
+    Period
+
+    Notes
+    -----
+    Normalisation: P. McLeod and G. Wyvill, A smarter way to find pitch, Proc. ICMC (2005).
+    Compressing the spectrum before the autocorrelation: T. Tolonen and M. Karjalainen, IEEE Trans.
+    Speech Audio Process. 8 (2000) 708-716.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(8000) / 16e3
+    >>> missing = np.sin(2 * np.pi * 400 * t) + np.sin(2 * np.pi * 600 * t)
+    >>> round(strongest_period(missing, 16e3, lowest=5.0, highest=7e3).frequency)
+    200
+    """
+    n = x.size
+    n_lags = min(int(n / _PERIODS), math.ceil(rate / lowest) + 1)
+    length = int(fft.next_fast_len(n + n_lags, real=True))
+    bins = fft.rfft(x, length)
+    if whiten:
+        bins *= _whitening_gain(bins.real**2 + bins.imag**2, rate / length)
+        x = fft.irfft(bins, length)[:n]
+    power = bins.real**2 + bins.imag**2
+    correlation = fft.irfft(power, _OVERSAMPLING * length)[: _OVERSAMPLING * n_lags]
+    energy = np.append(0.0, np.cumsum(x**2))
+    if not energy[-1] > 0.0:
+        return _NONE
+    shared = 0.5 * (energy[n - n_lags :][::-1] + energy[-1] - energy[: n_lags + 1]) / energy[-1]
+    if not correlation[0] > 0.0:
+        return _NONE
+    lags = np.arange(correlation.size) / _OVERSAMPLING
+    overlap = np.interp(lags, np.arange(n_lags + 1), shared)
+    normalised = correlation / (correlation[0] * np.maximum(overlap, 1e-3))
+    crossing = np.flatnonzero(normalised < 0.0)
+    if crossing.size == 0:
+        return _NONE
+    first = max(int(crossing[0]), math.floor(_OVERSAMPLING * rate / highest))
+    peaks = _maxima(normalised, first)
+    if peaks.size == 0:
+        return _NONE
+    heights = _heights(normalised, peaks)
+    highest_peak = float(heights.max())
+    if not highest_peak > 0.0:
+        return _NONE
+    best = int(np.argmax(heights >= _NEARLY * highest_peak))
+    lag = float(interpolated(normalised, peaks[best : best + 1])[0]) / _OVERSAMPLING
+    return Period(rate / lag, min(1.0, float(heights[best])))
+
+
+def track_periods(
+    power: NDArray[np.float64], spacing: float, *, lowest: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Period of each of many short segments, from their power spectra.
+
+    Parameters
+    ----------
+    power : ndarray, shape (n_segments, n_bins)
+        In any [unit^2], of Hann-windowed segments, from 0 Hz; bins that shall not count are 0.
+    spacing : float
+        Distance between the bins [Hz].
+    lowest : float
+        Lower limit of the search [Hz], at least 3 times `spacing`.
+
+    Returns
+    -------
+    frequency : ndarray, shape (n_segments,)
+        [Hz]; NaN where a segment has no period.
+    strength : ndarray, shape (n_segments,)
+        Autocorrelation at the period over that of the window [-] (P. Boersma, Proc. Inst. Phonetic
+        Sci. 17 (1993) 97-110).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from features.kernels.spectra import segment_powers
+    >>> tone = np.sin(2 * np.pi * 400 * np.arange(4096) / 16e3)
+    >>> power, _ = segment_powers(tone, 1024)
+    >>> track_periods(power, 16e3 / 1024, lowest=60.0)[0].round().tolist()
+    [400.0, 400.0, 400.0, 400.0, 400.0, 400.0, 400.0]
+    """
+    length = 2 * (power.shape[1] - 1)
+    correlation = fft.irfft(power, _TRACK_OVERSAMPLING * length, axis=1)
+    rate = _TRACK_OVERSAMPLING * length * spacing
+    n_lags = math.ceil(rate / lowest) + 2
+    lags = np.arange(n_lags) / (_TRACK_OVERSAMPLING * length)
+    window = (1.0 - lags) * (2.0 + np.cos(2.0 * np.pi * lags)) / 3.0
+    window += np.sin(2.0 * np.pi * lags) / (2.0 * np.pi)
+    energy = np.maximum(correlation[:, :1], np.finfo(float).tiny)
+    normalised = correlation[:, :n_lags] / (energy * window)
+    negative = normalised < 0.0
+    first = np.where(negative.any(axis=1), negative.argmax(axis=1), n_lags)
+    beyond = np.arange(1, n_lags - 1) >= first[:, np.newaxis]
+    middle = normalised[:, 1:-1]
+    rising = (middle > normalised[:, :-2]) & (middle >= normalised[:, 2:])
+    heights = np.where(beyond & rising, middle, 0.0)
+    top = heights.max(axis=1)
+    best = np.argmax(heights >= _NEARLY * np.maximum(top, 1e-9)[:, np.newaxis], axis=1) + 1
+    found = top > 0.0
+    rows = np.arange(power.shape[0])
+    left, centre, right = (normalised[rows, best + shift] for shift in (-1, 0, 1))
+    curvature = np.where(found, left - 2.0 * centre + right, -1.0)
+    curvature = np.minimum(curvature, -np.finfo(float).tiny)
+    lag = best + np.where(found, np.clip(0.5 * (left - right) / curvature, -0.5, 0.5), 0.0)
+    frequency = np.where(found, rate / lag, np.nan)
+    return frequency, np.where(found, np.minimum(centre, 1.0), 0.0)
+
+
+def _whitening_gain(power: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+    """Gain that brings neighbouring one-third octaves nearer to each other; 0 Hz is removed."""
+    below = np.append(0.0, np.cumsum(power))
+    index = np.arange(power.size)
+    reach = np.maximum(index * _SIXTH_OCTAVE, _LEAST_REACH / spacing)
+    start = np.maximum(index - reach, 0).astype(np.intp)
+    stop = np.minimum(index + reach + 1, power.size).astype(np.intp)
+    smooth = (below[stop] - below[start]) / (stop - start)
+    least = max(1e-12 * float(smooth.max()), np.finfo(float).tiny)
+    gain = np.asarray(np.maximum(smooth, least) ** (-0.5 * _WHITENING))
+    gain[0] = 0.0
+    return gain
+
+
+def _maxima(values: NDArray[np.float64], first: int) -> NDArray[np.intp]:
+    """Find the indices of local maxima from `first` on, the ends excluded."""
+    first = max(first, 1)
+    middle = values[first:-1]
+    rising = (middle > values[first - 1 : -2]) & (middle >= values[first + 1 :])
+    return np.flatnonzero(rising) + first
+
+
+def _heights(values: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Heights of the parabolas through local maxima."""
+    left, middle, right = values[peaks - 1], values[peaks], values[peaks + 1]
+    curvature = left - 2.0 * middle + right
+    safe = np.where(curvature < 0.0, curvature, -1.0)
+    return np.asarray(middle - np.where(curvature < 0.0, (left - right) ** 2 / (8.0 * safe), 0.0))
+
 
 LOWEST = 5.0
 """Lowest fundamental that is sought [Hz]."""
@@ -206,57 +401,14 @@ def harmonics_of(
     """
     rate = spectrum.rate
     period = strongest_period(x, rate, lowest=lowest, highest=highest)
-
-    def finer(resolution: float) -> Spectrum:
-        return welch(x, rate, resolution)
-
-    return harmonics_of_period(
-        period, spectrum, floor, lines, duration=x.size / rate, lowest=lowest, finer=finer
-    )
-
-
-def harmonics_of_period(
-    period: Period,
-    spectrum: Spectrum,
-    floor: NDArray[np.float64],
-    lines: Lines,
-    *,
-    duration: float,
-    lowest: float,
-    finer: Callable[[float], Spectrum],
-) -> Harmonics:
-    """`analyse_harmonics` of a signal whose period, spectrum and lines are at hand.
-
-    Parameters
-    ----------
-    period : Period
-    spectrum : Spectrum
-        Of the signal.
-    floor : ndarray, shape (n_bins,)
-        `noise_floor` of it.
-    lines : Lines
-        Of it; the band they were sought in is what shares refer to.
-    duration : float
-        Of the signal [s].
-    lowest : float
-        Lower limit of the fundamental [Hz].
-    finer : callable
-        From a spacing of bins [Hz] to a spectrum of the signal that has it.
-
-    Returns
-    -------
-    Harmonics
-    """
-    rate = spectrum.rate
     if lines.total <= 0.0 or period.strength < WEAKEST_PERIOD:
         return Harmonics(math.nan, period.strength, np.empty(0), 0.0, 0, lines, math.nan)
+    refined = lines
     wanted = period.frequency / _BINS_A_HARMONIC
-    if spectrum.spacing > 1.01 * wanted and duration > 1.01 / spectrum.spacing:
-        spectrum = finer(wanted)
+    if spectrum.spacing > 1.01 * wanted and x.size / rate > 1.01 / spectrum.spacing:
+        spectrum = welch(x, rate, wanted)
         floor = noise_floor(spectrum)
         refined = find_lines(spectrum, low=lowest, high=usable_limit(rate), floor=floor)
-    else:
-        refined = lines
     fundamental = _refined(period, refined)
     number = np.arange(1, max(1, math.floor(usable_limit(rate) / fundamental)) + 1)
     frequency = np.asarray(number * fundamental, dtype=np.float64)

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
     from features.kernels.spectra import Spectrum
 
-__all__ = ["Lines", "find_lines", "line_resolution", "noise_floor"]
-
 PROMINENCE_DB = 10.0
 """A line stands this far above the local floor, and above the saddle to the next one [dB]."""
 

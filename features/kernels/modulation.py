@@ -1,28 +1,221 @@
-"""Modulation: whether the loudness of a noise beats, how fast, how deeply.
+"""Changes of a noise over time: its tones and levels in short segments, its modulation.
 
+A squeal is one tone that stays, a bark or a crow is tones that move, a creak is neither: that is
+seen in segments of 64 ms, of which the fastest slip sequence still shows several and in which a
+gliding tone is still narrow. Each counts by its energy, so that pauses between strokes say nothing.
 A regular creak beats at its slip frequency, a helicopter at its blades', speech with no rate that
-lasts. Counting pulses fails where they run into each other; the envelope still repeats. Its period
-is that of its autocorrelation, like the period of the vibration itself.
+lasts: the rate of modulation is that of the envelope's autocorrelation, since counting pulses fails
+where they run into each other.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy import ndimage
 
 from features.kernels.conditioning import band_signal, forward
-from features.kernels.periodicity import Period, strongest_period
+from features.kernels.harmonics import strongest_period, track_periods
+from features.kernels.spectra import segment_powers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
-__all__ = ["MODULATION_BAND", "Modulation", "described_modulation", "modulation"]
+_SEGMENT = 0.064
+"""Length of a segment [s]."""
 
-MODULATION_BAND = (2.0, 400.0)
+_LOBE = 2
+"""Bins on either side of a maximum that belong to it: the Hann window's main lobe. More, by the
+same factor, where a shorter signal is filled up with zeros."""
+
+_SAME_TONE = 1.0 / 12.0
+"""A tone that moves less than this between segments is the same tone [octave]."""
+
+_TONE_DB = 13.0
+"""A tone stands this far above the floor of its segment: noise does so once in 5e8 bins."""
+
+_TONE_RANGE_DB = 20.0
+"""Tones weaker than the strongest of the segment by more than this do not count [dB]."""
+
+_FLOOR_BINS = 32
+"""Bins in a block whose median is the floor."""
+
+_VOICED = 0.5
+"""Autocorrelation from which a segment counts as having a fundamental."""
+
+_LOWEST_FUNDAMENTAL = 60.0
+"""Lowest fundamental that 64 ms tell apart from noise [Hz]."""
+
+_QUIETEST_DB = -60.0
+"""Segments count as at least this loud, relative to the loudest [dB]."""
+
+_LEAST_VOICED = 4
+_BANDS_PER_OCTAVE = 3
+_NORMAL_CONSISTENT = 1.4826
+_TINY = float(np.finfo(np.float64).tiny)
+
+
+@dataclass(frozen=True)
+class ShortTime:
+    """Changes over the length of a signal, segments counting by their energy.
+
+    Parameters
+    ----------
+    tone_share : float
+        Mean share of the power in the strongest line of a segment, 0 to 1.
+    tone_count : float
+        Mean number of lines in a segment, within 20 dB of its strongest and 13 dB above its floor.
+    second_tone : float
+        Mean level of a segment's second line relative to its strongest [dB], at least -20.
+    periodicity : float
+        Mean autocorrelation of a segment at its fundamental's period, 0 to 1 [-].
+    fundamental_wander : float
+        Robust standard deviation of the fundamental [octave]; NaN unless four segments have one.
+    continuity : float
+        As `tone_share`, counting only tones that are still there (within a semitone) in the next
+        segment; NaN for a single one.
+    flux : float
+        Share of the power that changes its one-third octave between neighbouring segments; NaN
+        likewise.
+    level_variation : float
+        Standard deviation of the segments' levels [dB]; NaN likewise.
+    """
+
+    tone_share: float
+    tone_count: float
+    second_tone: float
+    periodicity: float
+    fundamental_wander: float
+    continuity: float
+    flux: float
+    level_variation: float
+
+
+def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) -> ShortTime:
+    """Describe how a signal changes between two frequencies.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n_samples,)
+        In any [unit], mean removed, not silent.
+    rate : float
+        Sampling rate [Hz].
+    low, high : float
+        Limits of the band [Hz].
+
+    Returns
+    -------
+    ShortTime
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(16000) / 16e3
+    >>> glide = short_time(np.sin(2 * np.pi * (2500 + 300 * t) * t), 16e3, low=150.0, high=7e3)
+    >>> round(glide.tone_share, 2), round(glide.continuity, 2), round(glide.tone_count, 2)
+    (1.0, 1.0, 1.0)
+    """
+    length = max(16, 2 * round(0.5 * _SEGMENT * rate))
+    segment = min(length, x.size)
+    lobe = math.ceil(_LOBE * length / segment)
+    power, _ = segment_powers(x, segment, transform_length=length)
+    spacing = rate / length
+    first, last = math.ceil(low / spacing), min(math.floor(high / spacing), power.shape[1] - 1)
+    power[:, :first] = 0.0
+    power[:, last + 1 :] = 0.0
+    energy = power.sum(axis=1)
+    tone, share = _strongest_tones(power, energy, lobe)
+    count, second = _other_tones(power[:, first : last + 1], lobe)
+    frequency, strength = track_periods(
+        power, spacing, lowest=max(_LOWEST_FUNDAMENTAL, 3.0 * spacing)
+    )
+    weight = energy / max(float(energy.sum()), _TINY)
+    continuity = flux = level_variation = math.nan
+    if energy.size > 1:
+        bands = np.add.reduceat(power[:, : last + 1], _band_edges(first, last), axis=1)
+        bands = bands / np.maximum(energy, _TINY)[:, np.newaxis]
+        moved = 0.5 * np.abs(np.diff(bands, axis=0)).sum(axis=1)
+        pairs = np.sqrt(weight[1:] * weight[:-1])
+        pairs = pairs / max(float(pairs.sum()), _TINY)
+        stays = np.abs(np.diff(np.log2(tone))) < _SAME_TONE
+        continuity = float(pairs @ (np.sqrt(share[1:] * share[:-1]) * stays))
+        flux = float(pairs @ moved)
+        quietest = max(float(energy.max()) * 10.0 ** (0.1 * _QUIETEST_DB), _TINY)
+        level_variation = float(np.std(10.0 * np.log10(np.maximum(energy, quietest))))
+    return ShortTime(
+        tone_share=float(weight @ share),
+        tone_count=float(weight @ count),
+        second_tone=float(weight @ second),
+        periodicity=float(weight @ strength),
+        fundamental_wander=_wander(frequency, strength, weight),
+        continuity=continuity,
+        flux=flux,
+        level_variation=level_variation,
+    )
+
+
+def _strongest_tones(
+    power: NDArray[np.float64], energy: NDArray[np.float64], lobe: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Position of each segment's strongest line in bins, and its share of the segment's power."""
+    lobe = min(lobe, (power.shape[1] - 1) // 2)
+    top = np.clip(power.argmax(axis=1), lobe, power.shape[1] - 1 - lobe)
+    bins = top[:, np.newaxis] + np.arange(-lobe, lobe + 1)
+    around = np.take_along_axis(power, bins, axis=1)
+    sums = around.sum(axis=1)
+    tone = np.where(sums > 0.0, (around * bins).sum(axis=1) / np.maximum(sums, _TINY), top)
+    return tone, sums / np.maximum(energy, _TINY)
+
+
+def _other_tones(
+    power: NDArray[np.float64], lobe: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Count the lines in each segment; level of the second re the first [dB]."""
+    n_bins = power.shape[1]
+    size = min(_FLOOR_BINS, n_bins)
+    blocks = power[:, : n_bins // size * size].reshape(power.shape[0], -1, size)
+    block = np.minimum(np.arange(n_bins) // size, blocks.shape[1] - 1)
+    floor = np.median(blocks, axis=2)[:, block] / math.log(2.0)
+    maxima = ndimage.maximum_filter1d(power, 2 * lobe + 1, axis=1, mode="nearest")
+    top = power.max(axis=1, keepdims=True)
+    least = np.maximum(top * 10.0 ** (-0.1 * _TONE_RANGE_DB), floor * 10.0 ** (0.1 * _TONE_DB))
+    heights = np.where((power == maxima) & (power >= least) & (power > 0.0), power, 0.0)
+    count = np.count_nonzero(heights, axis=1).astype(np.float64)
+    second = np.partition(heights, -2, axis=1)[:, -2] / np.maximum(top[:, 0], _TINY)
+    return count, 10.0 * np.log10(np.maximum(second, 10.0 ** (-0.1 * _TONE_RANGE_DB)))
+
+
+def _wander(
+    frequency: NDArray[np.float64], strength: NDArray[np.float64], weight: NDArray[np.float64]
+) -> float:
+    """Robust deviation of the segments' fundamentals about their median [octave]."""
+    voiced = (strength >= _VOICED) & (weight > 0.1 * weight.max())
+    if np.count_nonzero(voiced) < _LEAST_VOICED:
+        return math.nan
+    pitch, weight = np.log2(frequency[voiced]), weight[voiced]
+    return _NORMAL_CONSISTENT * _weighted_median(
+        np.abs(pitch - _weighted_median(pitch, weight)), weight
+    )
+
+
+def _weighted_median(values: NDArray[np.float64], weight: NDArray[np.float64]) -> float:
+    order = np.argsort(values)
+    reached = np.cumsum(weight[order])
+    return float(values[order[np.searchsorted(reached, 0.5 * reached[-1])]])
+
+
+def _band_edges(first: int, last: int) -> NDArray[np.intp]:
+    """First bin of each one-third octave from `first` to `last`, at least one bin each."""
+    first = max(first, 1)
+    number = math.ceil(_BANDS_PER_OCTAVE * math.log2(max(last, first + 1) / first))
+    edges = first * 2.0 ** (np.arange(max(number, 1)) / _BANDS_PER_OCTAVE)
+    return np.unique(edges.astype(np.intp))
+
+
+_MODULATION_BAND = (2.0, 400.0)
 """Rates of modulation that are looked at [Hz]."""
 
 _LEAST_DEPTH = 0.01
@@ -76,41 +269,11 @@ def modulation(envelope: NDArray[np.float64], rate: float) -> Modulation:
     mean = float(envelope.mean())
     if not mean > 0.0:
         return Modulation(math.nan, 0.0, 0.0)
-    low, high = MODULATION_BAND
+    low, high = _MODULATION_BAND
     transform = forward(envelope - mean, rate)
     beats, beat_rate = band_signal(transform, low, min(high, 0.4 * rate))
-    return described_modulation(
-        mean,
-        float(np.std(beats)),
-        lambda: strongest_period(beats, beat_rate, lowest=low, highest=high, whiten=False),
-    )
-
-
-def described_modulation(mean: float, deviation: float, period: Callable[[], Period]) -> Modulation:
-    """Describe the modulation of an envelope of which the numbers are at hand.
-
-    Parameters
-    ----------
-    mean : float
-        Of the envelope, in any [unit].
-    deviation : float
-        Standard deviation of its part within `MODULATION_BAND` [unit].
-    period : callable
-        Gives the period of that part.
-
-    Returns
-    -------
-    Modulation
-
-    Examples
-    --------
-    >>> described_modulation(2.0, 0.0, lambda: Period(80.0, 1.0)).depth
-    0.0
-    """
-    if not mean > 0.0:
-        return Modulation(math.nan, 0.0, 0.0)
-    depth = deviation / mean
+    depth = float(np.std(beats)) / mean
     if depth < _LEAST_DEPTH:
         return Modulation(math.nan, 0.0, depth)
-    rate, strength = period()
+    rate, strength = strongest_period(beats, beat_rate, lowest=low, highest=high, whiten=False)
     return Modulation(rate if strength >= _LEAST_STRENGTH else math.nan, strength, depth)

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["OrderMap", "order_map", "order_map_of", "speed_of_angle"]
-
 _FRAME, _HOP = 0.085, 0.02
 """[s]"""
 

@@ -17,8 +17,6 @@ from models.show import short_repr
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["PitchTrack", "pitch_track"]
-
 _HOP = 0.01
 """Time from one estimate to the next [s]."""
 

@@ -1,23 +1,27 @@
+# mypy: allow-untyped-decorators
 """Autospectra with a stated normalisation, and numbers for their shape.
 
 One estimator serves all: Welch's average of Hann-windowed segments. Its segments are spread evenly
 so that the last one ends with the last sample, overlapping by half or slightly more, because a
 block of 0.25 s has no samples to throw away. The result is a power spectral density, the only
 normalisation whose level does not depend on the resolution for noise; the amplitude of a sinusoid
-is a property beside it.
+is a property beside it. The diagnosis takes segments that overlap by exactly half and keeps their
+phases, for it compares two channels.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numba import njit
+from scipy import fft
 
 from features.kernels.conditioning import checked_signal
-from features.kernels.segments import segment_powers
+from models.compilation import COMPILED
 from models.errors import ParameterError
 from models.show import short_repr
 
@@ -26,7 +30,126 @@ if TYPE_CHECKING:
 
     from features.kernels.conditioning import Transform
 
-__all__ = ["DEFAULT_RESOLUTION", "SpectralShape", "Spectrum", "autospectrum", "spectral_shape"]
+_OVERLAP_SLACK = 0.02
+"""Segments that a signal may lack for an overlap of half: no further one for a few samples."""
+
+
+def segment_powers(
+    x: NDArray[np.float64], length: int, *, transform_length: int | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Squared magnitudes of the transforms of segments that are spread over a signal.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n_samples,)
+        In any [unit].
+    length : int
+        Samples of a segment, at most `n_samples`.
+    transform_length : int, optional
+        Zeros fill each segment up to it.
+
+    Returns
+    -------
+    power : ndarray, shape (n_segments, n_bins)
+        [unit^2]
+    window : ndarray, shape (length,)
+        [-]
+
+    Examples
+    --------
+    >>> power, window = segment_powers(np.zeros(1000), 256)
+    >>> power.shape
+    (7, 129)
+    """
+    n_segments = 1 + math.ceil((x.size - length) / (length / 2) - _OVERLAP_SLACK)
+    starts = np.rint(np.linspace(0, x.size - length, n_segments)).astype(np.intp)
+    segments = np.lib.stride_tricks.sliding_window_view(x, length)[starts]
+    window = hann(length)
+    windowed = segments - segments.mean(axis=1, keepdims=True)
+    windowed *= window
+    bins = fft.rfft(windowed, transform_length or length, axis=1)
+    power = bins.real**2
+    power += bins.imag**2
+    return power, window
+
+
+def segment_spectra(x: NDArray[np.float64], length: int) -> NDArray[np.complex128]:
+    """Complex spectra of segments that overlap by half; samples that fill no segment are left out.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n_samples,)
+        In any [unit].
+    length : int
+        Samples of a segment, an even number and at most `n_samples`.
+
+    Returns
+    -------
+    ndarray of complex, shape (n_segments, length // 2 + 1)
+        Each about its own mean [unit]; their mean square is the signal's, summed over both sides.
+
+    Notes
+    -----
+    Where the segments begin, and the last bits of the window, are not those of `segment_powers`:
+    the shipped model of the diagnosis has learned from these.
+
+    Examples
+    --------
+    >>> segment_spectra(np.ones(1024), 256).shape
+    (7, 129)
+    """
+    step = length // 2
+    windowed = np.empty(((x.size - length) // step + 1, length))
+    _cut(x, step, _unit_hann(length), windowed)
+    return np.asarray(fft.rfft(windowed, axis=1, overwrite_x=True))
+
+
+@njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
+def _cut(
+    x: NDArray[np.float64], step: int, window: NDArray[np.float64], segments: NDArray[np.float64]
+) -> None:
+    """Cut a signal into segments, each about its mean and windowed; one array instead of four."""
+    length = window.size
+    for i in range(segments.shape[0]):
+        first, total = i * step, 0.0
+        for k in range(length):
+            total += x[first + k]
+        mean = total / length
+        for k in range(length):
+            segments[i, k] = (x[first + k] - mean) * window[k]
+
+
+@lru_cache(maxsize=8)
+def _unit_hann(length: int) -> NDArray[np.float64]:
+    """Hann window of unit energy."""
+    window = 0.5 + 0.5 * np.cos(np.linspace(-np.pi, np.pi, length + 1)[:-1])
+    window /= math.sqrt(float((window**2).sum()))
+    window.setflags(write=False)
+    return np.asarray(window)
+
+
+@lru_cache(maxsize=16)
+def hann(length: int) -> NDArray[np.float64]:
+    """Hann window; the same few lengths come again and again.
+
+    Parameters
+    ----------
+    length : int
+
+    Returns
+    -------
+    ndarray, shape (length,)
+        [-]
+
+    Examples
+    --------
+    >>> hann(4).round(2).tolist()
+    [0.0, 0.5, 1.0, 0.5]
+    """
+    window = np.sin(np.pi * np.arange(length) / length) ** 2
+    window.setflags(write=False)
+    return window
+
 
 DEFAULT_RESOLUTION = 4.0
 """Spacing of the bins [Hz] where nothing else is asked: a quarter of a second a segment."""
@@ -184,39 +307,10 @@ def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
     """
     length = min(x.size, max(16, round(rate / resolution)))
     power, window = segment_powers(x, length)
-    return density_of(np.asarray(power.mean(axis=0)), window, rate, power.shape[0])
-
-
-def density_of(
-    power: NDArray[np.float64], window: NDArray[np.float64], rate: float, n_segments: int
-) -> Spectrum:
-    """Spectrum of a signal of whose segments the mean power is at hand.
-
-    Parameters
-    ----------
-    power : ndarray, shape (n_bins,)
-        Mean of `features.kernels.segments.segment_powers` [unit^2].
-    window : ndarray, shape (length,)
-        Of the segments [-].
-    rate : float
-        Sampling rate [Hz].
-    n_segments : int
-
-    Returns
-    -------
-    Spectrum
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> density_of(np.ones(9), np.ones(16), 16.0, 1).density.round(4).tolist()[:2]
-    [0.0039, 0.0078]
-    """
-    length = window.size
-    density = power / (rate * float(np.sum(window**2)))
+    density = np.asarray(power.mean(axis=0)) / (rate * float(np.sum(window**2)))
     density[1 : -1 if length % 2 == 0 else None] *= 2.0
     frequency = np.arange(density.size, dtype=np.float64) * (rate / length)
-    return Spectrum(frequency, density, rate, n_segments)
+    return Spectrum(frequency, density, rate, power.shape[0])
 
 
 def whole_spectrum(transform: Transform) -> Spectrum:

@@ -32,16 +32,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = [
-    "ESTIMATORS",
-    "Hit",
-    "check_hit",
-    "estimate_transfer_function",
-    "force_nulls",
-    "remaining_response",
-    "windowed_hits",
-]
-
 ESTIMATORS = ("H1", "H2", "Hv")
 """For noise in the response, for noise in the force, for noise in both."""
 

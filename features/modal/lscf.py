@@ -22,8 +22,6 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Pole", "lasting_poles", "line_weights", "without_doubles"]
-
 ORDERS = tuple(range(4, 25, 2))
 """Orders of the denominators tried in each band."""
 

@@ -27,8 +27,6 @@ from models.errors import ParameterError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Modes", "fit_modes"]
-
 FEWEST_LINES = 32
 
 MOST_STEPS = 12

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from features.modal.lscf import Pole
 
-__all__ = ["Modes", "least_squares", "modal_basis", "modes_of_poles", "real_and_imaginary"]
-
 
 @short_repr
 @dataclass(frozen=True, eq=False)

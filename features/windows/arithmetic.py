@@ -9,8 +9,6 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["OCTAVES", "ordered_sum", "padded_medians", "padded_rows"]
-
 OCTAVES = 1.0 / np.log(2.0)
 """What makes a natural logarithm one of base two."""
 

@@ -24,14 +24,12 @@ import numpy as np
 from numba import njit
 from scipy import fft
 
-from features.kernels.bands import a_weighting
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
+from features.kernels.levels import a_weighting
 from models.compilation import COMPILED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-__all__ = ["FRAME_RATE", "MARGIN", "RATE", "USEFUL", "Block", "block_length", "resampled_block"]
 
 RATE = 16_000
 """Rate at which windows are described [Hz]."""

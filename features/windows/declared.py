@@ -12,15 +12,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = [
-    "RHYTHM_FEATURES",
-    "TONE_FEATURES",
-    "TOP_FEATURES",
-    "TRAJECTORY_FEATURES",
-    "WINDOW_FEATURES",
-    "WindowFeature",
-]
-
 _RE_10, _RE_100, _RE_1000 = "octave re 10 Hz", "octave re 100 Hz", "octave re 1 kHz"
 
 _REFERENCES = {_RE_10: 10.0, _RE_100: 100.0, _RE_1000: 1000.0}

@@ -17,8 +17,6 @@ from models.compilation import COMPILED, PART
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["BANDS", "FRAME", "FRAME_COLUMNS", "HOP", "Frames", "describe_frames", "frame_count"]
-
 FRAME = 512
 """Samples of a frame."""
 

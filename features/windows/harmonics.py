@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     from features.windows.spectra import WindowSpectra
 
-__all__ = ["harmonic_features"]
-
 _DIVISORS = np.arange(1, 9)
 """The strongest bin is one of these harmonics."""
 

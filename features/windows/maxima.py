@@ -13,8 +13,6 @@ from models.compilation import COMPILED
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["prominent_maxima"]
-
 
 def prominent_maxima(
     level: NDArray[np.float32],

@@ -23,8 +23,6 @@ from models.compilation import COMPILED
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["ENVELOPE_RATE", "RHYTHM_NAMES", "envelope", "rhythm_features"]
-
 _STEP = 4
 ENVELOPE_RATE = RATE // _STEP
 """Rate of the envelope [Hz]."""

@@ -20,11 +20,6 @@ from models.compilation import COMPILED, PART
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = [
-    "BLOCK", "FIRST", "LOBE", "SEGMENT_HOP", "SPACING", "WindowSpectra", "line_power",
-    "long_spectra", "window_spectra",
-]  # fmt: skip
-
 _SEGMENT = 4000
 _LENGTH = 4096
 SEGMENT_HOP = 2000

@@ -22,8 +22,6 @@ from features.windows.trajectories import trajectory_features
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["HOP", "LENGTH", "WINDOW_NAMES", "WindowTable", "describe_windows", "window_count"]
-
 LENGTH = 0.5
 """Of a window [s]."""
 

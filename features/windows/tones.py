@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from features.windows.spectra import WindowSpectra
 
-__all__ = ["TONE_NAMES", "tone_features"]
-
 _MOST_LINES = 40
 
 _RANGE_DB = 30.0

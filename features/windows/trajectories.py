@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from features.windows.frames import Frames
 
-__all__ = ["TRAJECTORY_NAMES", "trajectory_features"]
-
 _BAND_NAMES = tuple(f"band_{i + 1}" for i in range(BANDS))
 
 TRAJECTORY_NAMES = tuple(feature.name for feature in TRAJECTORY_FEATURES)

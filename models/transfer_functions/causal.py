@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 
     from models.transfer_functions.transfer_function import TransferFunction
 
-__all__ = ["causal_impulse_response"]
-
 OUTSIDE = 1e-3
 """Weight of smallness outside the band, relative to the measured lines."""
 

@@ -11,8 +11,6 @@ from models.errors import ParameterError
 if TYPE_CHECKING:
     from models.transfer_functions.transfer_function import TransferFunction
 
-__all__ = ["LEAST_COHERENCE", "bands_below", "check_band", "trusted_band"]
-
 LEAST_COHERENCE = 0.5
 """Below it less than half of the output's power comes from the input [-]."""
 

@@ -37,14 +37,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = [
-    "ENDINGS",
-    "check_transfer_function_path",
-    "read_transfer_function",
-    "write_transfer_function",
-    "write_transfer_function_csv",
-]
-
 ENDINGS = (".npz", ".csv", *UFF_ENDINGS)
 """Endings of the formats that responses are read from and written to."""
 

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
     from models.transfer_functions.transfer_function import TransferFunction
 
-__all__ = ["convolve", "filter_period", "filter_signal", "transform_size"]
-
 BLOCK = 2**18
 """Samples convolved at a time, which bounds the memory for long signals."""
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from models.transfer_functions.transfer_function import TransferFunction
 
-__all__ = ["FINER", "fill_between_lines", "impulse_response"]
-
 FINER = 8
 """By how much lines are refined before straight lines join them [-]."""
 

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
     from models.transfer_functions.transfer_function import TransferFunction
 
-__all__ = ["MeasuredResponse", "measured_impulse_response", "measured_with", "with_measured"]
-
 BAND = 0.45
 """Share of the sampling rate up to which lines are used, as modes are."""
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from pandas import DataFrame
 
-__all__ = ["TransferFunction"]
-
 
 @short_repr
 @dataclass(frozen=True, eq=False)

@@ -27,17 +27,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = [
-    "COHERENCE",
-    "FREQUENCY_RESPONSE",
-    "TIME_RESPONSE",
-    "UFF_ENDINGS",
-    "UffFunction",
-    "check_uff_library",
-    "read_uff_functions",
-    "write_uff_functions",
-]
-
 UFF_ENDINGS = (".uff", ".unv")
 
 TIME_RESPONSE, FREQUENCY_RESPONSE, COHERENCE = 1, 4, 6

@@ -17,8 +17,6 @@ from models.units import quantity_of_unit
 if TYPE_CHECKING:
     from models.transfer_functions.transfer_function import TransferFunction
 
-__all__ = ["check_transfer_function", "in_units"]
-
 FEWEST_LINES = 8
 """Fewer lines describe no resonance."""
 

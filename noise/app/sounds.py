@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from features.kernels.bands import REFERENCES
-from features.kernels.levels import a_weighted, fast_levels, sound_levels
+from features.kernels.levels import REFERENCES, a_weighted, fast_levels, sound_levels
 from models.errors import ParameterError, RecordingError
 from noise.audio.gain import LOUDNESS_BLOCK, loudness
 from noise.audio.sound import playable

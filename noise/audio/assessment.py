@@ -10,8 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass
 
-from features.kernels.bands import NOMINAL_THIRD_OCTAVES
-from features.kernels.levels import SoundLevels, sound_levels
+from features.kernels.levels import NOMINAL_THIRD_OCTAVES, SoundLevels, sound_levels
 from features.sound_quality import SOUND_QUALITY_RATE, SoundQuality, sound_quality_of
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE, Recording

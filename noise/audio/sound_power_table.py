@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.bands import NOMINAL_THIRD_OCTAVES, a_weighting
+from features.kernels.levels import NOMINAL_THIRD_OCTAVES, a_weighting
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from features.modal.hammer import Hit
-    from features.modal.modal_fit import Modes
+    from features.modal.modes import Modes
     from models.transfer_functions.transfer_function import TransferFunction
 
 

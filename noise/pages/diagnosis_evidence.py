@@ -22,8 +22,8 @@ import numpy as np
 import soundfile
 from numpy.typing import NDArray
 
-from features.kernels.bands import band_levels, band_power
-from features.kernels.slip_drops import torque_slips
+from features.kernels.levels import band_levels, band_power
+from features.kernels.slips import torque_slips
 from features.kernels.spectra import autospectrum
 from models.drawing import BLUE, VERMILION, padded, styled, thinned
 from models.errors import ParameterError, RecordingError

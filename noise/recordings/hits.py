@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from models.foreign_table import ForeignTable
     from models.recording import Recording
 
-__all__ = ["RESPONSES", "find_hits", "read_hit"]
-
 RESPONSES = ("acceleration", "pressure")
 """Kinds of channel taken for the response where none is named, in this order."""
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.signal import detrend
 
-from features.kernels.segments import segment_spectra
+from features.kernels.spectra import segment_spectra
 from noise.diagnosis.evidence.channel_kernel import (
     band_power_sums,
     describe_distribution,

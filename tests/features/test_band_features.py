@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from features.kernels.bands import NOMINAL_THIRD_OCTAVES, third_octave_edges
-from features.kernels.levels import sound_levels
+from features.kernels.levels import NOMINAL_THIRD_OCTAVES, sound_levels, third_octave_edges
 from features.table import feature_names, feature_vector
 
 RATE = 48e3

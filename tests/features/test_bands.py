@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import fft
 
-from features.kernels.bands import (
+from features.kernels.levels import (
     NOMINAL_THIRD_OCTAVES,
     THESIS_BANDS,
     a_weighting,

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from features.kernels.bands import NOMINAL_THIRD_OCTAVES
-from features.kernels.levels import a_weighted, fast_levels, sound_levels
+from features.kernels.levels import NOMINAL_THIRD_OCTAVES, a_weighted, fast_levels, sound_levels
 from models.errors import ParameterError
 
 PASCAL_DB = 93.9794

@@ -7,9 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.signal import lfilter
 
-from features.kernels.slip_drops import torque_slips
-from features.kernels.slip_pulses import pulses_of
-from features.kernels.slip_speeds import in_intervals, slip_intervals
+from features.kernels.slips import in_intervals, pulses_of, slip_intervals, torque_slips
 from features.prepared import prepare
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from features.kernels.stick_rate import stick_rate_of
+from features.kernels.slips import stick_rate_of
 from features.table import recording_features
 from features.transformer import RecordingFeatures
 from models.condition import FIXED, Condition

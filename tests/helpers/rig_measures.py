@@ -13,7 +13,7 @@ import math
 import numpy as np
 from scipy.signal import butter, find_peaks, hilbert, sosfiltfilt
 
-from features.kernels.periodicity import strongest_period
+from features.kernels.harmonics import strongest_period
 from features.kernels.spectra import autospectrum, spectral_shape
 from sim.analysis.slips import motion_slips
 from sim.constant_version import constant_version
@@ -56,7 +56,7 @@ def creak_measures(pressure, rate):
 def _jitter(sound, rate):
     """Coefficient of variation of the intervals between pulses, up to some 500 a second.
 
-    `features.kernels.slip_pulses` smooths over longer, and loses those above 150 a second.
+    `features.kernels.slips` smooths over longer, and loses those above 150 a second.
     """
     high = sosfiltfilt(butter(4, _PULSES_FROM, "highpass", fs=rate, output="sos"), sound)
     low = butter(2, _PULSES_TO, fs=rate, output="sos")

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from features.kernels.bands import third_octave_levels
 from features.kernels.harmonics import analyse_harmonics
+from features.kernels.levels import third_octave_levels
 from features.kernels.lines import find_lines, noise_floor
 from features.kernels.spectra import autospectrum
 from models.rig_file import load_material_rig

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.segments import segment_spectra
+from features.kernels.spectra import segment_spectra
 from models.condition import known_condition
 from noise.diagnosis.evidence.bands import USABLE
 from noise.diagnosis.simulated.transfer_functions import predict

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from features.kernels.segments import segment_spectra
+from features.kernels.spectra import segment_spectra
 from noise.diagnosis.evidence.channel_kernel import band_power_sums
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import rfft
 
-from features.kernels.segments import segment_spectra
+from features.kernels.spectra import segment_spectra
 from noise.diagnosis.evidence.bands import bins_between
 from noise.diagnosis.evidence.channel_kernel import (
     describe_distribution,

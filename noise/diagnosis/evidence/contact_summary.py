@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.slip_speeds import in_intervals, slip_intervals
+from features.kernels.slips import in_intervals, slip_intervals
 from noise.diagnosis.evidence.channel_kernel import describe_distribution
 from noise.diagnosis.evidence.contact_kernel import (
     describe_rows,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, rfft
 
-from features.kernels.segments import segment_spectra
+from features.kernels.spectra import segment_spectra
 from noise.diagnosis.evidence.bands import USABLE, band_bins, bins_between, segment_frequency
 from noise.diagnosis.evidence.channel_kernel import band_power_sums
 from noise.diagnosis.evidence.channel_summary import quantile

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.bands import band_power
+from features.kernels.levels import band_power
 from features.kernels.spectra import welch
 
 if TYPE_CHECKING:

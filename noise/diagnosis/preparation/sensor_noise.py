@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.stats import gamma
 
-from features.kernels.segments import segment_spectra
+from features.kernels.spectra import segment_spectra
 from noise.diagnosis.evidence.bands import USABLE
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from scipy.signal import fftconvolve
 
-from features.kernels.bands import a_weighting
+from features.kernels.levels import a_weighting
 from noise.training.classifier.augmentation.cabins import CABINS, cabin
 from noise.training.classifier.augmentation.halls import HALLS
 from noise.training.classifier.background_sounds.blows import slam
