@@ -67,24 +67,6 @@ def test_what_would_clip_is_refused_with_the_level_that_would_not(run07, tmp_pat
     assert np.abs(soundfile.read(out)[0]).max() > 0.99
 
 
-def test_a_condition_is_simulated_at_the_rate_of_the_sound(tmp_path, monkeypatch):
-    from sim.run import simulate
-
-    rates = []
-
-    def spied(*given, acquisition, **about):
-        rates.append(acquisition.rate)
-        return simulate(*given, acquisition=acquisition, **about)
-
-    monkeypatch.setattr("sim.run.simulate", spied)
-    out = tmp_path / "s.wav"
-    given = ["--speed", "5", "--seconds", "0.1", "--rate", "44100", "--out", str(out)]
-    assert main(["render", *given]) == 0
-    assert rates == [44100]
-    sound = read_recording(out)
-    assert (sound.condition.speed, sound.duration) == (5.0, pytest.approx(0.1))
-
-
 def test_a_plain_sound_file_stays_without_calibration_unless_it_is_given(tmp_path, capsys):
     plain, out = tmp_path / "phone.flac", tmp_path / "s.wav"
     soundfile.write(plain, 0.5 * np.sin(np.arange(4800.0)), 48000)
@@ -97,12 +79,6 @@ def test_a_plain_sound_file_stays_without_calibration_unless_it_is_given(tmp_pat
     given = ["--full-scale", "4", "--pascal-per-full-scale", "8"]
     assert main(["render", str(plain), "--out", str(out), *given]) == 0
     assert np.abs(read_recording(out)["pressure"]).max() == pytest.approx(2.0, rel=1e-3)
-
-
-def test_a_recording_without_sound_is_refused(tmp_path, capsys):
-    torque = Recording(np.ones((1, 480)), RATE, (Channel("torque"),))
-    path = write_recording(tmp_path / "torque", torque)
-    assert "no pressure channel" in refusal(capsys, path, "--out", tmp_path / "s.wav", code=1)
 
 
 def test_a_recording_sampled_too_slowly_to_be_heard_is_refused_alone_and_in_a_set(tmp_path, capsys):

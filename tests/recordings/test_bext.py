@@ -25,22 +25,6 @@ def riff(*parts: bytes, head: bytes = b"RIFF") -> bytes:
     return head + struct.pack("<I", len(body)) + body
 
 
-def test_the_description_is_found_wherever_the_chunk_stands(tmp_path):
-    text = b"Sound: 0dBFS = 109.7 dBSPL".ljust(256, b"\0") + b"originator"
-    for parts in [(b"bext", b"odd"), (b"odd", b"bext")]:
-        content = {b"bext": chunk(b"bext", text), b"odd": chunk(b"junk", b"123")}
-        path = tmp_path / "run.wav"
-        path.write_bytes(riff(*(content[part] for part in parts)))
-        assert bext_description(path) == "Sound: 0dBFS = 109.7 dBSPL"
-
-
-def test_files_without_a_description_have_an_empty_one(tmp_path):
-    for ending in ("wav", "flac", "aiff"):
-        path = tmp_path / f"run.{ending}"
-        soundfile.write(path, np.zeros(100), 48_000)
-        assert bext_description(path) == ""
-
-
 @pytest.mark.parametrize("tag", [b"RIFF", b"RF64", b"BW64"])
 @pytest.mark.parametrize("pad", [b"", b"\0", b"\x41"])
 def test_a_description_after_an_odd_number_of_bytes_is_found_padded_or_not(tmp_path, tag, pad):

@@ -88,12 +88,3 @@ def test_reading_takes_the_memory_of_the_result(tmp_path):
         tracemalloc.stop()
     assert raw.samples.nbytes == 2 * 16_000_000
     assert peak < 1.2 * raw.samples.nbytes
-
-
-def test_texts_in_the_file_are_handed_on(tmp_path):
-    path = tmp_path / "run.wav"
-    with soundfile.SoundFile(path, "w", RATE, 1, "PCM_16") as sound:
-        sound.comment = "0dBFS = 120 dBSPL"
-        sound.write(sine(100))
-    raw = read_sound_file(path)
-    assert (raw.description, raw.comment) == ("", "0dBFS = 120 dBSPL")
