@@ -89,30 +89,18 @@ class Assessment:
         }
         return entry
 
-    def words(self, full_scale: float, *, bands: bool) -> list[str]:
-        """Return lines that say the same, with the one-third octaves where `bands`."""
+    def words(self, full_scale: float) -> list[str]:
+        """Return lines that say the same, without the one-third octaves."""
         levels = self.levels if self.calibrated else self.in_file(full_scale)
-        unit = "dB" if self.calibrated else "dBFS"
-        re = " re 20 uPa" if self.calibrated else ""
+        unit, re = ("dB", " re 20 uPa") if self.calibrated else ("dBFS", "")
         lines = [
             f"{levels.level:.1f} {unit}, {levels.level_a:.1f} {unit}(A), L_AFmax "
             f"{levels.level_af_max:.1f} {unit}{re}"
         ]
-        if bands:
-            measured = {k: v for k, v in levels.third_octaves.items() if math.isfinite(v)}
-            listed = ", ".join(f"{band} Hz {level:.1f}" for band, level in measured.items())
-            lines.append(f"one-third octaves in {unit}{re}: {listed or 'none is measured'}")
-        if (found := self.quality) is not None:
-            tone = "no prominent tone"
-            if not math.isnan(found.tone_frequency):
-                tone = (
-                    f"tone at {found.tone_frequency:.0f} Hz, prominence {found.prominence:.1f} dB"
-                )
-            lines.append(
-                f"loudness {found.loudness:.2f} sone (N5 {found.loudness_n5:.2f}, "
-                f"N10 {found.loudness_n10:.2f}), sharpness {found.sharpness:.2f} acum, "
-                f"roughness {found.roughness:.2f} asper, {tone}"
-            )
+        if self.quality is not None:
+            named = {_QUALITY_COLUMNS[name]: of for name, of in asdict(self.quality).items()}
+            known = {name: of for name, of in named.items() if math.isfinite(of)}
+            lines.append(", ".join(f"{name} {of:.3g}" for name, of in known.items()))
         return lines
 
 

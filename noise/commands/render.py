@@ -207,7 +207,7 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
         measured, pascal=options.pascal_per_full_scale, matched=options.match_loudness
     )
     _notes(options, files, measured)
-    faint = _note_faint(measured, scales, alone=options.ab)
+    faint = _note_faint(measured, scales)
     rows: list[dict[str, object]] = []
     for index, (name, target, _) in enumerate(files):
         if name not in measured:
@@ -234,7 +234,7 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
         several = len(of.parts) > 1
         for part in of.parts:
             lead = f"{name}: {part.about.name}" if several else name
-            for line in part.assessment.words(scale.value, bands=folder is None and not several):
+            for line in part.assessment.words(scale.value):
                 say(f"{lead}: {line}")
         print(target)
         print(target.with_suffix(".json"))
@@ -274,31 +274,24 @@ _MOST_NAMED = 4
 
 
 def _note_faint(
-    measured: Mapping[str, Measured], scales: Mapping[str, FullScale], *, alone: bool
+    measured: Mapping[str, Measured], scales: Mapping[str, FullScale]
 ) -> dict[str, str]:
-    """Say which sounds are nearly inaudible in their files, and what makes them audible."""
-    from noise.audio.render import full_scales
-
-    told: dict[str, str] = {}
+    """Say which sounds are nearly inaudible in their files."""
+    faint: dict[str, str] = {}
     for name, of in measured.items():
         value = scales[name].value
         in_file = max(part.assessment.in_file(value).level_af_max for part in of.parts)
         if math.isfinite(in_file) and in_file < _LEAST_AUDIBLE:
             in_air = max(part.assessment.levels.level_af_max for part in of.parts)
             at = f"{in_air:.1f} dB(A) at the microphone, " * of.calibrated
-            told[name] = f"{name} ({at}{in_file:.1f} dBFS(A) in the file)"
-    if not told:
+            faint[name] = f"{name} ({at}{in_file:.1f} dBFS(A) in the file)"
+    if not faint:
         return {}
-    scale = scales[next(iter(told))]
-    lead = f"nearly inaudible (below {_LEAST_AUDIBLE:g} dBFS(A)) where the volume suits speech"
-    remedy = ""
-    if scale.gain == "calibrated":
-        lead += f", unless playback is calibrated to {scale.value:g} Pa"
-        common = next(iter(full_scales(measured).values())).value
-        louder = 20.0 * math.log10(scale.value / common)
-        remedy = f"; without --pascal-per-full-scale {louder:.0f} dB louder"
-    if len(measured) > 1 and not alone and scale.gain != "matched":
-        remedy += "; with --match-loudness as loud as the others"
-    more = f" and {len(told) - _MOST_NAMED} more" * (len(told) > _MOST_NAMED)
-    note(f"{lead}: {', '.join([*told.values()][:_MOST_NAMED])}{more}{remedy}")
-    return {name: f"{lead}: {words}{remedy}" for name, words in told.items()}
+    scale = scales[next(iter(faint))]
+    room = f", unless playback is calibrated to {scale.value:g} Pa" * (scale.gain == "calibrated")
+    lead = (
+        f"nearly inaudible (below {_LEAST_AUDIBLE:g} dBFS(A)) where the volume suits speech{room}"
+    )
+    more = f" and {len(faint) - _MOST_NAMED} more" * (len(faint) > _MOST_NAMED)
+    note(f"{lead}: {', '.join([*faint.values()][:_MOST_NAMED])}{more}")
+    return {name: f"{lead}: {words}" for name, words in faint.items()}

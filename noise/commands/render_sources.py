@@ -13,7 +13,7 @@ import shlex
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -54,14 +54,9 @@ class Source:
     seconds: float = math.inf
     notes: tuple[str, ...] = ()
 
-    @cached_property
-    def simulated(self) -> Recording:
-        """What is heard of the run, which is simulated once."""
-        return self.make(self.name)
-
     def recording(self) -> Recording:
-        """Return its pressure channel; a recording is read each time."""
-        return self.make(self.name) if self.path is not None else self.simulated
+        """Return its pressure channel."""
+        return self.make(self.name)
 
 
 def sources_of(options: Namespace) -> list[Source]:
@@ -171,6 +166,7 @@ def _source(name: str, options: Namespace) -> Source:
     # At the rate of the sound: the rig's own rate would cut the creak off at 15 kHz.
     arguments, notes = run_arguments(options, options.rate)
 
+    @cache
     def simulated(name: str) -> Recording:
         from noise.audio.render import heard
         from sim.run import simulate

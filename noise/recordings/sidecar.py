@@ -208,19 +208,16 @@ def _is_sidecar(content: Any) -> bool:
     """Whether something of a JSON file can be meant as a sidecar's."""
     if not isinstance(content, dict):
         return False
-    channels, conditions = content.get("channels"), content.get("conditions")
-    names = [one.get("name") if isinstance(one, dict) else one for one in _list(channels)]
-    kinds = [str(name).partition("_")[0] for name in names]
+    entries = content.get("channels")
+    listed = entries if isinstance(entries, list) else []
+    names = [one.get("name") if isinstance(one, dict) else one for one in listed]
+    conditions = content.get("conditions")
     return (
         all(key in _OURS for key in content)
-        or any(kind in CHANNEL_UNITS for kind in kinds)
+        or any(str(name).partition("_")[0] in CHANNEL_UNITS for name in names)
         or (isinstance(conditions, dict) and any(_stem(key) != key for key in conditions))
         or isinstance(content.get("calibrated"), bool)
     )
-
-
-def _list(value: object) -> list[Any]:
-    return value if isinstance(value, list) else []
 
 
 def _sidecar(content: Mapping[str, Any], where: str) -> Sidecar:
