@@ -13,12 +13,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from models.condition import FIXED
+from models.condition import CONDITION as QUANTITIES, FIXED
 from models.errors import ParameterError
 from models.foreign_file import LARGEST_TEXT, reading
 from models.rig import parse_spec
 from models.rig_file import material_names
-from models.units import ABSOLUTE_ZERO
 from noise.base.progress import note, say
 from noise.base.remarks import (
     NEVER_SLIPS,
@@ -41,11 +40,11 @@ if TYPE_CHECKING:
     from sim.run import Run
     from sim.shaft import LoggedSpeed, ShaftMotion
 
-DEFAULT_INTERFERENCE_MM = 0.279
-DEFAULT_SUPPORT_STIFFNESS = 2214.0  # Nm/rad
 DEFAULT_MATERIAL = "fluorocarbon"
-DEFAULT_TEMPERATURE = 23.0  # degree Celsius
 DEFAULT_SECONDS = 1.0
+_FIT, _SUPPORT, _TEMPERATURE = (
+    QUANTITIES[name] for name in ("interference", "support_stiffness", "temperature")
+)
 
 
 def _speed(text: str) -> float | tuple[float, float] | Path:
@@ -101,22 +100,21 @@ CONDITION = Group(
         Option("--oscillate DEG,HZ", _swing).help(
             "the shaft swings by +-DEG degrees, HZ times a second, instead of turning"
         ),
-        Option("--interference MM", number(above=0.0, most=10.0)).help(
-            f"interference fit in mm (default: {DEFAULT_INTERFERENCE_MM:g}, or the nearest that "
-            "--rig gives)"
+        Option("--interference MM", number(above=0.0, most=_FIT.high)).help(
+            f"interference fit in mm (default: {_FIT.default:g}, or the nearest that --rig gives)"
         ),
         Option("--support-stiffness K", _support_stiffness).help(
             "torsional stiffness of the beams in Nm/rad, or fixed for the clamp bolted to the "
-            f"baseplate (default: {DEFAULT_SUPPORT_STIFFNESS:g})"
+            f"baseplate (default: {_SUPPORT.default:g})"
         ),
         Option("--material NAME", str).help(
             f"elastomer, one of {', '.join(material_names())}; case does not matter "
             f"(default: that of --rig, else {DEFAULT_MATERIAL})"
         ),
-        Option("--temperature C", number(least=ABSOLUTE_ZERO)).help(
+        Option("--temperature C", number(least=_TEMPERATURE.low)).help(
             "ambient temperature in degree Celsius; friction, stiffness and damping follow "
             "it where the material's file says how, under [temperature]; else it is only recorded "
-            f"(default: {DEFAULT_TEMPERATURE:g})"
+            f"(default: {_TEMPERATURE.default:g})"
         ),
         Option("--seconds S", number(above=0.0, most=20000.0)).help(
             f"length of the recording in s (default: {DEFAULT_SECONDS:g})"
@@ -188,7 +186,7 @@ def run_arguments(
         asked = "is needed" if options.speed is None else "can be given, not both"
         raise ParameterError(f"exactly one of --speed and --oscillate {asked}")
     seconds = _or(options.seconds, DEFAULT_SECONDS)
-    stiffness = _or(options.support_stiffness, DEFAULT_SUPPORT_STIFFNESS)
+    stiffness = _or(options.support_stiffness, _SUPPORT.default)
     if round(seconds * rate) < _LEAST_SAMPLES:
         raise ParameterError(
             f"--seconds {seconds:g} is too short at {rate:g} Hz; a recording holds "
@@ -197,7 +195,7 @@ def run_arguments(
     library = effect_library(options.effects)
     rig = _rig(options, library, rig)
     low, high = (1e3 * limit for limit in rig.interference_range)
-    nearest = min(max(DEFAULT_INTERFERENCE_MM, low), high)
+    nearest = min(max(_FIT.default, low), high)
     interference_mm = _or(options.interference, nearest)
     _note_idle(options.effects, rig, library)
     shaft, turning = _shaft(options, seconds)
@@ -216,7 +214,7 @@ def run_arguments(
         "shaft": shaft,
         "interference": interference_mm / 1e3,
         "support_stiffness": stiffness,
-        "temperature": _or(options.temperature, DEFAULT_TEMPERATURE),
+        "temperature": _or(options.temperature, _TEMPERATURE.default),
         "seconds": seconds,
         "acquisition": Acquisition(
             rate=rate, sensors=THESIS_CONVERTER if options.converter else Sensors()
@@ -277,7 +275,7 @@ def _remarks(
         speed=[_fastest(shaft, _or(options.seconds, DEFAULT_SECONDS))],
         interference=[interference_mm / 1e3],
         support_stiffness=[stiffness],
-        temperature=[_or(options.temperature, DEFAULT_TEMPERATURE)],
+        temperature=[_or(options.temperature, _TEMPERATURE.default)],
     )
     found += effect_remarks(rig, library)
     found.append(temperature_remark(rig, options.temperature))
