@@ -6,25 +6,18 @@ how it is trained is the business of `noise.training.classifier.fit`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.show import short_repr
 from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import BoostedTrees
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-__all__ = [
-    "Calibration", "Classifier", "at_sensitivity", "has_more_than_sound", "load_classifier",
-]  # fmt: skip
 
 _KIND = ModelKind(
     "classifier", 4, "bushing-noise train --out", ("noise.classifier", "classifier.npz")

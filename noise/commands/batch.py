@@ -9,6 +9,8 @@ from __future__ import annotations
 import signal
 import sys
 import threading
+from argparse import Namespace
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,9 +21,6 @@ from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_number
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Callable, Iterable, Iterator, Sequence
-
     from noise.batch import Done, Job, Journal, Work
 
     Rows = Iterable[dict[str, object]]

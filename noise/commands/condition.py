@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import csv
 import math
-from argparse import ArgumentTypeError
+from argparse import ArgumentTypeError, Namespace
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from models.condition import CONDITION as QUANTITIES, FIXED
 from models.errors import ParameterError
 from models.foreign_file import LARGEST_TEXT, reading
-from models.rig import parse_spec
+from models.rig import LawSpec, Rig, parse_spec
 from models.rig_file import material_names
 from noise.base.progress import note, say
 from noise.base.remarks import (
@@ -31,11 +32,7 @@ from noise.base.user_effects import effect_library
 from noise.commands.options import CHANGE, Group, Option, changed, number, number_or_none
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Mapping
-
     from models.recording import Recording
-    from models.rig import LawSpec, Rig
     from sim.effects.effect import Effect
     from sim.run import Run
     from sim.shaft import LoggedSpeed, ShaftMotion

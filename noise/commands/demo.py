@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from noise.base.progress import say
 from noise.commands.options import Option, check_folder, seed
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
 
 _DEFAULT_OUT = "bushing-noise-demo"
 

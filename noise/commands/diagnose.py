@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from noise.base.progress import note, say, steps
+from noise.base.progress import Steps, note, say, steps
 from noise.commands.options import CHANGE, Option, changed, check_folder, seed
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Mapping
-
-    from noise.base.progress import Steps
     from noise.diagnosis.case import Case
     from noise.diagnosis.improvement import Improvement
     from noise.diagnosis.outcome import Diagnosis

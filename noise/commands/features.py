@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.progress import note
@@ -13,10 +16,6 @@ from noise.commands.options import CALIBRATION, OneOf, Option, full_scale_of, se
 from noise.commands.plots import PLOT, check_plots, draw_recordings
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Iterable, Iterator
-    from pathlib import Path
-
     from noise.recordings.blocks import RecordingBlocks
     from noise.recordings.meaning import PascalPerFullScale
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from argparse import ArgumentTypeError
+from argparse import ArgumentTypeError, Namespace
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -16,8 +16,6 @@ from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.options import Option, band, number, one_of, refuse, seed
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-
     import numpy as np
     from numpy.typing import NDArray
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.progress import note, say, steps
+from noise.base.progress import Steps, note, say, steps
 from noise.commands.options import CHANGE, Option, change_table, check_folder, seed
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from noise.base.progress import Steps
     from noise.identification.outcome import Identification
 
 

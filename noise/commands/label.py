@@ -7,6 +7,8 @@ again.
 from __future__ import annotations
 
 import math
+from argparse import Namespace
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,12 +19,8 @@ from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands.batch import BATCH, check_batch, run_batch
 from noise.commands.options import CALIBRATION, Option, full_scale_of, number, seed
 from noise.commands.plots import PLOT, check_plots, draw_recordings
-from noise.pictures.figure import check_picture_path
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Iterable
-
     from noise.labels.labelling import Labelling
 
 
@@ -161,6 +159,8 @@ def _note_speeds(rows: list[dict[str, object]]) -> None:
 def _check_exports(options: Namespace) -> None:
     """Refuse what could not be written."""
     if options.map is not None:
+        from noise.pictures.figure import check_picture_path
+
         check_picture_path(options.map)
         check_target(options.map, "--map")
         table = options.map.with_suffix(".csv")

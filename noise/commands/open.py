@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.commands.options import Option, seed, whole_number
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
 
 DESCRIPTION = (
     "Open recordings, a label table or a rig in a local app: listen, see, correct labels, hear "

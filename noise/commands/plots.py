@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,11 +10,8 @@ from models.errors import BushingNoiseError, ParameterError
 from noise.base.files import check_target, export_paths
 from noise.base.progress import note, track
 from noise.commands.options import Option
-from noise.pictures.figure import PICTURE_ENDINGS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from noise.batch import Job
     from noise.recordings.meaning import PascalPerFullScale
 
@@ -39,6 +37,8 @@ def check_plots(target: Path, jobs: Sequence[Job]) -> None:
         There are several recordings for one picture, or two of one name, or the place cannot be
         written to.
     """
+    from noise.pictures.figure import PICTURE_ENDINGS
+
     try:
         paths = export_paths(target, [job.name for job in jobs], PICTURE_ENDINGS, "--plot")
     except ParameterError:
@@ -71,7 +71,7 @@ def draw_recordings(
     full_scale : float or tuple of float, optional
         As for `noise.recordings.read_recording`.
     """
-    from noise.pictures.figure import write_picture
+    from noise.pictures.figure import PICTURE_ENDINGS, write_picture
     from noise.pictures.recording import plot_recording
     from noise.recordings import read_recording
     from noise.recordings.blocks import RecordingBlocks, open_blocks

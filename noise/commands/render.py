@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from argparse import ArgumentTypeError
+from argparse import ArgumentTypeError, Namespace
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -25,8 +25,6 @@ from noise.commands.options import (
 )
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-
     from models.recording import Recording
     from noise.audio.render import FullScale, Measured, Part
     from noise.commands.render_sources import Source

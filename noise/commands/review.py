@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from noise.base.files import check_target
 from noise.base.progress import counted, note, say
@@ -16,10 +16,6 @@ from noise.commands.options import (
     seed,
     whole_number,
 )
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
 
 DESCRIPTION = (
     "Put recordings, labels, screens and diagnoses on one page that needs nothing else: to be "

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from argparse import Namespace
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.progress import say, steps
+from models.rig import Rig
+from noise.base.progress import Steps, say, steps
 from noise.commands.options import (
     CHANGE,
     MOST_WORKERS,
@@ -22,11 +25,6 @@ from noise.commands.options import (
 )
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Callable
-
-    from models.rig import Rig
-    from noise.base.progress import Steps
     from noise.batch import Journal
     from noise.screening.design.design import Swinging, Use
     from noise.screening.outcome import Screening

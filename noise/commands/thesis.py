@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.base.files import atomic, check_target
 from noise.base.progress import say, track
 from noise.base.tables import TABLE_ENDINGS, check_table_path, table_endings, write_table
 from noise.commands.options import Option, check_folder, seed
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
 
 _PAGE_ENDING = ".md"
 

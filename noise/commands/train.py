@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from models.errors import ParameterError
 from noise.base.files import check_target
-from noise.base.progress import counted, say, steps, track
+from noise.base.progress import Steps, counted, say, steps, track
 from noise.base.tables import TABLE_ENDINGS
 from noise.commands.options import Option, one_of, refuse, seed, whole_number
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from noise.base.progress import Steps
     from noise.classifier import Classifier
     from noise.training.classifier.own_samples import OwnSample
 

@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
+from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from models.rig import Rig
-
-__all__ = ["assumed_fit"]
 
 
 def assumed_fit(rig: Rig, interferences: Sequence[float]) -> str:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from models.condition import known_condition, same_support
 from models.errors import BushingNoiseError, ParameterError, RecordingError
+from models.recording import Recording
+from models.rig import Rig
 from noise.diagnosis.bench.channels import misplaced_torque
 from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
 from noise.diagnosis.bench.units import length_unit
@@ -14,15 +17,6 @@ from noise.diagnosis.preparation.prepare import prepared
 from noise.diagnosis.preparation.settled_part import shortest
 from noise.diagnosis.unstated.conditions import with_told_conditions
 from noise.recordings import find_recordings, read_recording
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from models.recording import Recording
-    from models.rig import Rig
-
-__all__ = ["Case", "read_case", "usable"]
 
 LEAST_RATE = 8e3
 """Least sampling rate [Hz]: the cycle's harmonics to 3 kHz are in it; assumed."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -19,30 +20,23 @@ from noise.diagnosis.assumed_fit import assumed_fit
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.bench.silent import unchecked_units
 from noise.diagnosis.causes.location import differences, locate, stage_findings
-from noise.diagnosis.causes.posterior import load_posterior
-from noise.diagnosis.causes.stage_nulls import load_stage_nulls
+from noise.diagnosis.causes.posterior import Posterior, load_posterior
+from noise.diagnosis.causes.stage_nulls import StageNulls, load_stage_nulls
 from noise.diagnosis.causes.unseen import channel_costs
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
 from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, StageFinding
-from noise.diagnosis.first_answer import first_answer
+from noise.diagnosis.first_answer import FirstAnswer, first_answer
+from noise.diagnosis.gap.distance import Gap
 from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.outcome import Diagnosis
 from noise.diagnosis.text.words import joined
 from sim.effects import EFFECTS
-from sim.effects.effect import Stage
+from sim.effects.effect import Effect, Stage
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
     from noise.diagnosis.case import Case
-    from noise.diagnosis.causes.posterior import Posterior
-    from noise.diagnosis.causes.stage_nulls import StageNulls
-    from noise.diagnosis.first_answer import FirstAnswer
     from noise.diagnosis.fit.judge import Judged
-    from noise.diagnosis.gap.distance import Gap
-    from sim.effects.effect import Effect
 
-__all__ = ["case_remarks", "diagnose_case"]
 
 _SHOWN = 5
 """Effects that are listed at least, and hypotheses; assumed."""

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from models.show import short_repr
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from models.recording import Recording
     from noise.diagnosis.evidence.friction_curves import FrictionCurves
 
-__all__ = [
-    "LARGEST_GAP", "ROLES", "SHOWN_IN", "SURE", "Agreement", "EffectFinding", "HypothesisFinding",
-    "Illustration", "LabelsAndLevels", "Location", "Remainder", "StageFinding",
-]  # fmt: skip
 
 LARGEST_GAP = 100.0
 """Floors that larger gaps are not told from [-]: they come from numbers that hardly scatter;

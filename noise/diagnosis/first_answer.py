@@ -2,30 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from models.rig import Rig
 from noise.diagnosis.bench.flat_tops import flat_channels
-from noise.diagnosis.causes.joint import joint_probabilities, marginals, with_none
+from noise.diagnosis.causes.joint import Hypothesis, joint_probabilities, marginals, with_none
 from noise.diagnosis.causes.unlearned import poor_responses, unlearned_sensors
 from noise.diagnosis.causes.unseen import unseen_causes
 from noise.diagnosis.causes.verdict import UNUSUAL, likeliest, needs_explaining
-from noise.diagnosis.evidence.summary import case_table
-from noise.diagnosis.fit.case_comparison import CaseComparison, Model
+from noise.diagnosis.evidence.summary import CaseTable, case_table
+from noise.diagnosis.fit.case_comparison import CaseComparison
+from noise.diagnosis.gap.distance import Gap
+from noise.diagnosis.simulated.model_runs import Model
 from sim.constant_version import constant_version
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from models.rig import Rig
     from noise.diagnosis.case import Case
-    from noise.diagnosis.causes.joint import Hypothesis
     from noise.diagnosis.causes.posterior import Posterior
-    from noise.diagnosis.evidence.summary import CaseTable
-    from noise.diagnosis.gap.distance import Gap
-    from sim.effects.effect import Effect
 
-__all__ = ["FirstAnswer", "first_answer", "known_effects"]
 
 _WITHIN_REPEATS = 0.9
 """Probability of nothing being the matter where repeats differ as much and the probabilities of

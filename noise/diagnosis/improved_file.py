@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
@@ -12,16 +14,10 @@ from models.rig_file import changed_rig_text, read_toml
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
     from models.transfer_functions.measured import MeasuredResponse
     from models.transfer_functions.transfer_function import TransferFunction
     from noise.diagnosis.improvement import Improvement
 
-__all__ = [
-    "NAME", "RESPONSES", "check_base", "improved_text", "own_effects", "response_files",
-]  # fmt: skip
 
 NAME = "improved.toml"
 RESPONSES = "improved_"

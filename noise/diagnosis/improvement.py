@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.show import short_repr
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from models.rig import LawSpec, Rig
-
-__all__ = ["Improvement"]
 
 
 @short_repr

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.show import short_repr
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from matplotlib.axes import Axes
     from pandas import DataFrame
 
@@ -25,8 +24,6 @@ if TYPE_CHECKING:
         StageFinding,
     )
     from noise.diagnosis.improvement import Improvement
-
-__all__ = ["Diagnosis"]
 
 
 @short_repr

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, cast
+from collections.abc import Mapping
+from typing import Any, cast
 
 from noise.diagnosis.findings import (
     ROLES,
@@ -16,11 +17,6 @@ from noise.diagnosis.findings import (
     StageFinding,
 )
 from noise.diagnosis.outcome import Diagnosis
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-__all__ = ["as_json", "from_json"]
 
 _FIGURES = (
     "gap_before", "gap_recalibrated", "gap_after", "gap_floor", "closed", "closed_low",

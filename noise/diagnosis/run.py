@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from models.rig import Rig
 from models.rig_file import load_rig
 from noise.base.user_effects import effect_library
 from noise.diagnosis.case import read_case
 from noise.diagnosis.diagnose import diagnose_case
+from noise.diagnosis.outcome import Diagnosis
 from noise.diagnosis.outcome_json import as_json
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from noise.diagnosis.outcome import Diagnosis
-
-__all__ = ["diagnose", "diagnosis_json"]
 
 
 def diagnose(

@@ -16,20 +16,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import binary_erosion
 from scipy.optimize import least_squares
 
 from models.show import short_repr
-from noise.identification.motion import torque_spectrum
+from noise.identification.motion import Contact, TorqueSpectrum, torque_spectrum
 from sim.bushing import LumpedBushing
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from noise.identification.measured import Measured
-    from noise.identification.motion import Contact, TorqueSpectrum
 
-__all__ = ["NUMBERS", "BushingFit", "Known", "Phases", "fit_bushing", "phases_of"]
 
 NUMBERS = ("elastomer_stiffness", "damping", "elastomer_inertia", "clamp_inertia")
 

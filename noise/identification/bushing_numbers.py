@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -14,15 +15,11 @@ from noise.identification.bushing_fit import phases_of
 from noise.identification.law_model import LOCAL
 from noise.identification.law_priors import fitted_evidence
 from noise.identification.levels import torque_levels
-from noise.identification.outcome import Forecast, Number, values_of
+from noise.identification.outcome import Forecast, Number, Seen, values_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from noise.identification.law_fit import LawFit
-    from noise.identification.outcome import Seen
 
-__all__ = ["bushing_numbers", "read_again"]
 
 _KINDS = (
     ("elastomer_stiffness", "Nm/rad"), ("damping", "Nm s/rad"), ("elastomer_inertia", "kg m2"),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -17,11 +18,8 @@ from noise.base.interval import SURE_90
 from noise.identification.outcome import Number
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from noise.identification.table_number import TableNumber
 
-__all__ = ["UNITS", "Evidence", "elastomer_stiffness", "table_evidence", "with_evidence"]
 
 UNITS = {
     "elastomer_stiffness": "Nm/rad",

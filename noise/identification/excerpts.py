@@ -12,17 +12,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from noise.identification.motion import torque_spectrum
+from noise.identification.motion import TorqueSpectrum, torque_spectrum
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from noise.identification.measured import Measured
-    from noise.identification.motion import TorqueSpectrum
     from sim.bushing import LumpedBushing
 
-__all__ = ["Excerpts", "excerpts_of"]
 
 _LOOKED_AT = 0.42
 """Of a recording; what a transform of it costs [s]; assumed."""

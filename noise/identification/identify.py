@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from models.bushing import TemperatureDependence
 from models.errors import ParameterError
+from models.rig import Rig
 from models.rig_file import rig_text
 from models.schema import remarks
 from noise.diagnosis.bench.check import unit_findings
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers, read_again
 from noise.identification.evidence import table_evidence, with_evidence
-from noise.identification.law_choice import MARGIN, choose_law, overall
+from noise.identification.law_choice import MARGIN, Choice, choose_law, overall
 from noise.identification.law_numbers import law_numbers
 from noise.identification.law_priors import fitted_evidence
 from noise.identification.levels import torque_levels
@@ -22,19 +25,12 @@ from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.structure_check import structure_notes
 from noise.identification.subjects import subjects_of
 from noise.identification.table_fit import held_against
+from noise.identification.table_number import TableNumber
 from noise.identification.table_rig import identify_from_table
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from models.bushing import TemperatureDependence
-    from models.rig import Rig
     from noise.identification.known import Beforehand
-    from noise.identification.law_choice import Choice
     from noise.identification.measured import Measurements
-    from noise.identification.table_number import TableNumber
-
-__all__ = ["NothingSlipsError", "identify_rig"]
 
 
 class NothingSlipsError(ParameterError):

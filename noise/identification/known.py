@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from models.change import changed_rig
+from models.rig import Rig
 from models.rig_file import read_toml, rig_from, shipped_name
 from noise.identification.bushing_fit import Known
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from models.rig import Rig
-
-__all__ = ["Beforehand", "known_beforehand"]
 
 _STATED_ERROR = 0.02
 """Relative standard error of what is stated: what bushings scatter by; assumed."""

@@ -7,6 +7,7 @@ by cycle; how far a simulation with it is from them, in floors, is stated beside
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -19,14 +20,11 @@ from noise.identification.law_model import LawModel
 from noise.identification.outcome import LawScore
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
     from noise.identification.evidence import Evidence
     from noise.identification.known import Beforehand
     from noise.identification.measured import Measured
     from noise.identification.subjects import Subject
 
-__all__ = ["MARGIN", "Choice", "choose_law", "left_out", "overall"]
 
 MARGIN = 1.09
 """A simpler law may miss so many times as much for each number that it has less; assumed."""

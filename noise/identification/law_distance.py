@@ -7,11 +7,14 @@ fits best differ by.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
+from models.rig import Rig
 from noise.diagnosis.gap.distance import group_costs
 from noise.diagnosis.gap.signature import channel_signature, joined_signature
 from noise.diagnosis.simulated.repeats import Scatter, perturb_run
@@ -19,14 +22,8 @@ from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
     from noise.identification.measured import Measured
 
-__all__ = ["repeats_scale", "squared_distance"]
 
 _SETTLING = 0.1
 """Simulated before what is looked at [s]; assumed."""

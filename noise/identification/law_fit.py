@@ -8,22 +8,15 @@ rig about which the recordings scatter.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.identification.law_misfit import Misfit
+from noise.identification.law_model import LawModel
 from noise.identification.law_starts import starts
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from noise.identification.law_model import LawModel
-
-__all__ = ["LawFit", "Sketch", "fit_law", "fit_some", "sketch_law"]
 
 _FEW = 3
 """Excerpts of each recording while places to begin at are compared."""

@@ -2,19 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
-from noise.identification.law_model import LOCAL
+from noise.identification.law_model import LOCAL, LawModel
 from noise.identification.law_priors import priors
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from noise.identification.law_model import LawModel
-
-__all__ = ["Misfit"]
 
 _STEP = 3e-4
 """Of the logarithms, for slopes."""

@@ -7,31 +7,27 @@ its own, which scatter about those of the rig, and these are what is to be found
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
-from models.rig import Fit, LawSpec
+from models.rig import Fit, LawSpec, Rig
 from noise.identification.prediction import foretold, friction_of
 from sim.bushing import LumpedBushing
 from sim.friction import friction_law
 from sim.parameters import resolve
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
     from noise.identification.bushing_fit import Known
     from noise.identification.evidence import Evidence
     from noise.identification.law_candidates import Candidate
     from noise.identification.subjects import Subject
 
-__all__ = ["LOCAL", "LawModel"]
 
 LOCAL = (
     "elastomer_stiffness", "kinetic_torque", "drop", "damping", "elastomer_inertia",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.rig import Rig
 from noise.base.interval import SURE_90
 from noise.identification.law_model import LOCAL
 from noise.identification.outcome import Number
@@ -14,10 +15,7 @@ from sim.effects import EFFECTS
 from sim.friction import friction_law
 
 if TYPE_CHECKING:
-    from models.rig import Rig
     from noise.identification.law_fit import LawFit
-
-__all__ = ["law_numbers"]
 
 
 def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:

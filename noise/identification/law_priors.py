@@ -6,16 +6,13 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from noise.identification.law_model import LOCAL
+from noise.identification.law_model import LOCAL, LawModel
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from noise.identification.evidence import Evidence
-    from noise.identification.law_model import LawModel
 
-__all__ = ["SHARE_ASSUMED", "fitted_evidence", "priors", "share_error"]
 
 _SCATTER = np.array([0.025, 0.025, 0.03, 0.03, 0.02, 0.008, 0.01])
 """By which they scatter about the rig's [-]; a support's counts as its clamp's inertia;

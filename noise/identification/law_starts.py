@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from noise.identification.law_model import LawModel
 from noise.identification.law_priors import SHARE_ASSUMED, share_error
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
     from noise.identification.law_candidates import Candidate
-    from noise.identification.law_model import LawModel
 
-__all__ = ["starts"]
 
 _STUCK, _ELASTIC = (0.95, 1.0, 1.05), (0.85, 1.1, 1.5)
 """Factors on stiffness that are tried; an elastic contact hides some of the elastomer's [-];

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from noise.identification.bushing_fit import BushingFit
 
-__all__ = ["Levels", "torque_levels"]
 
 _FAST = 0.6
 """Share of the fastest sliding from which the contact counts as sliding fast; assumed."""

@@ -2,32 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 
+from models.calibration import Calibration
 from models.condition import KnownCondition
 from models.errors import BushingNoiseError, ParameterError
+from models.recording import Recording
 from models.show import short_repr
 from noise.diagnosis.bench.conditions import speed_words
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
-from noise.identification.static_test import static_test
+from noise.identification.static_test import StaticTest, static_test
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.logged_speed import as_logged
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from models.calibration import Calibration
-    from models.recording import Recording
-    from noise.identification.static_test import StaticTest
-
-__all__ = ["Measured", "Measurements", "measured", "read_measurements"]
 
 SHORTEST = LEAD + TAIL + 0.1
 """Shorter recordings show too few cycles [s]; assumed."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.ndimage import uniform_filter1d
 
@@ -17,12 +18,9 @@ from models.show import short_repr
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from noise.identification.measured import Measured
     from sim.bushing import LumpedBushing
 
-__all__ = ["LIMIT", "Contact", "TorqueSpectrum", "torque_spectrum"]
 
 LIMIT = 8000.0
 """Highest frequency kept [Hz], at most 0.3 of the rate; the flank ends a third above; assumed."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +11,6 @@ from models.condition import FIXED
 from models.show import short_repr
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     import numpy as np
     from numpy.typing import NDArray
     from pandas import DataFrame
@@ -21,16 +20,6 @@ if TYPE_CHECKING:
     from noise.identification.measured import Measured
     from noise.identification.static_test import StaticTest
     from noise.identification.table_number import TableNumber
-
-__all__ = [
-    "Forecast",
-    "Identification",
-    "LawScore",
-    "Number",
-    "Seen",
-    "as_json",
-    "values_of",
-]
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
+from models.rig import LawSpec
 from sim.bushing import LumpedBushing
 from sim.contact import CRITICAL, KINETIC, N_CONTACT
 from sim.effects import EFFECTS
@@ -16,17 +18,12 @@ from sim.effects.effect import activated
 from sim.friction import friction_law
 from sim.motion import contact_hooks
 from sim.parameters import resolve
-from sim.solvers.contact_solver import ContactRun
+from sim.solvers.contact_solver import ContactRun, Hook
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.rig import LawSpec
     from noise.identification.excerpts import Excerpts
     from sim.friction.law import FrictionLaw
-    from sim.solvers.contact_solver import Hook
 
-__all__ = ["Friction", "foretold", "friction_of"]
 
 _TOLERANCE = 1e-6
 """Of the solver, over one cycle."""

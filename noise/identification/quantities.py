@@ -8,24 +8,21 @@ interpolated between its points, so that a small change of a parameter shows.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from models.rig import damping_at
+from models.rig import Rig, damping_at
 from sim.analysis.critical_speeds import falls_below
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import LEAST_SUDDEN
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from models.rig import Rig
     from noise.identification.settled_run import SettledRun
     from noise.identification.table_number import TableNumber
 
     Found = Callable[[Rig, TableNumber, Sequence[SettledRun]], float]
 
-__all__ = ["MOST", "QUANTITIES", "Quantity"]
 
 MOST = 3.0
 """No misfit of a single run counts more; assumed."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from scipy.optimize import least_squares
 
@@ -18,11 +19,8 @@ from models.show import short_repr
 from noise.identification.evidence import Evidence
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from noise.identification.bushing_fit import Known
 
-__all__ = ["RingDown", "find_ring_down", "ring_evidence"]
 
 _BAND = 60.0, 2000.0
 """In which it is sought [Hz]; assumed."""

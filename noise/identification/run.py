@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from noise.identification.identify import identify_rig
 from noise.identification.known import known_beforehand
 from noise.identification.measured import Measurements, read_measurements
-from noise.identification.outcome import as_json
+from noise.identification.outcome import Identification, as_json
 from noise.identification.table_number import read_numbers
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from noise.identification.outcome import Identification
-
-__all__ = ["identification_json", "identify"]
 
 
 def identify(

@@ -5,22 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.rig import Rig
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import LEAST_OSCILLATION
-from sim.analysis.slips import motion_slips
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
-    from sim.analysis.slips import Slips
-
-__all__ = ["SettledRun", "settled_run"]
+from sim.analysis.slips import Slips, motion_slips
 
 _SECONDS = 0.8
 _HIGHEST_LINE = 2500.0

@@ -14,26 +14,22 @@ average over strengths, each by how well it fits, tells how much of the complian
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.condition import Condition
 from models.errors import ParameterError
 from models.show import short_repr
 from noise.identification.evidence import Evidence, elastomer_stiffness
-from noise.identification.ring_down import find_ring_down, ring_evidence
+from noise.identification.ring_down import RingDown, find_ring_down, ring_evidence
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from models.condition import Condition
     from noise.identification.bushing_fit import Known
-    from noise.identification.ring_down import RingDown
 
-__all__ = ["StaticTest", "static_evidence", "static_notes", "static_test"]
 
 _POINTS = 4000
 """Averages of neighbouring samples that are looked at, at most."""

@@ -7,26 +7,23 @@ shipped bench's where nothing is. How far off these are, levels tell.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import welch
 
 from models.errors import ParameterError
+from models.rig import Rig
 from noise.diagnosis.bench.units import unit_of
 from sim.run import simulate
 from sim.temperature import at_temperature
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
     from noise.identification.measured import Measured
 
-__all__ = ["level_offsets", "structure_notes"]
 
 _BAND = 50.0, 10e3
 """In which levels are compared [Hz]; assumed."""

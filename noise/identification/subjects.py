@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from noise.identification.excerpts import excerpts_of
+from noise.identification.excerpts import Excerpts, excerpts_of
 from sim.bushing import LumpedBushing
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from noise.identification.bushing_fit import Known
-    from noise.identification.excerpts import Excerpts
     from noise.identification.measured import Measured
     from noise.identification.outcome import Seen
 
-__all__ = ["Subject", "subjects_of"]
 
 _LEAST_DROP = 0.05
 """What the critical torque exceeds the kinetic one by where a search begins, at least [-];

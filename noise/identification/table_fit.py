@@ -8,26 +8,23 @@ search follows no slope.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from joblib import Parallel, delayed
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
+from models.rig import Rig
 from noise.diagnosis.fit.pattern_search import pattern_search
 from noise.identification.quantities import QUANTITIES
 from noise.identification.settled_run import SettledRun, settled_run
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
     from noise.identification.table_number import TableNumber
 
-__all__ = ["TableFit", "TableScore", "fit_table", "held_against", "score_table"]
 
 _UNUSABLE = 100.0
 

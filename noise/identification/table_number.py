@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
@@ -14,12 +15,6 @@ from models.foreign_file import refusing
 from models.show import short_repr
 from noise.base.tables import read_table
 from noise.identification.quantities import QUANTITIES
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-__all__ = ["COLUMNS", "TableNumber", "read_numbers"]
 
 COLUMNS = (
     "item", "value", "unit", "interference_mm", "support_stiffness_Nm_rad", "speed_rad_s",

@@ -8,33 +8,28 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.condition import FIXED
-from models.rig import LawSpec
+from models.rig import LawSpec, Rig
 from models.rig_file import rig_text
 from noise.base.interval import SURE_90
 from noise.identification.evidence import UNITS, table_evidence, with_evidence
 from noise.identification.outcome import Identification, Number
 from noise.identification.static_test import static_evidence, static_notes
-from noise.identification.table_fit import fit_table, score_table
+from noise.identification.table_fit import TableFit, fit_table, score_table
 from noise.identification.table_number import TableNumber
 from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
     from noise.identification.known import Beforehand
     from noise.identification.measured import Measurements
-    from noise.identification.table_fit import TableFit
 
-__all__ = ["identify_from_table"]
 
 _WIDTH = 0.4
 """Relative standard deviation of what is searched about the known rig [-]; assumed."""

@@ -11,38 +11,13 @@ and stiffness alone; it is a feature of its own because trees are poor at divisi
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from models.condition import FIXED
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from models.condition import Condition
-
-__all__ = [
-    "INTERFERENCE_RANGE",
-    "KINDS",
-    "LONGEST",
-    "MATERIAL",
-    "QUANTITIES",
-    "RATES",
-    "SHORTEST",
-    "SPEED_RANGE",
-    "SUPPORT_RANGE",
-    "n_segment_features",
-    "of_channels",
-    "others_of",
-    "scaled",
-    "segment_features",
-    "subset_of",
-    "unscaled",
-]
+from models.condition import FIXED, Condition
 
 MATERIAL = "fluorocarbon"
 """Of all bushings that the intervals hold for."""

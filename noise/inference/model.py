@@ -13,12 +13,16 @@ The population that the intervals hold for is that of `noise.training.inference.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.table import recording_features
+from models.condition import Condition
 from models.show import short_repr
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import QuantileForest
@@ -39,16 +43,8 @@ from noise.inference.inputs import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-    from typing import Any
-
-    from numpy.typing import NDArray
-
-    from models.condition import Condition
     from noise.recordings.blocks import RecordingBlocks
 
-__all__ = ["Inference", "Inferred", "Interval", "infer_stretch", "load_inference"]
 
 _NARROWER = 0.8
 """An interval as wide as this share of the one known beforehand, or wider, is none [-];

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,8 +13,6 @@ from models.show import short_repr
 from noise.screening.design.environments import DRY
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matplotlib.axes import Axes
     from pandas import DataFrame
 
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     from noise.screening.parts.statistics import Statistics
     from noise.screening.ranking.margins import CriticalPoint
     from noise.screening.ranking.ranking import Standing
-
-__all__ = ["Screening"]
 
 
 @short_repr

@@ -10,18 +10,22 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError
+from models.rig import Rig
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
+from noise.batch import Journal
+from noise.screening.design.design import Design, Swinging, Use
 from noise.screening.design.environments import DRY, environment, in_environment
 from noise.screening.design.loading import load_designs
-from noise.screening.map.batches import batch_evaluator, keeping
-from noise.screening.map.grid import shared_grid, shared_motions
-from noise.screening.map.mapping import map_design
+from noise.screening.map.batches import Evaluator, batch_evaluator, keeping
+from noise.screening.map.grid import Grid, shared_grid, shared_motions
+from noise.screening.map.mapping import DesignMap, map_design
 from noise.screening.map.provenance import fits_remark
 from noise.screening.outcome import Screening
 from noise.screening.parts.statistics import statistics_of
@@ -30,19 +34,6 @@ from noise.screening.ranking.margins import critical_points
 from noise.screening.ranking.never_slips import why_never_slipping
 from noise.screening.ranking.ranking import standings
 from sim.effects import EFFECTS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from pathlib import Path
-
-    from models.rig import Rig
-    from noise.batch import Journal
-    from noise.screening.design.design import Design, Swinging, Use
-    from noise.screening.map.batches import Evaluator
-    from noise.screening.map.grid import Grid
-    from noise.screening.map.mapping import DesignMap
-
-__all__ = ["DEFAULT_SIMULATIONS", "screen"]
 
 DEFAULT_SIMULATIONS = 500
 """Of a map, more or less: what two cores do of the calibrated fluorocarbon in eight seconds."""

@@ -5,8 +5,6 @@ from __future__ import annotations
 from noise.thesis.row import Column, Row, between, number
 from sim.analysis.thesis_listing import STEP
 
-__all__ = ["converter", "lengths"]
-
 _BIT = 2.5 / 2**12
 """Of a 12-bit converter over +-1.25 V [V]."""
 

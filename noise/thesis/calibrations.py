@@ -8,19 +8,11 @@ printed one; as printed it is not. The second regression of Table C1 repeats the
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from noise.thesis.row import Row, number
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-__all__ = [
-    "POTENTIOMETER", "POTENTIOMETER_ANGLES", "TORQUE_CELL", "TORQUE_CELL_TORQUES",
-    "potentiometer", "regression", "torque_cell", "transducers",
-]  # fmt: skip
 
 POTENTIOMETER = (0.0020, 0.0511, 0.0777, 0.1035, 0.1581, 0.2140, 0.2410, 0.3161)
 """Voltages of Table B1 [V]."""

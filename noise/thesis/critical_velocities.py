@@ -6,8 +6,8 @@ anywhere below 7.5. What ends it is the same for all: `sim.analysis.critical_spe
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import inf, isinf, nan
-from typing import TYPE_CHECKING
 
 from models.condition import FIXED
 from noise.thesis.row import Column, Published, Row, above, below, between, number
@@ -25,11 +25,6 @@ from noise.thesis.runs import (
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.critical_speeds import SPEEDS, critical_speeds
 from sim.analysis.slips import LEAST_SUDDEN
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-__all__ = ["MEASURED", "TRANSITIONS", "contradiction", "simulated", "transitions"]
 
 _STEP = SPEEDS[1] - SPEEDS[0]
 _SECONDS = 1.0

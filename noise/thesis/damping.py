@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from noise.thesis.row import Column, Row, above, below, number
 from noise.thesis.runs import (
@@ -18,11 +18,6 @@ from noise.thesis.runs import (
 )
 from sim.analysis.critical_damping import critical_damping, largest_sticking
 from sim.analysis.slips import LEAST_SUDDEN
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-__all__ = ["critical", "measured"]
 
 _CASE = Case(7.5, 0.279, SHORT)
 _HIGHEST = 0.3

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-__all__ = ["WHY"]
 
 _LAME = (
     "Lame's pressure is linear in the interference and the sleeve's stiffness does not depend on "

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from noise.thesis.row import Row, number
 
-__all__ = ["misprints"]
-
 _MISPRINTS = (
     # Williams, Landel and Ferry (1955)
     ("wlf_constant", "(2.1), first", "1", "8.88", 8.86, 1e-3),

@@ -9,26 +9,17 @@ as the shipped rig's, are in `noise.thesis.anchors`.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.rig import Beams
 from noise.thesis.exact_beams import ClampOnBeams, RootMotion, natural_frequencies
 from noise.thesis.row import Row, number
 from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, Case, rig_of, strongest_line
 from sim.bushing import lumped_bushing
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from models.rig import Beams
-
-__all__ = [
-    "beam_modes", "clamp_modes", "clamp_on_beams", "rigidly_anchored", "squeal", "torsional_modes",
-]  # fmt: skip
 
 _LATERAL_STIFFNESS = 3500.0 * 4.4482216 / 0.0254
 """Of the bushing, 3500 lb/in [N/m]."""

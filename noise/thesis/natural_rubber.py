@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from noise.thesis.row import Column, Published, Row, above, below, number
 from noise.thesis.runs import (
@@ -18,11 +18,6 @@ from noise.thesis.runs import (
 )
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import LEAST_SUDDEN
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-__all__ = ["natural_rubber"]
 
 _NEW, _FILM, _CLEANED = "natural-rubber", "natural-rubber-film", "natural-rubber-film-removed"
 _INTERFERENCE_MM = 0.127

@@ -4,17 +4,10 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
-from noise.thesis.row import COLUMNS
+from noise.thesis.row import COLUMNS, Row
 from noise.thesis.runs import constant_note
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from noise.thesis.row import Row
-
-__all__ = ["measured_counts", "thesis_page", "verdict_counts"]
 
 _TEXT = """\
 # The thesis's numbers, checked

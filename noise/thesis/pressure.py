@@ -8,17 +8,11 @@ depend on the interference at all. The sleeve's wall and hardness are chosen for
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
+from models.bushing import Sleeve
 from noise.thesis.row import Row, number
 from noise.thesis.runs import THESIS, rig_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from models.bushing import Sleeve
-
-__all__ = ["stiffness", "torques"]
 
 _MIDDLE = 0.279
 """Interference to which others are compared [mm]."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from numpy.typing import ArrayLike
+
 from features.kernels.harmonics import analyse_harmonics
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from sim.analysis.slips import Slips
-
-__all__ = ["repetition_rate"]
 
 
 def repetition_rate(slips: Slips, torque: ArrayLike, rate: float) -> float:

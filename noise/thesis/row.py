@@ -12,8 +12,6 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-__all__ = ["COLUMNS", "Column", "Published", "Row", "above", "below", "between", "number"]
-
 COLUMNS = (
     "item", "condition", "unit", "published", "listing", "exact", "calibrated", "verdict",
 )  # fmt: skip

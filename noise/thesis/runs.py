@@ -7,42 +7,28 @@ the calibrated contact never sticks truly, and of true stick the count is that o
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, TypedDict
+from typing import TypedDict
 
 import numpy as np
 
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
 from models.condition import FIXED
+from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from noise.base.remarks import constant_remark
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.regime import LEAST_OSCILLATION
-from sim.analysis.slips import find_slips, motion_slips
-from sim.analysis.thesis_listing import STEP, run_listing
+from sim.analysis.slips import Slips, find_slips, motion_slips
+from sim.analysis.thesis_listing import STEP, ListingRun, run_listing
 from sim.constant_version import constant_version
-from sim.motion import simulate_motion
+from sim.motion import Motion, simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from models.rig import Rig
-    from sim.analysis.slips import Slips
-    from sim.analysis.thesis_listing import ListingRun
-    from sim.motion import Motion
-
-__all__ = [
-    "CALIBRATED", "LONG", "RATE", "SHORT", "THESIS", "Case", "acceleration", "both",
-    "constant_note", "cycle_frequency", "listing_peak_speed", "listing_run",
-    "listing_slip_frequency", "listing_sudden_share", "mean_torque", "motion", "oscillation",
-    "peak_pressure", "peak_speed", "rig_of", "slip_frequency", "slip_pattern", "strongest_line",
-    "strongest_share", "sudden_share", "third_over_second", "torque_swing",
-]  # fmt: skip
 
 THESIS, CALIBRATED = "fluorocarbon-thesis", "fluorocarbon"
 """Materials of the columns `exact` and `calibrated`."""

@@ -9,8 +9,8 @@ model is also run with 0.080, that at 3745 Nm/rad.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,19 +29,6 @@ from noise.thesis.runs import (
     strongest_line,
     third_over_second,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-__all__ = [
-    "BOUNDED",
-    "at_fixed_clamp",
-    "bounded",
-    "constant",
-    "falling_with_interference",
-    "harmonics",
-    "rising",
-]
 
 _MODES = {LONG: 250.0, SHORT: 310.0}
 """First torsional mode, measured [Hz]."""

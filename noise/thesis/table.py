@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 from noise.thesis import (
     acquisition,
@@ -23,13 +23,7 @@ from noise.thesis import (
     waveforms,
 )
 from noise.thesis.explanations import WHY
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from noise.thesis.row import Row
-
-__all__ = ["GROUPS", "thesis_rows"]
+from noise.thesis.row import Row
 
 GROUPS: tuple[Callable[[], Iterable[Row]], ...] = (
     calibrations.potentiometer,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+
+import numpy as np
 
 from models.condition import FIXED
 from noise.thesis.row import Column, Row, below, number
@@ -22,13 +24,6 @@ from noise.thesis.runs import (
     peak_speed,
 )
 from sim.analysis.regime import LEAST_OSCILLATION
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    import numpy as np
-
-__all__ = ["creak", "first_slip", "friction", "peaks", "silicone"]
 
 _SPEEDS = (1.0, 2.5, 5.0, 7.5, 10.0, 13.0)
 _SILICONE_SPEEDS = (0.25, 1.0, 5.0, 17.0)

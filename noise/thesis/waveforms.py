@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import nan
-from typing import TYPE_CHECKING
 
 from models.condition import FIXED
 from noise.thesis.row import Column, Row, above, below, number
@@ -20,11 +20,6 @@ from noise.thesis.runs import (
 )
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import LEAST_SUDDEN
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-__all__ = ["amplitudes", "patterns", "regimes"]
 
 _STICK_SLIP = above(LEAST_SUDDEN, "stick-slip")
 _NO_STICK_SLIP = below(LEAST_SUDDEN, "no stick-slip")

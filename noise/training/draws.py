@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal import lfilter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["coloured_noise", "log_uniform", "low_pass", "wandering"]
 
 
 def log_uniform(low: float, high: float, rng: np.random.Generator) -> float:

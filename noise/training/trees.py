@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.base.trees import LEAF, BoostedTrees, QuantileForest
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["PER_LEAF", "as_arrays", "grow_boosted_trees", "grow_quantile_forest"]
 
 PER_LEAF = 8
 """Values that a leaf of a quantile forest keeps: the middles of as many equal shares."""

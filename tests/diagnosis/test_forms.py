@@ -12,10 +12,11 @@ from models.rig import LawSpec
 from models.transfer_functions.filtering import filter_signal
 from models.transfer_functions.impulse_response import impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.fit.case_comparison import CaseComparison, Model
+from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.forms.drawn import drawn_forms
 from noise.diagnosis.fit.forms.estimated import estimated_forms
 from noise.diagnosis.fit.forms.wiener import Noise, wiener_estimate
+from noise.diagnosis.simulated.model_runs import Model
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG, at, run
 

@@ -9,6 +9,7 @@ one, is the same in all recordings, and the channel follows from the torque in a
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,16 +18,10 @@ from models.units import CHANNEL_UNITS
 from noise.diagnosis.bench.units import factor_words, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from models.recording import Recording
     from models.rig import Rig
     from noise.diagnosis.bench.levels import Levels, PathFit
 
-__all__ = [
-    "backwards", "is_told", "misplaced_torque", "swapped_channels", "turned_channels",
-    "wrong_units",
-]  # fmt: skip
 
 _KINDS = ("torque", "acceleration", "pressure", "angle")
 

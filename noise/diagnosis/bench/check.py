@@ -6,9 +6,12 @@ cause for whatever else it is shown. What is found is told, and no cause is name
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError
+from models.recording import Recording
+from models.rig import Rig
 from noise.diagnosis.bench.channels import (
     backwards,
     swapped_channels,
@@ -21,16 +24,11 @@ from noise.diagnosis.bench.levels import levels_of
 from noise.diagnosis.bench.materials import another_level, another_material
 from noise.diagnosis.bench.silent import noise_findings
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from models.recording import Recording
-    from models.rig import Rig
     from noise.diagnosis.case import Case
-    from sim.effects.effect import Effect
 
-__all__ = ["bench_findings", "unit_findings"]
 
 _ANY_RIG = 3.0
 """Times that the torque of a rig may differ from another's of its kind [-]; assumed."""

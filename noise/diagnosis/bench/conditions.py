@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,13 +11,10 @@ from scipy.optimize import linear_sum_assignment
 from noise.diagnosis.bench.units import factor_words, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from models.rig import Rig
     from noise.diagnosis.bench.levels import Levels
     from noise.diagnosis.case import Case
 
-__all__ = ["shuffled_conditions", "speed_words", "wrong_speed"]
 
 _SPEED = 0.2
 """Difference of logarithms of the speed that is stated and that of the angle; a speed that is read

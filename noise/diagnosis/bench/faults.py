@@ -6,20 +6,17 @@ clipping does to it is known; its range is told, so that somebody sets it higher
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from models.recording import Recording
     from models.rig import Rig
 
-__all__ = ["Sounding", "clipped_channels", "dead_channels", "without_dead_channels"]
 
 KINDS = ("torque", "acceleration", "pressure", "angle")
 

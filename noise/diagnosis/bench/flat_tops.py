@@ -9,18 +9,15 @@ less where peaks have unequal heights. More is an overload, unless the simulatio
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import NDArray
-
     from models.recording import Recording
 
-__all__ = ["flat_channels", "pile_ups"]
 
 _KINDS = ("torque", "acceleration", "pressure")
 

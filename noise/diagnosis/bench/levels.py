@@ -8,26 +8,22 @@ whatever the contact does, so that an effect moves them little and a wrong unit 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.kernels.spectra import segment_spectra
 from models.condition import known_condition
+from models.rig import Rig
 from noise.diagnosis.evidence.bands import USABLE
-from noise.diagnosis.simulated.transfer_functions import predict
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
     from models.recording import Recording
-    from models.rig import Rig
-    from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 
-__all__ = ["Levels", "PathFit", "levels_of", "path_fit"]
 
 KINDS = ("torque", "acceleration", "pressure", "angle")
 

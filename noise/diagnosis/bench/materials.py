@@ -7,29 +7,26 @@ swing and frequency of the torque in every recording, and the rig file does not.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import BushingNoiseError
+from models.recording import Recording
+from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from noise.diagnosis.bench.channels import SWINGING
 from noise.diagnosis.simulated.nominal import nominal_repeats
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.recording import Recording
-    from models.rig import Rig
     from noise.diagnosis.bench.levels import Levels
     from noise.diagnosis.case import Case
-    from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
-    from sim.effects.effect import Effect
 
-__all__ = ["another_level", "another_material"]
 
 _LEAST = 0.58
 """Share of the kinetic torque that is left at some condition, whatever is missing [-]: an effect

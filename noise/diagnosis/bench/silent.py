@@ -9,27 +9,24 @@ nothing, it is said that units were not checked.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from models.condition import known_condition
+from models.rig import Rig
 from models.units import CHANNEL_UNITS
 from noise.diagnosis.bench.channels import SWINGING, is_told
-from noise.diagnosis.bench.levels import levels_of
+from noise.diagnosis.bench.levels import Levels, levels_of
 from noise.diagnosis.bench.units import factor_words, unit_of
 from noise.diagnosis.preparation.sensor_noise import estimated_noise
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 from sim.acquisition import Acquisition
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
     from models.recording import Recording
-    from models.rig import Rig
-    from noise.diagnosis.bench.levels import Levels
     from noise.diagnosis.case import Case
-    from sim.effects.effect import Effect
 
-__all__ = ["noise_findings", "unchecked_units"]
 
 _OUTPUTS = ("acceleration", "pressure")
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["factor_words", "length_unit", "unit_of"]
-
 _EXACT = 0.16
 """Difference of logarithms up to which a factor is that of a unit [-]; gains err by as much;
 assumed."""

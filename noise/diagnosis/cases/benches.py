@@ -8,11 +8,13 @@ known.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from models.rig import LawSpec
 from models.sensors import Sensor, Sensors
 from noise.diagnosis.cases.laws import OWN_LAWS
 from noise.diagnosis.cases.starts import STARTS
@@ -20,13 +22,6 @@ from noise.diagnosis.cases.strengths import drawn_effect
 from noise.diagnosis.cases.variants.common import log_uniform
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects import EFFECTS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from models.rig import LawSpec
-
-__all__ = ["DEPARTURES", "NOISE_DRAWN", "SIZES", "Bench", "draw_bench"]
 
 NOISE_DRAWN = (0.7, 1.6)
 """Between which the noise of a quiet bench's sensors lies, times that of `sim.acquisition`."""

@@ -8,18 +8,21 @@ rig: what the rig file predicts of it is then simulated once for all of them.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
+from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
+from models.rig import Fit, Rig
 from models.sensors import Sensors
 from noise.diagnosis.cases.benches import NOISE_DRAWN
-from noise.diagnosis.cases.rigs import OFFSETS, draw_setting, with_offsets
+from noise.diagnosis.cases.rigs import OFFSETS, Setting, draw_setting, with_offsets
 from noise.diagnosis.cases.starts import draw_start
 from noise.diagnosis.cases.strengths import drawn_effect
 from noise.diagnosis.cases.structures import THESIS, draw_structure, draw_trade
@@ -38,23 +41,9 @@ from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
 from sim.constant_version import irregular_effects
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
+from sim.effects.effect import ActiveEffect, activated
 from sim.pipeline import apply_sensor_effects, radiate_motion, sensor_signals
 from sim.timing import LEARNING
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.radiation.impulse_responses import ImpulseResponses
-    from models.rig import Fit, Rig
-    from noise.diagnosis.cases.rigs import Setting
-    from sim.effects.effect import ActiveEffect
-
-__all__ = [
-    "SHARED", "DrawnCase", "active_effect", "draw_case", "draw_offsets", "unknown_effect",
-]  # fmt: skip
 
 SHARED = 4
 """Cases of one rig."""

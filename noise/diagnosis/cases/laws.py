@@ -7,18 +7,13 @@ still does what it did.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+
+import numpy as np
 
 from models.rig import LawSpec
 from noise.diagnosis.cases.variants.common import log_uniform
 from sim.friction import friction_law
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import numpy as np
-
-__all__ = ["MATERIALS", "OWN_LAWS", "draw_law", "scaled_law"]
 
 MATERIALS = {
     "fluorocarbon": 0.09, "natural-rubber": 0.035, "natural-rubber-film-removed": 0.02,

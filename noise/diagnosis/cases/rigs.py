@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from models.condition import FIXED, KnownCondition
-from models.rig import Fit, LawSpec
+from models.rig import Fit, LawSpec, Rig
 from models.rig_file import load_material_rig
 from models.sensors import Sensors
 from noise.diagnosis.cases.benches import Bench, draw_bench
@@ -16,15 +18,6 @@ from sim.constant_version import constant_version
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 from sim.timing import DIAGNOSIS, REGIME_RATE
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    import numpy as np
-
-    from models.rig import Rig
-
-__all__ = ["OFFSETS", "Setting", "draw_setting", "with_offsets"]
 
 OFFSETS = (
     "elastomer_stiffness", "critical_torque", "kinetic_torque", "damping", "elastomer_inertia",

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.diagnosis.cases.variants.common import log_uniform
 from sim.shaft import LoggedSpeed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from numpy.typing import NDArray
-
     Course = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
-__all__ = ["STARTS", "draw_start"]
 
 _STEP = 5e-4
 """Of the times at which a course of speed is given [s]."""

@@ -9,16 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from models.rig import LawSpec
 from noise.diagnosis.cases.variants.common import log_uniform
 from sim.effects import EFFECTS
-
-if TYPE_CHECKING:
-    import numpy as np
-
-__all__ = ["drawn_effect"]
 
 Values = dict[str, float]
 Draw = Callable[[float, "np.random.Generator"], float]

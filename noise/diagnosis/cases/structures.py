@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft
 
 from models.radiation.impulse_responses import ImpulseResponses
@@ -14,11 +15,8 @@ from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from sim.bushing import LumpedBushing
 
-__all__ = ["Structure", "Trade", "draw_structure", "draw_trade"]
 
 _LINES = np.arange(10.0, 10_001.0, 2.5)
 """Of the hammer test [Hz]."""

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-__all__ = ["KINDS", "Truth", "seen_through"]
 
 KINDS = {
     "none": 0.16,

@@ -3,30 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Mapping, Sequence
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.diagnosis.cases.truth import KINDS
 from noise.diagnosis.causes.joint import Hypothesis, marginals, normalised
-from noise.diagnosis.causes.local_cases import bench_of, local_cases
+from noise.diagnosis.causes.local_cases import LocalCase, bench_of, local_cases
 from noise.diagnosis.causes.local_model import fit_local_model
+from noise.diagnosis.causes.posterior import Posterior
 from noise.diagnosis.causes.verdict import ALONE
+from noise.diagnosis.evidence.summary import CaseTable
 from sim.effects import EFFECTS
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
-    from numpy.typing import NDArray
-
     from noise.diagnosis.case import Case
-    from noise.diagnosis.causes.local_cases import LocalCase
-    from noise.diagnosis.causes.posterior import Posterior
-    from noise.diagnosis.evidence.summary import CaseTable
-    from sim.effects.effect import Effect
 
-__all__ = ["local_answer"]
 
 NONE: Hypothesis = frozenset()
 SHORTLIST = 8

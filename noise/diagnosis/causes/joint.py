@@ -6,15 +6,10 @@ or up to three effects.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-__all__ = ["Hypothesis", "joint_probabilities", "marginals", "normalised", "with_none"]
 
 Hypothesis = frozenset[str]
 

@@ -7,27 +7,24 @@ read is made again, what cannot be written is not kept, and the oldest files go.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from platformdirs import user_cache_path
 
 from models.errors import ParameterError
 from noise.base.model_file import ModelKind, load_model, save_model
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
     from noise.diagnosis.causes.posterior import Posterior
 
     Known = dict[tuple[frozenset[str], int], NDArray[np.float64]]
 
-__all__ = ["LocalCache"]
 
 _KIND = ModelKind("local cases", 1, "bushing-noise diagnose", ("", ""))
 

@@ -10,13 +10,18 @@ from __future__ import annotations
 
 import math
 import zlib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from models.condition import known_condition
+from models.condition import KnownCondition, known_condition
 from models.errors import ParameterError
+from models.radiation.impulse_responses import ImpulseResponses
+from models.recording import Recording
+from models.rig import Rig
 from noise.batch.pool import ending_with_this
 from noise.diagnosis.cases.draw import active_effect, draw_offsets, unknown_effect
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
@@ -29,25 +34,15 @@ from noise.diagnosis.simulated.repeats import Scatter, record, run_signals
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, chain_of
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
+from sim.effects.effect import ActiveEffect, Effect, activated
 from sim.timing import LEARNING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.condition import KnownCondition
-    from models.radiation.impulse_responses import ImpulseResponses
-    from models.recording import Recording
-    from models.rig import Rig
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
-    from sim.effects.effect import ActiveEffect, Effect
 
     Job = tuple[frozenset[str], int]
 
-__all__ = ["LONGEST", "MOST", "Bench", "LocalCase", "Run", "bench_of", "local_cases"]
 
 LONGEST = 1.0
 """Of the end of a recording that is looked at [s]: as much has to be simulated many times;

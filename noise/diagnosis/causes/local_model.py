@@ -8,21 +8,15 @@ of its members' log-odds; a ridge holds it there, as strongly as cases left out 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import minimize, minimize_scalar
 from scipy.special import log_softmax
 
 from noise.diagnosis.causes.posterior import CAUSES
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["LocalModel", "fit_local_model"]
 
 _LARGEST = 12.0
 """Of a logarithm of odds; no library is large enough to tell more; assumed."""

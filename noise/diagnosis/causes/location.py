@@ -11,24 +11,20 @@ the number of looks.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from noise.diagnosis.causes.stage_nulls import STAGES, largest_of, stage_of
+from noise.diagnosis.causes.stage_nulls import STAGES, StageNulls, largest_of, stage_of
 from noise.diagnosis.evidence.bands import BAND_EDGES
 from noise.diagnosis.evidence.evidence import deviations
 from noise.diagnosis.findings import LARGEST_GAP, SURE, Location, StageFinding
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from numpy.typing import NDArray
-
-    from noise.diagnosis.causes.stage_nulls import StageNulls
     from noise.diagnosis.evidence.summary import CaseTable
 
-__all__ = ["differences", "locate", "stage_findings"]
 
 _FLAT = len(STAGES) / 140.0
 """p-value of the measurement where a channel's peaks are flat [-]: none of 139 development cases

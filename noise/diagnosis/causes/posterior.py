@@ -8,10 +8,13 @@ trees have not seen.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import BoostedTrees
@@ -19,15 +22,8 @@ from noise.diagnosis.evidence.evidence import evidence
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-    from typing import Any
-
-    from numpy.typing import NDArray
-
     from noise.diagnosis.evidence.summary import CaseTable
 
-__all__ = ["CAUSES", "Posterior", "calibrated", "load_posterior", "odds_features"]
 
 CAUSES = (*sorted(EFFECTS), "parameters", "unknown", "none")
 """What can be the matter."""

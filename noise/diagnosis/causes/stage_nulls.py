@@ -10,27 +10,21 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.diagnosis.evidence.evidence import deviations, standard_errors
 from sim.effects.effect import Stage
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-    from typing import Any
-
-    from numpy.typing import NDArray
-
     from noise.diagnosis.evidence.summary import CaseTable
 
-__all__ = [
-    "STAGES", "StageNulls", "largest_of", "learn_stage_nulls", "load_stage_nulls", "stage_of",
-]  # fmt: skip
 
 STAGES = tuple(stage.value for stage in Stage)
 """In the order of the chain."""

@@ -10,21 +10,19 @@ its errors look like those of a sensor's gain or of the plate.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from models.sensors import Sensors
 from models.units import CHANNEL_UNITS
 from noise.diagnosis.evidence.bands import USABLE
 from noise.diagnosis.evidence.bench_context import lacking_coherence
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from models.recording import Recording
     from models.rig import Rig
-    from models.sensors import Sensors
 
-__all__ = ["NOISIEST", "poor_responses", "unlearned_sensors"]
 
 NOISIEST = 6.0
 """Noise of the sensors that were learned with, over that of good ones at most [-]."""

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Collection
 
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
-
-if TYPE_CHECKING:
-    from collections.abc import Collection
-
-__all__ = ["channel_costs", "unseen_causes"]
 
 _SHOWN_BY = {
     Stage.STRUCTURE: {"acceleration", "pressure"},

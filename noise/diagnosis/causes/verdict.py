@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.causes.joint import Hypothesis, marginals
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Container, Mapping, Sequence
-
     from noise.diagnosis.gap.distance import Gap
 
-__all__ = ["ALONE", "equivalent_pairs", "likeliest", "needs_explaining", "next_measurement"]
 
 ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"}))
 """Hypotheses of a cause that no effect is named beside."""

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from noise.diagnosis.evidence.channel_summary import hanning
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["angle_summary", "shaft_speed"]
 
 _SPEED_LIMIT = 60.0
 """The shaft's speed follows its angle up to so many hertz, half as much again fading."""

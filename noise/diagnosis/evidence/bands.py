@@ -3,25 +3,13 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.kernels.spectra import segment_spectra
 from noise.diagnosis.evidence.channel_kernel import band_power_sums
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = [
-    "BAND_EDGES",
-    "USABLE",
-    "Bands",
-    "band_bins",
-    "band_levels",
-    "bins_between",
-    "segment_frequency",
-]
 
 BAND_EDGES = np.array([
     30.0, 60.0, 120.0, 180.0, 260.0, 350.0, 500.0, 700.0, 1000.0, 1400.0, 2000.0, 2800.0, 4000.0,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,12 +12,9 @@ from models.condition import same_support
 from sim.acquisition import Acquisition
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from models.recording import Recording
     from models.rig import Rig
 
-__all__ = ["CONTEXT", "bench_context", "lacking_coherence"]
 
 _KINDS = ("torque", "acceleration", "pressure", "angle")
 

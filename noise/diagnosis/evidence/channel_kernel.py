@@ -11,11 +11,6 @@ from numba import njit
 
 from models.compilation import COMPILED, PART
 
-__all__ = [
-    "band_power_sums", "describe_distribution", "detrend_and_window", "line_ratios",
-    "power_quantiles", "quantile_in_place", "thin_out",
-]  # fmt: skip
-
 _FAST = {"reassoc", "contract", "nsz"}
 """Sums in any order, which lets the processor add several numbers at once."""
 

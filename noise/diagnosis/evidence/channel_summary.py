@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import rfft
 
 from features.kernels.spectra import segment_spectra
@@ -21,11 +21,6 @@ from noise.diagnosis.evidence.channel_kernel import (
     power_quantiles,
     thin_out,
 )
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["channel_summary", "hanning", "hum_summary", "quantile"]
 
 Numbers = dict[str, float]
 

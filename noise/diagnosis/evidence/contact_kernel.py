@@ -12,11 +12,6 @@ from numba import njit
 from models.compilation import COMPILED, PART
 from noise.diagnosis.evidence.channel_kernel import quantile_in_place
 
-__all__ = [
-    "describe_rows", "describe_slips", "gather_rings", "gather_slipping", "gather_sticking",
-    "mean_cycle",
-]  # fmt: skip
-
 
 @njit(**PART)
 def _class_of(value, edges):

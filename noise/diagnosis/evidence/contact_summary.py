@@ -17,8 +17,10 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.kernels.slips import in_intervals, slip_intervals
+from models.rig import Fit
 from noise.diagnosis.evidence.channel_kernel import describe_distribution
 from noise.diagnosis.evidence.contact_kernel import (
     describe_rows,
@@ -28,12 +30,8 @@ from noise.diagnosis.evidence.contact_kernel import (
 from noise.diagnosis.evidence.slip_summary import cycle_shape, torque_by_speed
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.rig import Fit
     from noise.diagnosis.evidence.reconstruction import Reconstruction
 
-__all__ = ["contact_summary", "slip_starts"]
 
 Numbers = dict[str, float]
 

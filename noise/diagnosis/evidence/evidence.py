@@ -13,24 +13,18 @@ from __future__ import annotations
 
 import itertools
 import warnings
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.diagnosis.evidence.bench_context import CONTEXT
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from noise.diagnosis.evidence.summary import CaseTable
 
-__all__ = [
-    "LARGEST", "MISSING", "PARTS", "aligned", "deviations", "evidence", "evidence_names",
-    "scale_of", "standard_errors",
-]  # fmt: skip
 
 PARTS = ("middle", "sure", "spread", "largest", "with_speed", "repeats", "as_is")
 """Of each number's differences over the recordings of a case, in the order of the row."""

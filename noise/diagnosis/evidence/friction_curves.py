@@ -9,10 +9,12 @@ what gains differ by from run to run, which no number of slips averages out.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.recording import Recording
+from models.rig import Rig
 from models.show import short_repr
 from noise.base.interval import SURE_90
 from noise.diagnosis.evidence.angle_summary import shaft_speed
@@ -20,14 +22,6 @@ from noise.diagnosis.evidence.contact_summary import slip_starts
 from noise.diagnosis.evidence.reconstruction import reconstruct
 from noise.diagnosis.simulated.repeats import Scatter
 from sim.bushing import lumped_bushing
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.recording import Recording
-    from models.rig import Rig
-
-__all__ = ["FrictionCurves", "TorqueCurve", "friction_curves"]
 
 _SPEED_EDGES = np.array([2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 40.0, 50.0])
 """Of bins of the sliding speed [rad/s]."""

@@ -10,8 +10,6 @@ from numba import njit
 
 from models.compilation import COMPILED
 
-__all__ = ["cross_powers", "quarter_moments"]
-
 _FAST = {"reassoc", "contract", "nsz"}
 """Sums in any order, which lets the processor add several numbers at once."""
 

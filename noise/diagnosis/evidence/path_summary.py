@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from features.kernels.spectra import segment_spectra
@@ -19,11 +19,6 @@ from noise.diagnosis.evidence.bands import USABLE, band_bins, bins_between, segm
 from noise.diagnosis.evidence.channel_kernel import band_power_sums
 from noise.diagnosis.evidence.channel_summary import quantile
 from noise.diagnosis.evidence.path_kernel import cross_powers, quarter_moments
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["common_residual", "path_summary"]
 
 Numbers = dict[str, float]
 

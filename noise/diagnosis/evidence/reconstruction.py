@@ -16,17 +16,12 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from sim.bushing import LumpedBushing
 
-__all__ = [
-    "LEAD", "LIMIT", "TAIL", "Reconstruction", "closed_length", "closed_loop", "closed_spectrum",
-    "reconstruct",
-]  # fmt: skip
 
 LIMIT = 8000.0
 """Highest frequency kept [Hz], at most a third of the rate; its flank ends a third above;

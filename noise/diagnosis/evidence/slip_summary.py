@@ -17,16 +17,14 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.diagnosis.evidence.contact_kernel import gather_rings, gather_slipping, mean_cycle
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from models.rig import Fit
     from noise.diagnosis.evidence.reconstruction import Reconstruction
 
-__all__ = ["cycle_shape", "torque_by_speed"]
 
 _BEFORE = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)
 """Times before a slip starts at which the torque is looked at [s]."""

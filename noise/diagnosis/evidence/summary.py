@@ -9,13 +9,17 @@ condition and between repeats of one.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from models.condition import known_condition
+from models.condition import Condition, known_condition
+from models.recording import Recording
+from models.rig import Rig
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.evidence.angle_summary import angle_summary, shaft_speed
 from noise.diagnosis.evidence.bands import band_levels
 from noise.diagnosis.evidence.bench_context import bench_context
@@ -26,19 +30,7 @@ from noise.diagnosis.evidence.reconstruction import closed_spectrum, reconstruct
 from noise.diagnosis.simulated.nominal import condition_key, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict_outputs
 from sim.bushing import lumped_bushing
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.condition import Condition
-    from models.recording import Recording
-    from models.rig import Rig
-    from models.transfer_functions.transfer_function import TransferFunction
-    from sim.effects.effect import Effect
-
-__all__ = ["CaseTable", "NominalNumbers", "case_table", "same_channels", "summary"]
+from sim.effects.effect import Effect
 
 Numbers = dict[str, float]
 

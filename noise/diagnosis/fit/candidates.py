@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 
 from models.rig import LawSpec
 from noise.diagnosis.cases.strengths import drawn_effect
 from sim.effects import EFFECTS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from sim.effects.effect import Effect
-
-__all__ = ["drawn_candidates", "plain_candidates"]
+from sim.effects.effect import Effect
 
 _BEYOND_DEFAULT = (0.1, 0.3, 1.0, 3.0, 10.0)
 """Strengths tried of an effect that is not the library's, over its default."""

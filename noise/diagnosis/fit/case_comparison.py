@@ -9,37 +9,32 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
+from models.recording import Recording
+from models.rig import Rig
 from noise.diagnosis.evidence.evidence import aligned
-from noise.diagnosis.evidence.summary import same_channels, summary
-from noise.diagnosis.gap.distance import group_costs, residual_parts
+from noise.diagnosis.evidence.summary import CaseTable, same_channels, summary
+from noise.diagnosis.gap.distance import Gap, Reference, group_costs, residual_parts
 from noise.diagnosis.gap.floor import references_of, repeat_gap
 from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.nominal import condition_key
 from noise.diagnosis.simulated.repeats import Scatter
 from sim.effects import EFFECTS
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.recording import Recording
-    from models.rig import Rig
-    from noise.diagnosis.evidence.summary import CaseTable
     from noise.diagnosis.fit.forms.form import Form
-    from noise.diagnosis.gap.distance import Gap, Reference
-    from sim.effects.effect import Effect
 
-__all__ = ["CaseComparison", "Model"]
 
 T = TypeVar("T")
 

@@ -10,17 +10,12 @@ interval is for what the effect closes, of which the fit has shown a part.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.base.interval import SURE_90
 from noise.diagnosis.gap.distance import closed_fraction
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["CLOSABLE", "Scores", "closed_interval", "closed_share", "rms"]
 
 CLOSABLE = 0.5
 """A gap is worth closing from so many floors above the floor; assumed."""

@@ -12,17 +12,15 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from noise.diagnosis.findings import StageFinding
 
-__all__ = ["ClosingOdds", "closed_of", "differing", "load_closing_odds", "room_of"]
 
 _HALF = 0.5
 """Floors above the floor at which a gap tells half as much as a large one; assumed, and the

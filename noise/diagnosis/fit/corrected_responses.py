@@ -7,22 +7,19 @@ those of the rig with the estimate in it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.condition import known_condition, same_support
+from models.rig import Rig
 from models.transfer_functions.measured import MeasuredResponse
 from noise.diagnosis.simulated.transfer_functions import shift_clamp_mode, with_chain_effects
 from sim.bushing import lumped_bushing
+from sim.effects.effect import ActiveEffect
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from models.rig import Rig
     from noise.diagnosis.fit.case_comparison import CaseComparison
-    from sim.effects.effect import ActiveEffect
-
-__all__ = ["corrected_responses", "is_in_responses"]
 
 
 def is_in_responses(active: ActiveEffect) -> bool:

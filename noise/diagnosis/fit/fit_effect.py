@@ -8,16 +8,17 @@ estimated from the recordings themselves. What comes nearest at a look is search
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.rig import LawSpec
 from noise.diagnosis.fit.candidates import drawn_candidates, plain_candidates
-from noise.diagnosis.fit.case_comparison import CaseComparison, Model
+from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.fit_parameters import (
     Fitted,
     different,
@@ -28,19 +29,8 @@ from noise.diagnosis.fit.fit_parameters import (
 from noise.diagnosis.fit.forms.drawn import drawn_forms
 from noise.diagnosis.fit.forms.estimated import estimated_forms
 from noise.diagnosis.fit.pattern_search import pattern_search
-from sim.effects.effect import Stage
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Effect
-
-__all__ = [
-    "fit_effect", "fitted_numbers", "is_stated", "number_spreads", "stated_candidates",
-    "strength_of",
-]  # fmt: skip
+from noise.diagnosis.simulated.model_runs import Model
+from sim.effects.effect import Effect, Stage
 
 _DRAWN = 18
 """Of the simulator's own forms tried, and of variants; what a fit may cost settles it, as all

@@ -7,27 +7,18 @@ missing (Kennedy and O'Hagan 2001; Brynjarsdottir and O'Hagan 2014).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.condition import Condition
 from noise.diagnosis.cases.rigs import OFFSETS
-from noise.diagnosis.fit.case_comparison import CaseComparison, Model
+from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.pattern_search import pattern_search
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.condition import Condition
-
-__all__ = [
-    "HOLD", "PRIOR", "Fitted", "different", "fit_parameters", "fitted_with_spreads",
-    "offset_cost", "split", "spreads",
-]  # fmt: skip
+from noise.diagnosis.simulated.model_runs import Model
 
 PRIOR = 0.12
 """Relative standard deviation of what a rig file may be wrong by; assumed."""

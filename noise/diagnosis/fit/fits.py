@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,25 +11,21 @@ import numpy as np
 from noise.base.interval import SURE_90
 from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.findings import EffectFinding
+from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit_effect import strength_of
+from noise.diagnosis.fit.fit_parameters import Fitted
 from noise.diagnosis.fit.illustrations import heard_of, illustrations_of, simulated_by
 from noise.diagnosis.fit.improve import improved_rig
 from noise.diagnosis.fit.remainder import remainder_of
 from noise.diagnosis.simulated.model_runs import ModelRuns
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
-    from noise.diagnosis.fit.case_comparison import CaseComparison
-    from noise.diagnosis.fit.fit_parameters import Fitted
     from noise.diagnosis.fit.hypothesis_fits import CaseFits, HypothesisFit
     from noise.diagnosis.fit.judge import Judged
     from noise.diagnosis.outcome import Diagnosis
-
-__all__ = ["add_fits"]
 
 
 def add_fits(

@@ -7,30 +7,20 @@ become, and the likeliest of those not yet fitted is next.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from noise.diagnosis.causes.joint import marginals, normalised
+from noise.diagnosis.causes.joint import Hypothesis, marginals, normalised
 from noise.diagnosis.causes.verdict import ALONE
-from noise.diagnosis.findings import SHOWN_IN
+from noise.diagnosis.findings import SHOWN_IN, StageFinding
+from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import CLOSABLE, rms
-from noise.diagnosis.fit.closing_odds import closed_of, differing, load_closing_odds
+from noise.diagnosis.fit.closing_odds import ClosingOdds, closed_of, differing, load_closing_odds
 from noise.diagnosis.fit.fit_effect import fit_effect
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from noise.diagnosis.causes.joint import Hypothesis
-    from noise.diagnosis.findings import StageFinding
-    from noise.diagnosis.fit.case_comparison import CaseComparison
-    from noise.diagnosis.fit.closing_odds import ClosingOdds
-    from noise.diagnosis.fit.fit_parameters import Fitted
-
-__all__ = ["CaseFits", "HypothesisFit", "fit_hypotheses", "settled", "updated"]
+from noise.diagnosis.fit.fit_parameters import Fitted
 
 _MOST = 5
 """Fits of a diagnosis, those of the user's own effects not counted; what a diagnosis may cost

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from models.recording import Recording
 from noise.diagnosis.evidence.friction_curves import friction_curves
-from noise.diagnosis.findings import Illustration
+from noise.diagnosis.findings import Illustration, LabelsAndLevels
 from noise.diagnosis.fit.labels_and_levels import labels_and_levels
-from noise.diagnosis.simulated.model_runs import Model
+from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from models.recording import Recording
     from noise.diagnosis.case import Case
-    from noise.diagnosis.findings import LabelsAndLevels
     from noise.diagnosis.fit.case_comparison import CaseComparison
-    from noise.diagnosis.simulated.model_runs import ModelRuns
 
     Simulated = Callable[[Recording], Recording]
 
-__all__ = ["heard_of", "illustrations_of", "simulated_by"]
 
 _DRAWN, _HEARD = 2, 3
 """Held-out recordings that are drawn, and that are listened to."""

@@ -9,32 +9,29 @@ improved only if recordings that no fit has seen agree with it, and nothing is l
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.change import changed_rig, multiplied
 from models.errors import ParameterError
-from models.rig import parse_spec
+from models.rig import LawSpec, Rig, parse_spec
 from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.first_answer import first_answer
-from noise.diagnosis.fit.case_comparison import CaseComparison, Model
+from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import rms
 from noise.diagnosis.fit.corrected_responses import corrected_responses, is_in_responses
 from noise.diagnosis.fit.fit_effect import is_stated, number_spreads
+from noise.diagnosis.fit.fit_parameters import Fitted
 from noise.diagnosis.fit.stated_fit import fit_again, fit_stated
 from noise.diagnosis.improvement import Improvement
-from noise.diagnosis.simulated.model_runs import with_effects
+from noise.diagnosis.simulated.model_runs import Model, with_effects
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from models.rig import LawSpec, Rig
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
-    from noise.diagnosis.fit.fit_parameters import Fitted
 
-__all__ = ["improved_rig"]
 
 CLOSED = 1.75
 """Floors up to which a gap counts as closed; assumed. Two of the simulated repeats that

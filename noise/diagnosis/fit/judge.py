@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.causes.joint import marginals, normalised
+from noise.diagnosis.causes.joint import Hypothesis, marginals, normalised
 from noise.diagnosis.causes.verdict import likeliest
-from noise.diagnosis.first_answer import known_effects
-from noise.diagnosis.fit.case_comparison import Model
+from noise.diagnosis.findings import StageFinding
+from noise.diagnosis.first_answer import FirstAnswer, known_effects
+from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.fit_parameters import fit_parameters, split
 from noise.diagnosis.fit.hypothesis_fits import CaseFits, fit_hypotheses, settled, updated
+from noise.diagnosis.simulated.model_runs import Model
 from noise.diagnosis.text.words import joined
 from sim.constant_version import irregular_effects
 from sim.effects import EFFECTS
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
     from noise.diagnosis.case import Case
-    from noise.diagnosis.causes.joint import Hypothesis
-    from noise.diagnosis.findings import StageFinding
-    from noise.diagnosis.first_answer import FirstAnswer
-    from noise.diagnosis.fit.case_comparison import CaseComparison
-    from sim.effects.effect import Effect
 
-__all__ = ["Judged", "judge", "untold"]
 
 _UNSEEN = 0.1
 """Probability before any fit of an effect that the posterior knows nothing of [-]; assumed."""

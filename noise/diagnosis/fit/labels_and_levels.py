@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from features.kernels.levels import a_weighted_level
+from models.recording import Recording
 from noise.classifier import load_classifier
 from noise.diagnosis.findings import LabelsAndLevels
 from noise.labels.segments import file_label, label_recording
-
-if TYPE_CHECKING:
-    from models.recording import Recording
-
-__all__ = ["labels_and_levels"]
 
 
 def labels_and_levels(

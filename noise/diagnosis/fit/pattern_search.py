@@ -7,16 +7,10 @@ with steps that shrink (Hooke and Jeeves 1961, J. ACM 8, 212).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["pattern_search"]
+from numpy.typing import NDArray
 
 _FARTHEST = 4
 """A step is repeated in one direction so often at most."""

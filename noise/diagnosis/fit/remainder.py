@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,11 +13,9 @@ from noise.diagnosis.fit.closing import rms
 from noise.diagnosis.gap.by_channel import worst_places
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from noise.diagnosis.fit.case_comparison import CaseComparison
+    from noise.diagnosis.simulated.model_runs import Model
 
-    from noise.diagnosis.fit.case_comparison import CaseComparison, Model
-
-__all__ = ["remainder_of"]
 
 _LEFT = 2.0
 """Floors from which on a gap after a fit is one to explain; assumed. Of simulated repeats 5 % are

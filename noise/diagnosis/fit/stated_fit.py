@@ -9,15 +9,16 @@ are wide against the roughness of such costs.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from models.errors import ParameterError
 from models.rig import LawSpec
-from noise.diagnosis.fit.case_comparison import CaseComparison, Model
+from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.fit_effect import fit_effect, fitted_numbers, is_stated, stated_candidates
 from noise.diagnosis.fit.fit_parameters import (
     HOLD,
@@ -27,13 +28,7 @@ from noise.diagnosis.fit.fit_parameters import (
     fitted_with_spreads,
     offset_cost,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["fit_again", "fit_stated"]
+from noise.diagnosis.simulated.model_runs import Model
 
 _LOOKED = 2
 """Recordings that candidates are looked at with."""

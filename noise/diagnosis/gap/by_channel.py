@@ -3,21 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from noise.diagnosis.gap.distance import group_costs
+from noise.diagnosis.gap.distance import Reference, group_costs
 from noise.diagnosis.gap.signature import EDGES, KINDS, group_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from noise.diagnosis.gap.distance import Reference
-
-__all__ = ["channel_distances", "worst_places"]
 
 _LIKE_THE_MOST = 0.5
 """Share of the largest deviation from which on others are as large; assumed."""

@@ -15,30 +15,15 @@ repeats (Phipson & Smyth 2010, Stat. Appl. Genet. Mol. Biol. 9, 39).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.diagnosis.gap.signature import GROUPS, KINDS, group_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = [
-    "LEAST_SCALE",
-    "Gap",
-    "Reference",
-    "closed_fraction",
-    "gap_of",
-    "group_costs",
-    "reference",
-    "residual_parts",
-    "with_least_scatter",
-]
 
 _Distance = TypeVar("_Distance", float, "NDArray[np.float64]")
 

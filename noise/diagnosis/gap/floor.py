@@ -9,15 +9,20 @@ of the next assembly.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.recording import Recording
+from models.rig import Rig
 from noise.diagnosis.gap.by_channel import channel_distances
 from noise.diagnosis.gap.distance import (
     LEAST_SCALE,
+    Gap,
+    Reference,
     gap_of,
     group_costs,
     reference,
@@ -25,20 +30,9 @@ from noise.diagnosis.gap.distance import (
 )
 from noise.diagnosis.gap.signature import GROUPS, block_signatures, group_of, signature
 from noise.diagnosis.simulated.nominal import condition_key, nominal_repeats
+from noise.diagnosis.simulated.repeats import Scatter
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.recording import Recording
-    from models.rig import Rig
-    from noise.diagnosis.gap.distance import Gap, Reference
-    from noise.diagnosis.simulated.repeats import Scatter
-    from sim.effects.effect import Effect
-
-__all__ = ["case_gap", "floor_widening", "references_of", "repeat_gap"]
+from sim.effects.effect import Effect
 
 N_REPEATS = 12
 """Simulated repeats a condition; what a diagnosis may cost settles it; assumed."""

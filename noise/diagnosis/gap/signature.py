@@ -8,32 +8,15 @@ slips; the distance between two is what `noise.diagnosis.gap.distance` makes of 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.kernels.levels import band_power
 from features.kernels.spectra import welch
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-    from models.recording import Recording
-
-__all__ = [
-    "EDGES",
-    "GROUPS",
-    "KINDS",
-    "NAMES",
-    "block_signatures",
-    "channel_signature",
-    "group_of",
-    "joined_signature",
-    "signature",
-]
+from models.recording import Recording
 
 KINDS = ("torque", "acceleration", "pressure")
 """Kinds of channel that have a signature; of each the first channel counts."""

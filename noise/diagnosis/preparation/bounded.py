@@ -8,21 +8,19 @@ would cost in proportion and tell little.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.sensors import Sensor
 from sim.acquisition import decimate
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from models.recording import Recording
     from models.rig import Rig
-    from models.sensors import Sensor
 
-__all__ = ["HIGHEST_RATE", "LONGEST", "bounded"]
 
 LONGEST = 2.0
 """Of a recording the last part of this length is looked at, in which it has settled [s]; what a

@@ -6,21 +6,18 @@ one speed, the mean of theirs: what they differ by is what repeats differ by.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.condition import known_condition
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from models.recording import Recording
 
-__all__ = ["at_measured_speeds", "measured_speed"]
 
 FARTHEST = 0.08
 """Relative difference from which an angle's speed is no correction of the one that is stated but

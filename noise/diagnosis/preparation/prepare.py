@@ -7,6 +7,7 @@ that are long or finely sampled a part is looked at.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -16,12 +17,8 @@ from noise.diagnosis.preparation.sensors_seen import with_seen_sensors
 from noise.diagnosis.preparation.settled_part import settled_parts
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from models.recording import Recording
     from models.rig import Rig
-
-__all__ = ["Prepared", "prepared"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,23 +13,20 @@ little there.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import gamma
 
 from features.kernels.spectra import segment_spectra
 from noise.diagnosis.evidence.bands import USABLE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from models.condition import Condition
     from models.recording import Recording
 
-__all__ = ["LOUDEST", "estimated_noise"]
 
 LOUDEST = 8.0
 """Noise over that of the good sensors of `sim.acquisition`, beyond which it is no sensor's [-]; for

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from models.sensors import Sensor
 from models.units import CHANNEL_UNITS
 from noise.diagnosis.preparation.converter_step import converter_step
 from noise.diagnosis.preparation.sensor_noise import LOUDEST, estimated_noise
 from sim.acquisition import Acquisition
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from models.recording import Recording
     from models.rig import Rig
-    from models.sensors import Sensor
 
-__all__ = ["with_seen_sensors"]
 
 _BITS = 24
 """Of the converter that a step is written as; its range is never reached."""

@@ -7,6 +7,7 @@ simulated for one recording serves for others, and repeats of a condition stay c
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -19,11 +20,8 @@ from noise.diagnosis.preparation.start import start_of
 from noise.diagnosis.text.words import joined
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from models.recording import Recording
 
-__all__ = ["settled_parts", "shortest"]
 
 _SHORTEST = LEAD + TAIL + 0.1
 """Shorter recordings show too few cycles [s]."""

@@ -14,13 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from models.recording import Recording
 
-__all__ = ["start_of"]
 
 _BLOCK, _LAG = 5e-3, 2
 """Of which an angle is averaged [s], and blocks to either side that a speed is the slope of;

@@ -8,30 +8,21 @@ structure is added to it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import rfft
 
-from models.radiation.impulse_responses import radiate_pulses
+from models.radiation.impulse_responses import ImpulseResponses, radiate_pulses
+from models.rig import Rig
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.evidence.reconstruction import closed_length, closed_spectrum
 from noise.diagnosis.simulated.transfer_functions import predict_outputs, with_clamp_shifted
 from sim.bushing import lumped_bushing
-from sim.pipeline import Sound, pulse_force
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.radiation.impulse_responses import ImpulseResponses
-    from models.rig import Rig
-    from models.transfer_functions.transfer_function import TransferFunction
-    from sim.effects.effect import ActiveEffect
-    from sim.motion import Motion
-    from sim.pipeline import Plan
-
-__all__ = ["chain_changes", "faded", "heard_of", "n_closed"]
+from sim.effects.effect import ActiveEffect
+from sim.motion import Motion
+from sim.pipeline import Plan, Sound, pulse_force
 
 _FADE = 0.1
 """In which a torque fades in and out [s], outside of the recording."""

@@ -8,14 +8,19 @@ structure leaves the motion.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from threading import Lock
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.condition import known_condition
+from models.radiation.impulse_responses import ImpulseResponses
+from models.recording import Recording
+from models.rig import LawSpec, Rig
 from models.sensors import Sensor
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
@@ -31,25 +36,16 @@ from noise.diagnosis.simulated.repeats import (
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, chain_of
 from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import changed_chain
-from sim.pipeline import apply_sensor_effects, sensor_signals
+from sim.effects.effect import ActiveEffect, Effect, Signals
+from sim.motion import Motion
+from sim.pipeline import Plan, apply_sensor_effects, sensor_signals
 from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.radiation.impulse_responses import ImpulseResponses
-    from models.recording import Recording
-    from models.rig import LawSpec, Rig
     from noise.diagnosis.fit.forms.form import Form
-    from sim.effects.effect import ActiveEffect, Effect, Signals
-    from sim.motion import Motion
-    from sim.pipeline import Plan
 
     Changed = tuple[Mapping[str, NDArray[np.complex128]], ImpulseResponses | None]
 
-__all__ = ["Model", "ModelRuns", "with_effects"]
 
 T = TypeVar("T")
 

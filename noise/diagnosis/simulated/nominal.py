@@ -7,13 +7,17 @@ drive is run through impulse responses instead, as the models are that a fit com
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from models.condition import known_condition
+from models.condition import KnownCondition, known_condition
+from models.recording import Recording
+from models.rig import Rig
 from models.sensors import Sensor
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.evidence.reconstruction import closed_spectrum
 from noise.diagnosis.simulated.heard import faded
 from noise.diagnosis.simulated.repeats import (
@@ -25,6 +29,7 @@ from noise.diagnosis.simulated.repeats import (
     repeat_motion,
 )
 from noise.diagnosis.simulated.transfer_functions import (
+    TransferFunctionCache,
     chain_of,
     predict_outputs,
     shift_clamp_mode,
@@ -34,23 +39,9 @@ from sim.acquisition import decimate_sensed
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
+from sim.effects.effect import ActiveEffect, Effect, activated
 from sim.pipeline import apply_sensor_effects, radiate_motion, sensor_signals
 from sim.timing import DIAGNOSIS
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.condition import KnownCondition
-    from models.recording import Recording
-    from models.rig import Rig
-    from models.transfer_functions.transfer_function import TransferFunction
-    from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
-    from sim.effects.effect import ActiveEffect, Effect
-
-__all__ = ["condition_key", "nominal_recordings", "nominal_repeats"]
 
 _RUNNING_OUT = 0.12
 """Simulated after a recording ends [s]."""

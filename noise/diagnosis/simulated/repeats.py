@@ -9,44 +9,27 @@ about the nominal one.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.condition import Condition, KnownCondition
+from models.radiation.impulse_responses import ImpulseResponses
 from models.recording import Channel, Recording
+from models.rig import Fit, Rig
 from models.sensors import Sensors
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.simulated.heard import chain_changes, heard_of, n_closed
 from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import changed_chain
-from sim.effects.effect import activated
+from sim.effects.effect import ActiveEffect, activated
+from sim.motion import Motion
 from sim.pipeline import Plan, apply_sensor_effects, radiate_motion, run_motion, sensor_signals
 from sim.shaft import ConstantSpeed
 from sim.temperature import at_temperature
 from sim.timing import DIAGNOSIS
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.condition import Condition, KnownCondition
-    from models.radiation.impulse_responses import ImpulseResponses
-    from models.rig import Fit, Rig
-    from models.transfer_functions.transfer_function import TransferFunction
-    from sim.effects.effect import ActiveEffect
-    from sim.motion import Motion
-
-__all__ = [
-    "CHANNELS",
-    "Scatter",
-    "perturb_rig",
-    "perturb_run",
-    "plan_repeat",
-    "record",
-    "repeat_motion",
-    "run_signals",
-]
 
 
 @dataclass(frozen=True)

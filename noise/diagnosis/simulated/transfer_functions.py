@@ -7,16 +7,19 @@ impulse response.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from models.condition import known_condition
 from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
+from models.rig import Rig
 from models.transfer_functions.filtering import filter_period
 from models.transfer_functions.impulse_response import FINER, fill_between_lines, impulse_response
 from models.transfer_functions.measured import measured_with
@@ -24,28 +27,12 @@ from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.evidence.reconstruction import closed_length, closed_loop
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
+from sim.effects.effect import ActiveEffect, Effect, activated
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
     from models.recording import Recording
-    from models.rig import Rig
     from sim.bushing import LumpedBushing
-    from sim.effects.effect import ActiveEffect, Effect
 
-__all__ = [
-    "TransferFunctionCache",
-    "chain_of",
-    "predict",
-    "predict_outputs",
-    "shift_clamp_mode",
-    "torque_transfer_functions",
-    "with_chain_effects",
-    "with_clamp_shifted",
-]
 
 _LONGEST = 0.25
 """Impulse responses are followed so long [s]."""

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.findings import Agreement
 from noise.diagnosis.text.words import floors, frequency, joined, p_number
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from noise.diagnosis.findings import Agreement
     from noise.diagnosis.outcome import Diagnosis
 
-__all__ = ["AGREES", "agreement_sentence", "far_ones", "remainder_sentence"]
 
 AGREES = 2.0
 """Floors up to which a recording agrees with the rig file; assumed. Of 480 simulated repeats of ten

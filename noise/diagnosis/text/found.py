@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.findings import SURE
+from noise.diagnosis.findings import SURE, EffectFinding
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from noise.diagnosis.findings import EffectFinding
     from noise.diagnosis.outcome import Diagnosis
 
-__all__ = [
-    "PHASES", "begins", "finding_of", "parameter_name", "stage_of_effect", "stages_acting",
-]  # fmt: skip
 
 PHASES = {
     "stick": "while the contact sticks",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.improved_file import own_effects
@@ -9,12 +11,7 @@ from noise.diagnosis.text.found import parameter_name
 from noise.diagnosis.text.words import cause_of, joined, number
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
     from noise.diagnosis.improvement import Improvement
-
-__all__ = ["improved_commands", "improved_sentence"]
 
 
 def improved_sentence(improvement: Improvement) -> str:

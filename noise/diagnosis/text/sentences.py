@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.findings import SHOWN_IN, SURE
+from noise.diagnosis.findings import SHOWN_IN, SURE, EffectFinding
 from noise.diagnosis.text.agreement_sentences import (
     agreement_sentence,
     far_ones,
@@ -29,16 +29,8 @@ from noise.diagnosis.text.words import (
 )
 
 if TYPE_CHECKING:
-    from noise.diagnosis.findings import EffectFinding
     from noise.diagnosis.outcome import Diagnosis
 
-__all__ = [
-    "answer",
-    "closed_sentence",
-    "closed_words",
-    "equivalence_sentences",
-    "location_sentence",
-]
 
 _COLUMNS = {
     "speed_rad_s": ("speed", "rad/s"),

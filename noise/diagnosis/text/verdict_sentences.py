@@ -16,7 +16,6 @@ from noise.diagnosis.text.words import cause_of, chance, frequency, joined, p_nu
 if TYPE_CHECKING:
     from noise.diagnosis.outcome import Diagnosis
 
-__all__ = ["headline", "is_named", "verdict_sentence"]
 
 _COUNTS = {2: "two", 3: "three"}
 _MOST_PARAMETERS = 3

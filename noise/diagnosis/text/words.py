@@ -14,23 +14,6 @@ from dataclasses import dataclass
 from models.errors import ParameterError
 from noise.diagnosis.findings import LARGEST_GAP
 
-__all__ = [
-    "CAUSES",
-    "NOT_DETERMINED",
-    "STAGES",
-    "Cause",
-    "cause_of",
-    "chance",
-    "evidence",
-    "floors",
-    "frequency",
-    "joined",
-    "number",
-    "p_number",
-    "percent",
-]
-
-
 NOT_DETERMINED = "not determined"
 """Stands for a figure that is not known, so that a gap in the data is never read as a zero."""
 

@@ -9,26 +9,19 @@ while it sticks is proposed and not taken: a stiffness that is off changes it as
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from models.condition import FIXED
+from models.condition import FIXED, Condition
 from models.errors import ParameterError
+from models.recording import Recording
+from models.rig import Rig
 from noise.diagnosis.preparation.measured_speed import measured_speed
 from noise.diagnosis.unstated.sidecar import sidecar_request
 from noise.diagnosis.unstated.sticking import Sticking, sticking
 from noise.recordings.logged_speed import as_logged
 from sim.bushing import lumped_bushing
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.condition import Condition
-    from models.recording import Recording
-    from models.rig import Rig
-
-__all__ = ["supports_of", "with_told_conditions"]
 
 _NEAR, _FAR = (-0.2, 0.3), (-0.35, 0.5)
 """Logarithm of mean over kinetic torque [-]: of a fit that it can be, and of all that it can be;

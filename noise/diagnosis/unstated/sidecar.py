@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
 from models.condition import FIXED, Condition
+from models.recording import Recording
 from noise.recordings.sidecar import sidecar_text
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from models.recording import Recording
-
-__all__ = ["sidecar_request"]
 
 
 def sidecar_request(

@@ -11,15 +11,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.diagnosis.evidence.reconstruction import reconstruct
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from sim.bushing import LumpedBushing
 
-__all__ = ["Sticking", "sticking"]
 
 _SHARE = 0.4
 """Share of the time that a surface sticks at least, where it sticks and slips [-]; assumed."""

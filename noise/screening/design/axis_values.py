@@ -8,20 +8,12 @@ radian a second, seventeen fits.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from models.condition import FIXED
 from models.errors import ParameterError
 from noise.screening.design.tolerances import ABSOLUTE_ZERO
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-__all__ = [
-    "FREQUENCY", "MOST_POINTS", "POSITIVE", "SPEED", "SPEED_STEP", "SUPPORT", "TEMPERATURE",
-    "AxisRule", "axis_values", "axis_words", "spread", "text_values",
-]  # fmt: skip
 
 MOST_POINTS = 2000
 """Along one axis."""

@@ -23,12 +23,13 @@ taken from the rig: its fits, its supports.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.foreign_file import refusing
+from models.rig import Rig
 from models.rig_file import load_material_rig, material_names, read_toml, rig_from
 from models.schema import as_table, as_text, number, refuse_unknown
 from models.show import short_repr
@@ -39,15 +40,7 @@ from noise.screening.design.axis_values import (
     TEMPERATURE,
     axis_values,
 )
-from noise.screening.design.tolerances import read_tolerances
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from models.rig import Rig
-    from noise.screening.design.tolerances import Tolerance
-
-__all__ = ["Design", "Swinging", "Use", "load_design"]
+from noise.screening.design.tolerances import Tolerance, read_tolerances
 
 _USE_KEYS = {
     "name",

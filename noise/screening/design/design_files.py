@@ -16,8 +16,6 @@ from models.errors import BushingNoiseError, ParameterError
 from models.rig_file import base_name, read_toml
 from noise.screening.design.design import load_design
 
-__all__ = ["copy_design_file"]
-
 
 def copy_design_file(name: str, source: Path, folder: Path) -> Path:
     """Copy a design's file to ``folder/NAME.toml``, with the responses that it names.

@@ -8,23 +8,13 @@ lists that among what is assumed. An effect that the rig has already keeps the r
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib import resources
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from models.rig import parse_spec
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from models.rig import Fit, LawSpec, Rig
-
-__all__ = [
-    "DRY", "FIT_PARAMETERS", "Environment", "environment", "environment_names", "in_environment",
-    "scaled_fit",
-]  # fmt: skip
+from models.rig import Fit, LawSpec, Rig, parse_spec
 
 DRY = "dry"
 """What is measured in, as a rule."""

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
+from models.rig import Rig
 from noise.screening.design.design import Design, load_design
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from models.rig import Rig
-
-__all__ = ["load_designs"]
 
 
 def load_designs(

@@ -10,7 +10,7 @@ the name of its effect: ``slip_pulse.amplitude = 0.1``.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,12 +18,9 @@ from models.errors import ParameterError
 from models.schema import as_table, number, refuse_unknown
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from models.rig import LawSpec
     from noise.screening.parts.sampling import Distribution
 
-__all__ = ["ABSOLUTE_ZERO", "PARAMETERS", "Tolerance", "read_tolerances", "unit_of"]
 
 ABSOLUTE_ZERO = -273.15
 """[degree Celsius]"""

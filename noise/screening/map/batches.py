@@ -8,27 +8,19 @@ then made once.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
 
 import numpy as np
 from joblib import Parallel, delayed, hash as digest
+from numpy.typing import NDArray
 
 from models.errors import BushingNoiseError, ParameterError
+from models.rig import Rig
 from noise.batch import Journal, one_thread
 from noise.batch.cluster import cluster
 from noise.screening.map.point import REGIMES, evaluate_point, shaft_motion
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
-
-__all__ = ["LABELS", "Batch", "Evaluator", "batch_evaluator", "keeping"]
 
 LABELS = ("none", "creak", "squawk", "squeal")
 """Of a point, in the order of their codes."""

@@ -14,7 +14,6 @@ import numpy as np
 if TYPE_CHECKING:
     from sim.motion import Motion
 
-__all__ = ["fast_intervals"]
 
 _FAST_SHARE = 0.5
 """Of the peak speed, above which a swing is judged."""

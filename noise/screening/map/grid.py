@@ -10,26 +10,18 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.condition import FIXED
+from models.rig import Rig
 from models.show import short_repr
 from noise.screening.design.axis_values import SPEED_STEP, axis_words, spread
-from noise.screening.design.design import Swinging, Use
+from noise.screening.design.design import Design, Swinging, Use
 from noise.screening.design.environments import DRY, environment
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
-    from noise.screening.design.design import Design
-
-__all__ = ["DEFAULT_SPEEDS", "Grid", "grid_of", "shared_grid", "shared_motions"]
 
 DEFAULT_SPEEDS = (0.25, 13.0)
 """Limits of use where nobody says any: the range that the thesis measured [rad/s]."""

@@ -6,17 +6,11 @@ level is interpolated among points of the same code alone.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from noise.screening.map.refine import SIMULATED
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["interpolate_levels"]
 
 _NEAREST = 4
 """Simulated points that an interpolated level is made of."""

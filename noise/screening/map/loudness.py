@@ -15,14 +15,13 @@ import numpy as np
 from scipy import ndimage
 
 from features.sound_quality import SHORTEST, loudness_n5
+from models.rig import Rig
 from noise.screening.map.point import point_sound, shaft_motion
 from noise.screening.ranking.ranking import loudness_weight
 
 if TYPE_CHECKING:
-    from models.rig import Rig
     from noise.screening.map.mapping import DesignMap
 
-__all__ = ["with_loudness"]
 
 _MOST_REGIONS = 6
 """Of a map, the largest, whose loudest points are heard."""

@@ -12,9 +12,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.rig import Rig
 from models.show import short_repr
-from noise.screening.map.batches import LABELS, Batch
+from noise.screening.map.batches import LABELS, Batch, Evaluator
 from noise.screening.map.interpolate import interpolate_levels
 from noise.screening.map.point import REGIMES
 from noise.screening.map.provenance import is_substituted, point_notes, rows_of
@@ -24,13 +26,8 @@ from sim.analysis.stability import steady_sliding
 from sim.temperature import at_temperature
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
-    from noise.screening.map.batches import Evaluator
     from noise.screening.map.grid import Grid
 
-__all__ = ["UNCHANGED", "DesignMap", "growth_rates", "map_design"]
 
 UNCHANGED = "unchanged"
 """How a point is known whose temperature, or interference, makes no difference."""

@@ -17,41 +17,28 @@ livelier. Every turning sticks, which by itself is neither regime nor noise.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.kernels.levels import weighted_levels
+from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
-from models.rig import damping_at
+from models.rig import Rig, damping_at
 from noise.noise_definition import NoiseCriteria, noise_criteria
 from noise.screening.map.fast_intervals import fast_intervals
 from sim.analysis.regime import LEAST_OSCILLATION, Regime
 from sim.analysis.slips import motion_slips
 from sim.constant_version import constant_version
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
+from sim.effects.effect import Effect, activated
+from sim.motion import Motion
 from sim.pipeline import Plan, radiate_motion, run_motion
 from sim.shaft import ConstantSpeed, Oscillation
 from sim.temperature import at_temperature
-from sim.timing import SCREENING, SCREENING_SLOW
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-    from models.radiation.impulse_responses import ImpulseResponses
-    from models.rig import Rig
-    from sim.effects.effect import Effect
-    from sim.motion import Motion
-    from sim.timing import Timing
-
-__all__ = [
-    "LONGEST_POINT", "REGIMES", "PointResult", "Sound", "evaluate_point", "point_sound",
-    "shaft_motion",
-]  # fmt: skip
+from sim.timing import SCREENING, SCREENING_SLOW, Timing
 
 REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 """In the order of their codes."""

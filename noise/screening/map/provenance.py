@@ -12,22 +12,19 @@ they go on, and those of the nearest are held.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.condition import FIXED
 from noise.screening.design.axis_values import axis_words
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from models.rig import Fit, Rig
     from noise.screening.map.grid import Grid
 
-__all__ = ["RULE", "fits_remark", "is_substituted", "point_notes", "rows_of", "within_fits"]
 
 RULE = (
     "where a design has no data of its own, stiffness, torques and damping are interpolated "

@@ -14,21 +14,18 @@ says stable and simulation hears a noise, simulation is right.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from numpy.typing import NDArray
-
     Cell = tuple[int, int, int, int, int]
 
-__all__ = ["HOW", "SIMULATED", "STRIDE", "Refined", "refined_map"]
 
 HOW = ("simulated", "stability", "refined")
 """Where the value of a point comes from, in the order of the codes."""

@@ -7,23 +7,19 @@ is advised. One parameter is changed at a time: what two changes do together is 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from models.errors import ParameterError
-from noise.screening.parts.smallest_change import smallest_changes
+from noise.screening.parts.smallest_change import Found, smallest_changes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
     from noise.screening.parts.design_variable import DesignVariable
-    from noise.screening.parts.smallest_change import Found
 
-__all__ = ["Advice", "increase_margin", "remove_noise"]
 
 _SMALL = 0.02
 """Change, as a share of the nominal value, on either side over which a slope is taken."""

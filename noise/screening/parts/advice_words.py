@@ -10,8 +10,6 @@ from noise.screening.design.tolerances import PARAMETERS
 if TYPE_CHECKING:
     from noise.screening.parts.statistics import Statistics
 
-__all__ = ["advice_words"]
-
 
 def advice_words(one: Statistics) -> str:
     """Tell the least change that widens the margin, and the least that ends the noise."""

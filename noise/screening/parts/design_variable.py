@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from models.errors import ParameterError
 
-__all__ = ["DesignVariable"]
-
 
 @dataclass(frozen=True)
 class DesignVariable:

@@ -9,15 +9,19 @@ stability tells nothing.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from joblib import Parallel, delayed
+from numpy.typing import ArrayLike, NDArray
 
 from models.errors import ParameterError
+from models.rig import Rig
 from noise.batch import one_thread
+from noise.screening.design.design import Design
 from noise.screening.map.grid import DEFAULT_SPEEDS
 from noise.screening.map.point import evaluate_point
 from noise.screening.parts.variation import UsePoint, use_point, varied
@@ -29,16 +33,8 @@ from sim.friction import friction_law
 from sim.temperature import at_temperature
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from models.rig import Rig
-    from noise.screening.design.design import Design
-
     Critical = Literal["stability", "simulation", "none"]
 
-__all__ = ["Outcomes", "outcomes"]
 
 _BEYOND = 1.5
 _STEP = 0.25

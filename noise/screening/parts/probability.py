@@ -12,25 +12,17 @@ never as more than one sample of chance to ten, nor as less than chance, which n
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.stats import beta, chi2
 
 from models.errors import ParameterError
 from models.show import short_repr
 from noise.screening.parts.estimate import Estimate
-from noise.screening.parts.sampling import parts, sobol_points
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from noise.screening.parts.sampling import Distribution
-
-__all__ = ["NOISES", "Probabilities", "label_probabilities"]
+from noise.screening.parts.sampling import Distribution, parts, sobol_points
 
 NOISES = ("creak", "squawk", "squeal", "none")
 

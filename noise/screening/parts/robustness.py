@@ -12,37 +12,26 @@ A file that states no tolerances gets those of `ASSUMED`, and the answer says so
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import uniform
 
 from models.show import short_repr
+from noise.screening.design.design import Design
 from noise.screening.design.tolerances import Tolerance
-from noise.screening.parts.advice import increase_margin, remove_noise
+from noise.screening.parts.advice import Advice, increase_margin, remove_noise
 from noise.screening.parts.design_variable import DesignVariable
+from noise.screening.parts.estimate import Estimate
 from noise.screening.parts.population import outcomes
-from noise.screening.parts.probability import NOISES, label_probabilities
-from noise.screening.parts.sensitivity import sobol_indices
-from noise.screening.parts.variation import nominal_values, use_point
+from noise.screening.parts.probability import NOISES, Probabilities, label_probabilities
+from noise.screening.parts.sampling import Distribution
+from noise.screening.parts.sensitivity import Sensitivity, sobol_indices
+from noise.screening.parts.variation import UsePoint, nominal_values, use_point
 from noise.screening.ranking.use_risk import use_risk
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from numpy.typing import NDArray
-
-    from noise.screening.design.design import Design
-    from noise.screening.parts.advice import Advice
-    from noise.screening.parts.estimate import Estimate
-    from noise.screening.parts.probability import Probabilities
-    from noise.screening.parts.sampling import Distribution
-    from noise.screening.parts.sensitivity import Sensitivity
-    from noise.screening.parts.variation import UsePoint
-
-__all__ = ["ASSUMED", "DESIGN_VARIABLES", "Robustness", "factor_distributions", "robustness"]
 
 ASSUMED = (
     Tolerance("elastomer_stiffness", "relative", 0.05),

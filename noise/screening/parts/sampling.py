@@ -8,19 +8,14 @@ does, and stay unbiased, so that a few scramblings side by side tell how far off
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Mapping
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from models.errors import ParameterError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-__all__ = ["Distribution", "parts", "sobol_points"]
 
 
 class Distribution(Protocol):

@@ -12,24 +12,16 @@ width of intervals from a few dozen).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
 from models.errors import ParameterError
 from noise.screening.parts.estimate import Estimate
-from noise.screening.parts.sampling import parts, sobol_points
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from noise.screening.parts.sampling import Distribution
-
-__all__ = ["Sensitivity", "sobol_indices"]
+from noise.screening.parts.sampling import Distribution, parts, sobol_points
 
 _SCRAMBLINGS = 32
 

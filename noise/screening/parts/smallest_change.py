@@ -7,17 +7,11 @@ that does not is halved. All parameters go in one call, which can share them out
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["Found", "smallest_changes"]
+from numpy.typing import NDArray
 
 _TRIED = 8
 """Values on either side of the nominal one in the first call."""

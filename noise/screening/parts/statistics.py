@@ -8,28 +8,23 @@ by name, and costs no other design its result.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from models.errors import BushingNoiseError
 from models.show import short_repr
-from noise.screening.design.design import Use
+from noise.screening.design.design import Design, Use
 from noise.screening.design.environments import environment, in_environment
 from noise.screening.map.grid import DEFAULT_SPEEDS
-from noise.screening.parts.robustness import robustness
+from noise.screening.parts.robustness import Robustness, robustness
 from noise.screening.parts.variation import nominal_values
 from noise.screening.ranking.use_risk import use_risk
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    import numpy as np
-
-    from noise.screening.design.design import Design
     from noise.screening.map.mapping import DesignMap
-    from noise.screening.parts.robustness import Robustness
-
-__all__ = ["Statistics", "as_mapped", "statistics_of"]
 
 
 @short_repr

@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from models.rig import damping_at
+from models.rig import LawSpec, Rig, damping_at
 from models.show import short_repr
+from noise.screening.design.design import Design
 from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
 from noise.screening.design.tolerances import ABSOLUTE_ZERO, PARAMETERS
 from noise.screening.map.grid import grid_of
 from sim.effects import EFFECTS
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from models.rig import LawSpec, Rig
-    from noise.screening.design.design import Design
-
-__all__ = ["UsePoint", "nominal_values", "use_point", "varied"]
 
 
 @short_repr

@@ -8,26 +8,18 @@ change that is enough by the advice of its tolerances (`noise.screening.parts.ad
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.rig import Rig
 from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
-from noise.screening.map.mapping import growth_rates
+from noise.screening.map.grid import Grid
+from noise.screening.map.mapping import DesignMap, growth_rates
 from noise.screening.ranking.plain_words import fit_words, supports_words
 from noise.screening.ranking.use_risk import ends_and_middle
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
-    from noise.screening.map.grid import Grid
-    from noise.screening.map.mapping import DesignMap
-
-__all__ = ["first_hint"]
 
 _CHANGE = 0.2
 """Of a parameter of the bushing, as a share of its value."""

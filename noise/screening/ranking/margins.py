@@ -19,15 +19,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.analysis.regime import Regime
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from noise.screening.map.mapping import DesignMap
-
-__all__ = ["CriticalPoint", "critical_points", "margin_of", "range_of"]
 
 
 @dataclass(frozen=True)

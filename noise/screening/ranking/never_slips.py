@@ -13,16 +13,14 @@ import itertools
 import math
 from typing import TYPE_CHECKING
 
-from models.rig import effective_stiffness
+from models.rig import Rig, effective_stiffness
 from noise.screening.map.point import LONGEST_POINT
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import never_slips
 
 if TYPE_CHECKING:
-    from models.rig import Rig
     from noise.screening.map.grid import Grid
 
-__all__ = ["why_never_slipping"]
 
 _MOST_TWIST = 2.0
 """Of a bushing [rad]: one half as thick as its radius is then sheared by 400 %, and tears."""

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.screening.design.axis_values import axis_words
 from noise.screening.map.batches import LABELS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from noise.screening.map.mapping import DesignMap
 
-__all__ = ["fit_words", "plain_words", "supports_words"]
 
 _QUIET = "none"
 

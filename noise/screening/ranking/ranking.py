@@ -13,10 +13,12 @@ is no noise.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.show import short_repr
@@ -27,16 +29,10 @@ from noise.screening.ranking.plain_words import plain_words
 from noise.screening.ranking.risk import Candidate, ranked
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
     from noise.screening.map.grid import Grid
     from noise.screening.map.mapping import DesignMap
     from noise.screening.parts.statistics import Statistics
     from noise.screening.ranking.margins import CriticalPoint
-
-__all__ = ["Standing", "loudness_weight", "refuse_unlike", "standings"]
 
 
 @short_repr

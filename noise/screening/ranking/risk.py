@@ -16,21 +16,18 @@ same materials would give.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
     from noise.screening.parts.estimate import Estimate
 
-__all__ = ["Candidate", "design_risk", "ranked", "risk_band", "risk_grades"]
 
 _ACCELERATION = 1.0, 1000.0
 """Peaks graded 1 and 10, at the accelerometer [m/s2]; decades between count alike."""

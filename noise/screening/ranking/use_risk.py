@@ -9,28 +9,21 @@ sticks the periods of the vibration. Static over kinetic friction is that of the
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 from joblib import Parallel, delayed
+from numpy.typing import NDArray
 
+from models.rig import Rig
 from noise.batch import one_thread
+from noise.screening.design.design import Design
 from noise.screening.map.grid import grid_of
 from noise.screening.ranking.risk import design_risk, risk_grades
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import Regime, friction_regime
 from sim.analysis.sweep_features import FEATURES, motion_features
 from sim.temperature import at_temperature
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
-    from noise.screening.design.design import Design
-
-__all__ = ["ends_and_middle", "use_grades", "use_risk"]
 
 _SPEEDS = 12
 

@@ -16,15 +16,6 @@ if TYPE_CHECKING:
     from noise.screening.parts.statistics import Statistics
     from noise.screening.ranking.ranking import Standing
 
-__all__ = [
-    "conditions_lines",
-    "parts_lines",
-    "probability_words",
-    "risk_words",
-    "sensitivity_words",
-    "summary_lines",
-]
-
 
 def summary_lines(screening: Screening) -> list[str]:
     """Tell what a screen found, a line a design and motion, its parts below, and how it is known.

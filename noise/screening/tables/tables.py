@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from noise.screening.design.tolerances import PARAMETERS
 from noise.screening.map.batches import LABELS
+from noise.screening.parts.estimate import Estimate
 from noise.screening.parts.probability import NOISES
 from noise.screening.ranking.risk import risk_band
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-    from typing import Any
-
     from noise.screening.outcome import Screening
-    from noise.screening.parts.estimate import Estimate
     from noise.screening.parts.robustness import Robustness
     from noise.screening.parts.statistics import Statistics
 
     Columns = Mapping[str, Callable[..., object]]
     Table = tuple[tuple[str, ...], list[dict[str, object]]]
-
-__all__ = ["screening_tables"]
 
 
 def screening_tables(screening: Screening) -> dict[str, Table]:

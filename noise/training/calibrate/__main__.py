@@ -12,15 +12,16 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from joblib import Parallel, delayed
 
 from models.errors import BushingNoiseError
 from models.rig_file import load_material_rig
 from noise.base.files import atomic
-from noise.identification.table_fit import fit_table
+from noise.identification.table_fit import TableFit, TableScore, fit_table
+from noise.identification.table_number import TableNumber
 from noise.training.calibrate.report import (
     material_toml,
     measured_speeds,
@@ -30,12 +31,6 @@ from noise.training.calibrate.report import (
 )
 from noise.training.calibrate.thesis_table import CELLS, THESIS_TABLE
 from noise.training.calibrate.unknowns import rig_of, start, values_at
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from noise.identification.table_fit import TableFit, TableScore
-    from noise.identification.table_number import TableNumber
 
 _STEP, _WIDE_STEP = 0.05, 0.35
 """First step of the logarithms, about the start and about the round start."""

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 from models.condition import FIXED
+from models.rig import Rig
 from noise.identification.table_fit import TableScore
+from noise.identification.table_number import TableNumber
 from noise.noise_definition import label_by_physics
 from noise.training.calibrate.thesis_table import CELLS, NOISES, THIN_CELLS
 from noise.training.calibrate.unknowns import UNKNOWNS
 from sim.analysis.critical_speeds import critical_speeds
 from sim.run import simulate
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from models.rig import Rig
-    from noise.identification.table_number import TableNumber
-
-__all__ = ["material_toml", "measured_speeds", "noises_page", "speeds_page", "values_page"]
 
 _SPEEDS = tuple(0.25 * i for i in range(1, 65))
 """To 16 rad/s, so that an end beyond the measured 12.5 is found."""

@@ -18,8 +18,6 @@ from noise.thesis.critical_velocities import TRANSITIONS
 from noise.thesis.runs import LONG, SHORT
 from sim.analysis.slips import LEAST_SUDDEN
 
-__all__ = ["CELLS", "NOISES", "SPEEDS_ALONE", "SUPPORTS", "THESIS_TABLE", "THIN_CELLS"]
-
 SUPPORTS = (LONG, SHORT, FIXED)
 """k_B [Nm/rad]."""
 

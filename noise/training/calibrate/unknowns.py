@@ -11,24 +11,16 @@ bushing is unknown too: with that printed for 0.279 mm there is no squawk at 221
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from models.condition import FIXED
-from models.rig import LawSpec
+from models.rig import Fit, LawSpec, Rig
 from models.rig_file import load_material_rig
 from noise.thesis.runs import LONG, SHORT
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from models.rig import Fit, Rig
-
-__all__ = ["UNKNOWNS", "Unknown", "rig_of", "start", "values_at"]
 
 MEAN_TORQUE = 8.0
 """At 0.279 mm and 5 rad/s [Nm], Appendix F."""

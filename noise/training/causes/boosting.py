@@ -8,20 +8,13 @@ split may use; so its trees are grown here one by one.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from noise.base.trees import BoostedTrees
 from noise.training.trees import as_arrays
-
-if TYPE_CHECKING:
-    from typing import Any
-
-    from numpy.typing import NDArray
-
-    from noise.base.trees import BoostedTrees
-
-__all__ = ["grow_cause_trees"]
 
 _OFFERED = 80
 """Columns that a tree is offered."""

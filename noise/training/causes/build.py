@@ -9,33 +9,24 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from joblib import Parallel, delayed
+from numpy.typing import NDArray
 
 from models.condition import known_condition
 from models.errors import BushingNoiseError
+from models.recording import Recording
+from models.rig import Rig
+from models.sensors import Sensors
 from noise.base.progress import say
-from noise.diagnosis.cases.draw import SHARED, draw_case
-from noise.diagnosis.evidence.summary import NominalNumbers, case_table
+from noise.diagnosis.cases.draw import SHARED, DrawnCase, draw_case
+from noise.diagnosis.evidence.summary import CaseTable, NominalNumbers, Numbers, case_table
 from noise.diagnosis.preparation.prepare import prepared
 from noise.training.causes.fit import Known, with_rows
 from sim.acquisition import Acquisition
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.recording import Recording
-    from models.rig import Rig
-    from models.sensors import Sensors
-    from noise.diagnosis.cases.draw import DrawnCase
-    from noise.diagnosis.evidence.summary import CaseTable, Numbers
-
-__all__ = ["known_cases", "known_cases_of_a_rig"]
 
 _SAME_NOISE, _SAME_SPEED = 0.2, 8e-3
 """Relative differences up to which estimates are taken for the same."""

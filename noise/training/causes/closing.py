@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
@@ -22,24 +24,16 @@ from models.rig_file import load_rig
 from noise.base.files import atomic, check_target
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.case import read_case
-from noise.diagnosis.causes.joint import normalised
+from noise.diagnosis.causes.joint import Hypothesis, normalised
 from noise.diagnosis.causes.location import stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.stage_nulls import load_stage_nulls
+from noise.diagnosis.findings import StageFinding
 from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.fit.closing_odds import ClosingOdds, load_closing_odds
 from noise.diagnosis.fit.hypothesis_fits import CaseFits, HypothesisFit, settled, updated
 from noise.diagnosis.fit.judge import judge
 from sim.effects import EFFECTS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
-
-    from noise.diagnosis.causes.joint import Hypothesis
-    from noise.diagnosis.findings import StageFinding
-
-__all__ = ["FittedCase", "fitted_cases", "learn_closing_odds", "mean_loss", "write_odds"]
 
 _LOOKED = 50
 """The likeliest hypotheses of a case that are looked at, beside those that were fitted."""

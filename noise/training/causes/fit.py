@@ -10,26 +10,22 @@ less surely rather than wrongly.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from noise.diagnosis.cases.truth import seen_through
+from noise.diagnosis.cases.truth import Truth, seen_through
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
 from noise.diagnosis.evidence.evidence import evidence, scale_of
 from noise.diagnosis.simulated.repeats import CHANNELS
 from noise.training.causes.boosting import grow_cause_trees
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from numpy.typing import NDArray
-
-    from noise.diagnosis.cases.truth import Truth
     from noise.diagnosis.evidence.summary import CaseTable
 
-__all__ = ["Known", "null_scale", "train_posterior"]
 
 N_ROUNDS = 450
 N_TREES = 80

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,12 +11,9 @@ from noise.diagnosis.causes.joint import joint_probabilities
 from noise.diagnosis.causes.verdict import likeliest, needs_explaining
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
-
     from noise.diagnosis.causes.posterior import Posterior
     from noise.training.causes.fit import Known
 
-__all__ = ["KEPT_FOR_REPORT", "is_kept", "report", "with_forms"]
 
 KEPT_FOR_REPORT = 10
 """One rig of so many is kept from training altogether where a report is asked for."""

@@ -7,11 +7,14 @@ a header that says of each case what it is about and of what bench. Other progra
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, astuple
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from joblib import Parallel, delayed
+from numpy.typing import NDArray
 
 from models.condition import KnownCondition, known_condition
 from models.errors import ParameterError
@@ -21,14 +24,6 @@ from noise.diagnosis.cases.truth import Truth
 from noise.diagnosis.evidence.summary import CaseTable
 from noise.training.causes.build import known_cases_of_a_rig
 from noise.training.causes.fit import Known
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-__all__ = ["CHUNK", "draw_into", "load_cases", "save_cases"]
 
 CHUNK = 40 * SHARED
 """Seeds of a file."""

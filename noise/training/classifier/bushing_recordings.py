@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.recording import Channel, Recording
 from noise.training.classifier.augmentation.recorder import augmented, recorded
 from sim.acquisition import Acquisition
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from noise.training.classifier.bushings import LabelledRun
 
-__all__ = ["bushing_recording"]
 
 _PRESSURE_ALONE = 0.45
 """Share of the samples that keep the sound alone; the others have all three channels."""

@@ -12,7 +12,6 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,7 +20,7 @@ from features.kernels.spectra import autospectrum
 from models.errors import ParameterError
 from noise.noise_definition import is_ambiguous, label_by_physics, run_criteria
 from noise.training.classifier.augmentation.recorder import RATES
-from noise.training.classifier.designs import random_design, random_extras
+from noise.training.classifier.designs import Design, random_design, random_extras
 from noise.training.draws import log_uniform
 from sim.acquisition import Acquisition
 from sim.analysis.regime import Regime, friction_regime
@@ -31,11 +30,6 @@ from sim.motion import simulate_motion
 from sim.pipeline import pulse_force
 from sim.run import Run, simulate
 from sim.shaft import ConstantSpeed, Oscillation, ShaftMotion, SpeedRamp
-
-if TYPE_CHECKING:
-    from noise.training.classifier.designs import Design
-
-__all__ = ["LabelledRun", "random_run", "stretch"]
 
 _SHARES = {"creak": 0.34, "squawk": 0.17, "squeal": 0.32, "none": 0.17}
 """Of the labels that are looked for."""

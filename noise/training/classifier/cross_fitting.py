@@ -8,14 +8,16 @@ each part by the calibration of the other four.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.windows.table import HOP
 from noise.base.labels import LABELS
-from noise.classifier.model import Classifier, at_sensitivity, has_more_than_sound
+from noise.base.trees import BoostedTrees
+from noise.classifier.model import Calibration, Classifier, at_sensitivity, has_more_than_sound
 from noise.labels.segmentation import NOISES, clearest, named as labels_named
 from noise.labels.windows import FEATURE_NAMES, columns_of
 from noise.training.classifier.described_samples import Sample
@@ -34,16 +36,6 @@ from noise.training.classifier.operating_point import (
 )
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
 from noise.training.trees import grow_boosted_trees
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from numpy.typing import NDArray
-
-    from noise.base.trees import BoostedTrees
-    from noise.classifier.model import Calibration
-
-__all__ = ["LeftOut", "grown", "left_out_scores", "named", "with_trees_of"]
 
 _N_ROUNDS = 220
 

@@ -3,21 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.windows.table import HOP, LENGTH
 from noise.labels.windows import describe
 from noise.recordings.blocks import RecordingBlocks
-from noise.training.classifier.samples import draw, swelling
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from noise.training.classifier.samples import Drawn
-
-__all__ = ["Sample", "describe_drawn", "draw_sample"]
+from noise.training.classifier.samples import Drawn, draw, swelling
 
 _QUIET_DB = 30.0
 """Windows that lie so far below a sample's loudest are pauses, of which nothing is learned."""

@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from models.rig import Fit, LawSpec, Microphone, Plate, Rig
 from models.rig_file import load_material_rig
 from noise.training.draws import log_uniform
 from sim.effects import EFFECTS
 from sim.friction import friction_law
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import numpy as np
-
-    from sim.parameters import Parameter
-
-__all__ = ["SHAPES", "Design", "random_design", "random_extras", "scaled"]
+from sim.parameters import Parameter
 
 _MATERIALS = {
     "fluorocarbon": 0.6,

@@ -10,8 +10,9 @@ scored by the classifier itself.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 from joblib import Parallel, delayed
@@ -19,10 +20,11 @@ from joblib import Parallel, delayed
 from models.errors import ParameterError
 from noise.base.labels import LABELS
 from noise.batch.pool import ending_with_this
+from noise.classifier.model import Classifier
 from noise.labels.segmentation import clearest
 from noise.labels.windows import columns_of
 from noise.training.classifier.cross_fitting import grown, left_out_scores, named, with_trees_of
-from noise.training.classifier.described_samples import draw_sample
+from noise.training.classifier.described_samples import Sample, draw_sample
 from noise.training.classifier.kept_samples import load_samples, save_samples
 from noise.training.classifier.masked_rows import (
     KINDS,
@@ -36,15 +38,6 @@ from noise.training.classifier.operating_point import scores
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, own_card
 from noise.training.classifier.real_sounds import load_real_sounds
 from noise.training.classifier.surroundings import may_sound
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-    from pathlib import Path
-
-    from noise.classifier.model import Classifier
-    from noise.training.classifier.described_samples import Sample
-
-__all__ = ["N_TEST", "N_TRAINING", "learn", "train"]
 
 N_TRAINING = 4300
 """Samples that are learned from."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,11 +15,6 @@ from models.errors import ParameterError
 from models.foreign_file import read_arrays, reading
 from noise.base.files import atomic
 from noise.training.classifier.described_samples import Sample
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-__all__ = ["load_samples", "save_samples"]
 
 _PACKAGES = ("models", "sim", "features", "noise")
 _LIBRARIES = ("librosa", "numba", "numpy", "scikit-learn", "scipy", "soundfile")

@@ -6,24 +6,21 @@ learned several times, with some of them masked.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.base.labels import LABELS
 from noise.classifier.model import has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from noise.training.classifier.described_samples import Sample
     from noise.training.classifier.own_samples import OwnSample
 
-__all__ = ["KINDS", "SUBSETS", "columns_of_labels", "mask", "masked", "masked_rows", "windows_of"]
 
 KINDS = ("pressure", "acceleration", "torque")
 SUBSETS = (

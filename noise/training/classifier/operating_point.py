@@ -8,21 +8,15 @@ that everyday sounds are seldom taken for need not be as sure as another.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from features.windows.table import HOP
 from noise.classifier.model import Calibration
 from noise.labels.segmentation import NOISES, clearest, labelled_stretches
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["FALSE_NAMES_AN_HOUR", "false_names", "fit_calibration", "fit_thresholds", "scores"]
 
 FALSE_NAMES_AN_HOUR = 5.0
 """So many segments of real backgrounds are called each of the noises, at most."""

@@ -12,12 +12,14 @@ over: one bad file is no reason to lose the others.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
 from models.errors import BushingNoiseError, RecordingError
+from models.recording import Recording
 from noise.base.labels import LABELS
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.table import HUMAN, read_label_table
@@ -25,14 +27,6 @@ from noise.labels.tracks import read_label_track
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 from noise.recordings.folders import files_below, is_file
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from models.recording import Recording
-
-__all__ = ["MOST_WINDOWS", "OwnWindow", "read_labelled"]
 
 LONGEST_WINDOW = 1.0
 """What is labelled is cut into equal windows no longer than this [s], so of 0.5 s and more."""

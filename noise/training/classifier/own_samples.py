@@ -9,10 +9,12 @@ by trees that were grown without any sound of the same source.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.base.labels import LABELS
 from noise.labels.segmentation import NOISES
@@ -20,13 +22,8 @@ from noise.labels.windows import can_be_described, describe
 from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from numpy.typing import NDArray
-
     from noise.training.classifier.own_recordings import OwnWindow
 
-__all__ = ["N_FOLDS", "OWN_WEIGHT", "TOO_FEW", "OwnSample", "own_card", "own_samples", "parts"]
 
 OWN_WEIGHT = 5.0
 """Simulated samples that an own window counts as."""

@@ -13,25 +13,20 @@ from __future__ import annotations
 import csv
 import re
 import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import read_recording
 from noise.recordings.blocks import RecordingBlocks
 from noise.training.classifier.own_samples import OwnSample
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-__all__ = ["RealSounds", "describe_folder", "load_real_sounds"]
 
 _KIND = ModelKind(
     "set of real sounds",

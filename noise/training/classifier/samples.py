@@ -8,11 +8,13 @@ through rooms, microphones, recorders and codecs (`noise.training.classifier.aug
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.condition import Condition
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.training.classifier.augmentation.backgrounds import quiet
@@ -25,15 +27,6 @@ from noise.training.classifier.friction_sources.squawks import SQUAWKS, squawk
 from noise.training.classifier.friction_sources.squeals import SQUEALS, squeal
 from noise.training.classifier.surroundings import may_sound
 from noise.training.draws import log_uniform, wandering
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-    from models.condition import Condition
-
-__all__ = ["SHARES", "SOURCES", "Drawn", "draw", "draw_from", "swelling"]
 
 _RATE = 48_000.0
 """Sampling rate of friction sources and background sounds [Hz]."""

@@ -10,8 +10,6 @@ import re
 
 from models.errors import ParameterError
 
-__all__ = ["SURROUNDINGS", "may_sound"]
-
 _ANIMALS = ("cat", "cow", "crow", "dog", "frog", "hen", "pig", "rooster", "sheep", "birds",
             "cicada", "crickets", "fly")  # fmt: skip
 _HOUSE = ("baby", "snoring", "sipping", "flush", "pouring", "drops", "can", "glass", "keyboard",

@@ -9,21 +9,14 @@ first, by other counts, so that it is those with one that the final counts hold 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.inference.inputs import KINDS, QUANTITIES, of_channels, segment_features
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from noise.inference.model import Inference
-
-__all__ = ["Runs", "calibrate_intervals", "interval_coverage", "rounded"]
+from noise.inference.model import Inference
 
 _LEAST = 50
 """With fewer recordings than this no interval can be calibrated."""

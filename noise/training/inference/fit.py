@@ -9,11 +9,12 @@ see some of them, drawn at random, and the intervals are calibrated for each.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from joblib import Parallel, delayed
+from numpy.typing import NDArray
 
 from features.table import recording_feature_names, recording_features
 from noise.inference.inputs import KINDS, QUANTITIES, of_channels, scaled, segment_features
@@ -21,13 +22,6 @@ from noise.inference.model import Inference
 from noise.training.inference.conformal import Runs, calibrate_intervals, interval_coverage, rounded
 from noise.training.inference.population import draw_audible_run
 from noise.training.trees import PER_LEAF, grow_quantile_forest
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
-    from numpy.typing import NDArray
-
-__all__ = ["RunSample", "coverage", "draw_run_sample", "train_inference"]
 
 N_TRAINING = 1800
 """Runs that grow the forests."""

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -38,12 +37,7 @@ from noise.training.classifier.augmentation.recorder import resampled
 from noise.training.classifier.designs import SHAPES, scaled
 from noise.training.draws import log_uniform
 from noise.training.inference.recording_chain import recorded
-from sim.run import simulate
-
-if TYPE_CHECKING:
-    from sim.run import Run
-
-__all__ = ["AudibleRun", "draw_audible_run"]
+from sim.run import Run, simulate
 
 _FIXED_SHARE = 0.25
 _SCATTER = 0.03

@@ -9,18 +9,13 @@ when the classifier learns to know more.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import fftconvolve
 
 from noise.training.draws import coloured_noise, log_uniform
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["recorded"]
 
 
 def recorded(

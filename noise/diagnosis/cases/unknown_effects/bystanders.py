@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 from scipy.signal import fftconvolve
 
-from noise.diagnosis.cases.unknown_effects.parts import added, on_sensors
+from noise.diagnosis.cases.unknown_effects.parts import Array, Recipe, Rng, added, on_sensors
 from noise.diagnosis.cases.variants.common import log_uniform, log_uniforms
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from noise.diagnosis.cases.unknown_effects.parts import Array, Recipe, Rng
-    from sim.effects.effect import Effect, Signals
-
-__all__ = ["BYSTANDERS"]
+from sim.effects.effect import Effect, Signals
 
 _LEVELS = (0.4, 25.0, 1.0)
 """Of torque, acceleration and pressure at strength 1, at most [Nm], [m/s2], [Pa]."""

@@ -23,11 +23,6 @@ from sim.contact import (
     TWIST_RATE,
 )
 
-__all__ = [
-    "ABSORBER", "BESIDE", "HEADER", "LOADED", "OVER_ANGLE", "OVER_TIME", "SPRING", "STIFFNESSES",
-    "TORQUES", "lagging", "slewing", "table_hook",
-]  # fmt: skip
-
 TORQUES, STIFFNESSES, SPRING, BESIDE, ABSORBER, LOADED = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 """What is changed."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,19 +18,21 @@ from noise.diagnosis.cases.unknown_effects.hooks import (
     STIFFNESSES,
     TORQUES,
 )
-from noise.diagnosis.cases.unknown_effects.parts import noise, on_contact, table, unknown
+from noise.diagnosis.cases.unknown_effects.parts import (
+    Array,
+    Recipe,
+    Rng,
+    noise,
+    on_contact,
+    table,
+    unknown,
+)
 from noise.diagnosis.cases.variants.common import log_uniform
 from noise.diagnosis.cases.variants.hooks import compliance_hook
-from sim.effects.effect import Stage
+from sim.effects.effect import Effect, Stage
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from noise.diagnosis.cases.unknown_effects.parts import Array, Recipe, Rng
-    from sim.effects.effect import Effect
     from sim.motion import Motion
-
-__all__ = ["MECHANICS"]
 
 
 def _cogging(a: float, _torque: float, _stiffness: float, rng: Rng) -> Effect:

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy.signal import bilinear, lfilter
 
 from noise.diagnosis.cases.unknown_effects.hooks import lagging, slewing
-from noise.diagnosis.cases.unknown_effects.parts import normed, on_sensors, where
+from noise.diagnosis.cases.unknown_effects.parts import (
+    Array,
+    Recipe,
+    Rng,
+    normed,
+    on_sensors,
+    where,
+)
 from noise.diagnosis.cases.variants.common import log_uniform, slowly
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from noise.diagnosis.cases.unknown_effects.parts import Array, Recipe, Rng
-    from sim.effects.effect import Effect, Signals
-
-__all__ = ["RECORDERS"]
+from sim.effects.effect import Effect, Signals
 
 
 def _each(a: float, rng: Rng, change: Callable[[Array, float, Rng], Array]) -> Effect:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -25,14 +26,11 @@ from noise.diagnosis.cases.variants.paths import (
     waveguide,
 )
 from sim.chain import HIGHEST_SHARE, padded_sum, resonance
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from models.radiation.impulse_responses import ImpulseResponses
-    from sim.effects.effect import Effect
 
-__all__ = ["BEAMS"]
 
 _CONSTANTS = (8.0, 100.0)
 """Modal constants at strength 1; that of the first torsional mode is about 100 [1/(kg m)]."""

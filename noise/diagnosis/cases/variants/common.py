@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,6 @@ from sim.effects.effect import Effect, Signals
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from typing import Any
-
     from models.radiation.impulse_responses import ImpulseResponses
 
 Array = NDArray[np.float64]

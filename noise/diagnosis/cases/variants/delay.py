@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import map_coordinates
@@ -18,11 +17,7 @@ from noise.diagnosis.cases.variants.common import (
     on_sensors,
     slowly,
 )  # fmt: skip
-
-if TYPE_CHECKING:
-    from sim.effects.effect import Effect
-
-__all__ = ["DELAY"]
+from sim.effects.effect import Effect
 
 TimeSeries = Callable[[int, float, Rng], Array]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.signal import butter, lfilter
@@ -19,11 +18,7 @@ from noise.diagnosis.cases.variants.common import (
     telegraph,
     wander,
 )  # fmt: skip
-
-if TYPE_CHECKING:
-    from sim.effects.effect import Effect, Signals
-
-__all__ = ["NOISE", "adds"]
+from sim.effects.effect import Effect, Signals
 
 TimeSeries = Callable[[int, float, Rng], Array]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 from scipy.signal import lfilter
@@ -18,13 +18,7 @@ from noise.diagnosis.cases.variants.common import (
     telegraph,
 )  # fmt: skip
 from noise.diagnosis.cases.variants.hooks import compliance_hook
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from sim.effects.effect import Effect
-
-__all__ = ["FLUCTUATION", "SHAFT"]
+from sim.effects.effect import Effect
 
 _HIGHEST = 2.0 * math.pi * 4e3
 """[rad/s]"""

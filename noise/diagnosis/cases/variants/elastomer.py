@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,11 +19,7 @@ from noise.diagnosis.cases.variants.common import (
     overshoot,
 )  # fmt: skip
 from noise.diagnosis.cases.variants.hooks import bristle_hook, dashpot_hook, softening_hook
-
-if TYPE_CHECKING:
-    from sim.effects.effect import Effect
-
-__all__ = ["SOFTENING", "VISCOELASTICITY"]
+from sim.effects.effect import Effect
 
 _SHORTEST = 2e-5
 """Relaxation time that the integration resolves [s]."""

@@ -35,19 +35,6 @@ from sim.contact import (
     slipless,
 )
 
-__all__ = [
-    "ageing_hook",
-    "bristle_hook",
-    "compliance_hook",
-    "creep_hook",
-    "dashpot_hook",
-    "film_hook",
-    "heating_hook",
-    "patch_hook",
-    "rate_dependence_hook",
-    "softening_hook",
-]  # fmt: skip
-
 _MOST_CREEP = 0.95
 """Share of the shaft's speed."""
 

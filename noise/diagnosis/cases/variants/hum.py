@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 
@@ -16,13 +16,7 @@ from noise.diagnosis.cases.variants.common import (
     telegraph,
 )  # fmt: skip
 from noise.diagnosis.cases.variants.disturbance import adds
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from sim.effects.effect import Effect, Signals
-
-__all__ = ["HUM"]
+from sim.effects.effect import Effect, Signals
 
 _LEVELS = (0.8, 18.0, 0.8)
 """Of torque, acceleration and pressure at strength 1, at most [Nm], [m/s2], [Pa]."""

@@ -7,8 +7,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-__all__ = ["droop"]
-
 
 @njit(cache=True)
 def droop(x, limit, deep, rate):

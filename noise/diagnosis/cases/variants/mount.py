@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 from scipy.signal import bilinear, butter, lfilter, lfilter_zi
@@ -17,13 +17,7 @@ from noise.diagnosis.cases.variants.common import (
     log_uniforms,
     on_sensors,
 )  # fmt: skip
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from sim.effects.effect import Effect
-
-__all__ = ["MOUNT"]
+from sim.effects.effect import Effect
 
 
 def _mounts(form: str, a: float, rng: Rng, lost: Callable[[Array, float], Array]) -> Effect:

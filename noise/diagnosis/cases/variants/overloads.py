@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 from scipy.signal import butter, lfilter
@@ -17,13 +17,7 @@ from noise.diagnosis.cases.variants.common import (
     on_sensors,
 )  # fmt: skip
 from noise.diagnosis.cases.variants.limits import droop
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from sim.effects.effect import Effect
-
-__all__ = ["CLIPPING"]
+from sim.effects.effect import Effect
 
 _DEEPEST = 0.9
 """Share of the peak that is cut off at strength 1."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,13 +12,9 @@ from scipy.ndimage import map_coordinates
 from sim.chain import HIGHEST_SHARE, padded_sum, resonance
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from models.radiation.impulse_responses import ImpulseResponses
     from noise.diagnosis.cases.variants.common import Array
 
-__all__ = ["band_level", "damped", "on_acceleration", "on_pressure", "rings", "shifted", "split",
-           "waveguide"]  # fmt: skip
 
 _LONGEST = 0.25
 """Waves are followed so long at most [s]."""

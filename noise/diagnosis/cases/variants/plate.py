@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -26,14 +27,11 @@ from noise.diagnosis.cases.variants.paths import (
     waveguide,
 )
 from sim.chain import filter_pressure, padded_sum
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from models.radiation.impulse_responses import ImpulseResponses
-    from sim.effects.effect import Effect
 
-__all__ = ["PLATE"]
 
 _HIGHEST_PEAK = 8.0
 """Of a resonance over the direct sound at strength 1: 19 dB [-]."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
 from noise.diagnosis.cases.variants.common import (
@@ -15,17 +17,12 @@ from noise.diagnosis.cases.variants.common import (
     on_joint,
     on_signals,
 )  # fmt: skip
+from sim.effects.effect import Effect, Signals
 from sim.effects.slip_pulse import torque_drops
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Effect, Signals
     from sim.motion import Motion
 
-__all__ = ["PULSES"]
 
 _REFERENCE_DROP = 6.94
 """As of `sim.effects.slip_pulse` [Nm]."""

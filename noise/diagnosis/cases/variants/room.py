@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,14 +18,10 @@ from noise.diagnosis.cases.variants.common import (
 )  # fmt: skip
 from noise.diagnosis.cases.variants.paths import rings, waveguide
 from sim.chain import filter_pressure, padded_sum
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from models.radiation.impulse_responses import ImpulseResponses
-    from sim.effects.effect import Effect
-
-__all__ = ["ROOM"]
 
 
 def _reflected(form: str, a: float, taps: Callable[[float, Rng], Array]) -> Effect:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 from scipy.signal import lfilter
@@ -17,13 +17,7 @@ from noise.diagnosis.cases.variants.common import (
 )  # fmt: skip
 from noise.diagnosis.cases.variants.hooks import patch_hook
 from sim.effects import EFFECTS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from sim.effects.effect import Effect
-
-__all__ = ["SCATTER"]
+from sim.effects.effect import Effect
 
 _N_DRAWS = 4096
 _MOST = 0.8

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,11 +19,7 @@ from noise.diagnosis.cases.variants.common import (
     overshoot,
 )  # fmt: skip
 from noise.diagnosis.cases.variants.hooks import rate_dependence_hook
-
-if TYPE_CHECKING:
-    from sim.effects.effect import Effect
-
-__all__ = ["STRENGTHENING", "WEAKENING"]
+from sim.effects.effect import Effect
 
 _STEEPEST = 0.5
 """Rise over the kinetic torque that the solver follows well [s/rad]."""

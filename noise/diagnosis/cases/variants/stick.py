@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,11 +18,7 @@ from noise.diagnosis.cases.variants.common import (
     on_contact,
 )  # fmt: skip
 from noise.diagnosis.cases.variants.hooks import ageing_hook, creep_hook
-
-if TYPE_CHECKING:
-    from sim.effects.effect import Effect
-
-__all__ = ["AGEING", "CREEP"]
+from sim.effects.effect import Effect
 
 _RENEWAL = 4e-4
 """Angle after which a slip has made the contact anew [rad]."""

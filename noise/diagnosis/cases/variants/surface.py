@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from noise.diagnosis.cases.variants.common import (
@@ -22,11 +20,7 @@ from noise.diagnosis.cases.variants.common import (
     overshoot,
 )  # fmt: skip
 from noise.diagnosis.cases.variants.hooks import film_hook, heating_hook
-
-if TYPE_CHECKING:
-    from sim.effects.effect import Effect
-
-__all__ = ["FILM", "HEAT"]
+from sim.effects.effect import Effect
 
 _N_NOISE = 2**14
 

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.gap.signature import KINDS, NAMES
+from sim.effects.effect import Signals, Values
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Signals, Values
 
-__all__ = ["hum_forms", "noise_forms"]
 
 _SURE = 2.0
 """An excess counts from so many standard errors; the usual two of a normal distribution,

@@ -7,24 +7,20 @@ that the contact does stands between; the shaft's own modulation is taken from i
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.condition import known_condition
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.evidence.angle_summary import shaft_speed
 from noise.diagnosis.simulated.transfer_functions import predict
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.transfer_functions.transfer_function import TransferFunction
     from noise.diagnosis.fit.case_comparison import CaseComparison
-
-__all__ = ["Compared", "compared"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 
 from noise.diagnosis.cases.variants import VARIANTS
+from noise.diagnosis.cases.variants.common import Recipe
 from noise.diagnosis.fit.forms.form import Form
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from noise.diagnosis.cases.variants.common import Recipe
-    from sim.effects.effect import Effect
-
-__all__ = ["drawn_forms"]
+from sim.effects.effect import Effect
 
 _TRIED = (0.1, 0.4)
 """Strengths that a fit looks at; 1 is what nobody overlooks."""

@@ -7,23 +7,19 @@ any search over formulas finds it. What the contact does is not, as it changes i
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.fit.forms.added import hum_forms, noise_forms
-from noise.diagnosis.fit.forms.compared import compared
+from noise.diagnosis.fit.forms.compared import Compared, compared
 from noise.diagnosis.fit.forms.filters import beam_forms, radiation_forms, sensor_forms
+from noise.diagnosis.fit.forms.form import Form
 from noise.diagnosis.fit.forms.impacts import impact_forms
 from noise.diagnosis.fit.forms.modulation import gain_forms, speed_forms
 from noise.diagnosis.fit.forms.overloads import overload_forms
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from noise.diagnosis.fit.case_comparison import CaseComparison
-    from noise.diagnosis.fit.forms.compared import Compared
-    from noise.diagnosis.fit.forms.form import Form
-
-__all__ = ["estimated_forms"]
 
 
 def estimated_forms(comparison: CaseComparison, chosen: Sequence[int], name: str) -> list[Form]:

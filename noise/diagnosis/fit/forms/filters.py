@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -13,15 +14,12 @@ from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.fit.forms.wiener import Noise, wiener_estimate
 from sim.chain import filter_pressure, padded_sum
+from sim.effects.effect import Signals, Values
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from models.radiation.impulse_responses import ImpulseResponses
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Signals, Values
 
-__all__ = ["beam_forms", "radiation_forms", "sensor_forms"]
 
 _NOISE = {"acceleration": 0.03, "pressure": 1e-3}
 """White noise of a channel over a change of one, rms in its unit; assumed."""

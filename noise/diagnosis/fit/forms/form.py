@@ -6,21 +6,14 @@ numbers. Both are told of by a `LawSpec` whose ``form`` names which it is.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.rig import LawSpec
 from sim.effects import EFFECTS
-from sim.effects.effect import Effect
+from sim.effects.effect import ActiveEffect, Effect
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from sim.effects.effect import ActiveEffect
-
-__all__ = ["Form", "amount_form"]
 
 _AMOUNT = Parameter(1.0, "", 0.0, 4.0, "over what was estimated")
 

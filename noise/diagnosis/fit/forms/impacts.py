@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.transfer_functions.impulse_response import impulse_response
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.fit.forms.wiener import wiener_estimate
+from sim.effects.effect import Values
 from sim.effects.slip_pulse import torque_drops
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from models.radiation.impulse_responses import ImpulseResponses
-    from models.transfer_functions.transfer_function import TransferFunction
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Values
     from sim.motion import Motion
 
-__all__ = ["impact_forms"]
 
 _LENGTH = 0.08
 """How long an impact rings on [s]; assumed."""

@@ -6,22 +6,19 @@ from any moment on if it has no beginning, as a speed's, from the start if it ha
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.gap.signature import NAMES
+from sim.effects.effect import Signals, Values
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Signals, Values
 
-__all__ = ["gain_forms", "speed_forms"]
 
 _BLOCK = 0.03
 """In which a gain is one number [s]; assumed."""

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.gap.signature import KINDS
+from sim.effects.effect import Signals, Values
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import NDArray
-
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Signals, Values
 
-__all__ = ["overload_forms"]
 
 _KNOTS = 61
 """Of the curve, from the lowest to the highest reading."""

@@ -9,23 +9,17 @@ noise and jitter take from the estimate can be restored by its energy.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.linalg import solve_toeplitz
 from scipy.ndimage import uniform_filter1d
 from scipy.signal.windows import tukey
 
 from models.transfer_functions.transfer_function import TransferFunction
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["Noise", "wiener_estimate"]
 
 _LEAD = 0.08
 """Left out at the start, where what rings on from before is missing [s]; assumed."""

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from noise.training.classifier.augmentation.places import place
 from noise.training.draws import coloured_noise, log_uniform
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["background", "quiet"]
 
 _QUIETS = ("hiss", "hum", "background", "sliding", "place", "silence")
 _SHARES = (0.12, 0.14, 0.09, 0.07, 0.56, 0.02)

@@ -8,21 +8,16 @@ whines at high orders of its shaft, its inverter near 8 to 10 kHz.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.signal import fftconvolve
 
 from noise.training.classifier.background_sounds.building import blow, placed, wavering
 from noise.training.draws import log_uniform, wandering
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["CABINS", "Cabin", "cabin", "orders", "shaped_noise"]
 
 _SHAPE_SPREAD = 4.0
 """Standard deviation of a drawn spectrum about its shape at each point [dB]."""

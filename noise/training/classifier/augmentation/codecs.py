@@ -7,16 +7,11 @@ low-pass stands in.
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING
 
 import numpy as np
 import soundfile
+from numpy.typing import NDArray
 from scipy.signal import firwin, oaconvolve
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["coded", "quantised"]
 
 _AT_ONCE = 4096
 """Frames given to an encoder together; libsndfile's Vorbis encoder overflows its stack on many."""

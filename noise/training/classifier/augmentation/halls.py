@@ -6,22 +6,16 @@ valves hiss; fans hum at their blades' rate; somebody hammers or grinds at the o
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
 from noise.training.classifier.augmentation.cabins import orders, shaped_noise
 from noise.training.classifier.augmentation.rooms import in_a_room
 from noise.training.classifier.background_sounds.building import blow, placed, wavering
 from noise.training.draws import log_uniform, wandering
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from numpy.typing import NDArray
-
-__all__ = ["HALLS"]
 
 _AIR = ((20, 2), (80, 3), (250, 0), (1000, -8), (3000, -18), (8000, -32), (16000, -46))
 _HISS = ((20, -40), (300, -22), (1500, -6), (5000, 0), (12000, -4), (20000, -12))

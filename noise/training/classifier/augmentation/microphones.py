@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.signal import lfilter
 
 from noise.training.draws import coloured_noise, log_uniform, low_pass, wandering
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["clipped", "levelled", "through_a_microphone"]
 
 _BANDS = {
     "free": ((15.0, 250.0), (5e3, 20e3), 2, 4.0),

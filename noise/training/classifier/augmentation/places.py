@@ -5,9 +5,10 @@ Some families are never learned from, so that a score on them is one of places l
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from scipy.signal import fftconvolve
@@ -19,13 +20,6 @@ from noise.training.classifier.background_sounds.blows import slam
 from noise.training.classifier.background_sounds.building import blow, placed
 from noise.training.classifier.background_sounds.people import speech
 from noise.training.classifier.background_sounds.signals import music
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-__all__ = ["LEARNED", "LEFT_OUT", "PLACES", "a_weighted", "in_a_place", "place"]
 
 PLACES = (*CABINS, *HALLS)
 """Families of cabins and halls."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import resample_poly
 
 from noise.training.classifier.augmentation.backgrounds import background
@@ -18,11 +18,6 @@ from noise.training.classifier.augmentation.microphones import (
 )
 from noise.training.classifier.augmentation.places import a_weighted, in_a_place, place
 from noise.training.classifier.augmentation.rooms import in_a_room
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["RATES", "RecordedSound", "augmented", "recorded", "resampled"]
 
 RATES = (16_000, 22_050, 30_000, 32_000, 44_100, 48_000, 96_000)
 """Sampling rates that recordings come in [Hz]."""

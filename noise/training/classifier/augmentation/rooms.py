@@ -8,17 +8,12 @@ classifier should know all rooms, not know one.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
 from noise.training.draws import log_uniform, low_pass
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["in_a_room"]
 
 
 def in_a_room(

@@ -12,9 +12,10 @@ without end. A bird's whistle is as pure too, but sweeps.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.training.classifier.background_sounds.building import (
     arch,
@@ -26,11 +27,6 @@ from noise.training.classifier.background_sounds.building import (
     wavering,
 )
 from noise.training.draws import coloured_noise, log_uniform, wandering
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["RECIPES"]
 
 
 def _glide(m: int, low: float, high: float, rng: np.random.Generator) -> NDArray[np.float64]:

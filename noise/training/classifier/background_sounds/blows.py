@@ -6,20 +6,14 @@ at random: their rate does not glide.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.training.classifier.background_sounds.building import blow, resonance
 from noise.training.draws import coloured_noise, log_uniform
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-__all__ = ["RECIPES"]
 
 
 def _struck(

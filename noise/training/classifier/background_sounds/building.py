@@ -3,28 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from noise.training.draws import coloured_noise, log_uniform, wandering
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-__all__ = [
-    "arch",
-    "blow",
-    "harmonics",
-    "placed",
-    "repeated",
-    "resonance",
-    "through_formants",
-    "voiced",
-]
 
 
 def harmonics(

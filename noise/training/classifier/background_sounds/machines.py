@@ -8,9 +8,8 @@ the stroke's speed, so the blade hums a little, every stroke the same way.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.training.classifier.background_sounds.building import (
     blow,
@@ -20,11 +19,6 @@ from noise.training.classifier.background_sounds.building import (
     wavering,
 )
 from noise.training.draws import coloured_noise, log_uniform, wandering
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["RECIPES"]
 
 
 def engine(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:

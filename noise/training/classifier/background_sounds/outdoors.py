@@ -6,18 +6,12 @@ A bubble rings at the frequency that its radius gives and rises as it nears the 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import fftconvolve, lfilter
 
 from noise.training.classifier.background_sounds.building import blow, placed, repeated, resonance
 from noise.training.draws import coloured_noise, log_uniform, wandering
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["RECIPES"]
 
 
 def rain(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.training.classifier.background_sounds.building import (
     arch,
@@ -16,11 +15,6 @@ from noise.training.classifier.background_sounds.building import (
     voiced,
 )
 from noise.training.draws import coloured_noise, log_uniform, wandering
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["RECIPES"]
 
 
 def speech(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:

@@ -7,17 +7,11 @@ bell's partials, the notes of a scale.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.training.classifier.background_sounds.building import blow, harmonics
 from noise.training.draws import coloured_noise, log_uniform
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["RECIPES"]
 
 
 def alarm(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:

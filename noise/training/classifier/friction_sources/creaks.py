@@ -9,19 +9,14 @@ at once, and the sliding between hisses softly.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
 from noise.training.classifier.friction_sources.modal_body import overlapping_modes, random_body
 from noise.training.classifier.friction_sources.slider import Slips, random_drive, slide
 from noise.training.draws import coloured_noise, log_uniform
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["CREAKS", "creak", "pulses"]
 
 CREAKS = ("door", "floor", "tree", "hinge", "plastic")
 """What creaks; the names of its materials."""

@@ -15,15 +15,9 @@ mode: the broad line of a tyre. The contact's nonlinearity puts harmonics on top
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numba import njit
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["amplitudes", "carried"]
+from numpy.typing import NDArray
 
 ENVELOPE_RATE = 6000.0
 """At which amplitudes are solved [Hz]."""

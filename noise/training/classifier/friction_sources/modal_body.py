@@ -13,16 +13,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.training.draws import coloured_noise, log_uniform
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["MATERIALS", "ModalBody", "overlapping_modes", "random_body"]
 
 MATERIALS = {
     "door": (80.0, 9000.0, 0.015, 0.08),

@@ -19,17 +19,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from noise.training.draws import log_uniform, wandering
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["Slips", "random_drive", "slide"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
 from noise.training.classifier.friction_sources.limit_cycle import (
@@ -22,11 +22,6 @@ from noise.training.classifier.friction_sources.limit_cycle import (
 from noise.training.classifier.friction_sources.modal_body import ModalBody
 from noise.training.classifier.friction_sources.slider import slide
 from noise.training.draws import coloured_noise, log_uniform, wandering
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["SQUAWKS", "squawk"]
 
 SQUAWKS = ("chatter", "modes")
 """What squawks."""

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from noise.training.classifier.friction_sources.limit_cycle import (
     ENVELOPE_RATE,
@@ -19,11 +19,6 @@ from noise.training.classifier.friction_sources.limit_cycle import (
     carried,
 )
 from noise.training.draws import coloured_noise, wandering
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["SQUEALS", "Squealer", "squeal"]
 
 
 @dataclass(frozen=True)
