@@ -1,4 +1,4 @@
-"""Sound power of the plate in one-third octaves, and the balance of the power supplied to it.
+"""Sound power of the plate under steady drives, in one-third octaves.
 
 Radiated power follows from the plate's velocity spectrum over wavenumbers: only components slower
 than k = omega / c travel away. Over that disc the integral is smooth once k_x = k s and
@@ -50,25 +50,6 @@ BAND = 10**0.1
 """Upper over lower edge of a band."""
 
 
-@dataclass(frozen=True, eq=False)
-class PowerFlow:
-    """Where the power goes at each frequency, for drives in root mean square.
-
-    Parameters
-    ----------
-    supplied, dissipated, radiated : ndarray, shape (n,)
-        By the drives, in the plate, and as sound of its upper side [W]; what is supplied is
-        dissipated.
-    mean_square_velocity : ndarray, shape (n,)
-        Over the plate [m2/s2].
-    """
-
-    supplied: NDArray[np.float64]
-    dissipated: NDArray[np.float64]
-    radiated: NDArray[np.float64]
-    mean_square_velocity: NDArray[np.float64]
-
-
 @short_repr
 @dataclass(frozen=True, eq=False)
 class BandPower:
@@ -78,18 +59,12 @@ class BandPower:
     ----------
     centre : ndarray, shape (n_bands,)
         Exact middle of each band [Hz].
-    supplied, dissipated, radiated : ndarray, shape (n_bands,)
-        By the drives, in the plate, as sound of its upper side [W].
-    radiation_efficiency : ndarray, shape (n_bands,)
-        Radiated power over that of plane waves of the same mean square velocity [-]; NaN where
-        nothing moves.
+    radiated : ndarray, shape (n_bands,)
+        As sound of the plate's upper side [W].
     """
 
     centre: NDArray[np.float64]
-    supplied: NDArray[np.float64]
-    dissipated: NDArray[np.float64]
     radiated: NDArray[np.float64]
-    radiation_efficiency: NDArray[np.float64]
 
     @property
     def level(self) -> NDArray[np.float64]:
@@ -98,10 +73,10 @@ class BandPower:
             return np.asarray(10 * np.log10(self.radiated / REFERENCE))
 
 
-def power_flow(
+def radiated_spectrum(
     modes: PlateModes, drives: NDArray[np.float64], spectrum: ArrayLike, frequency: ArrayLike
-) -> PowerFlow:
-    """Steady-state powers under harmonic drives.
+) -> NDArray[np.float64]:
+    """Sound power of the upper side under harmonic drives.
 
     Parameters
     ----------
@@ -116,7 +91,8 @@ def power_flow(
 
     Returns
     -------
-    PowerFlow
+    ndarray, shape (n,)
+        [W]
 
     Examples
     --------
@@ -124,8 +100,8 @@ def power_flow(
     >>> from models.rig import Plate
     >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
     >>> modes = plate_modes(steel, 16e3)
-    >>> flow = power_flow(modes, modes.shape([0.1], [0.05]).T, [1.0], [3e3])
-    >>> (10 * np.log10(flow.radiated / 1e-12)).round(1)  # dB re 1 pW, for 1 N
+    >>> power = radiated_spectrum(modes, modes.shape([0.1], [0.05]).T, [1.0], [3e3])
+    >>> (10 * np.log10(power / 1e-12)).round(1)  # dB re 1 pW, for 1 N
     array([64.4])
     """
     frequency = np.asarray(frequency, dtype=np.float64)
@@ -140,16 +116,11 @@ def power_flow(
     velocity = (
         1j * omega * forces / modes.mass / (natural**2 - omega**2 + 2j * ratios * natural * omega)
     )
-    squares = np.sum(np.abs(velocity) ** 2, axis=0)
-    radiated = [
-        sum(radiated_power(modes, one, f) for one in fields)
-        for fields, f in zip(velocity.transpose(2, 0, 1), frequency.tolist(), strict=True)
-    ]
-    return PowerFlow(
-        np.sum((forces.conj() * velocity).real, axis=(0, 1)),
-        np.sum(2 * ratios * natural * modes.mass * squares, axis=0),
-        np.array(radiated),
-        np.sum(squares, axis=0) / 4,
+    return np.array(
+        [
+            sum(radiated_power(modes, one, f) for one in fields)
+            for fields, f in zip(velocity.transpose(2, 0, 1), frequency.tolist(), strict=True)
+        ]
     )
 
 
@@ -224,7 +195,7 @@ def third_octave_power(
     low: float = 50.0,
     high: float = 10e3,
 ) -> BandPower:
-    """Powers of the plate under steady drives, band by band.
+    """Sound power of the plate under steady drives, band by band.
 
     Parameters
     ----------
@@ -271,16 +242,6 @@ def third_octave_power(
     edges = centre[:, None] * BAND ** (np.linspace(-0.5, 0.5, count + 1))
     frequency = np.sqrt(edges[:, 1:] * edges[:, :-1]).ravel()
     spectra = np.ones((drives.shape[1], frequency.size)) if density is None else density(frequency)
-    flow = power_flow(modes, drives, spectra, frequency)
+    radiated = radiated_spectrum(modes, drives, spectra, frequency)
     width = np.diff(edges, axis=1)
-
-    def in_bands(spectrum: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.asarray(np.sum(spectrum.reshape(width.shape) * width, axis=1))
-
-    radiated = in_bands(flow.radiated)
-    area = modes.plate.length * modes.plate.width
-    plane = AIR_DENSITY * SOUND_SPEED * area * in_bands(flow.mean_square_velocity)
-    efficiency = np.divide(radiated, plane, out=np.full(centre.size, np.nan), where=plane > 0.0)
-    return BandPower(
-        centre, in_bands(flow.supplied), in_bands(flow.dissipated), radiated, efficiency
-    )
+    return BandPower(centre, np.sum(radiated.reshape(width.shape) * width, axis=1))

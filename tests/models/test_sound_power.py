@@ -8,8 +8,8 @@ import pytest
 from models.errors import ParameterError
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
 from models.radiation.sound_power import (
-    power_flow,
     radiated_power,
+    radiated_spectrum,
     third_octave_power,
 )
 from models.rig import Microphone, Plate
@@ -57,9 +57,8 @@ def test_modes_are_mono_di_and_quadrupoles(m, n, power):
 @pytest.mark.parametrize("edges", ["simply_supported", "free", "clamped"])
 def test_far_above_its_critical_frequency_every_mode_radiates_as_a_piston(edges):
     modes = plate_modes(dataclasses.replace(STEEL, edges=edges), 600.0)
-    assert radiation_efficiency(modes, [12e3], modes.frequencies.size - 1) == pytest.approx(
-        1, abs=0.03
-    )
+    for mode in range(modes.frequencies.size):
+        assert radiation_efficiency(modes, [12e3], mode) == pytest.approx(1, abs=0.03)
 
 
 @pytest.mark.parametrize(
@@ -102,43 +101,8 @@ def test_power_of_a_mode_is_what_microphones_about_it_receive():
             heard = pressure_response(modes, first, Microphone(place), 12e3, 12000)[0]
             gain = np.exp(-2j * np.pi * frequency / 12e3 * np.arange(heard.size)) @ heard
             total += weight * 2 * np.pi * distance**2 * abs(gain) ** 2 / 4
-    flow = power_flow(modes, first, [1.0], [frequency])
-    assert flow.radiated[0] == pytest.approx(total / (AIR_DENSITY * SOUND_SPEED), rel=0.02)
-
-
-@pytest.mark.parametrize("edges", ["simply_supported", "free"])
-def test_supplied_power_is_dissipated(edges):
-    modes = plate_modes(dataclasses.replace(STEEL, edges=edges), 2e3)
-    drives = np.stack([modes.shape(0.1, 0.05), modes.slope(-0.2, 0.1, "y")], axis=1)
-    flow = power_flow(modes, drives, [1.0, 0.1j], np.geomspace(50, 2e3, 40))
-    assert flow.dissipated == pytest.approx(flow.supplied, rel=1e-9)
-    assert np.all(flow.radiated < 0.1 * flow.supplied)
-
-
-def test_mean_efficiency_peaks_at_the_critical_frequency():
-    critical = SOUND_SPEED**2 / (2 * np.pi * np.sqrt(STEEL.stiffness_per_mass))
-    modes = plate_modes(STEEL, 12e3)
-    bands = third_octave_power(modes, modes.shape([0.21], [0.13]).T, low=100.0, high=8e3)
-    peak = bands.centre[np.argmax(bands.radiation_efficiency)]
-    assert 0.8 < peak / critical < 1.6
-    assert bands.radiation_efficiency[-1] == pytest.approx(1.1, abs=0.1)
-
-
-def test_band_power_is_that_of_white_force_on_an_infinite_plate():
-    # supplied by 1 N2/Hz: the bandwidth times the infinite plate's mobility
-    plate = dataclasses.replace(STEEL, loss_factor=0.15)
-    modes = plate_modes(plate, 16e3)
-    x, y = np.random.default_rng(8).uniform(-0.4, 0.4, (2, 12)) * [[0.9], [0.6]]
-    supplied = np.mean(
-        [
-            third_octave_power(modes, modes.shape([a], [b]).T, low=2e3, high=4e3).supplied
-            for a, b in zip(x, y, strict=True)
-        ],
-        axis=0,
-    )
-    width = 1e3 * 10 ** (np.arange(3, 7) / 10) * (10**0.05 - 10**-0.05)
-    mobility = 1 / (8 * plate.mass_per_area * np.sqrt(plate.stiffness_per_mass))
-    assert np.abs(10 * np.log10(supplied / (width * mobility))).max() < 1
+    (radiated,) = radiated_spectrum(modes, first, [1.0], [frequency])
+    assert radiated == pytest.approx(total / (AIR_DENSITY * SOUND_SPEED), rel=0.02)
 
 
 def test_spectra_of_drives_scale_and_combine():
