@@ -11,7 +11,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.contact import CREEP, CRITICAL, KINETIC, N_CONTACT, N_CONTEXT, STICK_TIME, STICKS, TIME
+from sim.contact import (
+    CREEP,
+    CRITICAL,
+    KINETIC,
+    N_CONTACT,
+    N_CONTEXT,
+    STICK_TIME,
+    STICKS,
+    TIME,
+    call_hook,
+    call_law,
+)  # fmt: skip
 from sim.friction import friction_law
 from sim.parameters import resolve
 
@@ -62,7 +73,7 @@ def can_act(active: ActiveEffect, friction: LawSpec) -> bool:
         contact[CREEP] = 0.0
         before = contact.copy()
         state = 10.0 ** rng.uniform(-6.0, 1.0, max(effect.n_states, 1))
-        effect.contact(context, values, state, np.zeros_like(state), contact)
+        call_hook(effect.contact, context, values, state, np.zeros_like(state), contact)
         changed |= contact != before
     read = set(range(N_CONTACT)) - {CREEP, CRITICAL, KINETIC}
     read |= {entry for entry in (CRITICAL, KINETIC) if _reads(law, friction, entry, rng)}
@@ -81,7 +92,8 @@ def _reads(law: FrictionLaw, friction: LawSpec, entry: int, rng: np.random.Gener
         for factor in (1.0, 1.3):
             asked, rates = contact.copy(), np.zeros(max(state.size, 1))
             asked[entry] *= factor
-            found.append((law.torque(speed, coefficients, asked, state, rates), *rates))
+            torque = call_law(law.torque, speed, coefficients, asked, state, rates)
+            found.append((torque, *rates))
         if found[0] != found[1]:
             return True
     return False

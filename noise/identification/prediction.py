@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from models.rig import LawSpec
 from sim.bushing import LumpedBushing
-from sim.contact import CRITICAL, KINETIC, N_CONTACT
+from sim.contact import CRITICAL, KINETIC, N_CONTACT, call_law
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import friction_law
@@ -64,10 +64,10 @@ def _driven(law, speed, step, substeps, coefficients, contact, state) -> None:  
         slope = (speed[i + 1] - speed[i]) / substeps
         for j in range(substeps):
             v = speed[i] + slope * j
-            law(v, coefficients, contact, state, first)
+            call_law(law, v, coefficients, contact, state, first)
             for m in range(state.size):
                 guess[m] = state[m] + h * first[m]
-            law(v + slope, coefficients, contact, guess, second)
+            call_law(law, v + slope, coefficients, contact, guess, second)
             for m in range(state.size):
                 state[m] += 0.5 * h * (first[m] + second[m])
 

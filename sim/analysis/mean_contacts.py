@@ -106,10 +106,10 @@ def _average(hook, values, moments, speeds, states, context, work, contacts) -> 
                 moved[i] = state[i] + 1e-6
             for i in range(given.size):
                 contact[i] = given[i]
-            hook(context, values, moved, rates_moved, contact)
+            hook(context.ctypes, values.ctypes, moved.ctypes, rates_moved.ctypes, contact.ctypes)
             for i in range(given.size):
                 contact[i] = given[i]
-            hook(context, values, state, rates, contact)
+            hook(context.ctypes, values.ctypes, state.ctypes, rates.ctypes, contact.ctypes)
             for i in range(state.size):
                 decay = min((rates_moved[i] - rates[i]) * 1e6 * step, 0.0)
                 state[i] += step * rates[i] * (math.expm1(decay) / decay if decay else 1.0)

@@ -31,13 +31,12 @@ import numpy as np
 from sim.analysis.stability_kernel import STEP, linearised
 from sim.analysis.sweep_systems import packed_systems
 from sim.constant_version import constant_version
-from sim.contact import CRITICAL, KINETIC, N_CONTACT, SHAFT_INERTIA, STIFFNESS
+from sim.contact import CRITICAL, KINETIC, N_CONTACT, SHAFT_INERTIA, STIFFNESS, no_law
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import friction_law
 from sim.motion import contact_hooks
 from sim.parameters import resolve
-from sim.solvers.stand_ins import no_law
 from sim.temperature import FRICTION_SHIFT
 
 if TYPE_CHECKING:

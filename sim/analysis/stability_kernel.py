@@ -53,14 +53,14 @@ def _solve(a, x) -> None:
 def _rates_and_slopes(law, c, v, contact, state, rates, low, slopes) -> None:
     """Fill the state's rates and their slopes over it."""
     n = state.size
-    law(v, c, contact, state, rates)
+    law(v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
     for j in range(n):
         kept = state[j]
         change = STEP * abs(kept) + 1e-12
         state[j] = kept + change
-        law(v, c, contact, state, slopes[n])
+        law(v, c.ctypes, contact.ctypes, state.ctypes, slopes[n].ctypes)
         state[j] = kept - change
-        law(v, c, contact, state, low)
+        law(v, c.ctypes, contact.ctypes, state.ctypes, low.ctypes)
         state[j] = kept
         for i in range(n):
             slopes[i, j] = (slopes[n, i] - low[i]) / (2.0 * change)
@@ -105,8 +105,8 @@ def linearised(law, has_law, c, rest, systems, speeds, contacts, matrices) -> No
                     break
             _rates_and_slopes(law, c, v, contact, state, rates, below, slopes)
             dv = STEP * v
-            high = law(v + dv, c, contacts[1, run], state, above)
-            low = law(v - dv, c, contacts[2, run], state, below)
+            high = law(v + dv, c.ctypes, contacts[1, run].ctypes, state.ctypes, above.ctypes)
+            low = law(v - dv, c.ctypes, contacts[2, run].ctypes, state.ctypes, below.ctypes)
             slope = (high - low) / (2.0 * dv)
             for j in range(n):
                 a[4 + j, 1] = -(above[j] - below[j]) / (2.0 * dv)
@@ -115,9 +115,9 @@ def linearised(law, has_law, c, rest, systems, speeds, contacts, matrices) -> No
                 kept = state[j]
                 change_of = STEP * abs(kept) + 1e-12
                 state[j] = kept + change_of
-                high = law(v, c, contact, state, rates)
+                high = law(v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
                 state[j] = kept - change_of
-                low = law(v, c, contact, state, rates)
+                low = law(v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
                 state[j] = kept
                 a[1, 4 + j] = (high - low) / (2.0 * change_of) / j_e
         a[0, 1] = 1.0

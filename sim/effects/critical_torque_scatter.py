@@ -33,7 +33,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
-from models.compilation import PART
 from sim.contact import (
     CRITICAL,
     HOOK_SIGNATURE,
@@ -51,7 +50,7 @@ if TYPE_CHECKING:
 
     from sim.effects.effect import Values
 
-__all__ = ["EFFECT", "scattered"]
+__all__ = ["EFFECT"]
 
 _FORMS = ("normal", "uniform", "correlated")
 _N_DRAWS = 4096
@@ -73,7 +72,7 @@ def _pack(form: str, values: Values, rng: np.random.Generator) -> NDArray[np.flo
     return np.concatenate([[values["patch_angle"]], values["scatter"] * z])
 
 
-@njit(forceinline=True, **PART)
+@njit(cache=True, error_model="numpy")
 def _draw(place, values):
     """Return s z between the draws."""
     i = int(place)
@@ -82,25 +81,15 @@ def _draw(place, values):
     return (1.0 - x) * values[_HEADER + i % _N_DRAWS] + x * values[_HEADER + (i + 1) % _N_DRAWS]
 
 
-@njit(forceinline=True, **PART)
-def scattered(v, shaft, place, formed, values):  # noqa: ANN201
-    """Return the share of the drop that is left, and the rates of p and g, of a law with state.
-
-    `v` is the sliding speed, `shaft` that of the shaft [rad/s].
-    """
-    sliding, even = abs(v), 2.0 * abs(shaft)
-    burst = max(sliding - even, 0.0) / values[0]
-    fading = min(sliding, even) / (_FORGOTTEN * values[0])
-    share = max(0.0, 1.0 + formed * _draw(place, values))
-    return share, burst, burst * (1.0 - formed) - fading * formed
-
-
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def _contact(context, values, state, state_rates, contact):
     if slipless(context):
-        share, state_rates[0], state_rates[1] = scattered(
-            context[SLIDING_SPEED], context[SHAFT_SPEED], state[0], state[1], values
-        )
+        sliding, even = abs(context[SLIDING_SPEED]), 2.0 * abs(context[SHAFT_SPEED])
+        burst = max(sliding - even, 0.0) / values[0]
+        fading = min(sliding, even) / (_FORGOTTEN * values[0])
+        share = max(0.0, 1.0 + state[1] * _draw(state[0], values))
+        state_rates[0] = burst
+        state_rates[1] = burst * (1.0 - state[1]) - fading * state[1]
     else:
         state_rates[0] = state_rates[1] = 0.0
         share = max(0.0, 1.0 + _draw(context[STICKS], values))

@@ -26,13 +26,12 @@ import math
 
 from numba import njit
 
-from models.compilation import PART
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
 from sim.friction.shared.bristle import BRISTLE_PARAMETERS
 from sim.parameters import Parameter
 
-__all__ = ["LAW", "memory_rates"]
+__all__ = ["LAW"]
 
 _LONG_REST = 1.0
 """Age of the contact at the start [s]."""
@@ -60,9 +59,9 @@ _PARAMETERS = {
 }
 
 
-@njit(forceinline=True, **PART)
-def memory_rates(v, critical, kinetic, z, age, c):  # noqa: ANN201
-    """Return the torque [Nm] and the rates of z [rad/s] and phi [-]."""
+@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+def _torque(v, c, contact, state, state_rates):
+    critical, kinetic, z, age = contact[CRITICAL], contact[KINETIC], state[0], state[1]
     stiffness, damping = c[0] * kinetic, c[1] * kinetic
     speed = abs(v)
     inverse = 1.0 / c[5]  # before the speed is known
@@ -75,16 +74,9 @@ def memory_rates(v, critical, kinetic, z, age, c):  # noqa: ANN201
         kinetic + (critical - kinetic) * age / (age + c[3]) + c[4] * kinetic * math.exp(-power)
     )
     shearing = v - stiffness * speed * z / strength
-    ageing = 1.0 - speed * age / max(c[2] + c[7] * kinetic, _LEAST_RENEWAL)
-    return stiffness * z + damping * shearing, shearing, ageing
-
-
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
-def _torque(v, c, contact, state, state_rates):
-    torque, state_rates[0], state_rates[1] = memory_rates(
-        v, contact[CRITICAL], contact[KINETIC], state[0], state[1], c
-    )
-    return torque
+    state_rates[0] = shearing
+    state_rates[1] = 1.0 - speed * age / max(c[2] + c[7] * kinetic, _LEAST_RENEWAL)
+    return stiffness * z + damping * shearing
 
 
 LAW = FrictionLaw(

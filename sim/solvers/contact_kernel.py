@@ -30,12 +30,6 @@ from sim.solvers.contact_state import (
     Limits,
     Rows,
 )
-from sim.solvers.memory_step import (
-    memory_friction,
-    memory_numbers,
-    memory_stages,
-    scattered_stages,
-)
 from sim.solvers.tsitouras import (
     NODES,
     factor_of_step,
@@ -79,10 +73,9 @@ _HOOK = types.FunctionType(HOOK_SIGNATURE)
 _LAW = types.FunctionType(LAW_SIGNATURE)
 _VECTOR = float64[::1]
 _MATRIX = float64[:, ::1]
-_VECTORS = types.UniTuple(_VECTOR, MOST_HOOKS)
 _RECORD = types.BaseTuple.from_types
 _BUSHING = _RECORD([_VECTOR, boolean, _VECTOR, _VECTOR, _VECTOR], Bushing)
-_HOOKS = _RECORD([int64, _VECTORS, _VECTORS, _VECTORS], Hooks)
+_HOOKS = _RECORD([int64, int64[:, ::1]], Hooks)
 _DRIVE = _RECORD([float64, _VECTOR, _VECTOR, _VECTOR], Drive)
 _ROWS = _RECORD([_MATRIX, *[_VECTOR] * 7], Rows)
 _LIMITS = _RECORD([float64, float64], Limits)
@@ -148,17 +141,13 @@ def _turn_within(start, end_speed, k, h, slide, far_start, far_end):
 
 
 @lru_cache
-def contact_loop(*, with_effects: bool, with_memory: bool = False) -> Any:
-    """Return the compiled loop, with effects or for runs without any, which compiles faster.
+def contact_loop(*, with_effects: bool) -> Any:
+    """Return the compiled loop, with effects or for runs without any, which is faster.
 
     Parameters
     ----------
     with_effects : bool
         Else None takes the place of each hook and of `Hooks`.
-    with_memory : bool
-        Of the contact with memory and no other effect than the scatter of its critical torque,
-        whose steps are made without a call through `pointers`: None takes the place of these, of
-        the law and of each hook; `draws` are the scatter's numbers, if it acts.
 
     Returns
     -------
@@ -170,22 +159,17 @@ def contact_loop(*, with_effects: bool, with_memory: bool = False) -> Any:
     >>> contact_loop(with_effects=False).py_func.__name__
     '_run_contact'
     """
-    # Taking a function up from Python costs as much as some hundred steps.
-    law = types.none if with_memory else _LAW
-    hook = _HOOK if with_effects and not with_memory else types.none
-    hooks = _HOOKS if with_effects else types.none
-    pointers = types.none if with_memory else int64
-    draws = _VECTOR if with_memory and with_effects else types.none
+    hook, hooks = (_HOOK, _HOOKS) if with_effects else (types.none, types.none)
     signature = types.void(
-        _BUSHING, law, *[hook] * MOST_HOOKS, hooks, pointers, draws, _DRIVE, _LIMITS, _VECTOR,
-        _ROWS, _MATRIX, int64[::1],
+        _BUSHING, _LAW, *[hook] * MOST_HOOKS, hooks, _DRIVE, _LIMITS, _VECTOR, _ROWS, _MATRIX,
+        int64[::1],
     )  # fmt: skip
     return njit(signature, cache=True, nogil=True, **COMPILED)(_run_contact)
 
 
 def _run_contact(
-    bushing, law, h0, h1, h2, h3, h4, h5, h6, h7, hooks, pointers, draws, drive, limits,
-    carried, rows, out, direction_out,
+    bushing, law, h0, h1, h2, h3, h4, h5, h6, h7, hooks, drive, limits, carried, rows,
+    out, direction_out,
 ) -> None:  # fmt: skip
     """Write the columns of `out`; `carried`, `rows` and the context are carried on.
 
@@ -229,26 +213,12 @@ def _run_contact(
             fill_between(u, start, k, rows.weights, (sample * step - t0) / length, length)
             time = (first + sample) * step
             i = min(sample, last)
-            if pointers is None:
-                shaft = drive.speed[i] + slope[i] * ((sample - i) * step)
-                surface = u[1]
-                e = s[2] * (u[0] - u[2]) + s[4] * (surface - u[3])
-                if draws is None:
-                    friction, _, _, _, _ = memory_friction(
-                        shaft - surface, shaft, u[4], u[5], 0.0, 0.0, memory_numbers(bushing), None
-                    )
-                else:
-                    friction, _, _, _, _ = memory_friction(
-                        shaft - surface, shaft, u[4], u[5], u[6], u[7], memory_numbers(bushing),
-                        draws,
-                    )  # fmt: skip
-            else:
-                stick_time = time - stick_start if mode == 0 else stick_length
-                friction, e, holding, critical, caught, shaft = contact_rates(
-                    N_STAGES, (sample - i) * step, i, time, stick_time, mode, bushing, law,
-                    functions, hooks, drive, rows,
-                )  # fmt: skip
-                surface = k[0, N_STAGES]
+            stick_time = time - stick_start if mode == 0 else stick_length
+            friction, e, holding, critical, caught, shaft = contact_rates(
+                N_STAGES, (sample - i) * step, i, time, stick_time, mode, bushing, law,
+                functions, hooks, drive, rows,
+            )  # fmt: skip
+            surface = k[0, N_STAGES]
             out[0, sample], out[1, sample] = friction, e
             out[2, sample], out[3, sample], out[4, sample] = u[0], surface, u[2]
             out[5, sample], out[6, sample] = u[3], shaft
@@ -284,44 +254,31 @@ def _run_contact(
         ends = False
         while True:
             n_done += 1.0
-            if pointers is None:
-                if draws is None:
-                    far_early, shaft = memory_stages(
-                        begin, t0, h, i0, i_last, drive, bushing, None, start, k, u
-                    )
+            for stage in range(begin, N_STAGES):
+                fill_stage(u, start, k, stage, h)
+                t = t0 + NODES[stage] * h
+                i = min(max(int(t / step), i0), i_last)
+                time = first * step + t
+                stick_time = time - stick_start if mode == 0 else stick_length
+                friction, e, holding, critical, caught, shaft = contact_rates(
+                    stage, t - i * step, i, time, stick_time, mode, bushing, law, functions,
+                    hooks, drive, rows,
+                )  # fmt: skip
+                # How far it is from the end of stick or slip, or from the turn of the sliding.
+                if has_law:
+                    far = slide * (shaft - u[1])
+                elif mode == 0:
+                    far = critical - abs(holding)
                 else:
-                    far_early, shaft = scattered_stages(
-                        begin, t0, h, i0, i_last, drive, bushing, draws, start, k, u
-                    )
-                if begin == 0:
-                    far_start = far_low = slide * far_early
-                far = slide * (shaft - u[1])
-            else:
-                for stage in range(begin, N_STAGES):
-                    fill_stage(u, start, k, stage, h)
-                    t = t0 + NODES[stage] * h
-                    i = min(max(int(t / step), i0), i_last)
-                    time = first * step + t
-                    stick_time = time - stick_start if mode == 0 else stick_length
-                    friction, e, holding, critical, caught, shaft = contact_rates(
-                        stage, t - i * step, i, time, stick_time, mode, bushing, law, functions,
-                        hooks, drive, rows,
-                    )  # fmt: skip
-                    # How far it is from the end of stick or slip, or from the turn of the sliding.
-                    if has_law:
-                        far = slide * (shaft - u[1])
-                    elif mode == 0:
-                        far = critical - abs(holding)
-                    else:
-                        far = mode * (caught - u[1])
-                    if stage == 2:
-                        far_early = far
-                    elif stage == 3:
-                        far_late = far
-                    elif stage == 0:
-                        far_start = far_low = far
-                        if mode == 0 and not has_law and far < 0.0:
-                            break
+                    far = mode * (caught - u[1])
+                if stage == 2:
+                    far_early = far
+                elif stage == 3:
+                    far_late = far
+                elif stage == 0:
+                    far_start = far_low = far
+                    if mode == 0 and not has_law and far < 0.0:
+                        break
             if begin == 0 and mode == 0 and not has_law and far_start < 0.0:
                 # It cannot hold from the start: it slides on, or back.
                 mode = next_mode = 1 if holding > 0.0 else -1

@@ -33,6 +33,7 @@ from sim.contact import (
     TORQUE,
     TWIST,
     TWIST_RATE,
+    pointer,
 )
 from sim.solvers.contact_state import N_LAG, N_MOTION
 
@@ -85,23 +86,37 @@ def contact_rates(
             contact[STIFFNESS], contact[ELASTOMER_TORQUE] = k_e, 0.0
             contact[CREEP], contact[SHAFT_TORQUE] = 0.0, 0.0
             contact[SHAFT_INERTIA] = math.inf
-            # One after the other by fixed indices: a loop over tuples would cost as much again.
-            values, states, state_rates = hooks.values, hooks.states, hooks.rates
-            functions[0](context, values[0], states[0], state_rates[0], contact)
+            at, seen, where = contact.ctypes, context.ctypes, hooks.addresses
+            # One after the other by fixed indices: a loop over a tuple would cost as much again.
+            functions[0](seen, pointer(where[0, 0]), pointer(where[0, 1]), pointer(where[0, 2]), at)
             if hooks.n > 1:
-                functions[1](context, values[1], states[1], state_rates[1], contact)
+                functions[1](
+                    seen, pointer(where[1, 0]), pointer(where[1, 1]), pointer(where[1, 2]), at
+                )
             if hooks.n > 2:
-                functions[2](context, values[2], states[2], state_rates[2], contact)
+                functions[2](
+                    seen, pointer(where[2, 0]), pointer(where[2, 1]), pointer(where[2, 2]), at
+                )
             if hooks.n > 3:
-                functions[3](context, values[3], states[3], state_rates[3], contact)
+                functions[3](
+                    seen, pointer(where[3, 0]), pointer(where[3, 1]), pointer(where[3, 2]), at
+                )
             if hooks.n > 4:
-                functions[4](context, values[4], states[4], state_rates[4], contact)
+                functions[4](
+                    seen, pointer(where[4, 0]), pointer(where[4, 1]), pointer(where[4, 2]), at
+                )
             if hooks.n > 5:
-                functions[5](context, values[5], states[5], state_rates[5], contact)
+                functions[5](
+                    seen, pointer(where[5, 0]), pointer(where[5, 1]), pointer(where[5, 2]), at
+                )
             if hooks.n > 6:
-                functions[6](context, values[6], states[6], state_rates[6], contact)
+                functions[6](
+                    seen, pointer(where[6, 0]), pointer(where[6, 1]), pointer(where[6, 2]), at
+                )
             if hooks.n > 7:
-                functions[7](context, values[7], states[7], state_rates[7], contact)
+                functions[7](
+                    seen, pointer(where[7, 0]), pointer(where[7, 1]), pointer(where[7, 2]), at
+                )
             creep = contact[CREEP]
             gap = creep - share
             if not sticks or gap == 0.0:
@@ -130,7 +145,10 @@ def contact_rates(
         holding = (e + j_e * shaft_torque * mobility) / (1.0 + j_e * mobility)
     if has_law:
         # Laws have the first of the inner states, effects those after.
-        friction = law(shaft - surface, bushing.coefficients, contact, rows.inner, rows.inner_rates)
+        friction = law(
+            shaft - surface, bushing.coefficients.ctypes, contact.ctypes, rows.inner.ctypes,
+            rows.inner_rates.ctypes,
+        )  # fmt: skip
     elif mode == 0:
         friction = holding
     else:

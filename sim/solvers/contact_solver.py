@@ -71,6 +71,10 @@ class Hook:
     values: NDArray[np.float64]
     n_states: int
 
+    def __post_init__(self) -> None:
+        values = np.ascontiguousarray(self.values, dtype=np.float64)
+        object.__setattr__(self, "values", values)  # which compiled code reads where it lies
+
 
 class ContactRun:
     """A run of the lumped model that goes on from block to block, from rest or from a slip.
@@ -128,31 +132,26 @@ class ContactRun:
         motion: NDArray[np.float64] | None = None,
     ) -> None:
         # What is not imported before it is needed is not compiled either.
-        from sim.effects.critical_torque_scatter import EFFECT as SCATTER
-        from sim.friction.contact_with_memory import LAW as MEMORY
+        from sim.contact import no_hook, no_law
         from sim.solvers.contact_kernel import contact_loop
-        from sim.solvers.stand_ins import no_hook, no_law
 
         if len(hooks) > MOST_HOOKS:
             raise ValueError(f"{len(hooks)} effects act on the contact; at most {MOST_HOOKS} can")
         law_state = np.zeros(0) if law_state is None else law_state
-        alone = [hook.function for hook in hooks] in ([], [SCATTER.contact])
-        with_memory = law is MEMORY.torque and alone
         functions: list[Any] = [None] * MOST_HOOKS
-        if hooks and not with_memory:
+        if hooks:
             functions = [*(hook.function for hook in hooks), *[no_hook] * MOST_HOOKS][:MOST_HOOKS]
         self._rows = empty_rows(n_variables(law_state, hooks))
+        self._hooks = hooks  # whose values the loop reads by their addresses
         self._constants = (
             contact_record(
                 system, critical_torque, kinetic_torque, coefficients, has_law=law is not None
             ),
-            None if with_memory else law or no_law,
+            law or no_law,
             *functions,
             hooks_record(hooks, self._rows, law_state.size),
-            None if with_memory else 0,
-            hooks[0].values if with_memory and hooks else None,
         )
-        self._loop = contact_loop(with_effects=bool(hooks), with_memory=with_memory)
+        self._loop = contact_loop(with_effects=bool(hooks))
         # The error of a step goes with the fifth power of its length.
         self._limits = Limits(LONGEST_STEP / refined, tolerance / refined**5)
         self._step, self._name = step, name
@@ -309,22 +308,16 @@ def hooks_record(hooks: tuple[Hook, ...], rows: Rows, n_law: int) -> Hooks | Non
     rows : Rows
         Whose inner states are the law's, then theirs.
     n_law : int
-        Inner states of the law.
+        Inner states of the law. They and the hooks must outlive what is returned.
     """
     if not hooks:
         return None
-    lengths = [hook.n_states for hook in hooks] + [0] * (MOST_HOOKS - len(hooks))
-    ends = N_MOTION + n_law + np.cumsum(lengths)
-    parts = [slice(end - length, end) for end, length in zip(ends, lengths, strict=True)]
-    values = np.zeros((MOST_HOOKS, max(hook.values.size for hook in hooks)))
-    for row, hook in zip(values, hooks, strict=False):
-        row[: hook.values.size] = hook.values
-    return Hooks(
-        len(hooks),
-        tuple(values),
-        tuple(rows.state[part] for part in parts),
-        tuple(rows.rates[part] for part in parts),
-    )
+    addresses, first = np.zeros((MOST_HOOKS, 3), dtype=np.int64), N_MOTION + n_law
+    for row, hook in zip(addresses, hooks, strict=False):
+        arrays = hook.values, rows.state[first:], rows.rates[first:]
+        row[:] = [array.ctypes.data for array in arrays]
+        first += hook.n_states
+    return Hooks(len(hooks), addresses)
 
 
 def solve_contact(

@@ -80,15 +80,13 @@ class Bushing(NamedTuple):
 
 
 class Hooks(NamedTuple):
-    """What the effects' compiled functions are called with; each has `MOST_HOOKS` items."""
+    """What the effects' compiled functions are called with."""
 
     n: int
     """Of effects that act."""
-    values: tuple[NDArray[np.float64], ...]
-    states: tuple[NDArray[np.float64], ...]
-    """Parts of `Rows.state`; made once, since making one costs more than the call."""
-    rates: tuple[NDArray[np.float64], ...]
-    """Parts of `Rows.rates`."""
+    addresses: NDArray[np.int64]
+    """Of values, states and their rates of each effect, shape (n, 3); the latter two lie in `Rows`.
+    Numbers instead of arrays, since each array would be seven arguments to compile and to pass."""
 
 
 class Drive(NamedTuple):

@@ -187,7 +187,7 @@ def solve_chain(
     ParameterError
         The friction law is one of constant torques, or no steps follow the motion.
     """
-    from sim.solvers.stand_ins import no_hook
+    from sim.contact import no_hook
     from sim.suspension.kernel import Chain, suspension_loop
 
     law = friction_law(rig.friction.name)

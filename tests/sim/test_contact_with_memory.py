@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from models.rig_file import load_material_rig
-from sim.contact import CRITICAL, KINETIC, N_CONTACT
+from sim.contact import CRITICAL, KINETIC, N_CONTACT, call_law
 from sim.friction.contact_with_memory import LAW
 from sim.parameters import resolve
 from tests.helpers.rig_measures import slip_rates
@@ -28,8 +28,8 @@ def driven(speed, values=GIVEN, torques=(T_CRIT, T_KIN)):
     state = LAW.state()
     rates, middle, torque = np.zeros(state.size), np.zeros(state.size), []
     for v in speed:
-        torque.append(LAW.torque(v, coefficients, contact, state, rates))
-        LAW.torque(v, coefficients, contact, state + 0.5 * STEP * rates, middle)
+        torque.append(call_law(LAW.torque, v, coefficients, contact, state, rates))
+        call_law(LAW.torque, v, coefficients, contact, state + 0.5 * STEP * rates, middle)
         state = state + STEP * middle
     return np.array(torque), state
 

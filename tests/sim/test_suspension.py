@@ -14,7 +14,7 @@ from models.rig_file import load_material_rig
 from models.suspension import Bar, TorsionChain, load_suspension, suspension_file, torsion_chain
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
-from sim.contact import CRITICAL, KINETIC, N_CONTACT
+from sim.contact import CRITICAL, KINETIC, N_CONTACT, call_law
 from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.parameters import resolve
@@ -140,7 +140,7 @@ def test_an_integrator_of_its_own_finds_the_same_motion():
                 gain * fit.critical_torque, gain * fit.kinetic_torque,
             )  # fmt: skip
             sliding = turning[node] - part[1]
-            friction = law.torque(sliding, coefficients, contact, part[4:].copy(), inner)
+            friction = call_law(law.torque, sliding, coefficients, contact, part[4:].copy(), inner)
             elastic = bushing.elastomer_stiffness * (part[0] - part[2])
             elastic += bushing.elastomer_damping * (part[1] - part[3])
             back = bushing.support_stiffness * part[2] + bushing.support_damping * part[3]

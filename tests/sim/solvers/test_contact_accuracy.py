@@ -7,6 +7,7 @@ from scipy.integrate import simpson, solve_ivp
 
 from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
+from sim.contact import call_law
 from sim.friction import friction_law
 from sim.parameters import resolve
 from sim.solvers.contact_solver import solve_contact
@@ -34,7 +35,9 @@ def general(torques, options, speed, times):
     rates = np.zeros(options["law_state"].size)
 
     def change(_, x):
-        friction = options["law"](speed - x[1], options["coefficients"], contact, x[4:], rates)
+        friction = call_law(
+            options["law"], speed - x[1], options["coefficients"], contact, x[4:].copy(), rates
+        )
         elastomer = k_e * (x[0] - x[2]) + c_e * (x[1] - x[3])
         clamp = 0.0 if k_b < 0.0 else (elastomer - k_b * x[2] - c_b * x[3]) / j_c
         return np.array([x[1], (friction - elastomer) / j_e, x[3], clamp, *rates])

@@ -34,7 +34,7 @@ HEADER = 4
 def table_hook(context, values, state, state_rates, contact):
     """Change one thing, the first value.
 
-    Torques or stiffness by a table over time or angle: whether over angle, period, 0; the table.
+    Torques or stiffness by a table over time or angle: whether over angle, period, length; table.
     A spring beside the elastomer: 0, twist from which on, power (0 on one side alone); stiffness.
     Dry friction beside it: its torque, twist over which it builds up, 0.
     A mass that swings in it: stiffness, angular frequency, damping ratio.
@@ -63,7 +63,7 @@ def table_hook(context, values, state, state_rates, contact):
         contact[KINETIC] *= factor
         contact[CRITICAL] *= factor
         return
-    n = values.size - HEADER
+    n = int(values[3])
     x = (context[TIME] if over == OVER_TIME else context[SHAFT_ANGLE]) / scale
     x = (x - math.floor(x)) * n
     i = int(x)

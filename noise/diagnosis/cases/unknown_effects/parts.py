@@ -61,7 +61,7 @@ def added(
 
 def table(what: float, over: float, scale: float, values: Array) -> Array:
     """Pack a table as the hook reads it."""
-    return np.concatenate([[what, over, scale, 0.0], values])
+    return np.concatenate([[what, over, scale, values.size], values])
 
 
 def noise(rng: Rng, n: int, rate: float, low: float, high: float) -> Array:
