@@ -17,8 +17,8 @@ Label: `label`, `LabelTable`, `label_recording`, `file_label`, `Segment`, `Segme
 `Classifier`, `load_classifier`, `train`, `Inference`, `Inferred`, `Interval`, `load_inference`,
 `train_inference`.
 
-Screen: `screen`, `Screening`, `load_design`, `Design`, `Use`, `Swinging`, `Sweep`,
-`plot_screen`, `robustness`, `Robustness`, `SweptFeatures`, `critical_speeds`, `critical_damping`.
+Screen: `screen`, `Screening`, `load_design`, `Design`, `Use`, `Swinging`, `sweep`, `Sweep`,
+`plot_screen`, `robustness`, `Robustness`, `critical_speeds`, `critical_damping`.
 
 Diagnose: `diagnose`, `Diagnosis`.
 
@@ -74,8 +74,7 @@ _EXPORTS = {
     "sim.analysis.critical_speeds": ("critical_speeds",),
     "sim.run": ("Run", "simulate"),
     "sim.shaft": ("ConstantSpeed", "LoggedSpeed", "Oscillation", "SpeedRamp"),
-    "sim.analysis.sweep": ("Sweep",),
-    "sim.analysis.swept": ("SweptFeatures",),
+    "sim.analysis.sweep": ("Sweep", "sweep"),
 }
 """What a notebook finds here, by the module it lives in."""
 

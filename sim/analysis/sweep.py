@@ -1,63 +1,138 @@
-"""Sweep over thousands of operating conditions in one call, on all cores.
-
-The plain model (true stick, constant torques, constant speed) needs nothing of Python between its
-runs: whole chunks of runs are one compiled call each. All other laws, effects and ways of turning
-go run by run. Threads serve both, since compiled code lets others run; a run depends on nothing
-but its own condition and its own seed, which is counted off by its position, so results are the
-same bit for bit whatever the number of workers.
-"""
+"""Runs over many operating conditions in one call, on all cores: a table of features, and a plot."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from joblib import Parallel, delayed
 
+from models.condition import Condition
+from models.drawing import CURVES, axes_or_new
 from models.errors import ParameterError
 from models.rig import Rig
-from models.show import short_repr
-from sim.acquisition import Acquisition, sample
-from sim.analysis.sweep_features import FEATURES, motion_features, plain_features
-from sim.analysis.sweep_systems import packed_systems
-from sim.analysis.swept import SweptFeatures
+from models.show import data_frame, short_repr
+from sim.analysis.slips import motion_slips
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
-from sim.solvers.free_motion import extended, parts_of_a_step
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
+    from pandas import DataFrame
 
     from sim.effects.effect import Effect
     from sim.motion import Motion
-    from sim.shaft import ShaftMotion
 
-__all__ = ["FEATURES", "Sweep"]
+__all__ = ["FEATURES", "Sweep", "motion_features", "sweep"]
 
-_CONDITIONS = ("rig", "speed", "interference", "support_stiffness")
-"""What may differ between runs."""
-
-_CHUNK = 64
-"""Runs of the plain model in one compiled call."""
+FEATURES = {
+    "slip_count": "Slips",
+    "slip_frequency": "Slip frequency [Hz]",
+    "stick_fraction": "Share of the time in stick [-]",
+    "torque_mean": "Mean torque [Nm]",
+    "torque_rms": "Torque about its mean, rms [Nm]",
+    "torque_min": "Least torque [Nm]",
+    "torque_max": "Largest torque [Nm]",
+    "clamp_speed_rms": "Speed of the clamp, rms [rad/s]",
+}
+"""Features of a motion, in words. Slips are those of `sim.analysis.slips`, their frequency is NaN
+for fewer than two, and stick is that of `sim.motion.Motion.stuck`."""
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """Many conditions of one or several rigs.
+    """Features of runs over conditions that are broadcast against each other.
+
+    Parameters
+    ----------
+    conditions : ndarray of Condition, shape (...)
+    features : dict of str to ndarray, shape (...)
+        By the names of `FEATURES`, in their units.
+    """
+
+    conditions: NDArray[np.object_]
+    features: Mapping[str, NDArray[np.float64]]
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        return self.features[name]
+
+    def to_pandas(self) -> DataFrame:
+        """Return one row a run, with its condition and its features, as a data frame of pandas."""
+        rows: list[dict[str, Any]] = []
+        for index, at in enumerate(self.conditions.ravel()):
+            support = at.support_stiffness
+            rows.append({
+                "material": at.material,
+                "speed_rad_s": at.speed,
+                "interference_mm": round(1e3 * at.interference, 6),
+                "support_stiffness_Nm_rad": "fixed" if np.isinf(support) else support,
+                **{name: float(values.ravel()[index]) for name, values in self.features.items()},
+            })  # fmt: skip
+        return data_frame([*rows[0]] if rows else [*self.features], rows)
+
+    def plot(self, feature: str = "slip_frequency", ax: Axes | None = None) -> Axes:
+        """Draw a feature over the speed, a curve for each of the other conditions.
+
+        Parameters
+        ----------
+        feature : str
+            One of `FEATURES`.
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            There is no such feature.
+        """
+        if feature not in self.features:
+            raise ParameterError(
+                f"feature {feature!r} is not known; use one of {', '.join(FEATURES)}"
+            )
+        curves: dict[str, list[tuple[float, float]]] = {}
+        for at, value in zip(self.conditions.ravel(), self[feature].ravel(), strict=True):
+            curves.setdefault(", ".join(at.words[:-1]), []).append((at.speed, float(value)))
+        with axes_or_new(ax) as axes:
+            for number, (name, points) in enumerate(curves.items()):
+                colour = CURVES[number % len(CURVES)]
+                axes.plot(*zip(*sorted(points), strict=True), ".-", color=colour, label=name)
+            axes.set_xlabel("Speed of the shaft [rad/s]")
+            axes.set_ylabel(FEATURES[feature])
+            axes.legend(loc="best")
+        return axes
+
+
+def sweep(
+    rig: Rig | Sequence[Rig],
+    speed: ArrayLike,
+    interference: ArrayLike = 0.279e-3,
+    support_stiffness: ArrayLike = 2214.0,
+    *,
+    seconds: float = 1.0,
+    settling: float = 0.0,
+    rate: float = 30e3,
+    library: Mapping[str, Effect] = EFFECTS,
+    seed: int = 0,
+    workers: int = -1,
+) -> Sweep:
+    """Simulate the motion of one or several rigs at many constant speeds.
 
     Parameters
     ----------
     rig : Rig or sequence of Rig
-    speed : array_like, or one or several ShaftMotion
-        Constant speeds [rad/s], or other ways of turning.
-    interference, support_stiffness : array_like
-        [m] and [Nm/rad]. They, `rig` and `speed` are broadcast against each other.
+    speed, interference, support_stiffness : array_like
+        [rad/s], [m] and [Nm/rad]. They and `rig` are broadcast against each other.
     seconds, settling : float
         How long each run is looked at, and how long it has run before, from rest [s].
     rate : float
@@ -67,196 +142,66 @@ class Sweep:
     seed : int
         Of effects that scatter; run i takes the i-th child of this seed.
     workers : int
-        Threads; -1 is one a core.
+        Threads; -1 is one a core. Results do not depend on it.
+
+    Returns
+    -------
+    Sweep
+
+    Raises
+    ------
+    ParameterError
+        A condition cannot be used, or shapes do not fit together.
 
     Examples
     --------
     >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> runs = Sweep(rig, [1.0, 5.0, 12.0], support_stiffness=[[2214.0], [3745.0]], settling=1.0)
-    >>> runs.features()["slip_frequency"].round()
-    array([[152., 640.,  nan],
-           [150., 613.,  nan]])
+    >>> found = sweep(rig, [1.0, 12.0], support_stiffness=[[2214.0], [3745.0]], seconds=0.2)
+    >>> found["slip_frequency"].round()
+    array([[153.,  nan],
+           [150.,  nan]])
     """
+    rigs = np.empty(1 if isinstance(rig, Rig) else len(rig), dtype=object)
+    rigs[:] = [rig] if isinstance(rig, Rig) else rig
+    numbers = [np.asarray(x, np.float64) for x in (speed, interference, support_stiffness)]
+    try:
+        columns = np.broadcast_arrays(rigs[0] if rigs.size == 1 else rigs, *numbers)
+    except ValueError as error:
+        raise ParameterError(f"sweep: the conditions do not fit together: {error}") from None
+    if not np.isfinite(columns[1].astype(float)).all():
+        raise ParameterError("sweep: speeds must be finite numbers [rad/s]")
+    runs = list(zip(*(column.ravel() for column in columns), strict=True))
 
-    rig: Rig | Sequence[Rig]
-    speed: ArrayLike | ShaftMotion | Sequence[ShaftMotion]
-    interference: ArrayLike = 0.279e-3
-    support_stiffness: ArrayLike = 2214.0
-    seconds: float = 1.0
-    settling: float = 0.0
-    rate: float = 30e3
-    library: Mapping[str, Effect] = field(default_factory=lambda: EFFECTS)
-    seed: int = 0
-    workers: int = -1
+    def features(run: tuple[Any, ...], stream: np.random.SeedSequence) -> NDArray[np.float64]:
+        motion = simulate_motion(
+            run[0], ConstantSpeed(float(run[1])), interference=float(run[2]),
+            support_stiffness=float(run[3]), seconds=settling + seconds, rate=rate,
+            effects=activated(run[0].effects, library), rng=np.random.default_rng(stream),
+        )  # fmt: skip
+        return motion_features(motion.since(round(settling * rate)))
 
-    def features(self) -> SweptFeatures:
-        """Simulate, and return features of each run.
-
-        Returns
-        -------
-        SweptFeatures
-            A dict of str to ndarray, of the shape as broadcast: one array for each of `FEATURES`.
-
-        Raises
-        ------
-        ParameterError
-            If a condition cannot be used, or shapes do not fit together.
-        """
-        columns = self._columns()
-        rigs, speeds = columns[0].ravel(), columns[1].ravel()
-        for speed in speeds:
-            if isinstance(speed, float) and not np.isfinite(speed):
-                raise ParameterError(f"speed = {speed:g} rad/s must be a finite number")
-        features = np.empty((rigs.size, len(FEATURES)))
-        rest = np.ones(rigs.size, dtype=bool)
-        for rig in {id(rig): rig for rig in rigs}.values():
-            if self._is_plain(rig):
-                runs = [
-                    i for i in range(rigs.size) if rigs[i] is rig and isinstance(speeds[i], float)
-                ]
-                where = [column.ravel()[runs].astype(np.float64) for column in columns[1:]]
-                features[runs] = self._plain_features(rig, *where)
-                rest[runs] = False
-        positions = np.flatnonzero(rest).tolist()
-        for i, found in zip(
-            positions, self._each(columns, positions, motion_features), strict=True
-        ):
-            features[i] = found
-        shape = columns[0].shape
-        by_name = {name: features[:, i].reshape(shape) for i, name in enumerate(FEATURES)}
-        return SweptFeatures(by_name, dict(zip(_CONDITIONS, columns, strict=True)))
-
-    def torque(self, every: int = 10) -> NDArray[np.float32]:
-        """Simulate, and return the torque of each run, decimated.
-
-        Parameters
-        ----------
-        every : int
-            One of so many samples is kept, after an anti-alias filter.
-
-        Returns
-        -------
-        ndarray of float32, shape (..., ceil(seconds * rate / every))
-            Torque in the elastomer, T_E [Nm]; leading axes as broadcast.
-
-        Raises
-        ------
-        ParameterError
-            As `features`, or if `every` is below 1.
-
-        Examples
-        --------
-        >>> from models.rig_file import load_material_rig
-        >>> Sweep(load_material_rig("fluorocarbon-thesis"), [1.0, 5.0], seconds=0.1).torque().shape
-        (2, 300)
-        """
-        if every < 1:
-            raise ParameterError(f"every = {every} must be 1 or more")
-        quiet = Acquisition(rate=self.rate / every, noise={})
-
-        def decimated(motion: Motion) -> NDArray[np.float32]:
-            kept = sample({"torque": motion.torque}, every, quiet, np.random.default_rng(0))
-            return kept["torque"].astype(np.float32)
-
-        columns = self._columns()
-        rows = self._each(columns, range(columns[0].size), decimated)
-        return np.array(rows, dtype=np.float32).reshape(*columns[0].shape, -1)
-
-    def _columns(self) -> tuple[NDArray[Any], ...]:
-        """Rig, speed, interference and support stiffness of all runs, as arrays of one shape."""
-        if not (self.seconds > 0.0 and self.rate > 0.0 and self.settling >= 0.0):
-            raise ParameterError(
-                f"seconds = {self.seconds:g} and rate = {self.rate:g} Hz must be above 0, "
-                f"settling = {self.settling:g} s at least 0"
-            )
-        if round(self.seconds * self.rate) < 2:
-            raise ParameterError(f"seconds = {self.seconds:g} s holds less than two samples")
-        given = (self.rig, self.speed, self.interference, self.support_stiffness)
-        try:
-            return np.broadcast_arrays(*(_objects(values) for values in given))
-        except ValueError as error:
-            raise ParameterError(
-                f"rig, speed, interference and support_stiffness do not fit together: {error}"
-            ) from None
-
-    def _samples(self) -> tuple[int, int]:
-        """How many are left out at the start, and how many there are in all."""
-        n_settling = round(self.settling * self.rate)
-        return n_settling, n_settling + round(self.seconds * self.rate)
-
-    def _is_plain(self, rig: Rig) -> bool:
-        return friction_law(rig.friction.name).torque is None and not any(
-            active.effect.drive is not None or active.effect.contact is not None
-            for active in activated(rig.effects, self.library)
-        )
-
-    def _plain_features(
-        self,
-        rig: Rig,
-        speed: NDArray[np.float64],
-        interference: NDArray[np.float64],
-        support_stiffness: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
-        step = 1.0 / self.rate
-        systems = packed_systems(rig, interference, support_stiffness)
-        parts = np.array([parts_of_a_step(system, step) for system in systems[:, :6]])
-        whole = np.array([extended(system) for system in systems[:, :6]])
-        features = np.empty((speed.size, len(FEATURES)))
-        chunks = (slice(i, i + _CHUNK) for i in range(0, speed.size, _CHUNK))
-        Parallel(n_jobs=self.workers, prefer="threads", batch_size=1)(
-            delayed(plain_features)(
-                whole[runs],
-                systems[runs, 6:],
-                speed[runs],
-                step,
-                parts[runs],
-                *self._samples(),
-                features[runs],
-            )
-            for runs in chunks
-        )
-        return features
-
-    def _each(
-        self,
-        columns: tuple[NDArray[Any], ...],
-        positions: Iterable[int],
-        keep: Callable[[Motion], NDArray[np.floating]],
-    ) -> list[NDArray[np.floating]]:
-        n_settling, n_samples = self._samples()
-
-        def run(position: int) -> NDArray[np.floating]:
-            rig, speed, interference, support_stiffness = (c.flat[position] for c in columns)
-            motion = simulate_motion(
-                rig,
-                ConstantSpeed(speed) if isinstance(speed, float) else speed,
-                interference=interference,
-                support_stiffness=support_stiffness,
-                seconds=n_samples / self.rate,
-                rate=self.rate,
-                effects=activated(rig.effects, self.library),
-                # The child that SeedSequence.spawn gives at this position.
-                rng=np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(position,))),
-            )
-            return keep(motion.since(n_settling))
-
-        found: list[NDArray[np.floating]] = Parallel(n_jobs=self.workers, prefer="threads")(
-            delayed(run)(position) for position in positions
-        )
-        return found
+    streams = np.random.SeedSequence(seed).spawn(len(runs))
+    rows = Parallel(n_jobs=workers, prefer="threads")(
+        delayed(features)(*each) for each in zip(runs, streams, strict=True)
+    )
+    found, shape = np.array(rows).reshape(len(runs), len(FEATURES)), columns[0].shape
+    conditions = np.empty(len(runs), dtype=object)
+    conditions[:] = [
+        Condition(speed=float(v), interference=float(fit), support_stiffness=float(support),
+                  material=one.material)
+        for one, v, fit, support in runs
+    ]  # fmt: skip
+    return Sweep(
+        conditions.reshape(shape),
+        {name: found[:, i].reshape(shape) for i, name in enumerate(FEATURES)},
+    )
 
 
-def _objects(values: object) -> NDArray[Any]:
-    """Array of numbers, rigs or shaft motions, of which there may be one or a sequence."""
-    if isinstance(values, Rig) or hasattr(values, "speed"):
-        one = np.empty((), dtype=object)
-        one[()] = values
-        return one
-    if isinstance(values, Sequence) and any(
-        isinstance(v, Rig) or hasattr(v, "speed") for v in values
-    ):
-        several = np.empty(len(values), dtype=object)
-        several[:] = values
-        return several
-    return np.asarray(values, dtype=np.float64).astype(object)
+def motion_features(motion: Motion) -> NDArray[np.float64]:
+    """Values of `FEATURES` for one motion, shape (8,), in their units [Hz, Nm, rad/s and -]."""
+    slips, torque = motion_slips(motion), motion.torque
+    return np.array([
+        slips.times.size, slips.rate, np.mean(motion.stuck), np.mean(torque), np.std(torque),
+        np.min(torque), np.max(torque), np.sqrt(np.mean(motion.clamp_speed**2)),
+    ])  # fmt: skip

@@ -17,8 +17,7 @@ import numpy as np
 
 from models.rig_file import load_material_rig
 from noise.long_run import write_run
-from sim.analysis.sweep import Sweep
-from sim.analysis.sweep_features import motion_features
+from sim.analysis.sweep import motion_features, sweep as run_sweep
 from sim.long_run import simulate_blocks
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
@@ -34,12 +33,8 @@ def main() -> None:
     stiffness = rng.uniform(2000.0, 4000.0, RUNS)
 
     def sweep(workers: int) -> None:
-        runs = Sweep(
-            RIG, speed, interference=interference, support_stiffness=stiffness, seconds=0.1,
-            workers=workers,
-        )  # fmt: skip
         start, used = time.perf_counter(), time.process_time()
-        runs.features()
+        run_sweep(RIG, speed, interference, stiffness, seconds=0.1, workers=workers)
         passed, used = time.perf_counter() - start, time.process_time() - used
         name = f"{RUNS} runs of 0.1 s, workers {workers}"
         print(f"{name:40}{passed:8.2f} s{used:8.2f} s of processor time")

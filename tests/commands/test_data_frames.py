@@ -53,19 +53,19 @@ def test_a_label_table_keeps_its_columns_and_its_numbers_are_numbers():
 
 
 def test_a_sweep_has_a_row_a_run_with_its_condition():
-    sweep = noise.Sweep(
+    sweep = noise.sweep(
         noise.load_material_rig("PDMS"), [1.0, 5.0], [[0.2e-3], [0.3e-3]], seconds=0.01
     )
-    frame = sweep.features().to_pandas()
+    frame = sweep.to_pandas()
     assert frame["speed_rad_s"].tolist() == [1.0, 5.0, 1.0, 5.0]
     assert frame["interference_mm"].tolist() == [0.2, 0.2, 0.3, 0.3]
-    assert frame["torque_mean"].to_numpy() == pytest.approx(sweep.features()["torque_mean"].ravel())
+    assert frame["torque_mean"].to_numpy() == pytest.approx(sweep["torque_mean"].ravel())
 
 
 def test_a_bolted_clamp_is_fixed_and_no_number_is_infinite():
     rig = noise.load_material_rig("PDMS")
-    frame = noise.Sweep(rig, [5.0], support_stiffness=[2214.0, noise.FIXED], seconds=0.01)
-    assert frame.features().to_pandas()["support_stiffness_Nm_rad"].tolist() == [2214.0, "fixed"]
+    frame = noise.sweep(rig, [5.0], support_stiffness=[2214.0, noise.FIXED], seconds=0.01)
+    assert frame.to_pandas()["support_stiffness_Nm_rad"].tolist() == [2214.0, "fixed"]
 
 
 def test_a_response_has_the_columns_of_its_file():

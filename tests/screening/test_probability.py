@@ -8,7 +8,7 @@ from models.errors import ParameterError
 from models.rig_file import load_material_rig
 from noise.screening.parts.probability import NOISES, label_probabilities
 from noise.screening.parts.sampling import parts
-from sim.analysis.sweep import Sweep
+from sim.analysis.sweep import sweep
 
 DESIGN = {
     "stiffness": stats.norm(1.0, 0.05),
@@ -68,10 +68,10 @@ def test_intervals_hold_what_twenty_thousand_simulated_parts_give():
 
     def sticks(parts):
         interference, support_stiffness, speed = parts.T
-        runs = Sweep(
+        runs = sweep(
             rig, speed, interference, support_stiffness, seconds=0.3, settling=0.3, rate=15e3
         )
-        return np.where(runs.features()["stick_fraction"] > 0.02, "creak", "none")
+        return np.where(runs["stick_fraction"] > 0.02, "creak", "none")
 
     truth = by_brute_force(sticks, distributions, 20_000)
     assert 0.1 < truth["creak"] < 0.9

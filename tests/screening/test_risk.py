@@ -15,7 +15,7 @@ from noise.screening.parts.probability import label_probabilities
 from noise.screening.ranking.risk import Candidate, design_risk, ranked, risk_band, risk_grades
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.critical_speeds import critical_speeds
-from sim.analysis.sweep import Sweep
+from sim.analysis.sweep import sweep
 
 ACCELERATIONS = st.floats(0.0, 1e5)
 RATES = st.floats(0.0, 1e5)
@@ -157,7 +157,7 @@ def candidate(name, rig):
     """A design judged on the speeds of its use, with a fit that scatters."""
     fit, support = 0.279e-3, 3745.0
     speed = np.linspace(2.0, 10.0, 9)
-    runs = Sweep(rig, speed, fit, support, seconds=0.3, settling=0.3, rate=15e3).features()
+    runs = sweep(rig, speed, fit, support, seconds=0.3, settling=0.3, rate=15e3)
     bushing = rig.fit(fit)
     # The clamp swings at the slip frequency, and the beams' roots with it.
     swing = 2.0 * np.pi * np.nan_to_num(runs["slip_frequency"]) * runs["clamp_speed_rms"]
@@ -168,9 +168,7 @@ def candidate(name, rig):
     )
 
     def noise_of(parts):
-        found = Sweep(
-            rig, parts[:, 1], parts[:, 0], support, seconds=0.3, settling=0.3, rate=15e3
-        ).features()
+        found = sweep(rig, parts[:, 1], parts[:, 0], support, seconds=0.3, settling=0.3, rate=15e3)
         return np.where(found["stick_fraction"] > 0.02, "creak", "none")
 
     vary = {"interference": stats.norm(fit, 0.01e-3), "speed": stats.uniform(2.0, 8.0)}

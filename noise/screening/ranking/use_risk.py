@@ -22,7 +22,7 @@ from noise.screening.map.grid import grid_of
 from noise.screening.ranking.risk import design_risk, risk_grades
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import Regime, friction_regime
-from sim.analysis.sweep_features import FEATURES, motion_features
+from sim.analysis.slips import motion_slips
 from sim.temperature import at_temperature
 
 _SPEEDS = 12
@@ -114,7 +114,7 @@ def _measured(
     swing = last.torque - last.torque.mean()
     acceleration = rig.beams.lever * float(np.abs(swing).max()) / rig.clamp_inertia
     if regime is Regime.STICK_SLIP:
-        impulses = float(motion_features(last)[FEATURES.index("slip_count")])
+        impulses = float(motion_slips(last).times.size)
     else:
         impulses = float(np.sum((swing[:-1] < 0.0) & (swing[1:] >= 0.0)))
     return acceleration, impulses / (0.5 * _SECONDS * speed), ratio
