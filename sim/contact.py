@@ -6,6 +6,7 @@ signatures are called through pointers, so that one compiled solver serves all l
 what they are given are pointers to the first of so many numbers, which costs less than arrays do.
 """
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
+# mypy: allow-untyped-calls
 # ruff: noqa: ANN001, ANN201
 
 from __future__ import annotations

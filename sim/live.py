@@ -13,6 +13,7 @@ other random numbers than in a recording.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
@@ -51,9 +52,6 @@ _SEEN = 0.2
 
 _LONGEST_RESPONSE = 3.0
 """From torque to sound [s]."""
-
-_HORIZON, _STEPS = 60.0, 4000
-"""Within which, and in how many steps, the fastest speed of a motion is looked for [s], [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -256,14 +254,11 @@ class LiveRun:
         return drive_piece(even, n, self._rate, effects, self._driving, self._seed)
 
     def _solver_of(self, plan: Plan, start_speed: float) -> MotionSolver:
-        even = plan.shaft.speed(np.linspace(0.0, _HORIZON, _STEPS + 1))
-        steps = _STEPS / _HORIZON
-        speeds, _ = drive_piece(even, even.size, steps, plan.effects, {}, self._seed)
         with blaming_the_unusual(plan.rig):
             return MotionSolver(
                 plan.rig, plan.interference, plan.support_stiffness, plan.rate, plan.effects,
                 streams(self._seed)[1], start_speed=start_speed,
-                top_speed=float(np.abs(speeds).max()), tolerance=None,
+                top_speed=plan.shaft.top_speed(math.inf), tolerance=None,
             )  # fmt: skip
 
 

@@ -217,11 +217,11 @@ def motion_blocks(
     [1000, 1000, 500]
     """
     starts = range(0, n_samples, block)
-    tops = (float(np.abs(_drive(shaft, start, block + 1, rate)).max()) for start in starts)
     with blaming_the_unusual(rig):
         solver = MotionSolver(
             rig, interference, support_stiffness, rate, effects, rng or np.random.default_rng(0),
-            start_speed=float(shaft.speed(np.zeros(1))[0]), top_speed=max(tops), tolerance=None,
+            start_speed=float(shaft.speed(np.zeros(1))[0]),
+            top_speed=shaft.top_speed(n_samples / rate), tolerance=None,
         )  # fmt: skip
     beyond = steps_beyond(rate)
     for start in starts:

@@ -18,10 +18,14 @@ __all__ = ["ConstantSpeed", "LoggedSpeed", "Oscillation", "ShaftMotion", "SpeedR
 
 @runtime_checkable
 class ShaftMotion(Protocol):
-    """Anything that knows the shaft's angular speed at given times."""
+    """Anything that knows the shaft's angular speed at given times, and the largest."""
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Angular speed [rad/s] at `time` [s], both of one shape."""
+        ...
+
+    def top_speed(self, seconds: float) -> float:
+        """Largest speed of either sign in the first `seconds` [rad/s]."""
         ...
 
 
@@ -45,6 +49,10 @@ class ConstantSpeed:
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Angular speed [rad/s] at `time` [s], both of one shape."""
         return np.full(time.shape, float(self.value))
+
+    def top_speed(self, seconds: float = math.inf) -> float:  # noqa: ARG002
+        """Largest speed of either sign in the first `seconds` [rad/s]."""
+        return abs(float(self.value))
 
 
 @dataclass(frozen=True)
@@ -71,6 +79,10 @@ class SpeedRamp:
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Angular speed [rad/s] at `time` [s], both of one shape."""
         return self.start + (self.end - self.start) * np.clip(time / self.duration, 0.0, 1.0)
+
+    def top_speed(self, seconds: float = math.inf) -> float:
+        """Largest speed of either sign in the first `seconds` [rad/s]."""
+        return float(np.abs(self.speed(np.array([0.0, seconds]))).max())
 
 
 @dataclass(frozen=True)
@@ -109,6 +121,10 @@ class Oscillation:
         """Angular speed [rad/s] at `time` [s], both of one shape."""
         omega = 2.0 * math.pi * self.frequency
         return np.asarray(self.amplitude * omega * np.cos(omega * time))
+
+    def top_speed(self, seconds: float = math.inf) -> float:  # noqa: ARG002
+        """Largest speed of either sign in the first `seconds` [rad/s]: that at the start."""
+        return abs(self.amplitude) * 2.0 * math.pi * self.frequency
 
 
 class LoggedSpeed:
@@ -159,3 +175,9 @@ class LoggedSpeed:
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Angular speed [rad/s] at `time` [s], both of one shape."""
         return np.asarray(np.interp(time, self._time, self._speed))
+
+    def top_speed(self, seconds: float = math.inf) -> float:
+        """Largest speed of either sign in the first `seconds` [rad/s]."""
+        inside = self._speed[(self._time >= 0.0) & (self._time <= seconds)]
+        ends = self.speed(np.array([0.0, seconds]))
+        return float(np.abs(np.concatenate([inside, ends])).max())

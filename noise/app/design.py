@@ -17,7 +17,6 @@ from models.rig_file import changed_rig_text
 from noise.app.design_controls import (
     Base,
     base_of,
-    fastest,
     heard_table,
     motion_of,
     motion_options,
@@ -120,7 +119,7 @@ class Design:
         setting = self.setting
         found = use_remarks(
             setting.rig,
-            speed=[fastest(self.values)],
+            speed=[setting.shaft.top_speed(math.inf)],
             interference=[setting.interference],
             support_stiffness=[setting.support_stiffness],
             temperature=[setting.temperature],

@@ -69,6 +69,10 @@ class RunUp:
         share = np.abs((time / self.seconds + 1.0) % 2.0 - 1.0)
         return np.asarray(self.start + (self.end - self.start) * share)
 
+    def top_speed(self, seconds: float = math.inf) -> float:
+        """Largest speed of either sign in the first `seconds` [rad/s]."""
+        return float(np.abs(self.speed(np.array([0.0, min(seconds, self.seconds)]))).max())
+
 
 def motion_of(values: Mapping[str, float | bool | str]) -> ShaftMotion:
     """Return the motion that values of controls describe.
@@ -84,23 +88,6 @@ def motion_of(values: Mapping[str, float | bool | str]) -> ShaftMotion:
     if values["motion"] == "swing":
         return Oscillation(math.radians(float(values["swing.degrees"])), float(values["swing.hz"]))
     return ConstantSpeed(float(values["speed"]))
-
-
-def fastest(values: Mapping[str, float | bool | str]) -> float:
-    """Return the largest speed of the motion that values of controls describe [rad/s].
-
-    Examples
-    --------
-    >>> run_up = {"motion": "run_up", "run_up.start": -30.0, "run_up.end": 2.0}
-    >>> fastest({**run_up, "run_up.seconds": 600.0})
-    30.0
-    """
-    shaft = motion_of(values)
-    if isinstance(shaft, RunUp):
-        return max(abs(shaft.start), abs(shaft.end))
-    if isinstance(shaft, Oscillation):
-        return 2.0 * math.pi * shaft.frequency * abs(shaft.amplitude)
-    return abs(float(values["speed"]))
 
 
 def motion_options(values: Mapping[str, float | bool | str]) -> str:

@@ -269,7 +269,7 @@ def _remarks(
         )
     found += use_remarks(
         rig,
-        speed=[_fastest(shaft, _or(options.seconds, DEFAULT_SECONDS))],
+        speed=[shaft.top_speed(_or(options.seconds, DEFAULT_SECONDS))],
         interference=[interference_mm / 1e3],
         support_stiffness=[stiffness],
         temperature=[_or(options.temperature, _TEMPERATURE.default)],
@@ -277,13 +277,6 @@ def _remarks(
     found += effect_remarks(rig, library)
     found.append(temperature_remark(rig, options.temperature))
     return tuple(text for text in found if text)
-
-
-def _fastest(shaft: ShaftMotion, seconds: float) -> float:
-    """Fastest speed of a motion [rad/s]."""
-    import numpy as np
-
-    return float(np.abs(shaft.speed(np.linspace(0.0, seconds, 4001))).max())
 
 
 _LEAST_SAMPLES = 16

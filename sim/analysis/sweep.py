@@ -1,4 +1,4 @@
-"""Runs over many operating conditions in one call, on all cores: a table of features, and a plot."""
+"""Runs over many operating conditions in one call: a table of features, and a plot."""
 
 from __future__ import annotations
 

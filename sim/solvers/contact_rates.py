@@ -1,5 +1,5 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
-# mypy: allow-untyped-decorators, no-warn-return-any
+# mypy: allow-untyped-decorators, no-warn-return-any, disable-error-code=call-arg
 # ruff: noqa: ANN001
 """What moves the lumped model at one instant, with any friction law and any effects.
 
