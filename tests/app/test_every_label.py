@@ -12,7 +12,6 @@ import pytest
 from noise.base.labels import LABELS
 from noise.cli import main
 from tests.helpers.labelled_folder import made_row, write_folder
-from tests.helpers.opened_app import opened_app
 
 MANY = 40
 NAMES = [f"run{number:02d}.wav" for number in range(MANY)]
@@ -44,34 +43,6 @@ def folder(tmp_path_factory):
 
 def holders(label):
     return [name for name in NAMES if label in title(name)]
-
-
-def test_there_are_recordings_of_many_labels_to_look_at():
-    assert max(len(title(name)) for name in NAMES) >= 4
-    assert all(len(holders(label)) > 3 for label in LABELS)
-    assert any(title(name)[0] != ROWS[name][0]["label"] for name in NAMES)
-
-
-def test_in_the_app(browser, folder):
-    with opened_app(folder) as app:
-        page = browser.new_page(viewport={"width": 1280, "height": 2400})
-        page.goto(app.address)
-        page.wait_for_selector(".rows [role=option] >> text=run00.wav")
-        for label in LABELS:
-            button = page.locator(f".kind[data-kind={label}]")
-            assert button.inner_text().split() == [label, str(len(holders(label)))]
-            button.click()
-            page.wait_for_selector(f".kind[data-kind={label}][aria-pressed=true]")
-            page.wait_for_function(
-                "(n) => Number(document.querySelector('.space').style.height.slice(0, -2)) === n",
-                arg=46 * len(holders(label)),
-            )
-            shown = page.locator(".rows [role=option]:visible")
-            texts = [text.split("\n") for text in shown.all_inner_texts()]
-            names = [lines[0] for lines in texts]
-            assert names == holders(label)
-            assert [lines[1] for lines in texts] == [" + ".join(title(name)) for name in names]
-        page.close()
 
 
 def test_on_a_page_of_a_review(browser, folder, tmp_path):

@@ -106,13 +106,6 @@ def test_a_name_is_found_and_one_that_is_markup_harms_nobody(page):
     assert page.locator("img").count() == 0
 
 
-def test_the_loudest_come_first_where_asked(page, app):
-    page.get_by_role("combobox").select_option(label="level, loudest first")
-    loudest = app.json("api/recordings?sort=level&order=desc")["rows"][0]
-    first = page.locator("#row-0").filter(has_text=loudest["name"])
-    first.filter(has_text=f"{loudest['level_dba']:.1f} dB(A)").wait_for()
-
-
 def test_keys_go_through_the_list_and_open(page):
     page.get_by_role("listbox").focus()
     for key in ("ArrowDown", "ArrowDown", "Enter", "End", "Enter"):
@@ -120,16 +113,6 @@ def test_keys_go_through_the_list_and_open(page):
     page.wait_for_function("() => opens.length === 2")
     assert page.evaluate("opens") == [2, MANY - 1]
     page.locator(CHOSEN).filter(has_text="run0999.wav").wait_for()
-
-
-def test_a_correction_by_anybody_is_in_the_list_when_it_is_asked_for_again(page, app):
-    app.correct(1, "squawk", 0.0, 5.0)
-    page.evaluate(
-        "async () => { const { refresh } = await import('/static/labels/list.js');"
-        " await refresh(); }"
-    )
-    assert "squawk, corrected" in shown(page)[1]
-    app.json("api/undo", {})
 
 
 def test_it_fits_the_window_and_an_accessibility_checker_finds_nothing(page):

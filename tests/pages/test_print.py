@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
 import pytest
 
 from noise.cli import main
@@ -104,34 +103,6 @@ def test_no_picture_and_no_row_is_cut_in_two(page):
     assert printed > 5
 
 
-def test_a_picture_is_no_wider_than_the_paper(page):
-    right = page.evaluate(
-        "Math.max(...[...document.querySelectorAll('main *')].filter((n) => n.checkVisibility())"
-        ".map((n) => n.getBoundingClientRect().right))"
-    )
-    assert right <= WIDTH + 1
-
-
-def test_what_only_a_screen_can_do_is_not_printed(page):
-    left = page.evaluate(
-        "[...document.querySelectorAll('button, select, input, .player, dialog, .aloud')]"
-        ".filter((node) => node.checkVisibility() && !node.matches('.spot'))"
-        ".map((node) => node.outerHTML.slice(0, 80))"
-    )
-    assert left == []
-
-
-def test_paper_stays_white(page):
-    grounds = page.evaluate(
-        "[document.documentElement, document.body, ...document.querySelectorAll("
-        "'main, section, header, .card, .view, figure')]"
-        ".map((node) => getComputedStyle(node).backgroundColor)"
-    )
-    for ground in set(grounds):
-        *colour, alpha = (*map(float, re.findall(r"[\d.]+", ground)), 1.0)[:4]
-        assert alpha == 0.0 or np.mean(colour) >= 240.0
-
-
 def test_all_that_is_folded_away_on_the_screen_is_printed(page):
     folded = "[...document.querySelectorAll('details:not([open])')].length"
     assert page.evaluate(folded) == 0
@@ -139,14 +110,6 @@ def test_all_that_is_folded_away_on_the_screen_is_printed(page):
     places = page.locator("details").count()
     assert page.evaluate(folded) == max(0, places - MOST_OPEN)
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
-
-
-def test_a_heading_stands_on_the_page_of_what_it_names(page):
-    after = page.evaluate(
-        "[...document.querySelectorAll('h2, h3')].filter((n) => n.checkVisibility())"
-        ".map((node) => getComputedStyle(node).breakAfter)"
-    )
-    assert set(after) == {"avoid"}
 
 
 def test_it_becomes_a_pdf_of_few_pages(page):

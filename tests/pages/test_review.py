@@ -13,7 +13,6 @@ import soundfile
 
 from models.errors import ParameterError
 from noise.audio.gain import loudness
-from noise.base.labels import LABEL_LOOKS
 from noise.cli import main
 from noise.pages import review_inputs as recorded
 from noise.pages.cards import facts_of
@@ -134,19 +133,6 @@ def test_the_budget_shortens_all_sounds_alike_and_is_kept(tmp_path):
     assert made.path.stat().st_size <= 1e6 * least
 
 
-def test_a_page_too_small_for_its_own_frame_says_what_is_needed(campaign):
-    with pytest.raises(ParameterError, match=r"into 0\.01 MB; they need about 0\.\d MB"):
-        review(campaign, campaign / "none.html", classify=False, megabytes=0.01)
-
-
-@pytest.mark.parametrize("here", [".", "./"])
-def test_the_folder_that_one_is_in_can_be_reviewed(campaign, monkeypatch, here):
-    named = review(campaign / "recordings", campaign / "named.html", classify=False)
-    monkeypatch.chdir(campaign / "recordings")
-    made = review(here, campaign / "here.html", classify=False)
-    assert made.path.read_bytes() == named.path.read_bytes()
-
-
 def test_a_recording_that_goes_away_while_the_others_are_read_is_one_refusal(campaign, monkeypatch):
     first = sorted((campaign / "recordings").glob("*.wav"))[0]
     opened = recorded.open_blocks
@@ -198,19 +184,6 @@ def test_a_table_alone_finds_its_recordings_and_shows_the_others_without_a_sound
     assert made.refused == ()
     assert "the recording is not at hand" in page.html
     assert 'aria-label="5 rad/s, 0.279 mm: none; none.wav, no sound"' in page.html
-
-
-def test_recordings_that_are_given_are_not_looked_for_beside_their_table(campaign):
-    write_recording(campaign / "another" / "creak.wav", recording("squeal"))
-    made = review([campaign / "recordings", campaign / "labels.csv"], campaign / "r.html")
-    assert made.sounds == 3
-    assert not any("another" in one["title"] for one in Page(made.path).about.values())
-
-
-def test_sidecars_that_are_named_with_their_recordings_are_no_inputs_of_their_own(campaign):
-    made = review(sorted((campaign / "recordings").iterdir()), campaign / "r.html", classify=False)
-    assert made.sounds == 3
-    assert made.refused == ()
 
 
 def test_recordings_of_the_same_name_are_told_apart_by_their_folders(tmp_path):
@@ -315,11 +288,6 @@ def test_a_screen_brings_a_map_a_design_and_sounds_of_every_label(tmp_path):
     assert {one["label"] for one in page.about.values()} == {"creak", "squawk", "squeal", "none"}
     assert page.html.count("data-map data-speed") == 3  # and their difference
     assert "the file of design mine is not at hand; name mine.toml" in page.html
-
-
-def test_patterns_and_marks_tell_labels_apart_without_colour():
-    assert len({look.pattern for look in LABEL_LOOKS.values()}) == len(LABEL_LOOKS)
-    assert len({look.mark for look in LABEL_LOOKS.values()}) == len(LABEL_LOOKS)
 
 
 def test_inferred_bounds_stand_in_plain_digits_and_say_what_is_assumed():

@@ -69,25 +69,6 @@ def test_no_more_points_are_heard_than_allowed_and_none_twice(most):
     assert sum(point.labels == ("none",) for point in chosen) <= MOST_SILENT
 
 
-def test_every_label_is_heard_where_there_is_room():
-    chosen = chosen_points(points(screen_rows()), 4)
-    assert {point.labels for point in chosen} == {(label,) for label in LABELS}
-
-
-def test_points_of_one_label_lie_apart():
-    line = [shared(float(v), 0.3, "squeal") for v in range(31)]
-    heard = [point.speed for point in chosen_points(line, 3)]
-    assert np.diff(heard).min() >= 6.0
-
-
-@given(st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=8))
-def test_ticks_are_on_the_axis_and_are_some(values):
-    axis = axis_of(values, edges=False)
-    assert axis.low < min(values) or axis.low < max(values) <= axis.high
-    assert 2 <= len(axis.ticks) <= 9
-    assert all(0.0 <= share <= 1.0 for share, _ in axis.ticks)
-
-
 def test_a_recording_whose_condition_is_not_known_is_counted_and_not_drawn():
     unknown = row("c", "creak", speed_rad_s=None, speed_rad_s_source="missing")
     rows = [row("a", "creak"), row("b", "squawk"), unknown]

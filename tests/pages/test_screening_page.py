@@ -16,7 +16,7 @@ from noise.pages.comparison import compare_designs
 from noise.pages.maps import cells_of, common_cells
 from noise.pages.screen_sounds import chosen_points, screen_maps, shared_points
 from noise.pages.screening import ranking_rows, write_screening
-from noise.screening.design.design import Design, Swinging, Use
+from noise.screening.design.design import Design, Use
 from noise.screening.screen import screen
 
 QUICK = Use(speed=(1.0, 5.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
@@ -168,28 +168,6 @@ def test_a_page_keeps_to_its_size(two, tmp_path):
     assert page.data("about") == {}
 
 
-@pytest.mark.parametrize(
-    ("names", "use"),
-    [
-        (("fluorocarbon",), QUICK),
-        (("PDMS",), replace(QUICK, speed=(), swinging=Swinging(0.26, (1.0, 2.0)))),
-        (("PDMS", "fluorocarbon"), replace(QUICK, speed=(5.0,))),
-        (("PDMS",), replace(QUICK, temperature=(0.0, 23.0), support_stiffness=(2214.0, np.inf))),
-    ],
-)
-def test_one_design_one_speed_a_swing_and_many_places_have_a_page(names, use, tmp_path):
-    found = of(*names, use=use)
-    page = page_of(found, tmp_path, sounds=0)
-    grid = found.maps[0].grid
-    places = len(grid.temperature) * len(grid.support_stiffness)
-    differences = places if len(names) > 1 else 0
-    maps = [attrs for tag, attrs in page.tags if tag == "figure" and "data-map" in attrs]
-    assert len(maps) == places * len(names) + differences
-    assert sum("data-design" in attrs for attrs in maps) == places * len(names)
-    data = page.data("compared")
-    assert [len(one["designs"]) for one in data["comparisons"]] == [len(names)] * places
-
-
 def test_cells_have_the_labels_and_levels_of_the_map(two):
     compared, heard = compare_designs(
         screen_maps(two), ["not wanted"] * len(screen_maps(two)), number=5, seed=0
@@ -202,13 +180,6 @@ def test_cells_have_the_labels_and_levels_of_the_map(two):
         assert labels == mapped.label[0, 0].ravel().tolist()
         levels = [np.nan if level is None else level for level in cells["level"]]
         assert np.allclose(levels, mapped.level[0, 0].ravel(), atol=0.06, equal_nan=True)
-
-
-def test_data_that_are_not_a_designs_own_are_told_with_the_rule(tmp_path):
-    found = of("PDMS", "fluorocarbon", use=replace(QUICK, interference=(0.3e-3,)))
-    page = page_of(found, tmp_path, sounds=0)
-    assert "Interpolated between fits of 0.279 and 0.381 mm: all points." in page.said
-    assert "interpolated linearly in the interference" in page.said
 
 
 points = st.lists(

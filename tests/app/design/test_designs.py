@@ -14,10 +14,8 @@ from noise.app.design_controls import bases_of, controls_of
 from noise.app.opened import open_paths
 from noise.commands.condition import CONDITION
 from noise.commands.options import add_options
-from noise.screening.design.design import Use, load_design
 from sim.effects import EFFECTS
 from sim.friction import LAWS
-from sim.live import LiveRun
 
 MATERIALS = bases_of(open_paths([]))
 ONE_AND_ALL = [
@@ -90,13 +88,6 @@ def test_a_rig_that_is_opened_again_begins_at_the_condition_it_was_saved_at(cond
     save_rig({"base": "rig 0", "values": {}, "name": "copy"}, bases, tmp_path)
     copy = bases_of(open_paths([tmp_path / "copy.toml"]))
     assert design({}, "rig 0", copy).options == again.options
-
-
-def test_the_condition_a_rig_was_saved_at_is_no_bound_of_its_use(tmp_path):
-    save_rig({"base": "PDMS", "values": HEARD[0], "name": "mine"}, MATERIALS, tmp_path)
-    screened = load_design(tmp_path / "mine.toml")
-    assert screened.use == Use()
-    assert screened.rig == MATERIALS["PDMS"].rig
 
 
 @pytest.mark.parametrize(
@@ -222,8 +213,3 @@ def test_the_condition_is_told_as_options_that_the_command_reads():
         options = parser.parse_args(of.options.split())
         assert options.interference == 0.279
         assert (options.speed is None) == (motion == "swing")
-
-
-@pytest.mark.parametrize("base", ONE_AND_ALL)
-def test_every_base_is_heard(base):
-    assert LiveRun(design({}, base).setting).block().pressure.shape == (960,)

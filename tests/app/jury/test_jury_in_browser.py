@@ -112,26 +112,6 @@ def test_what_was_looked_at_before_is_neither_in_the_page_nor_asked_for_nor_hear
         jury.close()
 
 
-def test_nothing_is_voted_that_was_not_heard_and_the_last_vote_is_undone(browser, folder):
-    with opened_app(folder) as app:
-        jury = JuryPage(browser, app).begin()
-        jury.page.keyboard.press("1")
-        jury.page.get_by_text("Listen to both first.").wait_for()
-        assert votes(folder) == []
-        jury.vote("0")
-        jury.turn(2)
-        assert votes(folder) == ["equal"]
-        jury.page.keyboard.press("u")
-        jury.turn(1)
-        assert votes(folder) == []
-        jury.vote("2")
-        jury.turn(2)
-        assert votes(folder) == ["second"]
-        jury.page.get_by_role("button", name="Stop here").click()
-        jury.page.get_by_text("1 of 6 voted").wait_for()
-        jury.close()
-
-
 def test_a_and_b_are_heard_in_step_at_one_gain(browser, folder):
     with opened_app(folder) as app:
         jury = JuryPage(browser, app, tapped=True).begin()
@@ -142,25 +122,6 @@ def test_a_and_b_are_heard_in_step_at_one_gain(browser, folder):
         jury.page.keyboard.press(" ")
         jury.page.get_by_role("button", name="Play").wait_for()
         assert not jury.heard().any()
-        jury.close()
-
-
-def test_sounds_are_chosen_by_label_and_name(browser, folder):
-    with opened_app(folder) as app:
-        jury = JuryPage(browser, app)
-        chosen = jury.page.locator("output.count")
-        chosen.filter(has_text="4 chosen").wait_for()
-        jury.page.get_by_role("button", name="None", exact=True).click()
-        assert jury.begins.is_disabled()
-        jury.page.get_by_role("combobox", name="With").select_option("squeal")
-        jury.page.get_by_label("softer.wav").wait_for(state="detached")
-        jury.page.get_by_role("button", name="All shown").click()
-        jury.page.get_by_role("combobox", name="With").select_option("")
-        jury.page.get_by_label("softer.wav").check()
-        chosen.filter(has_text="2 chosen").wait_for()
-        jury.page.get_by_text("1 comparisons, about").wait_for()
-        jury.begin()
-        assert set(pairs(folder)[0]) == {"loudest.wav", "softer.wav"}
         jury.close()
 
 

@@ -8,9 +8,6 @@ from urllib.parse import parse_qs, urlsplit
 import numpy as np
 import pytest
 
-from noise.base.tables import write_table
-from noise.labels.table import COLUMNS
-from tests.helpers.labelled_folder import made_row
 from tests.helpers.opened_app import opened_app
 from tests.helpers.recording_page import HALF, RATE, TONE, OpenPage, write_sounds
 
@@ -87,27 +84,6 @@ def test_what_the_classifier_gives_less_than_a_half_is_said(browser, shown):
     told = opened.page.locator("div.chosen:not(.segment)").filter(has_text="squeal")
     assert told.text_content() == "squeal 0.50\N{EN DASH}1.50 s, 1000 Hz, 94.0 dB(A)"
     opened.close()
-
-
-def test_conditions_of_a_segment_say_what_they_are_from(browser, folder):
-    logged = {
-        "speed_rad_s": 5.0,
-        "speed_rad_s_source": "logged",
-        "note": "logged as 5, turned at 7",
-    }
-    inferred = {
-        "interference_mm": 0.2, "interference_mm_low": 0.18, "interference_mm_high": 0.28,
-        "interference_mm_source": "inferred",
-    }  # fmt: skip
-    rows = [made_row(TONE, "squeal", 0.0, 2.0, p_squeal=0.9, **logged, **inferred)]
-    write_table(folder / "labels.csv", COLUMNS, rows)
-    with opened_app(folder) as app:
-        opened = OpenPage(browser, app).open(TONE)
-        said = opened.page.locator(".recording .conditions").text_content()
-        opened.close()
-    assert (
-        said == "speed 5 rad/s; interference 0.18 to 0.28 mm (inferred); logged as 5, turned at 7"
-    )
 
 
 def tone_of(samples):

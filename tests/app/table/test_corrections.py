@@ -130,20 +130,6 @@ def test_a_table_that_has_become_none_is_not_written_over_however_often_it_is_re
     assert (tabled / "labels.csv").read_bytes() == broken
 
 
-def test_labels_of_a_table_made_by_hand_outlive_the_labelling(folder):
-    (folder / "labels.csv").write_text("file,label\na.wav,squeal\n")
-    new = [row("a.wav", "creak"), row("b.wav", "creak")]
-    found = with_corrections(folder / "labels.csv", new)
-    assert [(r["file"], r["label"]) for r in found] == [("a.wav", "squeal"), ("b.wav", "creak")]
-
-
-def test_what_a_person_has_said_of_all_of_a_file_stands_for_its_tracks(folder):
-    write_table(folder / "labels.csv", COLUMNS, [row("a.wav", "squeal", label_source="human")])
-    new = [row("a.wav", "creak", channel=track) for track in "12"]
-    found = with_corrections(folder / "labels.csv", new)
-    assert [(r["channel"], r["label"]) for r in found] == [("all", "squeal")]
-
-
 def test_a_row_that_cannot_be_used_is_told_before_corrections_are_lost_by_it(folder):
     rows = [row("a.wav", "creak", label_source="human"), row("b.wav") | {"label": "Creaky"}]
     write_table(folder / "labels.csv", COLUMNS, rows)
