@@ -117,6 +117,7 @@ def create_app(
     routes = [
         Route("/", shown),
         Route("/api/stop", stopped, methods=["POST"]),
+        Mount("/static/shared", StaticFiles(packages=[("noise.pages", "templates/shared")])),
         Mount("/static", StaticFiles(directory=_STATIC)),
     ]
     for module, prefix in _ROUTES.items():

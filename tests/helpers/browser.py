@@ -96,12 +96,6 @@ def until(page: Page, is_true: Callable[[], object]) -> None:
         page.wait_for_timeout(20)
 
 
-def refuses_other_sources(page: Page) -> None:
-    """Ask for something from elsewhere, and wait until the page complains of it."""
-    with page.expect_console_message(lambda said: "Content Security Policy" in said.text):
-        page.evaluate("fetch('https://example.org').catch(() => null)")
-
-
 def styled(page: Page) -> None:
     """Wait for all style sheets of the page."""
     page.wait_for_function(

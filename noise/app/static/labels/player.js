@@ -1,7 +1,8 @@
 // Two recordings run in step, A and B, at one gain or at equal loudness; to change over is to cross their gains.
+import { Voices } from "../shared/voices.js";
 import { facts, samples } from "./sounds.js";
 
-const RATE = 48000, CROSSING = 0.02, AHEAD = 0.03; // Hz, s, s
+const RATE = 48000; // Hz
 const QUIETEST = 0.1; // nothing is amplified beyond this full scale [Pa]
 const HEADROOM = 1.12; // peaks between two samples are higher
 const KEPT = 4; // sounds in memory
@@ -47,10 +48,7 @@ export class Player extends EventTarget {
 
   // Where A is [s].
   now() {
-    if (!this.running) return this.position;
-    const { start, length, offset, began, loop } = this.running;
-    const played = offset + Math.max(0, this.context.currentTime - began);
-    return start + (loop ? played % length : Math.min(played, length));
+    return this.running ? this.start + this.running.position : this.position;
   }
 
   // A stretch of a sound, silent where there is nothing: all that is played is as long as A's.
@@ -84,22 +82,12 @@ export class Player extends EventTarget {
     if (this.equal) await this.#measure({ start, end: start + length }, shift);
     if (mine !== this.request) return;
     this.#silence();
-    const began = context.currentTime + AHEAD, offset = Math.min(Math.max(0, from - start), length) % length;
-    const bus = context.createGain();
-    const voices = {};
-    for (const [slot, buffer] of [["a", first], ["b", second]]) {
-      if (!buffer) continue;
-      const source = Object.assign(context.createBufferSource(), { buffer, loop: this.looping });
-      const gain = context.createGain();
-      gain.gain.setValueAtTime(0, began);
-      gain.gain.linearRampToValueAtTime(this.gain(slot), began + CROSSING / 4);
-      source.connect(gain).connect(bus);
-      source.start(began, offset);
-      voices[slot] = { source, gain };
-    }
-    this.running = { start, length, offset, began, loop: this.looping, voices, bus };
+    this.bus = context.createGain();
     this.#filter();
-    voices.a.source.onended = () => { if (this.running?.voices === voices) this.stop(); };
+    this.start = start;
+    this.running = new Voices(context, { a: first, b: second }, {
+      offset: Math.min(Math.max(0, from - start), length) % length, loop: this.looping, level: (slot) => this.gain(slot), target: this.bus, ended: () => this.stop(),
+    });
     this.#tell();
   }
 
@@ -111,15 +99,7 @@ export class Player extends EventTarget {
   }
 
   #silence() {
-    if (!this.running) return;
-    const at = this.context.currentTime, end = at + CROSSING;
-    for (const { source, gain } of Object.values(this.running.voices)) {
-      source.onended = null;
-      gain.gain.cancelScheduledValues(0);
-      gain.gain.setValueAtTime(gain.gain.value, at);
-      gain.gain.linearRampToValueAtTime(0, end);
-      source.stop(end);
-    }
+    this.running?.silence();
     this.running = null;
   }
 
@@ -163,18 +143,8 @@ export class Player extends EventTarget {
   hear(slot) {
     if (!this.slots[slot]) return;
     this.active = slot;
-    this.#cross();
+    this.running?.cross();
     this.#tell();
-  }
-
-  #cross() {
-    if (!this.running) return;
-    const at = this.context.currentTime;
-    for (const [slot, { gain }] of Object.entries(this.running.voices)) {
-      gain.gain.cancelScheduledValues(0);
-      gain.gain.setValueAtTime(gain.gain.value, at);
-      gain.gain.linearRampToValueAtTime(this.gain(slot), at + CROSSING);
-    }
   }
 
   setBand(band) {
@@ -184,9 +154,8 @@ export class Player extends EventTarget {
   }
 
   #filter() {
-    const { bus } = this.running;
-    bus.disconnect();
-    let last = bus;
+    this.bus.disconnect();
+    let last = this.bus;
     if (this.band) {
       for (const [type, frequency] of [["highpass", this.band.low], ["lowpass", this.band.high]]) {
         for (const quality of SLOPES) {
