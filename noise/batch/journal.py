@@ -1,9 +1,10 @@
-"""The journal of a call: its results so far, on disk one by one, for a call that goes on after it.
+"""The journal of a call: its results so far, kept one by one, for a call that goes on after it.
 
 It is an SQLite database, hidden beside the table or folder that the call is to write. Each result
-is a row of its own and on the disk before the next is begun, so a process may be killed at any
-moment, and the same call again goes on where it was. Results of other options, or of a program that
-gives other results, are not used; a line says so.
+is a row of its own and in the file before the next is begun, so a process may be killed at any
+moment, and the same call again goes on where it was; where the power fails, the last few may have
+to be done again. Results of other options, or of a program that gives other results, are not used;
+a line says so.
 
 The journal of a table outlives it. A recording in it counts as long as it is the same file as then.
 Refused recordings are not kept: what was at fault may have been put right since without the file
@@ -62,7 +63,10 @@ class Journal:
     def __init__(self, path: Path | None = None) -> None:
         self._path = path
         self._database = sqlite3.connect("" if path is None else path, timeout=_PATIENCE)
-        self._database.executescript(_TABLES)
+        # The system has each result at once, so who is killed loses none; the disk a little later.
+        self._database.executescript(
+            f"pragma journal_mode = wal; pragma synchronous = normal; {_TABLES}"
+        )
 
     def begin(self, identity: str, *, fresh: bool = False) -> None:
         """Forget what is of another call, or all of it."""
@@ -84,7 +88,7 @@ class Journal:
         return None if found is None else json.loads(found[0])
 
     def add(self, key: str, *values: object) -> None:
-        """Keep values as JSON knows them; they are on the disk on return."""
+        """Keep values as JSON knows them."""
         try:
             with self._database:
                 self._database.execute(
@@ -149,7 +153,7 @@ class JournalReader:
         return found
 
     def _opened(self) -> sqlite3.Connection:
-        return sqlite3.connect(f"{self._path.absolute().as_uri()}?mode=ro", uri=True)
+        return sqlite3.connect(f"{self._path.absolute().as_uri()}?mode=rw", uri=True)
 
 
 @contextmanager

@@ -12,12 +12,18 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 SCRIPT = """
-import sys, time
+import os, sys, time
 from joblib import Parallel, delayed
 from noise.batch.pool import ending_with_this
-Parallel(n_jobs=2)(delayed(ending_with_this(time.sleep))(0.01) for _ in range(8))
+def rest(seconds):
+    time.sleep(seconds)
+    return os.getpid()
+def both(seconds, n):
+    return set(Parallel(n_jobs=2)(delayed(ending_with_this(rest))(seconds) for _ in range(n)))
+while len(both(0.05, 8)) < 2:  # one may have done it all while the other was loaded
+    pass
 print("ready", flush=True)
-Parallel(n_jobs=2)(delayed(ending_with_this(time.sleep))(float(sys.argv[1])) for _ in range(2))
+both(float(sys.argv[1]), 2)
 time.sleep(600.0)
 """
 

@@ -22,7 +22,7 @@ def results_in(journal):
     if not journal.exists():
         return []
     try:
-        with closing(sqlite3.connect(f"{journal.as_uri()}?mode=ro", uri=True)) as database:
+        with closing(sqlite3.connect(f"{journal.as_uri()}?mode=rw", uri=True)) as database:
             return database.execute("select rowid, key from result order by rowid").fetchall()
     except sqlite3.OperationalError:  # it is being made
         return []
