@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.kernels.levels import NOMINAL_THIRD_OCTAVES, a_weighting
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.radiation.sound_power import BandPower
-
-__all__ = ["COLUMNS", "TOTAL", "sound_power_rows"]
+from models.radiation.sound_power import BandPower
 
 COLUMNS = (
     "band_hz",

@@ -11,22 +11,16 @@ fundamental alone, so that rumble and hiss do not count.
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError, RecordingError
 from models.recording import REFERENCE_PRESSURE
 from noise.recordings.files import read_raw
-
-if TYPE_CHECKING:
-    import os
-
-    from numpy.typing import NDArray
-
-__all__ = ["CalibratorTone", "read_calibrator"]
 
 FREQUENCIES = (250.0, 1000.0)
 """Of calibrators [Hz] (IEC 60942)."""

@@ -8,19 +8,14 @@ without delay. Any part of the result is the same, bit for bit, however it is re
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+Read = Callable[[int, int], NDArray[np.float64]]
 
-    from numpy.typing import NDArray
-
-    Read = Callable[[int, int], NDArray[np.float64]]
-
-__all__ = ["HIGHEST_WORKED", "decimated"]
 
 HIGHEST_WORKED = 400e3
 """Rates above it are brought below it [Hz]; measuring cards for sound reach 384 kHz."""

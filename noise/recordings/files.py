@@ -26,8 +26,6 @@ from noise.recordings.meaning import PascalPerFullScale, check_finite, describe
 from noise.recordings.sidecar import sidecar_of
 from noise.recordings.unwrapping import find_turns
 
-__all__ = ["MIN_SAMPLES", "find_recordings", "names_channels", "read_raw", "read_recording"]
-
 MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""
 

@@ -10,17 +10,12 @@ opened, and what nobody may look into is left out; one line says so.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.foreign_file import check_plain_file
 from noise.base.progress import note
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-__all__ = ["files_below", "is_file"]
 
 _NAMED = 3
 """Of what is left out, so many are named."""

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["agrees", "as_logged"]
-
 _AS_LOGGED = 0.005
 """A measured speed that is off by no more is the one that was logged [-]."""
 

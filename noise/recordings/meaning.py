@@ -28,29 +28,23 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from models.calibration import READING_UNITS
+from models.calibration import READING_UNITS, Calibration
+from models.condition import Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import REFERENCE_PRESSURE, Channel
 from noise.recordings.sidecar import Sidecar, find_sidecar, sidecar_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from models.calibration import Calibration
-    from models.condition import Condition
     from noise.recordings.formats import RawSamples
 
-__all__ = [
-    "FullScale", "Meaning", "PascalPerFullScale", "check_finite", "describe", "stated_full_scale",
-]  # fmt: skip
 
 PascalPerFullScale = float | tuple[float, ...]
 """Pressure of a full-scale sample [Pa], of all tracks or of each."""
