@@ -9,16 +9,16 @@ keeps is the number of columns, for scikit-learn's checks.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, TypeGuard
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.utils.validation import _check_feature_names_in, validate_data
 
 from features.kernels.conditioning import MIN_SAMPLES
-from features.table import KINDS, feature_names, feature_vector, recording_features
+from features.table import KINDS, feature_names, recording_features
 from models.errors import ParameterError
-from models.recording import Recording
+from models.recording import Channel, Recording
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -84,9 +84,7 @@ class RecordingFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         ValueError
             An input that scikit-learn refuses.
         """
-        self._check_parameters()
-        if not _are_recordings(X):
-            self._waveforms(X, reset=True)
+        self._recordings(X, reset=True)
         return self
 
     def transform(self, X: ArrayLike | Sequence[Recording]) -> NDArray[np.float64]:
@@ -100,7 +98,7 @@ class RecordingFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         Returns
         -------
         ndarray, shape (n_waveforms, n_features)
-            Columns as `get_feature_names_out` names them, in the units of the registry.
+            Columns as `get_feature_names_out` names them, in the units of the table.
 
         Raises
         ------
@@ -109,15 +107,13 @@ class RecordingFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         ValueError
             An input that scikit-learn refuses.
         """
-        self._check_parameters()
-        if _are_recordings(X):
-            return np.array([self._of_recording(recording) for recording in X])
-        if len(self.kinds) != 1:
-            raise ParameterError(f"kinds are {self.kinds}; waveforms are of one kind")
-        rows = self._waveforms(X, reset=not hasattr(self, "n_features_in_"))
-        return np.array(
-            [self._of_channel(row, self.rate, self.kinds[0], self.calibrated) for row in rows]
-        )
+        names = self.get_feature_names_out().tolist()
+        rows = []
+        for run in self._recordings(X, reset=not hasattr(self, "n_features_in_")):
+            long_enough = run.samples.shape[1] >= MIN_SAMPLES
+            found = recording_features(run, names=frozenset(names)) if long_enough else {}
+            rows.append([found.get(name, math.nan) for name in names])
+        return np.array(rows)
 
     def get_feature_names_out(self, input_features: object = None) -> NDArray[np.object_]:
         """Names of the columns: the kind of channel and the feature.
@@ -137,36 +133,22 @@ class RecordingFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         tags.requires_fit = False
         return tags
 
-    def _check_parameters(self) -> None:
+    def _recordings(self, X: Any, *, reset: bool) -> Sequence[Recording]:
+        """Check parameters and input; waveforms become recordings of one channel."""
         kinds = tuple(self.kinds) if isinstance(self.kinds, tuple | list) else (self.kinds,)
         if isinstance(self.kinds, str) or not kinds or not set(kinds) <= set(KINDS):
             raise ParameterError(f"kinds are {self.kinds!r}; give a tuple of {', '.join(KINDS)}")
         if not 0.0 < self.rate < math.inf:
             raise ParameterError(f"rate is {self.rate!r}; a sampling rate is a positive number")
-
-    def _waveforms(self, X: Any, *, reset: bool) -> NDArray[np.float64]:
-        return np.asarray(validate_data(self, X, dtype=np.float64, reset=reset))
-
-    def _of_recording(self, recording: Recording) -> list[float]:
-        names = self.get_feature_names_out().tolist()
-        if recording.samples.shape[1] < MIN_SAMPLES:
-            return [math.nan] * len(names)
-        found = recording_features(recording, names=frozenset(names))
-        return [found[name] for name in names]
-
-    @staticmethod
-    def _of_channel(
-        samples: NDArray[np.float64], rate: float, kind: str, calibrated: bool
-    ) -> list[float]:
-        if samples.size < MIN_SAMPLES:
-            return [math.nan] * len(feature_names(kind))
-        return list(feature_vector(samples, rate, kind, calibrated=calibrated).values())
-
-
-def _are_recordings(X: object) -> TypeGuard[Sequence[Recording]]:
-    if not isinstance(X, list | tuple) or not X:
-        return False
-    found = [isinstance(item, Recording) for item in X]
-    if any(found) and not all(found):
-        raise ParameterError(f"X mixes recordings with others (item {found.index(False)})")
-    return all(found)
+        found = [isinstance(x, Recording) for x in X] if isinstance(X, list | tuple) else []
+        if any(found):
+            if not all(found):
+                raise ParameterError(f"X mixes recordings with others (item {found.index(False)})")
+            return X
+        if len(kinds) != 1:
+            raise ParameterError(f"kinds are {self.kinds}; waveforms are of one kind")
+        channels = (Channel(kinds[0]),)
+        return [
+            Recording(row[np.newaxis], self.rate, channels, calibrated=self.calibrated)
+            for row in validate_data(self, X, dtype=np.float64, reset=reset)
+        ]

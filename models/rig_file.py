@@ -353,8 +353,8 @@ def measured_responses(tables: Any, folder: Path, where: str) -> tuple[MeasuredR
 
 
 def _response(path: Path, unit: str, where: str) -> Any:
-    from models.transfer_functions.coherence import check_band
     from models.transfer_functions.files import read_transfer_function
+    from models.transfer_functions.transfer_function import check_band
 
     try:
         transfer = read_transfer_function(path, input_unit="N m", output_unit=unit)

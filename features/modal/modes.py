@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from models.errors import ParameterError
 from models.show import short_repr
 
 if TYPE_CHECKING:
@@ -14,7 +15,28 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from pandas import DataFrame
 
-    from features.modal.lscf import Pole
+
+_POINTS = 2000
+_MARGIN = 0.5
+"""Of the lowest natural frequency: where a curve begins on axes that are new."""
+
+
+class Pole(NamedTuple):
+    """A pole of response functions.
+
+    Parameters
+    ----------
+    frequency : float
+        Undamped natural frequency [Hz].
+    damping_ratio : float
+        Fraction of critical damping [-].
+    orders : int
+        Through how many orders it stayed.
+    """
+
+    frequency: float
+    damping_ratio: float
+    orders: int
 
 
 @short_repr
@@ -156,9 +178,30 @@ class Modes:
         >>> axes.get_xlabel(), len(axes.lines)
         ('Frequency [Hz]', 2)
         """
-        from features.modal.modes_display import draw_modes
+        from models.drawing import CURVES, GREY, axes_or_new, frequency_axis
 
-        return draw_modes(self, ax)
+        if not self.frequency.size:
+            raise ParameterError("there is no mode that could be drawn")
+        low = _MARGIN * float(self.frequency[0])
+        frequency = np.geomspace(low, self.highest, _POINTS)
+        several = len(self.residues) > 1
+        with axes_or_new(ax) as axes:
+            measured = axes.has_data()
+            for number, response in enumerate(self.response(frequency)):
+                axes.plot(
+                    frequency, np.abs(response), "--",
+                    color=CURVES[(number + 1) % len(CURVES)],
+                    label=f"modes, response {number + 1}" if several else "modes",
+                )  # fmt: skip
+            for natural in self.frequency:
+                axes.axvline(float(natural), color=GREY, linestyle=":", linewidth=0.9, zorder=1)
+            if not measured:
+                axes.set_yscale("log")
+                frequency_axis(axes, low, self.highest)
+                axes.set_xlabel("Frequency [Hz]")
+                axes.set_ylabel("Magnitude [unit of the measured response]")
+            axes.legend(loc="best")
+        return axes
 
 
 def modes_of_poles(
@@ -184,7 +227,6 @@ def modes_of_poles(
 
     Examples
     --------
-    >>> from features.modal.lscf import Pole
     >>> f = np.arange(50.0, 151.0)
     >>> H = 1 / (100.0**2 - f**2 + 2j * 0.02 * 100.0 * f) / (2 * np.pi) ** 2
     >>> modes = modes_of_poles([Pole(100.0, 0.02, 1)], f, H[None], np.ones((1, 101)))

@@ -134,7 +134,7 @@ def run(options: Namespace) -> int:
     modes = None
     if options.modes is not None:
         from features.modal.modal_fit import fit_modes
-        from models.transfer_functions.coherence import trusted_band
+        from models.transfer_functions.transfer_function import trusted_band
 
         say("fitting modes")
         low, high = options.band or trusted_band(transfer)
@@ -202,7 +202,7 @@ def _tell_coherence(transfer: TransferFunction, least: float) -> None:
     if transfer.coherence is None:
         note("a single hit has no coherence; hit at least three times to see what can be trusted")
         return
-    from models.transfer_functions.coherence import bands_below
+    from models.transfer_functions.transfer_function import bands_below
 
     bands = bands_below(transfer, least)
     if not bands:

@@ -9,8 +9,7 @@ import pytest
 
 from models.condition import FIXED
 from models.rig import LawSpec
-from models.transfer_functions.filtering import filter_signal
-from models.transfer_functions.impulse_response import impulse_response
+from models.transfer_functions.filtering import filter_signal, impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.forms.drawn import drawn_forms

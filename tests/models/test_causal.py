@@ -6,8 +6,8 @@ from hypothesis import given, settings, strategies as st
 from scipy.signal import butter, sosfilt
 
 from models.structure.modal import ModalModel
-from models.transfer_functions.causal import causal_impulse_response
 from models.transfer_functions.filtering import convolve
+from models.transfer_functions.measured import causal_impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
 
 RATE = 96e3

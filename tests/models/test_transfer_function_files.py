@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from models.transfer_functions.coherence import check_band, trusted_band
 from models.transfer_functions.files import ENDINGS, read_transfer_function, write_transfer_function
-from models.transfer_functions.transfer_function import TransferFunction
+from models.transfer_functions.transfer_function import TransferFunction, check_band, trusted_band
 from models.transfer_functions.uff import (
     TIME_RESPONSE,
     UffFunction,

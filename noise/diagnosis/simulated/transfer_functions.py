@@ -20,8 +20,12 @@ from models.condition import known_condition
 from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
 from models.rig import Rig
-from models.transfer_functions.filtering import filter_period
-from models.transfer_functions.impulse_response import FINER, fill_between_lines, impulse_response
+from models.transfer_functions.filtering import (
+    FINER,
+    fill_between_lines,
+    filter_period,
+    impulse_response,
+)
 from models.transfer_functions.measured import measured_with
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.evidence.reconstruction import closed_length, closed_loop

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.transfer_functions.filtering import filter_signal
-from models.transfer_functions.impulse_response import impulse_response
+from models.transfer_functions.filtering import filter_signal, impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.fit.forms.wiener import Noise, wiener_estimate
