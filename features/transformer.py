@@ -144,7 +144,7 @@ class RecordingFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         if any(found):
             if not all(found):
                 raise ParameterError(f"X mixes recordings with others (item {found.index(False)})")
-            return X
+            return list(X)
         if len(kinds) != 1:
             raise ParameterError(f"kinds are {self.kinds}; waveforms are of one kind")
         channels = (Channel(kinds[0]),)
