@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from models.recording import Recording
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.condition import Condition
-    from models.recording import Channel
+from models.condition import Condition
+from models.recording import Channel, Recording
 
 Read = Callable[[int, int], "NDArray[np.float64]"]
 """From first and last sample of a channel to those between them, shape (n,)."""

@@ -11,35 +11,17 @@ draws is imported before it is called.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
 
-__all__ = [
-    "BLUE",
-    "CHANNEL_LOOKS",
-    "CURVES",
-    "GREEN",
-    "GREY",
-    "ORANGE",
-    "STYLE",
-    "VERMILION",
-    "Look",
-    "axes_or_new",
-    "frequency_axis",
-    "levels",
-    "padded",
-    "styled",
-    "thinned",
-]
 
 BLUE, VERMILION, GREEN, ORANGE, GREY = "#0072b2", "#d55e00", "#008060", "#e69f00", "#666666"
 """Told apart by every eye (Okabe and Ito, Color universal design, 2008)."""

@@ -7,9 +7,6 @@ and hold line breaks; so the root makes of each message one line that can be rea
 
 from __future__ import annotations
 
-__all__ = ["BushingNoiseError", "ParameterError", "RecordingError", "not_installed"]
-
-
 _LONGEST = 2000
 """Letters of a message, of which the end is left out."""
 

@@ -10,19 +10,13 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.foreign_file import ExcessError
 from models.units import quantity_of_unit, split_unit
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-__all__ = ["ForeignTable", "read_table"]
 
 _SEPARATORS = (";", "\t", ",", " ")
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")

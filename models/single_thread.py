@@ -6,17 +6,12 @@ machine is busy they wait for each other, ten times longer than one takes.
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.linalg
 from threadpoolctl import ThreadpoolController
-
-if TYPE_CHECKING:
-    from contextlib import AbstractContextManager
-
-__all__ = ["single_thread"]
 
 _LOADED = (np, scipy.linalg)
 """Each brings a library of its own, which the controller must find."""

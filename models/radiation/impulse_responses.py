@@ -8,17 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import rfft
 
 from models.transfer_functions.filtering import convolve, transform_size
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["ImpulseResponses", "radiate", "radiate_pulses"]
 
 Path = Literal[
     "torque_to_acceleration", "torque_to_pressure", "pulse_to_acceleration", "pulse_to_pressure"

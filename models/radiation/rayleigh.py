@@ -10,21 +10,10 @@ Lagrange's cubic, which costs 0.1 dB at a sixth of the sampling rate.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = [
-    "AIR_DENSITY",
-    "SOUND_SPEED",
-    "RayleighIntegral",
-    "rayleigh_integral",
-    "rectangle_integral",
-]
 
 AIR_DENSITY = 1.204
 """Of dry air at 20 degree Celsius and 1013 hPa [kg/m3]."""

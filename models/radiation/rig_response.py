@@ -18,9 +18,9 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses
@@ -36,19 +36,13 @@ from models.structure.beams import (
     beams_pressure,
 )
 from models.structure.plate import (
+    PlateModes,
     acceleration_model,
     plate_modes,
     pressure_response,
 )
 from models.transfer_functions.filtering import convolve
 from models.transfer_functions.measured import with_measured
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.structure.plate import PlateModes
-
-__all__ = ["anchor_arm", "anchor_drives", "first_mode_damping", "impulse_responses"]
 
 HIGHEST_BEAM_FREQUENCY = 40e3
 """Beam modes are kept up to it, for what lies below 20 kHz to be complete [Hz]."""

@@ -19,21 +19,10 @@ to a sixth of the sampling rate such a mode differs by less than 0.5 dB, however
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.signal import lfilter
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-__all__ = [
-    "ModalModel",
-    "acceleration_section",
-    "add_ringing",
-    "displacement_section",
-    "ringing_samples",
-]
 
 DECAY_EXPONENT = 14.0
 """A mode is followed until it has decayed by exp(14), 122 dB."""

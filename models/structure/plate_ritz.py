@@ -12,18 +12,13 @@ against its rigid-body motions.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
+from numpy.typing import NDArray
 from scipy.linalg import cholesky, eigh, null_space, solve_triangular
 
 from models.single_thread import single_thread
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["RitzModes", "ritz_modes"]
 
 RESTRAINED = {"free": 0, "simply_supported": 1, "clamped": 2}
 """How many of deflection and slope each edge holds."""
