@@ -191,12 +191,7 @@ def joined(
     >>> samples.size, times
     (144, [(0.0, 0.001), (0.002, 0.003)])
     """
-    known = {one.calibrated: one.name for one in recordings}
-    if len(known) > 1:
-        raise ParameterError(
-            f"{known[True]} is calibrated and {known[False]} is not, so one gain cannot keep how "
-            "loud they are to each other; give its calibration"
-        )
+    _refuse_mixed({one.calibrated: one.name for one in recordings}, "give its calibration")
     pieces: list[NDArray[np.float64]] = []
     times: list[tuple[float, float]] = []
     start = 0
@@ -206,6 +201,15 @@ def joined(
         pieces += [sound, np.zeros(round(gap * rate))]
         start += sound.size + pieces[-1].size
     return np.concatenate(pieces[:-1]), times
+
+
+def _refuse_mixed(known: Mapping[bool, str], remedy: str) -> None:
+    """Refuse one gain for sounds of which some are calibrated and others are not."""
+    if len(known) > 1:
+        raise ParameterError(
+            f"{known[True]} is calibrated and {known[False]} is not, so one gain cannot keep how "
+            f"loud they are to each other; {remedy}"
+        )
 
 
 def measure(
@@ -314,12 +318,7 @@ def full_scales(
                 f"does not is {full_scale_without_clipping(loud.true_peak):g}"
             )
         return dict.fromkeys(sounds, FullScale(pascal, "calibrated"))
-    if len(known) > 1:
-        raise ParameterError(
-            f"{known[True]} is calibrated and {known[False]} is not, so one gain cannot keep how "
-            "loud they are to each other; --full-scale gives a calibration, --match-loudness "
-            "needs none"
-        )
+    _refuse_mixed(known, "--full-scale gives a calibration, --match-loudness needs none")
     value = common_full_scale([np.array([of.true_peak]) for of in sounds.values()])
     if True in known:  # so that silence is not made loud
         value = max(value, QUIETEST_FULL_SCALE)

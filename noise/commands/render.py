@@ -167,13 +167,10 @@ def _files(options: Namespace, sources: list[Source], folder: Path | None) -> li
 def _keep_inputs(out: Path, sources: list[Source], written: list[_File]) -> None:
     """Refuse to write over a recording or its sidecar."""
     read = [source.path for source in sources if source.path is not None]
-    stems = {path.parent.resolve() / path.stem for path in read}
-    files = {(path.stat().st_dev, path.stat().st_ino) for path in read}
+    stems = {path.resolve().with_suffix("") for path in read}
     for _, target, _ in written:
-        same = target.parent.resolve() / target.stem in stems
-        if not same and target.exists():
-            same = (target.stat().st_dev, target.stat().st_ino) in files
-        if same:
+        same = target.exists() and any(map(target.samefile, read))
+        if same or target.resolve().with_suffix("") in stems:
             raise ParameterError(f"--out {out} would overwrite the recording or its sidecar")
 
 

@@ -7,28 +7,21 @@ other units, or another order, are followed.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.modal.hammer import Hit
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import LARGEST_TEXT, read_array, reading, refusing
-from models.foreign_table import read_table
-from models.recording import Channel
+from models.foreign_table import ForeignTable, read_table
+from models.recording import Channel, Recording
 from models.units import CHANNEL_UNITS, quantity_of_unit
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.files import MIN_SAMPLES
 from noise.recordings.formats import check_rate, formats
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from models.foreign_table import ForeignTable
-    from models.recording import Recording
 
 RESPONSES = ("acceleration", "pressure")
 """Kinds of channel taken for the response where none is named, in this order."""
