@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from models.condition import FIXED
 from models.errors import ParameterError
-from noise.screening.design.tolerances import ABSOLUTE_ZERO
+from models.units import ABSOLUTE_ZERO
 
 MOST_POINTS = 2000
 """Along one axis."""

@@ -16,14 +16,12 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.schema import as_table, number, refuse_unknown
+from models.units import ABSOLUTE_ZERO
 
 if TYPE_CHECKING:
     from models.rig import LawSpec
     from noise.screening.parts.sampling import Distribution
 
-
-ABSOLUTE_ZERO = -273.15
-"""[degree Celsius]"""
 
 PARAMETERS = {
     "elastomer_stiffness": "Nm/rad",

@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 from models.errors import ParameterError
 from models.rig import LawSpec, Rig, damping_at
 from models.show import short_repr
+from models.units import ABSOLUTE_ZERO
 from noise.screening.design.design import Design
 from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
-from noise.screening.design.tolerances import ABSOLUTE_ZERO, PARAMETERS
+from noise.screening.design.tolerances import PARAMETERS
 from noise.screening.map.grid import grid_of
 from sim.effects import EFFECTS
 
