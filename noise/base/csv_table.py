@@ -15,13 +15,12 @@ import io
 import json
 import math
 import re
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple, TextIO
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
     Cell = bool | int | float | str | None
 
 _MARKS = (

@@ -2,7 +2,5 @@
 
 from __future__ import annotations
 
-__all__ = ["SURE_90"]
-
 SURE_90 = 1.645
 """So many standard deviations to either side hold 90 % [-]."""

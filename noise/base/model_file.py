@@ -6,27 +6,25 @@ kept (``format``), the names of what it takes and gives, and under ``card`` how 
 
 from __future__ import annotations
 
+import hashlib
 import json
+from collections.abc import Callable, Mapping
 from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.foreign_file import ExcessError, parse_json, read_arrays, reading
 from noise.base.files import atomic
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from numpy.typing import NDArray
-
     Header = Mapping[str, Any]
     Arrays = Mapping[str, NDArray[Any]]
 
-__all__ = ["ModelKind", "load_model", "save_model"]
 
 _Model = TypeVar("_Model")
 
@@ -109,6 +107,13 @@ def load_model(
         There is no such file, or it holds no model of this kind and form.
     """
     return _shipped(kind, build) if path is None else _read(Path(path), kind, build)
+
+
+def model_digest(path: Path | None, kind: ModelKind) -> str:
+    """Return the SHA-256 of a model's file; None is the one that is shipped."""
+    package, name = kind.shipped
+    shipped = resources.files(package) / "data" / name if path is None else path
+    return hashlib.sha256(shipped.read_bytes()).hexdigest()
 
 
 @cache

@@ -20,7 +20,7 @@ from collections.abc import Iterable, Iterator, Sized
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TextIO, TypeVar
 
-if TYPE_CHECKING:  # which is slow to import
+if TYPE_CHECKING:
     from tqdm import tqdm
 
 LINES = "BUSHING_NOISE_PROGRESS_LINES"

@@ -7,23 +7,18 @@ was not measured but held or interpolated, what cannot change anything.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from models.condition import CONDITION
 from models.schema import remarks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
     from models.recording import Recording
     from models.rig import Rig
     from models.sensors import Sensors
     from sim.effects.effect import Effect
 
-__all__ = [
-    "NEVER_SLIPS", "clipping_remarks", "constant_remark", "effect_remarks", "sensor_remarks",
-    "temperature_remark", "use_remarks",
-]  # fmt: skip
 
 NEVER_SLIPS = (
     "nothing ever slips in this run: the contact holds from first to last, so that no friction is "

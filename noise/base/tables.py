@@ -37,15 +37,6 @@ from noise.base.progress import readable
 
 Cell = bool | int | float | str | None
 
-__all__ = [
-    "TABLE_ENDINGS",
-    "check_table_path",
-    "plain_cell",
-    "read_table",
-    "table_columns",
-    "table_endings",
-    "write_table",
-]
 
 TABLE_ENDINGS = (".csv", ".xlsx", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""

@@ -9,21 +9,16 @@ from squawk, and a random forest of the same samples errs a sixth more often.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from models.compilation import COMPILED, PART
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-__all__ = ["LEAF", "BoostedTrees", "QuantileForest", "Trees"]
 
 LEAF = -1
 """Stands for the feature of a node that asks for none."""

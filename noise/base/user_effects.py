@@ -8,23 +8,20 @@ from __future__ import annotations
 
 import traceback
 from collections import ChainMap
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from models.errors import BushingNoiseError, ParameterError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from typing import TypeVar
-
     from sim.effects.effect import Effect, Signals
     from sim.motion import Motion
 
     _Result = TypeVar("_Result")
 
-__all__ = ["effect_library"]
 
 _LONGEST_MESSAGE = 300
 """Messages of compilers go on for pages."""

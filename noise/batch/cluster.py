@@ -17,8 +17,6 @@ from typing import Any, TypeVar
 from models.errors import ParameterError, not_installed
 from noise.batch.journal import RESULTS_VERSION
 
-__all__ = ["check_cluster", "cluster"]
-
 Result = TypeVar("Result")
 
 _PATIENCE = 10.0

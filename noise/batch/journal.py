@@ -27,20 +27,9 @@ from noise.base.progress import note
 from noise.batch.work import Done, Job, Work
 from noise.recordings.sidecar import find_sidecar
 
-__all__ = [
-    "RESULTS_VERSION",
-    "Journal",
-    "JournalReader",
-    "call_identity",
-    "file_identity",
-    "journal_path",
-    "kept_results",
-    "open_journal",
-]
-
 RESULTS_VERSION = 1
-"""Of all that a journal holds. To be raised by hand whenever labels, features, measured levels or
-screened points come out differently: a change of code, of a shipped model or of a library."""
+"""Of all that a journal holds. To be raised by hand whenever labels, features or screened points
+come out differently for another reason than a model: a change of code or of a library."""
 
 _PATIENCE = 30.0
 """How long who writes waits for who reads [s]."""

@@ -21,8 +21,6 @@ from functools import lru_cache, partial
 from multiprocessing import get_context, resource_tracker
 from typing import Any, ParamSpec, TypeVar
 
-__all__ = ["Worker", "ending_with_this", "interrupts_blocked", "spread_over_processes"]
-
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
 

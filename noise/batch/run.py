@@ -11,8 +11,6 @@ from noise.batch.journal import Journal, file_identity
 from noise.batch.pool import spread_over_processes
 from noise.batch.work import Done, Job, Work, one_thread, perform, refusal
 
-__all__ = ["DIED", "BatchRows", "perform_all"]
-
 DIED = "the processes that worked on it died; is there enough memory?"
 """Why a recording is refused that no process survives."""
 

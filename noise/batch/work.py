@@ -21,8 +21,6 @@ from noise.base.progress import readable
 from noise.base.tables import Cell, plain_cell
 from noise.recordings import find_recordings
 
-__all__ = ["Done", "Job", "Work", "find_jobs", "one_thread", "perform", "refusal"]
-
 
 @dataclass(frozen=True, slots=True)
 class Job:

@@ -19,7 +19,7 @@ from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import BoostedTrees
 
-_KIND = ModelKind(
+CLASSIFIER = ModelKind(
     "classifier", 4, "bushing-noise train --out", ("noise.classifier", "classifier.npz")
 )
 
@@ -136,7 +136,7 @@ class Classifier:
             "thresholds": self.thresholds,
             "card": dict(self.card),
         }
-        save_model(path, _KIND, header, self.trees.arrays())
+        save_model(path, CLASSIFIER, header, self.trees.arrays())
 
 
 def at_sensitivity(
@@ -195,7 +195,7 @@ def load_classifier(path: str | Path | None = None) -> Classifier:
     >>> load_classifier().classes
     ('creak', 'squawk', 'squeal', 'none', 'unknown')
     """
-    return load_model(path, _KIND, _built)
+    return load_model(path, CLASSIFIER, _built)
 
 
 def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Classifier:

@@ -53,7 +53,7 @@ assumed."""
 _UNITS = {
     "speed": (1.0, "rad/s"), "interference": (1e3, "mm"), "support_stiffness": (1.0, "Nm/rad"),
 }  # fmt: skip
-_KIND = ModelKind(
+INFERENCE = ModelKind(
     "model of conditions", 1, "bushing-noise train --inference",
     ("noise.inference", "conditions.npz"),
 )  # fmt: skip
@@ -224,7 +224,7 @@ class Inference:
         }  # fmt: skip
         for quantity, forest in zip(QUANTITIES, self.forests, strict=True):
             arrays |= {f"{quantity}_{name}": array for name, array in forest.arrays().items()}
-        save_model(path, _KIND, {"names": self.names, "card": dict(self.card)}, arrays)
+        save_model(path, INFERENCE, {"names": self.names, "card": dict(self.card)}, arrays)
 
 
 def load_inference(path: str | Path | None = None) -> Inference:
@@ -249,7 +249,7 @@ def load_inference(path: str | Path | None = None) -> Inference:
     >>> load_inference().card["seed"]
     0
     """
-    return load_model(path, _KIND, _built)
+    return load_model(path, INFERENCE, _built)
 
 
 def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Inference:

@@ -13,17 +13,15 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from noise.base.labels import LABELS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
     Grouping = Callable[[float], "Range"]
 
-__all__ = ["MAP_COLUMNS", "Place", "Range", "conditions_map", "map_rows"]
 
 _NEAR = 1.02
 """Values whose ratio is below it belong together ..."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -11,10 +10,13 @@ from pathlib import Path
 
 from models.errors import ParameterError
 from noise.base.files import locked
+from noise.base.model_file import model_digest
 from noise.base.tables import check_table_path
 from noise.batch import BatchRows, Done, find_jobs, open_journal, perform_all
 from noise.classifier import Classifier, load_classifier
+from noise.classifier.model import CLASSIFIER
 from noise.inference import Inference, load_inference
+from noise.inference.model import INFERENCE
 from noise.labels.corrections import with_corrections
 from noise.labels.levels import with_loudness
 from noise.labels.rows import label_rows
@@ -162,16 +164,13 @@ class Labelling:
 
     def identity(self) -> dict[str, object]:
         """Return what decides the rows: the options, and the models by their content."""
-        # The shipped ones are part of the program.
-        models = {"classifier": self.classifier, "inference": self.inference}
-        said: dict[str, object] = {
+        return {
             "full_scale": self.full_scale,
             "sensitivity": self.sensitivity,
             "loudness": self.loudness,
+            "classifier": model_digest(self.classifier, CLASSIFIER),
+            "inference": model_digest(self.inference, INFERENCE),
         }
-        for name, path in models.items():
-            said[name] = None if path is None else hashlib.sha256(path.read_bytes()).hexdigest()
-        return said
 
     def false_names_an_hour(self) -> tuple[dict[float, float], float]:
         """Return what the card counted, by sensitivity [1/h], and in how much sound [h].

@@ -29,7 +29,7 @@ from noise.audio.sound import resampled
 from noise.base.labels import NAMED
 from noise.recordings.blocks import RecordingBlocks
 
-if TYPE_CHECKING:  # which measures levels of its segments
+if TYPE_CHECKING:
     from noise.labels.segments import Segment
 
 

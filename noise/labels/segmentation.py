@@ -10,24 +10,19 @@ sum of squares between its two sides, the classical change of mean.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.windows.blocks import FRAME_RATE, RATE
 from features.windows.frames import FRAME, FRAME_COLUMNS
 from features.windows.table import HOP
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from noise.labels.windows import KeptFrames
 
-__all__ = [
-    "NOISES", "QUIET", "change_points", "clearest", "labelled_stretches", "named", "viterbi_path"
-]  # fmt: skip
 
 NOISES = 3
 """The first labels are the noises."""

@@ -20,7 +20,7 @@ from noise.labels.segmentation import change_points, labelled_stretches
 from noise.labels.windows import can_be_described, tracks
 from noise.recordings.blocks import RecordingBlocks
 
-if TYPE_CHECKING:  # which are slow to import, or may not be there
+if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from pandas import DataFrame
 

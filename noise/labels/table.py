@@ -20,7 +20,7 @@ from noise.base.labels import LABELS, NAMED
 from noise.base.progress import counted
 from noise.base.tables import check_table_path, read_table, write_table
 
-if TYPE_CHECKING:  # which are slow to import, or may not be there
+if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from pandas import DataFrame
 

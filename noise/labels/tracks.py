@@ -19,7 +19,7 @@ from models.foreign_file import LARGEST_JSON, reading
 from noise.base.files import atomic, export_paths
 from noise.base.labels import DARK_LABELS, LABEL_COLOURS
 
-if TYPE_CHECKING:  # which is slow to import
+if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
