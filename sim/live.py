@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sim.acquisition import Acquisition, digitise
-from sim.live_effects import drive_piece, sensors_piece
+from sim.effect_blocks import begun, drive_block, sensors_block
 from sim.live_filter import LiveConvolution, crossing
 from sim.live_setting import KnownPaths, Setting, paths_of, plan_of, streams
 from sim.motion import Motion, MotionSolver, steps_beyond
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.radiation.impulse_responses import ImpulseResponses
+    from sim.effect_blocks import Memories
     from sim.effects.effect import ActiveEffect, Effect, Signals
-    from sim.live_effects import Memories
     from sim.pipeline import Plan
     from sim.shaft import ShaftMotion
 
@@ -197,12 +197,15 @@ class LiveRun:
     def _sensed(self, signals: Signals) -> Signals:
         """Signals of a block as effects on sensors change them; effects that differ cross over."""
         effects, before = self._plan.effects, self._sensed_by
-        made, kept = sensors_piece(signals, self._rate, effects, self._sensing, self._seed)
+        memories = begun(effects, self._seed) | self._sensing
+        made, kept = sensors_block(signals, self._rate, effects, memories)
         if before != effects:
-            old, _ = sensors_piece(signals, self._rate, before, self._sensing, self._seed)
+            memories = begun(before, self._seed) | self._sensing
+            old, _ = sensors_block(signals, self._rate, before, memories)
             coming = crossing(self._block)
             made = {name: old[name] + coming * (made[name] - old[name]) for name in made}
-        self._sensed_by, self._sensing = effects, kept
+        self._sensed_by = effects
+        self._sensing = _of(effects, kept)
         return made
 
     def _force(self, start: int, stop: int) -> NDArray[np.float64]:
@@ -251,7 +254,9 @@ class LiveRun:
     def _uneven(
         self, even: NDArray[np.float64], n: int, effects: Sequence[ActiveEffect]
     ) -> tuple[NDArray[np.float64], Memories]:
-        return drive_piece(even, n, self._rate, effects, self._driving, self._seed)
+        memories = begun(effects, self._seed) | self._driving
+        driven, kept = drive_block(even, n, self._rate, effects, memories)
+        return driven, _of(effects, kept)
 
     def _solver_of(self, plan: Plan, start_speed: float) -> MotionSolver:
         with blaming_the_unusual(plan.rig):
@@ -260,6 +265,11 @@ class LiveRun:
                 streams(self._seed)[1], start_speed=start_speed,
                 top_speed=plan.shaft.top_speed(math.inf), tolerance=None,
             )  # fmt: skip
+
+
+def _of(effects: Sequence[ActiveEffect], memories: Memories) -> Memories:
+    names = {active.effect.name for active in effects}
+    return {name: memory for name, memory in memories.items() if name in names}
 
 
 def _to_pressure(paths: ImpulseResponses) -> list[NDArray[np.float64]]:

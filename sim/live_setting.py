@@ -131,7 +131,8 @@ def plan_of(setting: Setting, rate: float, library: Mapping[str, Effect] | None,
         settling=None,
         library=library,
     )
-    return replace(plan, effects=[active for active in plan.effects if active.effect.goes_on])
+    kept = [active for active in plan.effects if not active.effect.needs_whole_run]
+    return replace(plan, effects=kept)
 
 
 def streams(seed: int) -> list[np.random.Generator]:

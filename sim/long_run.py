@@ -20,6 +20,7 @@ from models.radiation.rig_response import impulse_responses
 from sim.acquisition import Acquisition, digitise
 from sim.analysis.regime import SlidingWatch
 from sim.chain import changed_chain
+from sim.effect_blocks import begun, sensors_block
 from sim.motion import motion_blocks
 from sim.pipeline import pulse_force
 from sim.run import plan_run, sensor_channels
@@ -104,8 +105,7 @@ def simulate_blocks(
     Raises
     ------
     ParameterError
-        If a value cannot be used, or an effect needs the whole run at once (those of the drive
-        and of the sensors do).
+        If a value cannot be used, or an effect needs the whole run at once.
 
     Examples
     --------
@@ -140,6 +140,8 @@ def simulate_blocks(
         for channel in channels
     ]
     decimations = [Decimation(decimation, plan.n_settling) for _ in channels]
+    chain_rng, block_rng = effect_rng.spawn(2)
+    seed = int(block_rng.integers(2**31))
     motions = motion_blocks(
         plan.rig,
         plan.shaft,
@@ -150,14 +152,16 @@ def simulate_blocks(
         block=max(2, round(block_seconds * plan.rate)),
         effects=plan.effects,
         rng=effect_rng,
+        seed=seed,
     )
     watch = SlidingWatch()
     paths = impulse_responses(plan.rig, interference, support_stiffness, plan.rate)
     signals = _signals(
         _with_force(_watched(motions, watch, plan.n_settling), plan),
-        changed_chain(paths, plan.effects, effect_rng.spawn(1)[0]),
+        changed_chain(paths, plan.effects, chain_rng),
         plan.n_settling,
     )
+    signals = _sensed(signals, plan, seed)
     return BlockRun(
         rate=acquisition.rate,
         channels=channels,
@@ -169,12 +173,8 @@ def simulate_blocks(
 
 
 def whole_run_effects(effects: Sequence[ActiveEffect]) -> list[str]:
-    """Names of the effects that need the whole run at once: those of drive and sensors."""
-    return [
-        active.effect.name
-        for active in effects
-        if active.effect.drive is not None or active.effect.sensors is not None
-    ]
+    """Names of the effects that need the whole run at once."""
+    return [active.effect.name for active in effects if active.effect.needs_whole_run]
 
 
 def _refuse_whole_run_effects(effects: Sequence[ActiveEffect]) -> None:
@@ -243,6 +243,24 @@ def _signals(
             "pressure": pressure,
             "angle": motion.shaft_angle,
         }
+        yield signals, start_angle
+
+
+def _sensed(
+    blocks: Iterator[tuple[dict[str, NDArray[np.float64]], float]], plan: Plan, seed: int
+) -> Iterator[tuple[dict[str, NDArray[np.float64]], float]]:
+    """Each block as effects on sensors change it from where the recording starts."""
+    memories, position = begun(plan.effects, seed), 0
+    for signals, start_angle in blocks:
+        n, first = signals["torque"].size, max(0, plan.n_settling - position)
+        position += n
+        if first < n and plan.effects:
+            kept = {kind: signal[first:] for kind, signal in signals.items()}
+            read, memories = sensors_block(kept, plan.rate, plan.effects, memories)
+            signals = {
+                kind: np.concatenate([signal[:first], read[kind]])
+                for kind, signal in signals.items()
+            }
         yield signals, start_angle
 
 

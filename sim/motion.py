@@ -11,6 +11,7 @@ import numpy as np
 from models.errors import ParameterError
 from models.show import short_repr
 from sim.bushing import lumped_bushing
+from sim.effect_blocks import begun, drive_block
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import friction_law
@@ -162,8 +163,7 @@ def simulate_motion(
     drive = _drive(shaft, 0, n, rate)
     effects = activated(rig.effects, EFFECTS) if effects is None else effects
     for active in effects:
-        if active.effect.drive is not None:
-            drive = active.effect.drive(drive, rate, active.form, active.values, rng)
+        drive = active.driven(drive, rate, {"rng": rng, "whole": True})
     with blaming_the_unusual(rig):
         solver = MotionSolver(
             rig, interference, support_stiffness, rate, effects, rng,
@@ -183,6 +183,7 @@ def motion_blocks(
     block: int,
     effects: Sequence[ActiveEffect] = (),
     rng: np.random.Generator | None = None,
+    seed: int = 0,
 ) -> Iterator[Motion]:
     """Simulate the rig from rest, block by block, each going on where the one before ended.
 
@@ -193,7 +194,9 @@ def motion_blocks(
     n_samples, block : int
         Of the run, and of a block; the last one may be shorter.
     effects : sequence of ActiveEffect
-        Those of friction act; one of the drive cannot, since it needs the whole run at once.
+        Those of drive and friction act; none that needs the whole run at once.
+    seed : int
+        Of effects of the drive that scatter.
 
     Yields
     ------
@@ -223,11 +226,13 @@ def motion_blocks(
             start_speed=float(shaft.speed(np.zeros(1))[0]),
             top_speed=shaft.top_speed(n_samples / rate), tolerance=None,
         )  # fmt: skip
-    beyond = steps_beyond(rate)
+    beyond, memories = steps_beyond(rate), begun(effects, seed)
     for start in starts:
         n = min(block, n_samples - start)
+        even = _drive(shaft, start, n + beyond, rate)
+        drive, memories = drive_block(even, n, rate, effects, memories)
         with blaming_the_unusual(rig):
-            motion = solver.advance(_drive(shaft, start, n + beyond, rate), n)
+            motion = solver.advance(drive, n)
         yield motion
 
 

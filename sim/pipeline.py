@@ -179,8 +179,7 @@ def sensor_signals(motion: Motion, sound: Sound, n_settling: int) -> Signals:
 def apply_sensor_effects(
     signals: Signals, effects: Sequence[ActiveEffect], rate: float, rng: np.random.Generator
 ) -> Signals:
-    """Let the effects on sensors change signals at a rate [Hz], in their order."""
+    """Let the effects on sensors change signals of a run in one block, in their order."""
     for active in effects:
-        if active.effect.sensors is not None:
-            signals = active.effect.sensors(signals, rate, active.form, active.values, rng)
+        signals = active.sensed(signals, rate, {"rng": rng, "whole": True})
     return signals

@@ -128,7 +128,9 @@ class Design:
         found.append(temperature_remark(setting.rig, setting.temperature))
         found += effect_remarks(setting.rig, EFFECTS)
         left_out = [
-            e.name for e in setting.rig.effects if e.name in EFFECTS and not EFFECTS[e.name].goes_on
+            e.name
+            for e in setting.rig.effects
+            if e.name in EFFECTS and EFFECTS[e.name].needs_whole_run
         ]
         if left_out:
             found.append(

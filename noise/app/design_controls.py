@@ -407,7 +407,7 @@ def _effects(rig: Rig) -> Iterator[Control]:
     for name, effect in sorted(EFFECTS.items(), key=lambda one: stages.index(one[1].stage)):
         on, group = name in own, f"Effects of the {effect.stage.value}"
         active = effect.active(own[name].parameters if on else {})
-        heard = "" if effect.goes_on else "not heard here, but in what is saved"
+        heard = "not heard here, but in what is saved" if effect.needs_whole_run else ""
         yield Control(f"effect.{name}", "switch", group, name.replace("_", " "), on, heard)
         only = (f"effect.{name}", True)
         if len(effect.forms) > 1:

@@ -92,10 +92,6 @@ def _guarded(effect: Effect, path: Path) -> Effect:
         drive=_checked(effect.drive, f"{where}: drive", path, _like_first),
         force=_checked(effect.force, f"{where}: force", path, _like_torque),
         sensors=_checked(effect.sensors, f"{where}: sensors", path, _same_signals),
-        drive_piece=_checked(effect.drive_piece, f"{where}: drive_piece", path, _like_first),
-        sensors_piece=_checked(
-            effect.sensors_piece, f"{where}: sensors_piece", path, _same_signals
-        ),
         pack=_checked(effect.pack, f"{where}: pack", path, _numbers),
     )
 

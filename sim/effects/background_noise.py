@@ -14,7 +14,8 @@ amplifier of 0.1 mV; an encoder counts lines and has none, which ``angle=0`` say
 >>> quiet = {"pressure": np.zeros(90_000)}
 >>> values = {"amount": 1.0, "pressure_level": 50.0, "acceleration": 0.2, "torque": 0.05,
 ...           "angle": 1e-3}
->>> room = _sensors(quiet, 90e3, "pink", values, np.random.default_rng(0))["pressure"]
+>>> room = _sensors(quiet, 90e3, "pink", values,
+...                 {"rng": np.random.default_rng(0), "whole": True})["pressure"]
 >>> 49.0 < float(20.0 * np.log10(room.std() / 20e-6)) < 52.0
 True
 """
@@ -46,17 +47,7 @@ _STRETCH = 0.3
 _EXPONENTS = {"white": 0.0, "pink": 1.0, "brown": 2.0}
 
 
-def _sensors(
-    signals: Signals, rate: float, form: str, values: Values, rng: np.random.Generator
-) -> Signals:
-    noisy = {}
-    for name, signal in signals.items():
-        level = values["amount"] * channel_level(name, values)
-        noisy[name] = signal + level * _noise(signal.size, rate, _EXPONENTS[form], rng)
-    return noisy
-
-
-def _piece(signals: Signals, rate: float, form: str, values: Values, memory: Memory) -> Signals:
+def _sensors(signals: Signals, rate: float, form: str, values: Values, memory: Memory) -> Signals:
     noisy = {}
     for name, signal in signals.items():
         level = values["amount"] * channel_level(name, values)
@@ -68,8 +59,10 @@ def _next_noise(n: int, rate: float, form: str, name: str, memory: Memory) -> ND
     """Return what follows of a channel's noise.
 
     Stretches that know nothing of each other overlap by half; the squares of their weights add up
-    to one, so that the level is the same everywhere.
+    to one, so that the level is the same everywhere. A run in one block is one stretch.
     """
+    if "whole" in memory:
+        return _noise(n, rate, _EXPONENTS[form], memory["rng"])
     half = next_fast_len(round(0.5 * _STRETCH * rate), real=True)
     angle = 0.5 * np.pi * (np.arange(half) + 0.5) / half
     key = f"{name} {form}"
@@ -111,5 +104,5 @@ EFFECT = Effect(
     },
     strength="amount",
     sensors=_sensors,
-    sensors_piece=_piece,
+    in_blocks=True,
 )

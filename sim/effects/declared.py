@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["what_is_wrong"]
 
 _FUNCTIONS = (
-    "drive", "contact", "pack", "force", "chain", "sensors", "drive_piece", "sensors_piece",
+    "drive", "contact", "pack", "force", "chain", "sensors",
 )  # fmt: skip
 
 
@@ -45,6 +45,7 @@ def what_is_wrong(effect: Effect) -> str:
         "forms": (_are_texts, "tuple of texts"),
         "strength": (_is_text, "text"),
         "n_states": (_is_count, "whole number from 0 on"),
+        "in_blocks": (lambda value: isinstance(value, bool), "True or False"),
         "irregular": (lambda value: isinstance(value, bool), "True or False"),
         **dict.fromkeys(_FUNCTIONS, (_can_be_called, "function")),
     }

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from models.show import short_repr
@@ -26,47 +26,19 @@ if TYPE_CHECKING:
     from sim.motion import Motion
     from sim.parameters import Parameter
 
-__all__ = ["ActiveEffect", "Effect", "Stage", "whole_run"]
+__all__ = ["ActiveEffect", "Effect", "Stage"]
 
 Values = Mapping[str, float]
 Signals = dict[str, "NDArray[np.float64]"]
 Memory = dict[str, Any]
 
-DriveFunction = Callable[
-    ["NDArray[np.float64]", float, str, Values, "np.random.Generator"], "NDArray[np.float64]"
-]
+DriveFunction = Callable[["NDArray[np.float64]", float, str, Values, Any], "NDArray[np.float64]"]
 ForceFunction = Callable[["Motion", str, Values], "NDArray[np.float64]"]
-SensorFunction = Callable[[Signals, float, str, Values, "np.random.Generator"], Signals]
+SensorFunction = Callable[[Signals, float, str, Values, Any], Signals]
 ChainFunction = Callable[
     ["ImpulseResponses", str, Values, "np.random.Generator"], "ImpulseResponses"
 ]
 PackFunction = Callable[[str, Values, "np.random.Generator"], "NDArray[np.float64]"]
-DrivePieceFunction = Callable[
-    ["NDArray[np.float64]", float, str, Values, Memory], "NDArray[np.float64]"
-]
-SensorPieceFunction = Callable[[Signals, float, str, Values, Memory], Signals]
-
-_Acted = TypeVar("_Acted")
-
-
-def whole_run(
-    piece: Callable[[_Acted, float, str, Values, Memory], _Acted],
-) -> Callable[[_Acted, float, str, Values, np.random.Generator], _Acted]:
-    """Return what acts on a run as a whole, from what acts on it piece by piece.
-
-    Examples
-    --------
-    >>> twice = whole_run(lambda speed, rate, form, values, memory: 2.0 * speed)
-    >>> twice(3.0, 90e3, "constant", {}, None)
-    6.0
-    """
-
-    def whole(
-        acted: _Acted, rate: float, form: str, values: Values, rng: np.random.Generator
-    ) -> _Acted:
-        return piece(acted, rate, form, values, {"rng": rng})
-
-    return whole
 
 
 class Stage(StrEnum):
@@ -109,10 +81,11 @@ class Effect:
         acceleration and pressure; they may be longer.
     sensors : callable, optional
         ``sensors(signals, rate, form, values, rng)``: other signals, by name of the channel.
-    drive_piece, sensors_piece : callable, optional
-        As `drive` and `sensors`, of the next piece of a run that goes on, with ``memory`` in place
-        of ``rng``: a dictionary that has the generator as ``rng`` at first, and keeps what the
-        piece after needs. Without them the effect acts on runs as a whole alone.
+    in_blocks : bool
+        Whether `drive` and `sensors` act on a run block by block, as long runs and live designs
+        need it. They are then given ``memory`` in place of ``rng``: a dictionary that has the
+        generator as ``rng``, is the block's before, and keeps what the next block needs; a run in
+        one block has the entry ``whole``. Else they act on runs in one block alone.
     irregular : bool
         Whether it does nothing but make one slip differ from the next by chance, so that the rig
         has a version without (`sim.constant_version.constant_version`).
@@ -130,15 +103,13 @@ class Effect:
     force: ForceFunction | None = None
     chain: ChainFunction | None = None
     sensors: SensorFunction | None = None
-    drive_piece: DrivePieceFunction | None = None
-    sensors_piece: SensorPieceFunction | None = None
+    in_blocks: bool = False
     irregular: bool = False
 
     @property
-    def goes_on(self) -> bool:
-        """Whether it can act on a run piece by piece, while that goes on."""
-        by_drive = self.drive is None or self.drive_piece is not None
-        return by_drive and (self.sensors is None or self.sensors_piece is not None)
+    def needs_whole_run(self) -> bool:
+        """Whether it acts on runs in one block alone."""
+        return not self.in_blocks and (self.drive is not None or self.sensors is not None)
 
     def active(self, given: Mapping[str, float | str]) -> ActiveEffect:
         """Return the effect with these parameters, the others at their defaults.
@@ -169,6 +140,22 @@ class ActiveEffect:
     def is_off(self) -> bool:
         """Whether its strength is zero."""
         return self.values[self.effect.strength] == 0.0
+
+    def driven(
+        self, speed: NDArray[np.float64], rate: float, memory: Memory
+    ) -> NDArray[np.float64]:
+        """Speed of the shaft as the effect makes it over the next block [rad/s], shape (n,)."""
+        if self.effect.drive is None:
+            return speed
+        given = memory if self.effect.in_blocks else memory["rng"]
+        return self.effect.drive(speed, rate, self.form, self.values, given)
+
+    def sensed(self, signals: Signals, rate: float, memory: Memory) -> Signals:
+        """Signals of the next block as the effect makes sensors read them."""
+        if self.effect.sensors is None:
+            return signals
+        given = memory if self.effect.in_blocks else memory["rng"]
+        return self.effect.sensors(signals, rate, self.form, self.values, given)
 
     def packed(self, rng: np.random.Generator) -> NDArray[np.float64]:
         """Return the numbers that its compiled function reads, shape (n,), units by the effect."""

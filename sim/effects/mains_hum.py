@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sim.channels import channel_level
-from sim.effects.effect import Effect, Stage, whole_run
+from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
@@ -89,6 +89,6 @@ EFFECT = Effect(
         "angle": Parameter(0.0, "rad", 0.0, 1.0, "rms; none of an encoder"),
     },
     strength="amount",
-    sensors=whole_run(_sensors),
-    sensors_piece=_sensors,
+    sensors=_sensors,
+    in_blocks=True,
 )

@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import lfilter
 
-from sim.effects.effect import Effect, Stage, whole_run
+from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ EFFECT = Effect(
         "bandwidth": Parameter(10.0, "Hz", 0.05, 500.0, "3 dB corner of the random form"),
     },
     strength="depth",
-    drive=whole_run(_drive),
-    drive_piece=_drive,
+    drive=_drive,
+    in_blocks=True,
     irregular=True,
 )

@@ -133,8 +133,7 @@ def simulate_suspension(
         raise ParameterError(f"seconds = {seconds:g} at rate = {rate:g} Hz gives no samples")
     speed = travel.speed(np.arange(n) / rate)
     for active in effects:
-        if active.effect.drive is not None:
-            speed = active.effect.drive(speed, rate, active.form, active.values, rng)
+        speed = active.driven(speed, rate, {"rng": rng, "whole": True})
     chain = torsion_chain(
         bar, suspension.spacing, suspension.link_stiffness, suspension.link_damping,
         suspension.wheels,

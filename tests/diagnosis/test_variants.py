@@ -46,7 +46,7 @@ def played(effect=None):
     acceleration, pressure = radiate(chain, motion.torque, force)
     signals = {"torque": motion.torque, "acceleration": acceleration, "pressure": pressure}
     if effect is not None and effect.sensors is not None:
-        signals = effect.sensors(signals, RATE, effect.forms[0], effects[0].values, rng)
+        signals = effects[0].sensed(signals, RATE, {"rng": rng, "whole": True})
     return signals
 
 

@@ -9,9 +9,7 @@ RATE = 96e3
 
 def read(signals, name, seed=0, **parameters):
     active = EFFECTS[name].active(parameters)
-    return EFFECTS[name].sensors(
-        signals, RATE, active.form, active.values, np.random.default_rng(seed)
-    )
+    return active.sensed(signals, RATE, {"rng": np.random.default_rng(seed), "whole": True})
 
 
 def random_signals(seed=0, n=4000):

@@ -117,13 +117,9 @@ def with_effect(of, name, **parameters):
 @pytest.mark.parametrize("frequency", [0.0, 7.0])
 def test_a_shaft_fluctuates_piece_by_piece_as_it_does_over_the_whole(form, frequency):
     active = EFFECTS["speed_fluctuation"].active({"form": form, "frequency": frequency})
-    effect, even, memory = active.effect, np.linspace(1.0, 6.0, 2000), {"rng": None}
-    whole = effect.drive(even, 1e3, form, active.values, np.random.default_rng(3))
-    memory["rng"] = np.random.default_rng(3)
-    pieces = [
-        effect.drive_piece(piece, 1e3, form, active.values, memory)
-        for piece in np.split(even, [500, 501, 1200])
-    ]
+    even, memory = np.linspace(1.0, 6.0, 2000), {"rng": np.random.default_rng(3)}
+    whole = active.driven(even, 1e3, {"rng": np.random.default_rng(3)})
+    pieces = [active.driven(piece, 1e3, memory) for piece in np.split(even, [500, 501, 1200])]
     if form == "random":  # of other numbers, but without a jump
         assert np.abs(np.diff(np.concatenate(pieces) / even)).max() < 0.02
     else:

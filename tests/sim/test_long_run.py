@@ -89,9 +89,24 @@ def test_noise_does_not_depend_on_the_blocks():
     assert spread == pytest.approx([0.005, 0.02, 0.8e-3, 1e-4], rel=0.05)
 
 
+def test_effects_of_drive_and_sensors_act_alike_whatever_the_blocks():
+    specs = LawSpec("speed_fluctuation", {"frequency": 20.0}), LawSpec("mains_hum", {})
+    rig = replace(load_material_rig("PDMS"), effects=specs)
+    quiet = {"seconds": 0.5, "acquisition": Acquisition(noise={})}
+    short, long = (
+        joined(simulate_blocks(rig, 5.0, block_seconds=block, **quiet).blocks)
+        for block in (0.04, 0.5)
+    )
+    np.testing.assert_allclose(short, long, rtol=1e-6, atol=1e-7)
+    plain = joined(simulate_blocks(replace(rig, effects=()), 5.0, **quiet).blocks)
+    swing = short[3] - plain[3]  # of the angle: amplitude 0.02 * 5 rad/s over 2 pi 20 Hz
+    assert np.ptp(swing) == pytest.approx(2 * 0.1 / (2 * np.pi * 20.0), rel=1e-2)
+    assert np.std(short[1] - plain[1]) > 0.4  # the hum on the acceleration
+
+
 def test_effects_that_need_the_whole_run_are_refused_by_name():
-    hum = replace(THESIS, effects=(LawSpec("mains_hum", {}),))
-    with pytest.raises(ParameterError, match="mains_hum: acts on a run as a whole"):
+    hum = replace(THESIS, effects=(LawSpec("clipping", {}),))
+    with pytest.raises(ParameterError, match="clipping: acts on a run as a whole"):
         simulate_blocks(hum, 2.0, seconds=0.4)
 
 

@@ -17,7 +17,7 @@ RATE = 10e3
 
 def driven(speed, seed=0, **parameters):
     active = EFFECT.active(parameters)
-    return EFFECT.drive(speed, RATE, active.form, active.values, np.random.default_rng(seed))
+    return active.driven(speed, RATE, {"rng": np.random.default_rng(seed)})
 
 
 def even(speed=5.0, seconds=10.0):
