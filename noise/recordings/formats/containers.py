@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -23,12 +24,15 @@ from models.errors import RecordingError
 
 _RIFF = (b"RIFF", b"RF64", b"BW64")
 _SAMPLE_CHUNKS = (b"data", b"SSND")  # RIFF, AIFF
+_MOST_CHUNKS = 100_000  # what holds more was made to be walked for ever
 _NO_SIZE = 0xFFFFFFFF
 _UNFINISHED = (0, _NO_SIZE, 0x7FFFFFFF, 0x80000000, 0x7FFFF000)
 """Sizes of samples that recorders write before they know better (the last ones: arecord, SoX)."""
 
 _DESCRIPTION_BYTES = 256  # EBU Tech 3285, first field of the chunk
 _FLAC = b"fLaC\x00\x00\x00\x22"  # with the head of the block that always comes first
+_SYNC = re.compile(rb"\xff[\xe2-\xff][\x10-\xef]")  # how a frame may begin
+_MOST_TRIES = 200_000  # at places where none does: what holds as many is no sound
 _MOST_RUN = 3
 """Frames of MPEG audio that must follow one another where nothing else says that one begins."""
 
@@ -186,7 +190,7 @@ def chunks(file: BinaryIO) -> Iterator[Chunk]:
     order = "big" if head[:4] in (b"RIFX", b"FORM") else "little"
     long_data: int | None = None
     position = len(head)
-    while True:
+    for _ in range(_MOST_CHUNKS):
         file.seek(position)
         name, size = _chunk_head(file.read(8), order)
         if not name:
@@ -399,22 +403,28 @@ class _Stream:
 def _mpeg_pieces(path: Path, data: bytes) -> tuple[list[Piece], list[str]]:
     streams: list[_Stream] = []
     at, kind = 0, None
+    tries, lost = 0, False
     begins = True  # a stream: at first, after a tag, and where the kind of frames changes
     while 0 <= at <= len(data) - 4:
         if tag := _tag_bytes(data, at):
             at, begins = at + tag, True
             continue
         frame = _frame(data[at : at + 4])
-        if frame is None or (frame.kind != kind and not _run(data, at, frame)):
-            at = data.find(b"\xff", at + 1)
+        if frame is None or ((lost or frame.kind != kind) and not _run(data, at, frame)):
+            lost = True
+            found = _SYNC.search(data, at + 1)
+            tries += 1
+            if found is None or tries > _MOST_TRIES:
+                break
+            at = found.start()
             continue
         if at + frame.size > len(data):
             break
         begins |= frame.kind != kind
-        kind = frame.kind
-        found = _info(data[at : at + frame.size], frame)
-        if found is not None:
-            streams.append(_Stream(at + frame.size, *found))
+        kind, lost = frame.kind, False
+        info = _info(data[at : at + frame.size], frame)
+        if info is not None:
+            streams.append(_Stream(at + frame.size, *info))
             begins = False
         else:
             if begins or streams[-1].is_full:
@@ -424,7 +434,7 @@ def _mpeg_pieces(path: Path, data: bytes) -> tuple[list[Piece], list[str]]:
             streams[-1].end = at + frame.size
         at += frame.size
     streams = [one for one in streams if one.n_frames or one.announced]
-    if not streams:
+    if not streams or tries > _MOST_TRIES:
         raise RecordingError(f"{path}: is damaged or no sound file (Format not recognised)")
     for one in streams:
         if one.announced is not None and one.announced > one.n_frames + 1:  # some count the header
