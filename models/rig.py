@@ -248,14 +248,16 @@ class Fit:
 
     def __post_init__(self) -> None:
         where = f"fit at {1e3 * self.interference:g} mm"
-        for name in ("interference", "elastomer_stiffness"):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise ParameterError(f"{where}: {name} = {getattr(self, name):g} must be above 0")
-        if not 0.0 <= self.kinetic_torque <= self.critical_torque < math.inf:
+        positive = ("interference", "elastomer_stiffness")
+        for name in (*positive, "critical_torque", "kinetic_torque"):
+            value = getattr(self, name)
+            if not 0.0 <= value < math.inf or (value == 0.0 and name in positive):
+                raise ParameterError(f"{where}: {name} = {value:g} must be above 0")
+        if self.critical_torque < self.kinetic_torque:
             raise ParameterError(
                 f"{where}: critical_torque_Nm = {self.critical_torque:g} is below "
-                f"kinetic_torque_Nm = {self.kinetic_torque:g}, or one is negative; a contact "
-                "cannot break below the torque at which it slides"
+                f"kinetic_torque_Nm = {self.kinetic_torque:g}; a contact cannot break below the "
+                "torque at which it slides"
             )
         if not all(0.0 <= damping < math.inf for damping in self.damping.values()):
             raise ParameterError(f"{where}: damping = {self.damping} must be 0 or more")

@@ -134,9 +134,7 @@ def test_beams_add_to_the_plate_and_leave_the_acceleration():
         assert added[kept] == pytest.approx(alone[kept], abs=1e-9 * np.abs(alone).max())
 
 
-@pytest.mark.parametrize(
-    ("support", "speed"), [(2214.0, 1.0), (2214.0, 5.0), (3745.0, 1.0), (3745.0, 5.0)]
-)
+@pytest.mark.parametrize(("support", "speed"), [(2214.0, 1.0), (3745.0, 5.0)])
 def test_without_the_plate_a_creak_loses_10_db_above_2_khz(support, speed):
     """A blow in the joint meets the beam within a fifth of its thickness of the end."""
     interference = 0.381e-3
