@@ -7,12 +7,12 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from models.change import changed_rig
 from models.errors import ParameterError
 from models.radiation.rig_response import anchor_arm
-from models.rig import LawSpec, damping_at, parse_spec
+from models.rig import LawSpec, Rig, damping_at, parse_spec
 from models.rig_file import changed_rig_text
 from noise.app.design_controls import (
     Base,
@@ -28,9 +28,6 @@ from noise.screening.map.provenance import fits_remark
 from sim.effects import EFFECTS
 from sim.live_setting import Setting
 from sim.temperature import at_temperature
-
-if TYPE_CHECKING:
-    from models.rig import Rig
 
 Values = Mapping[str, float | bool | str]
 

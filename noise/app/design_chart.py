@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import ParameterError
+from models.rig import Rig
 from noise.base.labels import NAMED
 from noise.screening.design.design import Design as Screened, Use
 from noise.screening.map.batches import batch_evaluator
@@ -25,7 +26,6 @@ from noise.screening.parts.robustness import DESIGN_VARIABLES
 from noise.screening.parts.variation import UsePoint
 
 if TYPE_CHECKING:
-    from models.rig import Rig
     from sim.live_setting import Setting
 
 

@@ -28,19 +28,17 @@ from numpy.typing import NDArray
 
 from models.condition import CONDITION
 from models.errors import ParameterError
+from models.rig import Rig
 from models.rig_file import base_name, load_material_rig, material_names, read_toml, rig_from
 from models.schema import as_table, refuse_unknown
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 from sim.friction import LAWS, friction_law
-from sim.parameters import resolve
-from sim.shaft import ConstantSpeed, Oscillation
+from sim.parameters import Parameter, resolve
+from sim.shaft import ConstantSpeed, Oscillation, ShaftMotion
 
 if TYPE_CHECKING:
-    from models.rig import Rig
     from noise.app.opened import Opened
-    from sim.parameters import Parameter
-    from sim.shaft import ShaftMotion
 
 
 @dataclass(frozen=True)

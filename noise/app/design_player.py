@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from models.radiation.impulse_responses import ImpulseResponses
 from models.rig_file import load_material_rig
 from noise.app.worker_process import WorkerProcess
 from noise.batch import one_thread
@@ -25,8 +26,6 @@ from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
-
-    from models.radiation.impulse_responses import ImpulseResponses
 
 RATE = 48000
 """Of the sound [Hz]."""

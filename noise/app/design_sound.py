@@ -21,12 +21,11 @@ import numpy as np
 from features.kernels.levels import sound_levels
 from models.errors import ParameterError
 from noise.app.design import Design, design_of
+from noise.app.design_controls import Base
 from noise.app.design_player import BLOCK, HEADER, RATE, REFUSED, play
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
-
-    from noise.app.design_controls import Base
 
 _METER = RATE // BLOCK
 """Blocks over which the level is told: a second."""

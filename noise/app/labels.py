@@ -14,13 +14,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from threading import RLock
-from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
 from models.recording import REFERENCE_PRESSURE
 from noise.base.files import locked
 from noise.base.labels import LABELS
-from noise.batch import JournalReader
+from noise.batch import Done, Job, JournalReader
 from noise.labels.corrections import common_time, place, track, version, with_corrected_rows
 from noise.labels.labelling import Labelling
 from noise.labels.rows import said_rows
@@ -34,9 +33,6 @@ from noise.labels.table import (
     naming_row,
     read_label_table,
 )
-
-if TYPE_CHECKING:
-    from noise.batch import Done, Job
 
 Row = dict[str, object]
 

@@ -5,23 +5,16 @@ No path comes from a browser.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.foreign_file import check_plain_file
 from noise.base.files import check_target
 from noise.base.tables import TABLE_ENDINGS, check_table_path
-from noise.batch import find_jobs
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from noise.batch import Job
-
-__all__ = ["Opened", "open_paths"]
+from noise.batch import Job, find_jobs
 
 _TABLE = "labels.csv"
 

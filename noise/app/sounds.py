@@ -24,6 +24,7 @@ from starlette.routing import Route
 
 from features.kernels.levels import REFERENCES, a_weighted, fast_levels, sound_levels
 from models.errors import ParameterError, RecordingError
+from models.recording import Channel
 from noise.audio.gain import LOUDNESS_BLOCK, loudness
 from noise.audio.sound import playable
 from noise.audio.spectrogram import (
@@ -41,7 +42,6 @@ if TYPE_CHECKING:
     from starlette.requests import Request
     from starlette.routing import BaseRoute
 
-    from models.recording import Channel
     from noise.app.opened import Opened
 
 Query = Mapping[str, str]

@@ -12,21 +12,18 @@ import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from features.kernels.orders import OrderMap
 from models.drawing import thinned
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.labels.table import ASSUMED, assumes_material
-from noise.pages.clips import RATE
+from noise.pages.clips import RATE, Clip, Entry, FastLevels, Row
 from noise.pictures.recording import level_over_time
-
-if TYPE_CHECKING:
-    from features.kernels.orders import OrderMap
-    from noise.pages.clips import Clip, Entry, FastLevels, Row
 
 Ticks = tuple[tuple[float, str], ...]
 

@@ -11,22 +11,32 @@ import json
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.rig import Rig
 from noise.base.labels import LABEL_LOOKS, LABELS, Look
 from noise.base.progress import counted
-from noise.pages.maps import Axis, ConditionMap, Spot, areas_of, axis_of, cells_of, common_cells
+from noise.pages.clips import Entry
+from noise.pages.maps import (
+    Axis,
+    Cells,
+    ConditionMap,
+    Spot,
+    areas_of,
+    axis_of,
+    cells_of,
+    common_cells,
+)
 from noise.pages.page import MAP_SIZE
-from noise.pages.screen_sounds import chosen_points, shared_points, simulated_entries
-
-if TYPE_CHECKING:
-    from noise.pages.clips import Entry
-    from noise.pages.maps import Cells
-    from noise.pages.screen_sounds import ScreenMap, ScreenPoint, SharedPoint
-
+from noise.pages.screen_sounds import (
+    ScreenMap,
+    ScreenPoint,
+    SharedPoint,
+    chosen_points,
+    shared_points,
+    simulated_entries,
+)
 
 LEVEL_STEPS = (50.0, 60.0, 70.0, 80.0, 90.0)
 """Between the colours of levels [dB(A)]."""

@@ -10,19 +10,21 @@ import json
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from models.transfer_functions.files import write_transfer_function
 from noise.base.files import atomic
-from noise.diagnosis.findings import ROLES
+from noise.diagnosis.findings import ROLES, LabelsAndLevels
 from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.improved_file import NAME, RESPONSES, response_files
+from noise.diagnosis.outcome import Diagnosis
 from noise.diagnosis.outcome_json import as_json
 from noise.diagnosis.text.agreement_sentences import agreement_sentence
 from noise.diagnosis.text.improved_sentences import improved_sentence
 from noise.diagnosis.text.sentences import answer
 from noise.diagnosis.text.verdict_sentences import headline
 from noise.diagnosis.text.words import NOT_DETERMINED, cause_of, joined, number, p_number
+from noise.pages.clips import Clip, Entry
 from noise.pages.diagnosis_answer import (
     agreement_rows,
     cause_rows,
@@ -33,11 +35,6 @@ from noise.pages.diagnosis_answer import (
     waterfall,
 )
 from noise.pages.page import page_html, write_page
-
-if TYPE_CHECKING:
-    from noise.diagnosis.findings import LabelsAndLevels
-    from noise.diagnosis.outcome import Diagnosis
-    from noise.pages.clips import Clip, Entry
 
 
 def write_diagnosis(

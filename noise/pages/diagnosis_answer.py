@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.findings import SURE
+from noise.diagnosis.findings import SURE, Agreement, EffectFinding, HypothesisFinding, Location
 from noise.diagnosis.fit.closing import CLOSABLE
 from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.gap.signature import KINDS
@@ -35,7 +35,6 @@ from noise.pages.cards import round_ticks
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, Location
     from noise.diagnosis.outcome import Diagnosis
 
 

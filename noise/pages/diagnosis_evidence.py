@@ -28,12 +28,12 @@ from features.kernels.spectra import autospectrum
 from models.drawing import BLUE, VERMILION, padded, styled, thinned
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import LARGEST_JSON, reading, refusing
-from models.recording import Channel
+from models.recording import Channel, Recording
 from noise.audio.sound import audible
-from noise.diagnosis.findings import ROLES
+from noise.diagnosis.findings import ROLES, Illustration, LabelsAndLevels
 from noise.diagnosis.text.words import number
 from noise.pages.cards import facts_of
-from noise.pages.clips import RATE, Entry, common_gain, make_clips
+from noise.pages.clips import RATE, Clip, Entry, common_gain, make_clips
 from noise.pages.figures import COLUMNS, Panel, as_svg, new_panel, panel_frequencies
 from noise.pictures.figure import KINDS
 from noise.pictures.recording import recorded_levels, recorded_orders
@@ -42,11 +42,8 @@ from noise.recordings.meaning import check_finite
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from models.recording import Recording
     from noise.diagnosis.evidence.friction_curves import FrictionCurves
-    from noise.diagnosis.findings import Illustration, LabelsAndLevels
     from noise.diagnosis.outcome import Diagnosis
-    from noise.pages.clips import Clip
 
 
 @dataclass(frozen=True)

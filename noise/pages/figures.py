@@ -24,14 +24,13 @@ from numpy.typing import NDArray
 from features.kernels.spectra import Spectrum, autospectrum
 from models.drawing import frequency_axis, levels, styled, thinned
 from models.errors import ParameterError
-from noise.pictures.figure import KINDS
+from models.recording import Recording
+from noise.pictures.figure import KINDS, Kind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from models.recording import Recording
     from noise.labels.segments import Segment
-    from noise.pictures.figure import Kind
 
 
 COLUMNS = 500

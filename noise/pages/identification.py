@@ -14,13 +14,12 @@ from models.condition import Condition
 from models.drawing import BLUE, GREY, ORANGE, VERMILION, styled
 from noise.base.files import atomic
 from noise.identification.law_candidates import CANDIDATES
-from noise.identification.outcome import as_json
+from noise.identification.outcome import Forecast, Identification, Number, Seen, as_json
 from noise.identification.quantities import QUANTITIES
 from noise.pages.figures import Panel, as_svg, new_panel
 from noise.pages.page import page_html, write_page
 
 if TYPE_CHECKING:
-    from noise.identification.outcome import Forecast, Identification, Number, Seen
     from noise.identification.ring_down import RingDown
     from noise.identification.static_test import StaticTest
     from noise.identification.table_number import TableNumber

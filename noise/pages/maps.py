@@ -13,19 +13,14 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from noise.labels.conditions import conditions_map
+from noise.labels.conditions import Place, Range, conditions_map
 from noise.pages.cards import round_ticks
 from noise.pages.page import MAP_SIZE
 from noise.pictures.figure import place_title
-
-if TYPE_CHECKING:
-    from noise.labels.conditions import Place, Range
-
 
 _RASTER = (100, 60)
 """Into how many cells a map is divided whose points make no grid."""

@@ -11,19 +11,13 @@ import hashlib
 from collections.abc import Collection, Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from noise.base.files import atomic
 from noise.base.labels import LABEL_LOOKS
-from noise.pages.cards import draw_entries, frequency_ticks, scale_picture
-from noise.pages.clips import MOST_RAISED, equal_factors
-
-if TYPE_CHECKING:
-    from noise.pages.cards import EntryDisplay
-    from noise.pages.clips import Clip, Entry
-
+from noise.pages.cards import EntryDisplay, draw_entries, frequency_ticks, scale_picture
+from noise.pages.clips import MOST_RAISED, Clip, Entry, equal_factors
 
 MAP_SIZE = (500.0, 300.0)
 """Width and height of the drawing of a condition map [px]."""

@@ -8,6 +8,7 @@ all.
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ import numpy as np
 import soundfile
 
 from models.errors import ParameterError, RecordingError
+from models.recording import Recording
 from models.show import short_repr
 from noise.audio.sound import resampled
 from noise.base.labels import LABELS
@@ -26,12 +28,8 @@ from noise.pages.page import page_html, write_page
 from noise.pictures.recording import recorded_levels, recorded_orders
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from models.recording import Recording
     from noise.labels.segments import Segment
 
-__all__ = ["ReportEntry", "write_report"]
 
 _SAME_LENGTH = 0.02
 """By how much a sound and the recording that it was made of differ in length at most [s]."""

@@ -12,12 +12,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.foreign_file import LARGEST_JSON, parse_json, reading, refusing
+from models.rig import Rig
 from models.show import short_repr
 from noise.base.labels import LABELS
 from noise.base.progress import counted
@@ -26,23 +27,17 @@ from noise.diagnosis.outcome_json import from_json
 from noise.diagnosis.text.sentences import answer
 from noise.diagnosis.text.verdict_sentences import headline
 from noise.labels.table import cell_number, check_name
-from noise.pages.clips import common_gain, label_counts, labels_sentence, make_clips
-from noise.pages.comparison import compare_designs
+from noise.pages.clips import Entry, common_gain, label_counts, labels_sentence, make_clips
+from noise.pages.comparison import Compared, compare_designs
 from noise.pages.diagnosis_evidence import reported_entries
 from noise.pages.maps import recorded_maps
 from noise.pages.page import CARD_BYTES, ORDERS_BYTES, PAGE_BYTES, page_html, write_page
-from noise.pages.review_inputs import Refusal, recorded_entries, sort_inputs
+from noise.pages.review_inputs import Inputs, Refusal, recorded_entries, sort_inputs
 from noise.pages.screen_sounds import ScreenMap, ScreenPoint
 from noise.recordings.folders import is_file
+from noise.recordings.meaning import PascalPerFullScale
 from noise.screening.design.design import load_design
 from noise.screening.design.environments import DRY, environment, in_environment
-
-if TYPE_CHECKING:
-    from models.rig import Rig
-    from noise.pages.clips import Entry
-    from noise.pages.comparison import Compared
-    from noise.pages.review_inputs import Inputs
-    from noise.recordings.meaning import PascalPerFullScale
 
 
 def rig_of(screened: ScreenMap, folder: Path, designs: Sequence[Path]) -> Rig:

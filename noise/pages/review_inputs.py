@@ -12,34 +12,28 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from features.kernels.orders import OrderMap
 from models.errors import BushingNoiseError, ParameterError
+from models.recording import Recording
 from models.show import short_repr
 from noise.audio.sound import LOWEST_HEARD, audible
 from noise.base.progress import readable, track
 from noise.base.tables import TABLE_ENDINGS, table_columns
-from noise.classifier import load_classifier
+from noise.classifier import Classifier, load_classifier
 from noise.labels.rows import label_rows
 from noise.labels.segments import label_recording
 from noise.labels.table import read_label_table
-from noise.pages.clips import BYTES_A_SECOND, RATE, SHORTEST, Entry, stretch_start
+from noise.pages.clips import BYTES_A_SECOND, RATE, SHORTEST, Entry, FastLevels, Row, stretch_start
 from noise.pictures.recording import recorded_levels, recorded_orders
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 from noise.recordings.folders import files_below, is_file
 from noise.recordings.formats import formats
-
-if TYPE_CHECKING:
-    from features.kernels.orders import OrderMap
-    from models.recording import Recording
-    from noise.classifier import Classifier
-    from noise.pages.clips import FastLevels, Row
-    from noise.recordings.meaning import PascalPerFullScale
-
+from noise.recordings.meaning import PascalPerFullScale
 
 DIAGNOSIS = "diagnosis.json"
 """What a folder of a diagnosis holds."""

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from features.kernels.levels import a_weighted_level
 from models.errors import BushingNoiseError
+from models.rig import Rig
 from noise.audio.sound import audible
 from noise.base.labels import LABELS
 from noise.base.progress import track
@@ -33,7 +34,6 @@ from sim.acquisition import Acquisition
 from sim.run import simulate
 
 if TYPE_CHECKING:
-    from models.rig import Rig
     from noise.screening.outcome import Screening
 
 
