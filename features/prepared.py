@@ -14,11 +14,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from features.kernels.conditioning import (
     ACOUSTIC_FROM,
     NOTHING,
     WORKING_LIMIT,
+    Transform,
     band_analytic,
     band_signal,
     checked_signal,
@@ -36,16 +38,12 @@ from features.kernels.levels import (
     relative_db,
 )
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
-from features.kernels.slips import TorqueSlips, torque_slips
+from features.kernels.slips import Pulses, TorqueSlips, torque_slips
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
 from models.show import short_repr
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from features.kernels.conditioning import Transform
     from features.kernels.modulation import Modulation, ShortTime
-    from features.kernels.slips import Pulses
 
 ACOUSTIC_KINDS = ("pressure", "acceleration")
 """Kinds of channel that are described as noise."""

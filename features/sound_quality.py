@@ -14,19 +14,16 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from features.kernels.conditioning import checked_signal
 from models.errors import ParameterError, not_installed
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike, NDArray
 
 SOUND_QUALITY_RATE = 48000
 """The sampling rate that the procedures' tables hold for [Hz]."""

@@ -18,9 +18,9 @@ import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from features.kernels.conditioning import usable_limit
 from features.kernels.levels import (
@@ -34,12 +34,8 @@ from features.prepared import ACOUSTIC_KINDS, Prepared, prepare
 from models.blocks import Blocks, Read, n_samples_of, reader_of
 from models.errors import ParameterError
 from models.recording import Recording
+from models.rig import Rig
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from models.rig import Rig
 
 KINDS = (*ACOUSTIC_KINDS, "torque")
 """Kinds of channel that have features."""

@@ -9,9 +9,11 @@ keeps is the number of columns, for scikit-learn's checks.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.utils.validation import _check_feature_names_in, validate_data
 
@@ -19,11 +21,6 @@ from features.kernels.conditioning import MIN_SAMPLES
 from features.table import KINDS, feature_names, recording_features
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
 
 
 class RecordingFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]

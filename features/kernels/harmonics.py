@@ -15,9 +15,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy import fft, ndimage
 
 from features.kernels.conditioning import (
@@ -38,14 +39,9 @@ from features.kernels.lines import (
     line_resolution,
     noise_floor,
 )
-from features.kernels.spectra import welch
+from features.kernels.spectra import Spectrum, welch
 from models.errors import ParameterError
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from features.kernels.spectra import Spectrum
 
 _NEARLY = 0.9
 """A maximum this high relative to the highest is the period if its lag is shorter."""

@@ -13,26 +13,20 @@ sampling rate, by several decibels where a creak is strong.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from features.kernels.conditioning import checked_signal
-from features.kernels.spectra import welch
+from features.kernels.spectra import Spectrum, welch
 from models.compilation import COMPILED
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from features.kernels.spectra import Spectrum
 
 REFERENCES = {"pressure": REFERENCE_PRESSURE, "acceleration": 1e-6, "force": 1e-6}
 """Reference values of levels by kind of channel [Pa, m/s2, N] (ISO 1683)."""

@@ -12,18 +12,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage, special
 
-from features.kernels.spectra import DEFAULT_RESOLUTION
+from features.kernels.spectra import DEFAULT_RESOLUTION, Spectrum
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from features.kernels.spectra import Spectrum
 
 PROMINENCE_DB = 10.0
 """A line stands this far above the local floor, and above the saddle to the next one [dB]."""

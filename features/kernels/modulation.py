@@ -12,17 +12,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 
 from features.kernels.conditioning import band_signal, forward
 from features.kernels.harmonics import strongest_period, track_periods
 from features.kernels.spectra import segment_powers
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 _SEGMENT = 0.064
 """Length of a segment [s]."""

@@ -7,20 +7,16 @@ power; one in which the speed changes much, as where a swing turns, belongs to n
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from features.kernels.conditioning import checked_signal
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike, NDArray
 
 _FRAME, _HOP = 0.085, 0.02
 """[s]"""

@@ -7,15 +7,12 @@ Where the pitch moves, as a creak's does when the shaft slows down, its track te
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from features.kernels.conditioning import checked_signal, usable_limit
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
 
 _HOP = 0.01
 """Time from one estimate to the next [s]."""

@@ -21,9 +21,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
 from features.kernels.conditioning import (
@@ -32,17 +32,11 @@ from features.kernels.conditioning import (
     checked_signal,
 )
 from features.kernels.lines import interpolated
-from models.blocks import in_pieces, n_samples_of, reader_of
+from models.blocks import Blocks, in_pieces, n_samples_of, reader_of
 from models.errors import ParameterError
-from models.rig import effective_stiffness
+from models.recording import Recording
+from models.rig import Rig, effective_stiffness
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from models.blocks import Blocks
-    from models.recording import Recording
-    from models.rig import Rig
 
 _TORQUE_SMOOTHING = math.sqrt(math.log(2.0) / 2.0) / math.pi / 2_000.0
 """Standard deviation of a Gaussian that halves 2 kHz [s]: the torque has little above (5.2.3)."""

@@ -14,21 +14,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
-from features.kernels.conditioning import checked_signal
+from features.kernels.conditioning import Transform, checked_signal
 from models.compilation import COMPILED
 from models.errors import ParameterError
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from features.kernels.conditioning import Transform
 
 _OVERLAP_SLACK = 0.02
 """Segments that a signal may lack for an overlap of half: no further one for a few samples."""

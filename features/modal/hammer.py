@@ -17,20 +17,16 @@ H. Vold, A comparison of the H1, H2, and Hv frequency response functions, Proc. 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import csd, find_peaks, welch
 
 from models.errors import ParameterError, RecordingError
 from models.show import short_repr
 from models.transfer_functions.transfer_function import TransferFunction
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
 
 ESTIMATORS = ("H1", "H2", "Hv")
 """For noise in the response, for noise in the force, for noise in both."""

@@ -20,9 +20,9 @@ implementation of the least-squares complex frequency-domain estimator, Proc. IM
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
 from features.modal.modes import (
@@ -34,9 +34,6 @@ from features.modal.modes import (
     real_and_imaginary,
 )
 from models.errors import ParameterError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
 
 ORDERS = tuple(range(4, 25, 2))
 """Orders of the denominators tried in each band."""

@@ -18,18 +18,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 from scipy import fft
 
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 from features.kernels.levels import a_weighting
 from models.compilation import COMPILED
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 RATE = 16_000
 """Rate at which windows are described [Hz]."""

@@ -4,18 +4,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 from scipy import fft
 
 from features.windows.arithmetic import OCTAVES
 from features.windows.blocks import FRAME_RATE, RATE
 from models.compilation import COMPILED, PART
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 FRAME = 512
 """Samples of a frame."""

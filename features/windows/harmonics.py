@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
 from features.windows.arithmetic import OCTAVES, ordered_sum
-from features.windows.spectra import FIRST, LOBE, SPACING
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from features.windows.spectra import WindowSpectra
+from features.windows.spectra import FIRST, LOBE, SPACING, WindowSpectra
 
 _DIVISORS = np.arange(1, 9)
 """The strongest bin is one of these harmonics."""

@@ -3,15 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from models.compilation import COMPILED
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 
 def prominent_maxima(

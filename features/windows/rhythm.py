@@ -8,10 +8,9 @@ rain's intervals are random, a clock's and an engine's are all the same.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 from scipy import fft, special
 
 from features.windows.arithmetic import OCTAVES, ordered_sum, padded_medians, padded_rows
@@ -19,9 +18,6 @@ from features.windows.blocks import RATE
 from features.windows.declared import RHYTHM_FEATURES
 from features.windows.maxima import prominent_maxima
 from models.compilation import COMPILED
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 _STEP = 4
 ENVELOPE_RATE = RATE // _STEP

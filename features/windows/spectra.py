@@ -8,17 +8,14 @@ many bins are left to the compiler's order, which is several times as fast.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 from scipy import fft
 
 from features.windows.arithmetic import OCTAVES
 from models.compilation import COMPILED, PART
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 _SEGMENT = 4000
 _LENGTH = 4096

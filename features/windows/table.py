@@ -7,9 +7,9 @@ the last of them begins, so that what is cut into such chunks has windows across
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.windows.blocks import FRAME_RATE, RATE
 from features.windows.declared import TOP_FEATURES, WINDOW_FEATURES
@@ -18,9 +18,6 @@ from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythm_features
 from features.windows.spectra import SEGMENT_HOP, long_spectra
 from features.windows.tones import tone_features
 from features.windows.trajectories import trajectory_features
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 LENGTH = 0.5
 """Of a window [s]."""

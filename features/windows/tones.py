@@ -7,22 +7,23 @@ as in `features.kernels.lines`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from features.windows.arithmetic import OCTAVES, ordered_sum, padded_rows
 from features.windows.declared import TONE_FEATURES
 from features.windows.harmonics import harmonic_features
 from features.windows.maxima import prominent_maxima
-from features.windows.spectra import BLOCK, FIRST, SPACING, line_power, window_spectra
+from features.windows.spectra import (
+    BLOCK,
+    FIRST,
+    SPACING,
+    WindowSpectra,
+    line_power,
+    window_spectra,
+)
 from models.compilation import COMPILED
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from features.windows.spectra import WindowSpectra
 
 _MOST_LINES = 40
 

@@ -9,18 +9,12 @@ that a window's numbers do not depend on which others are described with it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
 from features.windows.arithmetic import ordered_sum
 from features.windows.declared import TRAJECTORY_FEATURES
-from features.windows.frames import BANDS
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from features.windows.frames import Frames
+from features.windows.frames import BANDS, Frames
 
 _BAND_NAMES = tuple(f"band_{i + 1}" for i in range(BANDS))
 

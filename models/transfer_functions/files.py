@@ -13,9 +13,11 @@ from __future__ import annotations
 import csv
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any, TextIO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.foreign_file import LARGEST_TEXT, read_arrays, reading
@@ -31,12 +33,6 @@ from models.transfer_functions.uff import (
     write_uff_functions,
 )
 from models.units import quantity_of_unit, split_ratio
-
-if TYPE_CHECKING:
-    from pathlib import Path
-    from typing import TextIO
-
-    from numpy.typing import NDArray
 
 FEWEST_LINES = 8
 """Fewer lines describe no resonance."""

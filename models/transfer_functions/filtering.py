@@ -15,11 +15,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from models.transfer_functions.transfer_function import TransferFunction
 
 BLOCK = 2**18

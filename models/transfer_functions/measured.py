@@ -24,11 +24,13 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 from scipy.interpolate import CubicSpline
 from scipy.sparse.linalg import LinearOperator, cg
@@ -37,16 +39,11 @@ from models.condition import same_support
 from models.errors import ParameterError
 from models.rig import HIGHEST_PLATE_FREQUENCY
 from models.show import short_repr
-from models.transfer_functions.transfer_function import trusted_band
+from models.transfer_functions.transfer_function import TransferFunction, trusted_band
 from models.units import same_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from numpy.typing import NDArray
-
     from models.radiation.impulse_responses import ImpulseResponses
-    from models.transfer_functions.transfer_function import TransferFunction
 
 OUTSIDE = 1e-3
 """Weight of smallness outside the band, relative to the measured lines."""

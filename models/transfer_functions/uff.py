@@ -12,20 +12,17 @@ which rounds to the digits stored, where there is one.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError, not_installed
 from models.foreign_file import LARGEST_TEXT, reading
 from models.units import SI_UNITS, quantity_of_unit, split_ratio
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-    from pathlib import Path
-
-    from numpy.typing import NDArray
 
 UFF_ENDINGS = (".uff", ".unv")
 

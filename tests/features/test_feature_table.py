@@ -127,16 +127,6 @@ def test_a_recording_gives_the_first_channel_of_each_kind():
     assert all(math.isnan(found[f"torque_{name}"]) for name in feature_names("torque"))
 
 
-def test_only_the_features_asked_for_are_computed_and_they_are_the_same():
-    run = Recording(noise(9600).reshape(2, -1), 48e3, (Channel("pressure"), Channel("torque")))
-    names = ("torque_asymmetry", "pressure_flux", "acceleration_level")
-    found, everything = (recording_features(run, names=wanted) for wanted in (names, None))
-    assert set(found) == set(names)
-    assert math.isnan(found["acceleration_level"])
-    for name in names[:2]:
-        assert found[name] == everything[name]
-
-
 def test_an_uncalibrated_recording_has_no_levels():
     found = recording_features(
         Recording(noise(4800)[np.newaxis], 48e3, (Channel("pressure"),), calibrated=False)

@@ -44,21 +44,6 @@ def test_a_tone_has_its_level_at_every_speed():
     assert level == pytest.approx(np.zeros_like(level), abs=1.5)
 
 
-def test_where_a_fast_swing_turns_no_order_is_told():
-    time = np.arange(round(4.0 * RATE)) / RATE
-    speed = 3.0 * np.cos(2.0 * np.pi * 2.0 * time)
-    found = order_map(np.sin(2000.0 * np.cumsum(speed) / RATE), RATE, speed)
-    assert found.speed_edges[0] > 2.5
-
-
-def test_of_speeds_in_steps_no_column_is_empty():
-    speed = np.repeat([2.0, 5.0, 8.0], round(RATE))
-    found = order_map(np.random.default_rng(0).standard_normal(speed.size), RATE, speed)
-    measured = np.isfinite(found.level).any(axis=0)
-    assert measured.mean() > 0.9
-    assert found.level.shape[1] > 1
-
-
 @pytest.mark.parametrize(
     ("signal", "speed", "said"),
     [

@@ -5,14 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, strategies as st
 
 from features.kernels.slips import stick_rate_of
 from features.table import recording_features
 from features.transformer import RecordingFeatures
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
-from models.rig import Fit, effective_stiffness
 from models.rig_file import load_material_rig
 from sim.run import simulate
 
@@ -26,17 +24,6 @@ def recording(condition=KNOWN, seconds=0.5, calibrated=True, **channels):
     rows = {"torque": 8.0 + 0.0 * t} | {name: of(t) for name, of in channels.items()}
     names = tuple(Channel(name) for name in rows)
     return Recording(np.stack(list(rows.values())), RATE, names, condition, calibrated)
-
-
-@given(elastomer=st.floats(1.0, 1e4), support=st.floats(1.0, 1e5))
-def test_springs_in_series_are_softer_than_either_and_the_bolted_clamp_leaves_one(
-    elastomer, support
-):
-    fit = Fit(0.279e-3, elastomer, 10.7, 8.0, {FIXED: 0.1})
-    stiffness = effective_stiffness(fit, support)
-    assert stiffness == pytest.approx(elastomer * support / (elastomer + support))
-    assert stiffness < min(elastomer, support)
-    assert effective_stiffness(fit, FIXED) == pytest.approx(elastomer)
 
 
 @pytest.mark.parametrize(("speed", "of"), [(5.0, 5.0), (-5.0, 5.0), (1.0, 1.0)])
@@ -80,13 +67,6 @@ def test_channels_that_are_not_calibrated_or_too_short_are_not_used():
     uncalibrated = recording(calibrated=False, angle=lambda t: 2.0 * t)
     short = recording(seconds=0.05, angle=lambda t: 2.0 * t)
     assert stick_rate_of(uncalibrated) == stick_rate_of(short) == pytest.approx(SERIES * 5.0)
-
-
-def test_a_rig_of_ones_own_goes_before_the_shipped_one():
-    rig = load_material_rig("fluorocarbon-thesis")
-    stiff = replace(rig, fits=tuple(replace(fit, elastomer_stiffness=1e9) for fit in rig.fits))
-    unnamed = recording(replace(KNOWN, material=None))
-    assert stick_rate_of(unnamed, stiff) == pytest.approx(2214.0 * 5.0, rel=1e-5)
 
 
 def test_the_slope_ratio_tells_stick_from_what_merely_oscillates():
