@@ -59,10 +59,9 @@ OPTIONS = (
     Option("--sound-power TABLE", Path).help(
         "write the sound power that the plate's upper side radiates, as "
         f"{table_endings()}: one-third octaves from 50 Hz to 10 kHz and their sum, in dB and "
-        "dB(A) re 1 pW; power_level_db is of the plate in a rigid baffle, as the sound pressure "
-        "is, free_power_level_db of the plate standing free; below the critical frequency (shipped "
-        "plate: 1.2 kHz) they lie 2 to 17 dB apart, and a rig's plate between them, above they are "
-        "the same; of runs from "
+        "dB(A) re 1 pW, of the plate in a rigid baffle, as the sound pressure is; a plate that "
+        "stands free is 2 to 17 dB quieter below its critical frequency (shipped plate: 1.2 kHz); "
+        "of runs from "
         f"{_LEAST_OF_POWER:g} to {_MOST_AT_ONCE:g} s"
     ),
     seed("seed of the sensors' noise"),
