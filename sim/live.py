@@ -21,12 +21,11 @@ import numpy as np
 
 from sim.acquisition import Acquisition, digitise
 from sim.effect_blocks import begun, drive_block, sensors_block
-from sim.live_filter import LiveConvolution, crossing
 from sim.live_setting import KnownPaths, Setting, paths_of, plan_of, streams
 from sim.motion import Motion, MotionSolver, steps_beyond
 from sim.motion_limits import blaming_the_unusual
 from sim.pipeline import pulse_force
-from sim.streams import AnalogueFilter, Decimation
+from sim.streams import AnalogueFilter, Decimation, LiveConvolution, crossing
 from sim.timing import SIMULATION
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from models.errors import ParameterError
 from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
 from models.show import short_repr
+from models.units import ABSOLUTE_ZERO
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
@@ -38,9 +39,6 @@ if TYPE_CHECKING:
     from sim.motion import Motion
 
 __all__ = ["LONGEST_RUN", "Run", "plan_run", "sensor_channels", "simulate"]
-
-_ABSOLUTE_ZERO = 273.15
-"""Below 0 degree Celsius [K]."""
 
 LONGEST_RUN = 600.0
 """[s]; the whole run is held in memory. `sim.long_run` has no such limit."""
@@ -293,7 +291,7 @@ def _check(
         raise ParameterError(f"rate = {rate:g} Hz must lie between 1000 and 400000")
     if round(seconds * rate) < 2:
         raise ParameterError(f"seconds = {seconds:g} holds no two samples at {rate:g} Hz")
-    if not -_ABSOLUTE_ZERO <= temperature < 1e4:
+    if not ABSOLUTE_ZERO <= temperature < 1e4:
         raise ParameterError(f"temperature = {temperature:g} degree Celsius is none")
     if not 0.0 < interference < 1e-2:
         raise ParameterError(

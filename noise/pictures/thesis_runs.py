@@ -19,6 +19,7 @@ from models.drawing import BLUE, GREEN, VERMILION
 from models.rig_file import load_material_rig
 from noise.pictures.figure import KINDS
 from noise.pictures.run import oscillates
+from noise.thesis.listing import STEP
 from noise.thesis.repetition import repetition_rate
 from noise.thesis.runs import (
     CALIBRATED,
@@ -31,7 +32,6 @@ from noise.thesis.runs import (
     motion,
 )
 from sim.analysis.slips import motion_slips
-from sim.analysis.thesis_listing import STEP
 from sim.run import simulate
 
 FITS = (0.178, 0.279, 0.381)

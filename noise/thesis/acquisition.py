@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from noise.thesis.listing import STEP
 from noise.thesis.row import Column, Row, between, number
-from sim.analysis.thesis_listing import STEP
 
 _BIT = 2.5 / 2**12
 """Of a 12-bit converter over +-1.25 V [V]."""

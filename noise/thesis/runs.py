@@ -20,11 +20,11 @@ from models.condition import FIXED
 from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from noise.base.remarks import constant_remark
+from noise.thesis.listing import STEP, ListingRun, run_listing
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import Slips, find_slips, motion_slips
-from sim.analysis.thesis_listing import STEP, ListingRun, run_listing
 from sim.constant_version import constant_version
 from sim.motion import Motion, simulate_motion
 from sim.run import simulate

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
+from noise.thesis.listing import STEP, run_listing
 from sim.analysis.critical_damping import largest_sticking
-from sim.analysis.thesis_listing import STEP, run_listing
 
 
 def sticks(speed, stiffness, damping, **about):
