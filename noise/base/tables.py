@@ -15,6 +15,7 @@ import math
 import numbers
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from datetime import date, time
 from importlib import import_module
 from pathlib import Path
@@ -24,7 +25,6 @@ from models.errors import BushingNoiseError, ParameterError, RecordingError, not
 from models.foreign_file import LARGEST_TEXT, ExcessError, check_inflation, parse_json, reading
 from noise.base.csv_table import (
     PLAIN,
-    CsvForm,
     csv_form,
     csv_lines,
     decimal_sign,
@@ -161,7 +161,6 @@ def write_table(
         return
     path = Path(path)
     check_table_path(path, columns)
-    form = _form_there(path) if ending == ".csv" else PLAIN
     with atomic(path) as temporary:
         if ending == ".parquet":
             _write_parquet(temporary, columns, cells)
@@ -173,11 +172,7 @@ def write_table(
                     named = dict(zip(columns, map(_finite, row), strict=True))
                     file.write(json.dumps(named, ensure_ascii=False) + "\n")
         else:
-            try:
-                _write_csv(temporary, columns, cells, form)
-            except UnicodeEncodeError:  # a name that the code page of the file there has not
-                form = form._replace(encoding="utf-8", head=f"\ufeff{form.head}")
-                _write_csv(temporary, columns, cells, form)
+            _write_csv(temporary, columns, cells, path)
 
 
 def read_table(
@@ -226,21 +221,24 @@ def read_table(
     _check_format(path)
     if not path.exists():
         raise ParameterError(f"{path}: there is no such file")
-    ending, separator = path.suffix.lower(), ""
     with reading(path, "table", error=RecordingError, largest=LARGEST_TEXT):
-        if ending == ".jsonl":
+        if path.suffix.lower() == ".jsonl":
             with path.open(encoding="utf-8-sig") as file:
                 return [], [parse_json(line) for line in file if line.strip()]
-        if ending == ".csv":
-            text, encoding = decoded(path.read_bytes(), names)
-            form = csv_form(text, encoding)
-            lines: Iterator[Sequence[object]] = csv_lines(text, form)
-            separator = form.separator
-        else:
-            lines = _parquet_lines(path) if ending == ".parquet" else _sheet_lines(path)
+        lines, separator = _lines(path, names)
         meant = {name.casefold(): name for name in known}
         header = [meant.get(name.strip().casefold(), name) for name in map(_text, next(lines, ()))]
         return [name for name in header if name], _named(header, lines, numbers, separator)
+
+
+def _lines(path: Path, names: Iterable[str] = ()) -> tuple[Iterator[Sequence[object]], str]:
+    """Return names of columns and rows, and what stands between the cells of a CSV."""
+    ending = path.suffix.lower()
+    if ending != ".csv":
+        return (_parquet_lines(path) if ending == ".parquet" else _sheet_lines(path)), ""
+    text, encoding = decoded(path.read_bytes(), names)
+    form = csv_form(text, encoding)
+    return csv_lines(text, form), form.separator
 
 
 def _named(
@@ -299,21 +297,13 @@ def table_columns(path: Path) -> set[str]:
     ...     table_columns(Path(folder) / "t.csv")
     {'file'}
     """
-    ending = path.suffix.lower()
     try:
         with reading(path, "table"):
-            if ending == ".parquet":
-                from pyarrow import parquet
-
-                return set(parquet.read_schema(path).names)
-            if ending == ".xlsx":
-                return set(map(_text, next(_sheet_lines(path), ()))) - {""}
-            if ending == ".jsonl":
+            if path.suffix.lower() == ".jsonl":
                 with path.open(encoding="utf-8-sig") as file:
                     first = parse_json(file.readline(_LONGEST_LINE) or "{}")
                 return set(first) if isinstance(first, dict) else set()
-            text, encoding = decoded(path.read_bytes())
-            return set(next(csv_lines(text, csv_form(text, encoding)), ())) - {""}
+            return set(map(_text, next(_lines(path)[0], ()))) - {""}
     except BushingNoiseError:
         return set()
 
@@ -371,29 +361,29 @@ def _text(cell: object) -> str:
     return "" if cell is None else str(cell).strip()
 
 
-def _form_there(path: Path) -> CsvForm:
-    """Return the form of the table that is written over; that of programs where it is none."""
-    try:
-        with reading(path, "table", largest=LARGEST_TEXT):
-            return csv_form(*decoded(path.read_bytes()))
-    except BushingNoiseError:
-        return PLAIN
-
-
 def _write_csv(
-    path: Path, columns: Sequence[str], cells: Iterable[Sequence[Cell]], form: CsvForm
+    path: Path, columns: Sequence[str], cells: Iterable[Sequence[Cell]], there: Path
 ) -> None:
-    with path.open("w", encoding=form.encoding, newline="") as file:
-        write_csv(file, columns, cells, form)
+    """Write in the form of the table that is there; in that of programs where it is none."""
+    form = PLAIN
+    with suppress(BushingNoiseError), reading(there, "table", largest=LARGEST_TEXT):
+        form = csv_form(*decoded(there.read_bytes()))
+    try:
+        with path.open("w", encoding=form.encoding, newline="") as file:
+            write_csv(file, columns, cells, form)
+    except UnicodeEncodeError:  # a name that the code page of the file there has not
+        form = form._replace(encoding="utf-8", head=f"\ufeff{form.head}")
+        with path.open("w", encoding=form.encoding, newline="") as file:
+            write_csv(file, columns, cells, form)
 
 
 def _parquet_lines(path: Path) -> Iterator[Sequence[object]]:
     from pyarrow import parquet
 
     with parquet.ParquetFile(path) as file:
+        yield file.schema_arrow.names
         _check_size(path, file.metadata.num_rows * file.metadata.num_columns)
         table = file.read()
-    yield table.column_names
     yield from zip(*(column.to_pylist() for column in table.columns), strict=True)
 
 

@@ -68,8 +68,10 @@ def cluster(scheduler: str) -> Iterator[Callable[..., Generator[tuple[int, Any]]
         perform: Callable[..., Result], calls: Sequence[tuple[Any, ...]]
     ) -> Generator[tuple[int, Result | None]]:
         futures = {client.submit(perform, *c, pure=False): n for n, c in enumerate(calls)}
+        with client.as_current():
+            completed = dask.as_completed(futures)
         try:
-            for future in dask.as_completed(futures):
+            for future in completed:
                 died = isinstance(future.exception(), dask.KilledWorker)
                 yield futures[future], None if died else future.result()
         except CancelledError:

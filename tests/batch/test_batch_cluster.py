@@ -69,7 +69,7 @@ def test_labels_from_a_cluster_are_byte_for_byte_those_of_one_process(
 
 @pytest.mark.slow
 def test_workers_with_another_version_are_refused(tmp_path, cluster, monkeypatch):
-    monkeypatch.setattr("noise.batch.cluster._program", lambda: "another")
+    monkeypatch.setattr("noise.batch.cluster.RESULTS_VERSION", -1)
     jobs = make_jobs(tmp_path, ["a"])
     with pytest.raises(ParameterError, match="another version"):
         performed(Counting(tmp_path / "log"), jobs, scheduler=cluster.scheduler_address)
