@@ -31,7 +31,7 @@ from features.kernels.levels import (
     relative_db,
 )
 from features.prepared import ACOUSTIC_KINDS, Prepared, prepare
-from models.blocks import Blocks, Read, n_samples_of, reader_of
+from models.blocks import Read, RecordingBlocks, n_samples_of, reader_of
 from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import Rig
@@ -520,14 +520,17 @@ def piece_count(n_samples: int) -> int:
 
 
 def recording_features(
-    recording: Recording | Blocks, *, rig: Rig | None = None, names: Collection[str] | None = None
+    recording: Recording | RecordingBlocks,
+    *,
+    rig: Rig | None = None,
+    names: Collection[str] | None = None,
 ) -> dict[str, float]:
     """Features of the first channel of each kind in a recording.
 
     Parameters
     ----------
-    recording : Recording or Blocks
-        In memory, or one of which parts can be had, such as `noise.recordings.blocks` opens. From
+    recording : Recording or RecordingBlocks
+        In memory, or one of which parts can be had, as `noise.recordings` opens. From
         2^21 samples on it is described in pieces.
     rig : Rig, optional
         What the stiffness of the bushing is taken from; without it, the shipped rig with the

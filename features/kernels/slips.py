@@ -32,7 +32,7 @@ from features.kernels.conditioning import (
     checked_signal,
 )
 from features.kernels.lines import interpolated
-from models.blocks import Blocks, in_pieces, n_samples_of, reader_of
+from models.blocks import RecordingBlocks, in_pieces, n_samples_of, reader_of
 from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import Rig, effective_stiffness
@@ -544,12 +544,12 @@ _AT_ONCE = 1 << 16
 """Samples looked at together."""
 
 
-def stick_rate_of(recording: Recording | Blocks, rig: Rig | None = None) -> float:
+def stick_rate_of(recording: Recording | RecordingBlocks, rig: Rig | None = None) -> float:
     """Product of k_EFF and the shaft's speed (thesis, (5.1)).
 
     Parameters
     ----------
-    recording : Recording or Blocks
+    recording : Recording or RecordingBlocks
         Its condition tells interference and support, and material where no rig is given.
     rig : Rig, optional
         What the elastomer's stiffness is taken from; the shipped one with the recording's material
@@ -581,7 +581,7 @@ def stick_rate_of(recording: Recording | Blocks, rig: Rig | None = None) -> floa
     return effective_stiffness(fit, condition.support_stiffness) * speed
 
 
-def _speed(recording: Recording | Blocks) -> float | None:
+def _speed(recording: Recording | RecordingBlocks) -> float | None:
     """Magnitude of the shaft's speed: median of its channels, or as it was set."""
     speed, angle = recording.first("speed"), recording.first("angle")
     n = n_samples_of(recording)

@@ -23,6 +23,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from features.kernels.levels import REFERENCES, a_weighted, fast_levels, sound_levels
+from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel
 from noise.audio.gain import LOUDNESS_BLOCK, loudness
@@ -34,8 +35,7 @@ from noise.audio.spectrogram import (
     spectrogram as levels_of,
     strongest_line,
 )
-from noise.recordings import read_recording
-from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings.files import open_blocks
 from noise.recordings.wav import wav_bytes
 
 if TYPE_CHECKING:
@@ -118,8 +118,7 @@ class _Reading:
         with self.lock:
             if self.blocks is None:
                 # It is closed when nobody holds it any more, who may be reading still.
-                long = self.open.enter_context(open_blocks(self.path))
-                self.blocks = long or RecordingBlocks.of(read_recording(self.path))
+                self.blocks = self.open.enter_context(open_blocks(self.path))
             return self.blocks
 
 

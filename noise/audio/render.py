@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models.blocks import RecordingBlocks
 from models.condition import Condition
 from models.errors import ParameterError
 from models.recording import Recording
@@ -41,7 +42,6 @@ from noise.audio.gain import (
 )
 from noise.audio.sound import FADE, audible, in_band, pressure_channel
 from noise.base.files import atomic
-from noise.recordings.blocks import RecordingBlocks
 from noise.recordings.sidecar import sidecar_text
 from noise.recordings.wav import BITS, largest_sample, wav_bytes, with_full_scale
 

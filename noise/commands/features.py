@@ -16,7 +16,7 @@ from noise.commands.options import CALIBRATION, OneOf, Option, full_scale_of, se
 from noise.commands.plots import PLOT, check_plots, draw_recordings
 
 if TYPE_CHECKING:
-    from noise.recordings.blocks import RecordingBlocks
+    from models.blocks import RecordingBlocks
     from noise.recordings.meaning import PascalPerFullScale
 
 
@@ -111,21 +111,16 @@ class Featuring:
 
     def rows(self, path: Path, name: str) -> tuple[Iterable[dict[str, object]], bool]:
         """Return the rows of a recording, and whether it is calibrated."""
-        from noise.recordings import read_recording
-        from noise.recordings.blocks import RecordingBlocks, open_blocks
+        from noise.recordings.files import open_blocks
 
         if self.windows:
             with ExitStack() as stack:
-                opened = stack.enter_context(open_blocks(path, full_scale=self.full_scale))
-                read = opened or read_recording(path, full_scale=self.full_scale)
-                blocks = RecordingBlocks.of(read)
+                blocks = stack.enter_context(open_blocks(path, full_scale=self.full_scale))
                 return _windows(path, name, blocks, stack.pop_all()), blocks.calibrated
-        with open_blocks(path, full_scale=self.full_scale) as opened:
-            read = opened or read_recording(path, full_scale=self.full_scale)
+        with open_blocks(path, full_scale=self.full_scale) as blocks:
             from features import recording_features
             from features.table import piece_count
 
-            blocks = RecordingBlocks.of(read)
             if (pieces := piece_count(blocks.n_samples)) > 1:
                 length = blocks.n_samples / pieces / blocks.rate
                 note(
@@ -133,7 +128,7 @@ class Featuring:
                     "together by their power"
                 )
             pitch = _pitch(blocks) if self.pitch else {}
-            return [{"file": name, **recording_features(read), **pitch}], read.calibrated
+            return [{"file": name, **recording_features(blocks), **pitch}], blocks.calibrated
 
 
 def _windows(

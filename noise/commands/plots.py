@@ -73,8 +73,7 @@ def draw_recordings(
     """
     from noise.pictures.figure import PICTURE_ENDINGS, write_picture
     from noise.pictures.recording import plot_recording
-    from noise.recordings import read_recording
-    from noise.recordings.blocks import RecordingBlocks, open_blocks
+    from noise.recordings.files import open_blocks
 
     paths = export_paths(target, [job.name for job in jobs], PICTURE_ENDINGS, "--plot")
     refused = {row.get("file") for row in rows if row.get("error")}
@@ -83,10 +82,7 @@ def draw_recordings(
         if job.name in refused:
             continue
         try:
-            with open_blocks(job.path, full_scale=full_scale) as opened:
-                blocks = opened or RecordingBlocks.of(
-                    read_recording(job.path, full_scale=full_scale)
-                )
+            with open_blocks(job.path, full_scale=full_scale) as blocks:
                 shown = blocks.part(0, round(_LONGEST * blocks.rate))
                 of_it = [row for row in rows if row.get("file") == job.name]
                 write_picture(paths[job.name], plot_recording(shown, of_it))

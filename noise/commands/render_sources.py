@@ -130,11 +130,10 @@ def _recorded(path: Path, full_scale: PascalPerFullScale | None) -> list[Source]
 
 def _read(path: Path, full_scale: PascalPerFullScale | None, _: str) -> Recording:
     from noise.audio.render import heard
-    from noise.recordings import read_recording
-    from noise.recordings.blocks import open_blocks
+    from noise.recordings.files import open_blocks
 
-    with open_blocks(path, full_scale=full_scale) as opened:
-        return heard(opened or read_recording(path, full_scale=full_scale))
+    with open_blocks(path, full_scale=full_scale) as recording:
+        return heard(recording)
 
 
 def _simulated(text: str, options: Namespace) -> Source:

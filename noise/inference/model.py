@@ -43,7 +43,7 @@ from noise.inference.inputs import (
 )
 
 if TYPE_CHECKING:
-    from noise.recordings.blocks import RecordingBlocks
+    from models.blocks import RecordingBlocks
 
 
 _NARROWER = 0.8
@@ -291,7 +291,7 @@ def infer_stretch(
     >>> from models.condition import Condition
     >>> from models.rig_file import load_material_rig
     >>> from noise.inference import load_inference
-    >>> from noise.recordings.blocks import RecordingBlocks
+    >>> from models.blocks import RecordingBlocks
     >>> from sim.run import simulate
     >>> run = simulate(load_material_rig("fluorocarbon"), 1.0, interference=0.381e-3)
     >>> blocks = RecordingBlocks.of(run.recording)

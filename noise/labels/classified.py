@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from features.prepared import ACOUSTIC_KINDS
 from features.windows.declared import WINDOW_FEATURES
 from features.windows.table import HOP, LENGTH
+from models.blocks import RecordingBlocks
 from models.recording import REFERENCE_PRESSURE
 from noise.base.labels import LABELS
 from noise.classifier import Classifier
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
 from noise.labels.windows import FEATURE_NAMES, FRAMES_A_HOP, KeptFrames, Pages, columns_of
-from noise.recordings.blocks import RecordingBlocks
 
 _SILENT_LEVEL = 10.0
 """Calibrated sound below it is silence [dB re 20 uPa]: below any microphone's own noise."""

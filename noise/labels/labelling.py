@@ -22,9 +22,7 @@ from noise.labels.levels import with_loudness
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, label_recording
 from noise.labels.table import COLUMNS, LabelTable
-from noise.recordings import read_recording
-from noise.recordings.blocks import RecordingBlocks, open_blocks
-from noise.recordings.files import names_channels
+from noise.recordings.files import names_channels, open_blocks
 from noise.recordings.meaning import PascalPerFullScale
 
 
@@ -185,12 +183,11 @@ class Labelling:
 
     def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
         """Return the rows of a recording, and whether it is calibrated."""
-        with open_blocks(path, full_scale=self.full_scale) as blocks:
-            recording = blocks or read_recording(path, full_scale=self.full_scale)
+        with open_blocks(path, full_scale=self.full_scale) as recording:
             per_track = not names_channels(path)
             segments: list[Segment] = label_recording(recording, self._loaded, per_track=per_track)
             if self.loudness:
-                segments = with_loudness(RecordingBlocks.of(recording), segments)
+                segments = with_loudness(recording, segments)
             rows = label_rows(name, recording, segments, self._inference)
             return rows, recording.calibrated
 

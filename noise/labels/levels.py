@@ -23,11 +23,11 @@ from numpy.typing import NDArray
 
 from features.kernels.levels import weighted_levels
 from features.sound_quality import SHORTEST, SOUND_QUALITY_RATE, loudness_n5
+from models.blocks import RecordingBlocks
 from models.compilation import COMPILED
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.sound import resampled
 from noise.base.labels import NAMED
-from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
     from noise.labels.segments import Segment

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from models.blocks import RecordingBlocks
 from models.condition import Condition
 from models.recording import Recording
 from noise.base.labels import NAMED
@@ -25,9 +26,7 @@ from noise.labels.levels import sound_levels, with_weighted_levels
 from noise.labels.segments import Segment
 from noise.labels.table import ASSUMED, COLUMNS, CONDITIONS, HUMAN, assumes_material
 from noise.labels.windows import can_be_described, describe, tracks
-from noise.recordings import read_recording
-from noise.recordings.blocks import RecordingBlocks, open_blocks
-from noise.recordings.files import names_channels
+from noise.recordings.files import names_channels, open_blocks
 from noise.recordings.logged_speed import agrees, as_logged
 from noise.recordings.meaning import PascalPerFullScale
 
@@ -221,7 +220,7 @@ def segment_speed(blocks: RecordingBlocks, start: float, end: float) -> float | 
     --------
     >>> from models.condition import Condition
     >>> from models.recording import Channel, Recording
-    >>> from noise.recordings.blocks import RecordingBlocks
+    >>> from models.blocks import RecordingBlocks
     >>> angle = 4.999989 * np.arange(2000)[None] / 1e3
     >>> run = Recording(angle, 1e3, (Channel("angle"),), Condition(speed=5.0))
     >>> segment_speed(RecordingBlocks.of(run), 0.0, 2.0)
@@ -244,7 +243,7 @@ def speed_remark(blocks: RecordingBlocks, speed: float | None) -> str:
     --------
     >>> from models.condition import Condition
     >>> from models.recording import Channel, Recording
-    >>> from noise.recordings.blocks import RecordingBlocks
+    >>> from models.blocks import RecordingBlocks
     >>> run = Recording(np.zeros((1, 9)), 1e3, (Channel("angle"),), Condition(speed=5.0))
     >>> speed_remark(RecordingBlocks.of(run), 10.0)
     'speed 10 rad/s is that of the channel angle; 5 was logged'
@@ -345,8 +344,7 @@ def said_rows(
     >>> round(row["frequency_hz"], -1), row["level_db"], row["label_source"], row["p_squeal"]
     (800.0, 90.97, 'human', None)
     """
-    with open_blocks(path, full_scale=full_scale) as opened:
-        recording = opened or RecordingBlocks.of(read_recording(path, full_scale=full_scale))
+    with open_blocks(path, full_scale=full_scale) as recording:
         whole = recording.n_samples <= LONGEST_MEASURED * recording.rate
         if not whole:
             segments = _as_many_as_fit(segments if new is None else new)

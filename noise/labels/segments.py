@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from models.blocks import RecordingBlocks
 from models.recording import Recording
 from models.show import short_repr
 from noise.base.labels import LABELS
@@ -18,7 +19,6 @@ from noise.labels.classified import Classified, at_a_condition, classified, segm
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
 from noise.labels.segmentation import change_points, labelled_stretches
 from noise.labels.windows import can_be_described, tracks
-from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

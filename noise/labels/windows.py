@@ -28,10 +28,10 @@ from features.windows.table import (
     describe_windows,
     window_count,
 )
+from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
 from noise.classifier.model import Classifier
 from noise.labels.levels import CellLevels
-from noise.recordings.blocks import RecordingBlocks
 
 FEATURE_NAMES = (
     *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in WINDOW_NAMES),
@@ -132,7 +132,7 @@ def describe(blocks: RecordingBlocks) -> Described:
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from noise.recordings.blocks import RecordingBlocks
+    >>> from models.blocks import RecordingBlocks
     >>> hiss = np.random.default_rng(0).normal(size=(1, 48_000))
     >>> found = describe(RecordingBlocks.of(Recording(hiss, 48e3, (Channel("pressure"),))))
     >>> found.features.shape == (3, len(FEATURE_NAMES)), found.frames.shape[0]
@@ -178,7 +178,7 @@ class Pages:
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from noise.recordings.blocks import RecordingBlocks
+    >>> from models.blocks import RecordingBlocks
     >>> hiss = np.random.default_rng(0).normal(size=(1, 480_000))
     >>> pages = Pages(RecordingBlocks.of(Recording(hiss, 48e3, (Channel("pressure"),))))
     >>> pages.count, sum(len(page.features) for page in pages)

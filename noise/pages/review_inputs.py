@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.orders import OrderMap
+from models.blocks import RecordingBlocks
 from models.errors import BushingNoiseError, ParameterError
 from models.recording import Recording
 from models.show import short_repr
@@ -29,8 +30,8 @@ from noise.labels.segments import label_recording
 from noise.labels.table import read_label_table
 from noise.pages.clips import BYTES_A_SECOND, RATE, SHORTEST, Entry, FastLevels, Row, stretch_start
 from noise.pictures.recording import recorded_levels, recorded_orders
-from noise.recordings import find_recordings, read_recording
-from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings import find_recordings
+from noise.recordings.files import open_blocks
 from noise.recordings.folders import files_below, is_file
 from noise.recordings.formats import formats
 from noise.recordings.meaning import PascalPerFullScale
@@ -386,8 +387,7 @@ def _read_entry(
     """
     try:
         rows = next(filter(None, (table.of(path) for table in tables)), ())
-        with open_blocks(path, full_scale=full_scale) as opened:
-            blocks = opened or RecordingBlocks.of(read_recording(path, full_scale=full_scale))
+        with open_blocks(path, full_scale=full_scale) as blocks:
             note = ""
             if any(row["label"] is not None for row in rows):
                 note = "labelled by the table"

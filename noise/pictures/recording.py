@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from features.kernels.orders import OrderMap
-    from models.blocks import Blocks, Read
+    from models.blocks import Read, RecordingBlocks
     from models.recording import Recording
 
 _RANGE = 70.0
@@ -52,13 +52,13 @@ _NAMED = 0.06
 
 
 def plot_recording(
-    recording: Recording | Blocks, rows: Sequence[Mapping[str, object]] = ()
+    recording: Recording | RecordingBlocks, rows: Sequence[Mapping[str, object]] = ()
 ) -> Figure:
     r"""Draw a recording.
 
     Parameters
     ----------
-    recording : Recording or Blocks
+    recording : Recording or RecordingBlocks
         In memory, or one of which parts can be had.
     rows : sequence of mapping
         Of the label table, whose segments are shown below the spectrogram.
@@ -184,7 +184,7 @@ def _extremes(
 
 
 def _curve(
-    recording: Recording | Blocks, row: int
+    recording: Recording | RecordingBlocks, row: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return what is drawn of a channel over time."""
     n = n_samples_of(recording)
@@ -193,7 +193,7 @@ def _curve(
 
 
 def recorded_levels(
-    recording: Recording | Blocks,
+    recording: Recording | RecordingBlocks,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Level over time of a recording's first pressure channel, as `level_over_time` returns it.
 
@@ -209,12 +209,14 @@ def recorded_levels(
     return _levels(read, n_samples_of(recording), recording.rate, _reference(recording))
 
 
-def recorded_speed(recording: Recording | Blocks) -> tuple[NDArray[np.float64], float] | None:
+def recorded_speed(
+    recording: Recording | RecordingBlocks,
+) -> tuple[NDArray[np.float64], float] | None:
     """Speed of the shaft over time, as it was recorded.
 
     Parameters
     ----------
-    recording : Recording or Blocks
+    recording : Recording or RecordingBlocks
 
     Returns
     -------
@@ -245,7 +247,7 @@ def recorded_speed(recording: Recording | Blocks) -> tuple[NDArray[np.float64], 
     return (values if speed is not None else speed_of_angle(values, rate)), rate
 
 
-def recorded_orders(recording: Recording | Blocks) -> OrderMap | None:
+def recorded_orders(recording: Recording | RecordingBlocks) -> OrderMap | None:
     """Order map of a recording's sound, else of its torque or acceleration.
 
     Returns
@@ -282,18 +284,20 @@ def recorded_orders(recording: Recording | Blocks) -> OrderMap | None:
 _WITH_ORDERS = ("pressure", "torque", "acceleration")
 
 
-def _reference(recording: Recording | Blocks) -> float:
+def _reference(recording: Recording | RecordingBlocks) -> float:
     sound = recording.first("pressure") is not None
     return REFERENCE_PRESSURE if recording.calibrated and sound else 1.0
 
 
-def _unit(recording: Recording | Blocks) -> str:
+def _unit(recording: Recording | RecordingBlocks) -> str:
     if recording.first("pressure") is None:
         return "dB re 1 unit"
     return "dB re 20 µPa" if recording.calibrated else "dBFS"
 
 
-def _spectrogram(figure: Figure, axes: Axes, recording: Recording | Blocks, row: int) -> None:
+def _spectrogram(
+    figure: Figure, axes: Axes, recording: Recording | RecordingBlocks, row: int
+) -> None:
     n = n_samples_of(recording)
     duration, read = n / recording.rate, reader_of(recording, row)
     level = spectrogram(read, n, recording.rate, _reference(recording))[::-1]
@@ -324,7 +328,7 @@ def _shown(level: NDArray[np.float64], highest: float) -> NDArray[np.float64]:
     return np.where(level < highest - _RANGE, np.nan, level)
 
 
-def _level(axes: Axes, recording: Recording | Blocks) -> None:
+def _level(axes: Axes, recording: Recording | RecordingBlocks) -> None:
     time, level = recorded_levels(recording)
     axes.plot(time, level, color=BLUE, linewidth=1.2)
     if level.size:

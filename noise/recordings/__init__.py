@@ -1,6 +1,7 @@
 """Recordings on disk: one file a format, the sidecar, and where a calibration can be found."""
 
-from noise.recordings.files import find_recordings, read_recording
+from noise.recordings.files import read_recording
+from noise.recordings.folders import find_recordings
 from noise.recordings.writing import write_recording
 
 __all__ = ["find_recordings", "read_recording", "write_recording"]

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError, RecordingError
 from models.recording import REFERENCE_PRESSURE
-from noise.recordings.files import read_raw
+from noise.recordings.files import open_raw
 
 FREQUENCIES = (250.0, 1000.0)
 """Of calibrators [Hz] (IEC 60942)."""
@@ -106,11 +106,12 @@ def read_calibrator(path: str | os.PathLike[str], level: float) -> tuple[Calibra
     if not math.isfinite(level):
         raise ParameterError(f"level is {level!r} dB, expected a number")
     path = Path(path)
-    raw = read_raw(path)
+    with open_raw(path) as raw:
+        samples = raw.whole()
     pressure = REFERENCE_PRESSURE * 10.0 ** (level / 20.0)
     found = []
-    for number, row in enumerate(raw.samples, start=1):
-        where = str(path) if len(raw.samples) == 1 else f"{path}: track {number}"
+    for number, row in enumerate(samples, start=1):
+        where = str(path) if raw.n_channels == 1 else f"{path}: track {number}"
         try:
             frequency, amplitude = _tone(row, raw.rate, fractional=raw.fractional)
         except ParameterError as error:

@@ -10,15 +10,27 @@ opened, and what nobody may look into is left out; one line says so.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from models.errors import ParameterError
 from models.foreign_file import check_plain_file
-from noise.base.progress import note
+from noise.base.progress import note, readable
+from noise.recordings.formats import formats
 
 _NAMED = 3
 """Of what is left out, so many are named."""
+
+_CONVERT = "convert to WAV or FLAC, as by: ffmpeg -i {name} {stem}.wav"
+_EXPORT = "export as TDMS, MDF4, HDF5, UFF58 or WAV from the program that wrote it"
+OTHERS = {
+    **dict.fromkeys(
+        (".3gp", ".aac", ".ac3", ".amr", ".ape", ".au", ".caf", ".dsf", ".m4a", ".m4b", ".mka",
+         ".mkv", ".mov", ".mp2", ".mp4", ".snd", ".w64", ".webm", ".wma", ".wv"), _CONVERT
+    ),
+    **dict.fromkeys((".ats", ".d7d", ".dxd", ".hdf", ".mat", ".pti", ".sie", ".tdm"), _EXPORT),
+}  # fmt: skip
+"""Endings of recordings that are not read -> what to do."""
 
 
 def files_below(folder: Path, *, tell: bool = False) -> list[tuple[Path, str]]:
@@ -127,3 +139,73 @@ def _why(path: Path) -> str:
     except ParameterError as error:
         return str(error).removeprefix(": ")
     return "cannot be read"
+
+
+def find_recordings(
+    paths: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
+) -> list[tuple[Path, str]]:
+    """Find recordings: files as named, and those in folders at any depth.
+
+    Parameters
+    ----------
+    paths : path-like or iterable of path-like
+        A file stands for itself, whatever its ending. In a folder hidden files and folders and
+        unknown endings are passed over, links to folders are followed, and what is no file, or a
+        recording of a format that is not read, is left out with a note.
+
+    Returns
+    -------
+    list of (Path, str)
+        Each file with its name relative to the folder named, with forward slashes; the bare name
+        where the file itself was named; what cannot be shown of it as
+        `noise.base.progress.readable` has it. Paths in the order given, sorted within a folder.
+
+    Raises
+    ------
+    ParameterError
+        A path does not exist.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (Path(folder) / "day1").mkdir()
+    ...     (Path(folder) / "day1" / "run07.wav").touch()
+    ...     (Path(folder) / "day1" / "run07.json").touch()
+    ...     [name for _, name in find_recordings(folder)]
+    ['day1/run07.wav']
+    """
+    named = [paths] if isinstance(paths, str | os.PathLike) else paths
+    found: list[tuple[Path, str]] = []
+    for path in map(Path, named):
+        try:
+            if path.is_dir():
+                files = files_below(path, tell=True)
+                _note_others(path, [name for _, name in files])
+                found += [
+                    (file, readable(name))
+                    for file, name in files
+                    if file.suffix.lower() in formats()
+                ]
+            elif path.exists():
+                found.append((path, readable(path.name)))
+            else:
+                raise ParameterError(f"{path}: there is no such file or folder")
+        except OSError as error:
+            raise ParameterError(f"{path}: cannot be read ({error.strerror or error})") from error
+    return found
+
+
+def _note_others(folder: Path, names: list[str]) -> None:
+    """Name the recordings in a folder that cannot be read, with what to do."""
+    for advice in (_CONVERT, _EXPORT):
+        left = [name for name in names if OTHERS.get(Path(name).suffix.lower()) == advice]
+        if left:
+            more = f" and {len(left) - _NAMED} more" * (len(left) > _NAMED)
+            note(f"{folder}: left out {', '.join(left[:_NAMED])}{more}: {what_to_do(left[0])}")
+
+
+def what_to_do(name: str) -> str:
+    """Return why a recording is not read, and what to do."""
+    path = Path(name)
+    return "not read; " + OTHERS[path.suffix.lower()].format(name=path.name, stem=path.stem)

@@ -43,7 +43,7 @@ from models.recording import REFERENCE_PRESSURE, Channel
 from noise.recordings.sidecar import Sidecar, find_sidecar, sidecar_of
 
 if TYPE_CHECKING:
-    from noise.recordings.formats import RawSamples
+    from noise.recordings.formats import RawRecording
 
 
 PascalPerFullScale = float | tuple[float, ...]
@@ -86,7 +86,7 @@ class Meaning:
 
 def describe(
     path: Path,
-    raw: RawSamples,
+    raw: RawRecording,
     full_scale: PascalPerFullScale | None = None,
     calibrations: Mapping[str, Calibration] | None = None,
 ) -> Meaning:
@@ -96,8 +96,7 @@ def describe(
     ----------
     path : Path
         The file, beside which the sidecar is sought.
-    raw : RawSamples
-        Of the samples only the number of channels counts.
+    raw : RawRecording
     full_scale, calibrations
         As for `read_recording`.
 
@@ -115,15 +114,15 @@ def describe(
     Examples
     --------
     >>> from pathlib import Path
-    >>> from noise.recordings.formats import RawSamples
-    >>> raw = RawSamples(np.empty((1, 0)), 48e3, fractional=True)
+    >>> from noise.recordings.formats import RawRecording
+    >>> raw = RawRecording(1, 480, 48e3, fractional=True, read=lambda a, b: np.zeros((1, b - a)))
     >>> meaning = describe(Path("nowhere.wav"), raw, 2.0)
     >>> meaning.channels[0].name, meaning.channels[0].full_scale, meaning.calibrated
     ('pressure', 2.0, True)
     """
-    options = _by_track(path, full_scale, len(raw.samples))
+    options = _by_track(path, full_scale, raw.n_channels)
     sidecar_path, sidecar = find_sidecar(path), sidecar_of(path)
-    n_channels = len(raw.samples)
+    n_channels = raw.n_channels
     if sidecar.channels is not None and len(sidecar.channels) != n_channels:
         raise RecordingError(
             f"{sidecar_path}: names {len(sidecar.channels)} channels, {path.name} has {n_channels}"
@@ -199,7 +198,7 @@ def _united(stated: Condition, sidecar: Condition) -> Condition:
 
 def _interpret(
     path: Path,
-    raw: RawSamples,
+    raw: RawRecording,
     sidecar: Sidecar,
     options: tuple[float | None, ...],
     calibrations: Mapping[str, Calibration],
@@ -211,7 +210,7 @@ def _interpret(
     channels = sidecar.channels or raw.channels or ()
     if not channels:
         kind = "pressure" if stated is None or any(options) else stated.kind
-        numbers = range(1, len(raw.samples) + 1)
+        numbers = range(1, raw.n_channels + 1)
         channels = tuple(Channel(kind if i == 1 else f"{kind}_{i}") for i in numbers)
     named = sidecar.channels is not None or raw.channels is not None
     in_units = not raw.fractional and (named or sidecar.calibrated is True)

@@ -10,6 +10,7 @@ import pytest
 import soundfile
 
 from features import recording_feature_names
+from models.blocks import RecordingBlocks
 from models.condition import Condition
 from models.recording import Channel, Recording
 from noise.classifier import LABELS, load_classifier
@@ -18,7 +19,6 @@ from noise.labels.segments import Segment
 from noise.labels.table import COLUMNS, LabelTable, read_label_table
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import read_recording, write_recording
-from noise.recordings.blocks import RecordingBlocks
 
 
 @pytest.fixture

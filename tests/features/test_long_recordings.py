@@ -11,7 +11,7 @@ from models.condition import Condition
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.recordings import write_recording
-from noise.recordings.blocks import open_blocks
+from noise.recordings.files import open_blocks
 from tests.features.test_feature_rates import sawtooth
 from tests.features.test_feature_sounds import SOUNDS
 
@@ -112,7 +112,7 @@ def test_a_long_file_has_the_features_of_the_recording_in_memory(tmp_path, monke
         samples.astype(np.float32).astype(float), RATE, (Channel("torque"), Channel("angle")), known
     )
     path = write_recording(tmp_path / "run.wav", run)
-    monkeypatch.setattr("noise.recordings.blocks._LARGE", 0)
+    monkeypatch.setattr("noise.recordings.files._LARGE", 0)
     monkeypatch.setattr(features.table, "LONG", 1)
     monkeypatch.setattr(features.table, "PIECE", 100_000)
     in_memory = recording_features(run)

@@ -12,6 +12,7 @@ from joblib import Parallel, delayed
 from scipy.stats import binom
 from sklearn.ensemble import RandomForestRegressor
 
+from models.blocks import RecordingBlocks
 from models.condition import FIXED, Condition
 from models.errors import ParameterError
 from models.recording import Channel, Recording
@@ -26,7 +27,6 @@ from noise.labels.segments import Segment
 from noise.labels.table import ASSUMED, COLUMNS, LabelTable, assumes_material, read_label_table
 from noise.pages.cards import facts_of
 from noise.pages.clips import Entry
-from noise.recordings.blocks import RecordingBlocks
 from noise.training.inference.fit import coverage, draw_run_sample, train_inference
 from noise.training.inference.population import draw_audible_run
 from noise.training.trees import PER_LEAF, grow_quantile_forest

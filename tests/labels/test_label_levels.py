@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from models.blocks import RecordingBlocks
 from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from noise.audio.assessment import assess
@@ -12,7 +13,6 @@ from noise.labels.levels import background_level, with_weighted_levels
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, label_recording
 from noise.recordings import write_recording
-from noise.recordings.blocks import RecordingBlocks
 from sim.run import simulate
 
 CLASSIFIER = load_classifier()
@@ -106,6 +106,6 @@ def test_levels_do_not_depend_on_how_much_is_read_at_once(squeal, tmp_path, monk
     sound = np.concatenate([noise(3.0, 0.01), squeal, noise(3.0, 0.01)])
     path = write_recording(tmp_path / "run", recorded(sound))
     whole = label(path)
-    monkeypatch.setattr("noise.recordings.blocks._LARGE", 0)
-    monkeypatch.setattr("noise.recordings.chunks._CHUNK", 8 * RATE // 3)
+    monkeypatch.setattr("noise.recordings.files._LARGE", 0)
+    monkeypatch.setattr("noise.recordings.files._CHUNK", 8 * RATE // 3)
     assert label(path) == whole

@@ -9,12 +9,13 @@ from features.windows.declared import (
     WINDOW_FEATURES,
 )
 from features.windows.table import WINDOW_NAMES, window_count
+from models.blocks import RecordingBlocks
 from models.recording import Channel, Recording
 from noise.labels.levels import CellLevels
 from noise.labels.segmentation import change_points, labelled_stretches, viterbi_path
 from noise.labels.windows import FEATURE_NAMES, describe
-from noise.recordings import blocks as blocks_module
-from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings import files as blocks_module
+from noise.recordings.files import open_blocks
 from noise.training.draws import coloured_noise
 
 
@@ -125,7 +126,7 @@ def test_windows_and_levels_reach_to_the_end(seconds):
 
 def test_from_a_file_in_blocks_comes_the_same_as_from_memory(tmp_path, monkeypatch):
     monkeypatch.setattr(blocks_module, "_LARGE", 0)
-    monkeypatch.setattr("noise.recordings.chunks._CHUNK", 8 * 50_000)
+    monkeypatch.setattr("noise.recordings.files._CHUNK", 8 * 50_000)
     rng = np.random.default_rng(1)
     samples = (0.1 * noise(23.3, 22_050) * rng.uniform(0.5, 1.0)).astype(np.float32)
     soundfile.write(tmp_path / "long.wav", samples, 22_050, subtype="FLOAT")

@@ -8,6 +8,7 @@ from io import BytesIO
 import numpy as np
 import pytest
 
+from models.blocks import RecordingBlocks
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.pictures import recording as recorded
@@ -17,7 +18,6 @@ from noise.pictures.recording import (
     recorded_orders,
     recorded_speed,
 )
-from noise.recordings.blocks import RecordingBlocks
 
 RATE = 30_000.0
 

@@ -7,11 +7,10 @@ import pytest
 import soundfile
 from hypothesis import given, strategies as st
 
+from models.blocks import HIGHEST_WORKED, RecordingBlocks, decimated
 from models.errors import RecordingError
 from models.recording import Channel, Recording
 from noise.recordings import read_recording
-from noise.recordings.blocks import RecordingBlocks
-from noise.recordings.decimation import HIGHEST_WORKED, decimated
 from noise.recordings.hits import read_hit
 
 

@@ -54,11 +54,11 @@ def test_it_lives_on_from_file_to_file_whatever_they_are(path, tmp_path):
 @LINUX
 def test_one_that_dies_over_a_file_is_a_file_refused_and_the_next_is_read(path):
     read_recording(path)
-    with open_isolated(path) as (_, _, read):
+    with open_isolated(path) as raw:
         for pid in children():
             os.kill(pid, signal.SIGKILL)
         with pytest.raises(RecordingError, match=r"run\.h5: .* no HDF5 .* ended the process"):
-            read(0, 100)
+            raw.read(0, 100)
     assert read_recording(path).samples.shape == (2, X.size)
 
 
@@ -69,8 +69,8 @@ def test_an_interrupt_leaves_no_half_answer_behind(path):
 
 
 def test_two_files_are_open_at_once(path):
-    with open_isolated(path) as (_, _, one), open_isolated(path) as (_, _, other):
-        np.testing.assert_array_equal(one(7, 99), other(7, 99))
+    with open_isolated(path) as one, open_isolated(path) as other:
+        np.testing.assert_array_equal(one.read(7, 99), other.read(7, 99))
 
 
 def test_a_path_is_that_of_the_folder_where_it_is_named(path, monkeypatch):

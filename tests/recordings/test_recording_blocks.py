@@ -9,13 +9,14 @@ import pytest
 import soundfile
 from hypothesis import given, strategies as st
 
+from models.blocks import RecordingBlocks
 from models.errors import RecordingError
 from models.recording import Channel, Recording
 from noise.classifier import load_classifier
 from noise.labels.rows import label_rows
 from noise.labels.segments import label_recording
 from noise.recordings import read_recording, write_recording
-from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings.files import open_blocks
 from tests.helpers.logger_files import WRITERS, Wave
 
 RATE = 8000
@@ -23,8 +24,8 @@ RATE = 8000
 
 @pytest.fixture(autouse=True)
 def small_is_large(monkeypatch):
-    monkeypatch.setattr("noise.recordings.blocks._LARGE", 1)
-    monkeypatch.setattr("noise.recordings.chunks._CHUNK", 5000)
+    monkeypatch.setattr("noise.recordings.files._LARGE", 1)
+    monkeypatch.setattr("noise.recordings.files._CHUNK", 5000)
 
 
 def noise(channels, seconds, seed=0):
@@ -100,13 +101,22 @@ def test_a_sample_that_is_no_number_is_found_where_it_is(tmp_path):
     assert str(parts.value) == str(whole.value)
 
 
-def test_what_breaks_off_or_is_no_sound_is_left_to_the_reader_of_the_whole(tmp_path):
+def test_what_breaks_off_or_is_no_sound_is_refused_with_the_words_of_reading_the_whole(tmp_path):
     path = tmp_path / "run.wav"
     soundfile.write(path, noise(1, 1.0).T, RATE)
     for content in (path.read_bytes()[:-100], b"no sound", b""):
         path.write_bytes(content)
-        with open_blocks(path) as blocks:
-            assert blocks is None
+        with pytest.raises(RecordingError) as whole:
+            read_recording(path)
+        with pytest.raises(RecordingError) as parts, open_blocks(path):
+            pass
+        assert str(parts.value) == str(whole.value)
+
+
+def test_what_goes_wrong_with_a_recording_that_is_open_is_no_fault_of_its_file(tmp_path):
+    soundfile.write(tmp_path / "run.wav", noise(1, 1.0).T, RATE)
+    with pytest.raises(KeyError, match="mine"), open_blocks(tmp_path / "run.wav"):
+        raise KeyError("mine")
 
 
 def test_a_flac_that_breaks_off_is_refused(tmp_path):
@@ -131,13 +141,6 @@ def test_mp3_does_not_click_where_it_is_read_in_parts(tmp_path, rate, channels):
         for _ in range(2):  # from the beginning again
             pieces = [piece.samples for piece in blocks.pieces(0, blocks.n_samples, 1777)]
             np.testing.assert_allclose(np.concatenate(pieces, axis=1), at_once, atol=1e-6)
-
-
-def test_short_recordings_are_read_whole(tmp_path, monkeypatch):
-    monkeypatch.setattr("noise.recordings.blocks._LARGE", 1 << 20)
-    soundfile.write(tmp_path / "run.wav", noise(1, 1.0).T, RATE)
-    with open_blocks(tmp_path / "run.wav") as blocks:
-        assert blocks is None
 
 
 def test_a_recording_in_memory_is_not_copied():

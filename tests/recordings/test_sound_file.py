@@ -1,13 +1,14 @@
 from __future__ import annotations
 
 import tracemalloc
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import soundfile
 
 from models.errors import RecordingError
-from noise.recordings.formats.sound_file import read_sound_file
+from noise.recordings.formats.sound_file import open_sound_file
 
 RATE = 48_000
 FORMATS = [
@@ -27,6 +28,11 @@ FORMATS = [
 def sine(n_samples: int = 20_000, n_channels: int = 1) -> np.ndarray:
     phase = 2 * np.pi * 500 * np.arange(n_samples) / RATE
     return 0.5 * np.sin(phase[:, None] + np.arange(n_channels))
+
+
+def read_sound_file(path):
+    with open_sound_file(path) as raw:
+        return SimpleNamespace(**vars(raw), samples=raw.whole())
 
 
 @pytest.mark.parametrize(("ending", "subtype", "fractional"), FORMATS)

@@ -1,7 +1,7 @@
 """Formats that recordings come in: one module each, found here by the endings of its files.
 
-A module of this package with a `FORMAT` is a format; no list repeats it. A sound file is read by
-`Format.read`. A logger's file is described by `Format.channels` and read in a process of its own.
+A module of this package with a `FORMAT` is a format; no list repeats it. A sound file is opened by
+`Format.open`. A logger's file is described by `Format.channels` and read in a process of its own.
 A reader returns what the file states and nothing more; what samples mean is decided in
 `noise.recordings.meaning`, once for all formats.
 """
@@ -27,44 +27,59 @@ from models.recording import Channel
 if TYPE_CHECKING:
     from noise.recordings.formats.logged import LoggedChannel
 
-__all__ = ["Format", "RawSamples", "check_rate", "formats"]
-
 LOWEST_RATE, HIGHEST_RATE = 1.0, 10e6
 """Sampling rates that are possible [Hz]; filters and windows grow with them."""
 
 
+Read = Callable[[int, int], NDArray[np.float64]]
+"""From first and last sample (exclusive) to those between them."""
+
+_BLOCK = 1 << 16  # samples a channel
+
+
 @dataclass(frozen=True, eq=False)
-class RawSamples:
-    """Samples of a file and what the file states of them, before anyone decides what they mean.
+class RawRecording:
+    """An open file and what it states of its samples, before anyone decides what they mean.
 
     Parameters
     ----------
-    samples : ndarray, shape (n_channels, n_samples)
-        As stored: over full scale [-] where `fractional`.
+    n_channels, n_samples : int
     rate : float
         Sampling rate [Hz].
     fractional : bool
         Whether samples are coded as fractions of a full scale (integers, lossy formats) and not
         as floating-point values of their own.
+    read : callable
+        From first and last sample to those between them as stored, shape (n_channels, n); over
+        full scale [-] where `fractional`.
     description, comment : str
         Free text in the file, where meters and engineers note a calibration.
     channels : tuple of Channel, optional
-        Where the file itself says what it measures: one a row of `samples`, which are in the
-        channels' units.
+        Where the file itself says what it measures: samples are in the channels' units.
     condition : Condition
         As far as the file itself states it.
     notes : tuple of str
         What a reader should know of it, a line each.
     """
 
-    samples: NDArray[np.float64]
+    n_channels: int
+    n_samples: int
     rate: float
     fractional: bool
+    read: Read
     description: str = ""
     comment: str = ""
     channels: tuple[Channel, ...] | None = None
     condition: Condition = field(default_factory=Condition)
     notes: tuple[str, ...] = ()
+
+    def whole(self) -> NDArray[np.float64]:
+        """Read all samples, block by block, in the memory of the result and no more."""
+        samples = np.empty((self.n_channels, self.n_samples))
+        for first in range(0, self.n_samples, _BLOCK):
+            last = min(first + _BLOCK, self.n_samples)
+            samples[:, first:last] = self.read(first, last)
+        return samples
 
 
 Logged = tuple[Sequence["LoggedChannel"], Mapping[str, object]]
@@ -80,8 +95,8 @@ class Format:
     name : str
     endings : tuple of str
         In lower case, with the dot.
-    read : callable, optional
-        From a path to `RawSamples`; of sound files.
+    open : callable, optional
+        From a path to a context that gives a `RawRecording`; of sound files.
     channels : callable, optional
         From a path to a context that gives its channels and properties; of loggers' files.
     library, extra : str
@@ -90,7 +105,7 @@ class Format:
 
     name: str
     endings: tuple[str, ...]
-    read: Callable[[Path], RawSamples] | None = None
+    open: Callable[[Path], AbstractContextManager[RawRecording]] | None = None
     channels: Callable[[Path], AbstractContextManager[Logged]] | None = None
     library: str = ""
     extra: str = ""

@@ -22,19 +22,17 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import RecordingError, not_installed
-from noise.recordings.formats import RawSamples, formats
-
-if TYPE_CHECKING:
-    from noise.recordings.formats.logged import Row
+from noise.recordings.formats import RawRecording, formats
 
 _PATIENCE = 15.0
 """How long an answer may take, beside the size of the file [s]."""
@@ -50,11 +48,9 @@ _LONGEST_REASON = 200  # letters
 _idle: list[tuple[int, Any]] = []
 """A process that waits for its next file, and whose it is: a fork needs one of its own."""
 
-_Opened = tuple[RawSamples, int, Callable[[int, int], NDArray[np.float64]]]
-
 
 @contextmanager
-def open_isolated(path: Path) -> Iterator[_Opened]:
+def open_isolated(path: Path) -> Iterator[RawRecording]:
     """Open a logger's file.
 
     Parameters
@@ -64,18 +60,14 @@ def open_isolated(path: Path) -> Iterator[_Opened]:
 
     Yields
     ------
-    raw : RawSamples
-        Without samples; its channels in the order of the file.
-    n_samples : int
-        Of each channel.
-    read : callable
-        From first and last sample to those between them, shape (n_channels, n), in SI.
+    RawRecording
+        Its channels in the order of the file, in SI.
 
     Raises
     ------
     RecordingError
-        Also by `read`: the file is damaged, holds no channels, these do not go together, or reading
-        took longer or more memory than it may; or its library is not installed.
+        Also by reading it: the file is damaged, holds no channels, these do not go together, or
+        reading took longer or more memory than it may; or its library is not installed.
     """
     of = formats()[path.suffix.lower()]
     if find_spec(of.library) is None:
@@ -112,8 +104,8 @@ def open_isolated(path: Path) -> Iterator[_Opened]:
 
     try:
         folder = os.curdir if path.is_absolute() else str(Path.cwd())
-        raw, n_samples = ask((folder, path, _ALLOWANCE + 4 * size, seconds))
-        yield raw, n_samples, lambda first, last: ask((first, last))
+        raw = ask((folder, path, _ALLOWANCE + 4 * size, seconds))
+        yield replace(raw, read=lambda first, last: ask((first, last)))
         with suppress(RecordingError):  # it died of the last part
             idle = ask(None)
     finally:
@@ -200,10 +192,10 @@ def _serve_file(
         import_module(of.library)
         _limit_memory(memory)
         with of.channels(path) as (channels, properties):  # type: ignore[misc]
-            raw, rows, n_samples = describe_channels(path, channels, properties)
-            send((raw, n_samples))
+            raw = describe_channels(path, channels, properties)
+            send(replace(raw, read=_elsewhere))
             while (part := receive()) is not None:
-                send(_samples(path, rows, *part))
+                send(raw.read(*part))
     except RecordingError as error:
         return str(error)
     except MemoryError:
@@ -217,11 +209,9 @@ def _serve_file(
     return ""
 
 
-def _samples(path: Path, rows: list[Row], first: int, last: int) -> NDArray[np.float64]:
-    try:
-        return np.stack([row.read(first, last) for row in rows])
-    except RecordingError as error:
-        raise RecordingError(f"{path}: {error}") from error
+def _elsewhere(first: int, last: int) -> NDArray[np.float64]:
+    """Stand in for what reads samples, which stays with the file."""
+    raise NotImplementedError
 
 
 def _limit_memory(more: int | None) -> None:

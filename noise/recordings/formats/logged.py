@@ -32,7 +32,7 @@ from models.condition import Condition
 from models.errors import RecordingError
 from models.recording import Channel
 from models.units import CHANNEL_UNITS, kind_of_unit, known_units, quantity_of_unit, split_unit
-from noise.recordings.formats import RawSamples, check_rate
+from noise.recordings.formats import RawRecording, check_rate
 from noise.recordings.sidecar import Sidecar, parse_sidecar, sidecar_of
 
 NOT_STATED = None
@@ -163,7 +163,7 @@ class Row:
 
 def describe_channels(
     path: Path, logged: Sequence[LoggedChannel], properties: Mapping[str, object]
-) -> tuple[RawSamples, list[Row], int]:
+) -> RawRecording:
     """Choose the channels of a logger's file that make a recording.
 
     Parameters
@@ -177,11 +177,8 @@ def describe_channels(
 
     Returns
     -------
-    raw : RawSamples
-        Without samples.
-    rows : list of Row
-    n_samples : int
-        Of each row.
+    RawRecording
+        In SI.
 
     Raises
     ------
@@ -197,8 +194,8 @@ def describe_channels(
     ...     factor=NOT_STATED, offset=NOT_STATED, unit="N mm",
     ...     problem=NOT_STATED, remark=NOT_STATED,
     ... )
-    >>> raw, rows, n = describe_channels(Path("run.h5"), [arm], {"speed_rad_s": 5.0})
-    >>> raw.channels[0].name, raw.rate, float(rows[0].read(0, 1)[0]), raw.condition.speed
+    >>> raw = describe_channels(Path("run.h5"), [arm], {"speed_rad_s": 5.0})
+    >>> raw.channels[0].name, raw.rate, float(raw.whole().max()), raw.condition.speed
     ('torque', 50000.0, 0.001, 5.0)
     """
     if not logged:
@@ -242,15 +239,23 @@ def describe_channels(
         channels = _names(rows)
     notes += [f"channel {r.logged.name!r} {r.logged.remark}" for r in rows if r.logged.remark]
     rows, n_samples = _together(path, rows, notes)
-    raw = RawSamples(
-        samples=np.empty((len(rows), 0)),
+
+    def read(first: int, last: int) -> NDArray[np.float64]:
+        try:
+            return np.stack([row.read(first, last) for row in rows])
+        except RecordingError as error:
+            raise RecordingError(f"{path}: {error}") from error
+
+    return RawRecording(
+        n_channels=len(rows),
+        n_samples=n_samples,
         rate=rows[0].rate,
         fractional=False,
+        read=read,
         channels=channels,
         condition=stated_condition(properties, str(path)),
         notes=tuple(notes),
     )
-    return raw, rows, n_samples
 
 
 def _listed(reasons: Sequence[str]) -> str:

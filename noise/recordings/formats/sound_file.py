@@ -12,17 +12,16 @@ import os
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
 from itertools import accumulate
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 import soundfile
 from numpy.typing import NDArray
 
 from models.errors import RecordingError
-from noise.recordings.formats import Format, RawSamples
+from noise.recordings.formats import Format, RawRecording
 from noise.recordings.formats.containers import (
     Piece,
     PieceFile,
@@ -42,36 +41,29 @@ _EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
 decoded."""
 
 
-def read_sound_file(path: Path) -> RawSamples:
-    """Read all samples of a sound file.
-
-    Parameters
-    ----------
-    path : Path
-        An existing file.
-
-    Returns
-    -------
-    RawSamples
+@contextmanager
+def open_sound_file(path: Path) -> Iterator[RawRecording]:
+    """Open a sound file.
 
     Raises
     ------
     RecordingError
-        The file is no sound file, is damaged, or ends before its header says.
+        The file is no sound file, is damaged, or ends before its header says; also by reading it.
 
     Examples
     --------
     >>> import tempfile
-    >>> from pathlib import Path
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "tone.flac"
     ...     soundfile.write(path, np.full(480, 0.5), 48000)
-    ...     raw = read_sound_file(path)
-    >>> raw.samples.shape, raw.rate, raw.fractional, float(raw.samples[0, 0])
+    ...     with open_sound_file(path) as raw:
+    ...         samples = raw.whole()
+    >>> samples.shape, raw.rate, raw.fractional, float(samples[0, 0])
     ((1, 480), 48000.0, True, 0.5)
     """
-    with SoundReader(path) as sound:
-        return replace(sound.raw, samples=sound.read(0, sound.n_samples))
+    sound = _Sound(path)
+    with sound.closing:
+        yield sound.raw
 
 
 FORMAT = Format(
@@ -80,30 +72,12 @@ FORMAT = Format(
         *(".wav", ".wave", ".bwf", ".bw64", ".rf64", ".aif", ".aiff"),
         *(".flac", ".mp3", ".oga", ".ogg", ".opus"),
     ),
-    read=read_sound_file,
+    open=open_sound_file,
 )
 
 
-class SoundReader:
-    """A sound file that is open for reading.
-
-    Parameters
-    ----------
-    path : Path
-        An existing file.
-
-    Attributes
-    ----------
-    raw : RawSamples
-        All but the samples.
-    n_samples : int
-        Of each channel.
-
-    Raises
-    ------
-    RecordingError
-        It is none, is damaged, or ends before its header says.
-    """
+class _Sound:
+    """A sound file that is open for reading."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -116,26 +90,18 @@ class SoundReader:
             self._ends = list(accumulate(int(sound.frames) for sound in self._sounds))
             self.n_samples = self._ends[-1]
             self._check()
-            self._closing = stack.pop_all()
+            self.closing = stack.pop_all()
         first = self._sounds[0]
-        self.raw = RawSamples(
-            samples=np.empty((int(first.channels), 0)),
+        self.raw = RawRecording(
+            n_channels=int(first.channels),
+            n_samples=self.n_samples,
             rate=float(first.samplerate),
             fractional=first.subtype not in ("FLOAT", "DOUBLE"),
             description=bext_description(path),
             comment=first.comment,
+            read=self.read,
             notes=tuple(notes),
         )
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Close the file."""
-        self._closing.close()
 
     def _check(self) -> None:
         first = self._sounds[0]
@@ -160,7 +126,7 @@ class SoundReader:
         RecordingError
             The file breaks off before.
         """
-        samples = np.empty((len(self.raw.samples), last - first))
+        samples = np.empty((self.raw.n_channels, last - first))
         done = first
         with _errors(self._path):
             for i, end in enumerate(self._ends):

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.windows.table import HOP, LENGTH
+from models.blocks import RecordingBlocks
 from noise.labels.windows import describe
-from noise.recordings.blocks import RecordingBlocks
 from noise.training.classifier.samples import Drawn, draw, swelling
 
 _QUIET_DB = 30.0

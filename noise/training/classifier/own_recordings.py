@@ -18,14 +18,15 @@ from pathlib import Path
 
 import numpy as np
 
+from models.blocks import RecordingBlocks
 from models.errors import BushingNoiseError, RecordingError
 from models.recording import Recording
 from noise.base.labels import LABELS
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.table import HUMAN, read_label_table
 from noise.labels.tracks import read_label_track
-from noise.recordings import find_recordings, read_recording
-from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings import find_recordings
+from noise.recordings.files import open_blocks
 from noise.recordings.folders import files_below, is_file
 
 LONGEST_WINDOW = 1.0
@@ -204,8 +205,7 @@ def _from_table(
 
 
 def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iterator[OwnWindow]:
-    with open_blocks(path) as opened:
-        whole = opened or RecordingBlocks.of(read_recording(path))
+    with open_blocks(path) as whole:
         for stretch in stretches:
             number = 0 if stretch.channel == "all" else _track_number(stretch.channel, whole)
             if number is None:

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from models.blocks import RecordingBlocks
 from noise.base.labels import LABELS
 from noise.labels.segmentation import NOISES
 from noise.labels.windows import can_be_described, describe
-from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
     from noise.training.classifier.own_recordings import OwnWindow

@@ -22,10 +22,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models.blocks import RecordingBlocks
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import read_recording
-from noise.recordings.blocks import RecordingBlocks
 from noise.training.classifier.own_samples import OwnSample
 
 _KIND = ModelKind(
