@@ -58,7 +58,7 @@ def labelled(monkeypatch):
         assert isinstance(classifier, Stand)
         asked.recordings.append((recording, per_track))
         certain = {label: float(label == "squeal") for label in LABELS}
-        end = recording.duration
+        end = recording.n_samples / recording.rate
         return [Segment("all", 0.0, end, "squeal", certain, 1046.0, None, -20.0)]
 
     monkeypatch.setattr("noise.labels.labelling.load_classifier", load_classifier)
@@ -170,16 +170,16 @@ def test_labels_come_with_a_map_and_label_tracks(runs, labelled, capsys):
 def test_what_was_done_before_an_interrupt_is_in_the_table(
     runs, labelled, monkeypatch, capsys, command
 ):
-    from noise import recordings
+    from noise.recordings import files
 
-    def read_recording(path, **about):
+    def interrupted(path, **about):
         if path.name == "c.wav":
             raise KeyboardInterrupt
-        return recordings_read(path, **about)
+        return open_blocks(path, **about)
 
-    recordings_read = recordings.read_recording
-    for place in ("noise.recordings", "noise.labels.labelling"):
-        monkeypatch.setattr(f"{place}.read_recording", read_recording)
+    open_blocks = files.open_blocks
+    for place in ("noise.recordings.files", "noise.labels.labelling"):
+        monkeypatch.setattr(f"{place}.open_blocks", interrupted)
     assert main([command, "runs", "--out", "t.csv"]) == 130
     assert [row["file"] for row in read_table("t.csv")] == ["a.wav", "b.wav"]
     assert "interrupted: 2 of 3 recordings" in capsys.readouterr().err
