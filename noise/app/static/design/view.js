@@ -18,7 +18,7 @@ export async function mount(panel) {
   const left = made("div", { className: "left" }), right = made("div", { className: "right" });
   const base = made("select", { id: "design-base" });
   base.append(...about.bases.map(({ id, name }) => made("option", { value: id, textContent: name })));
-  const play = made("button", { type: "button", className: "play", textContent: "Play" });
+  const play = made("button", { type: "button", className: "play", textContent: "Play", disabled: true }); // until there is a design
   const slots = ["A", "B"].map((name) => made("button", { type: "button", className: "slot", textContent: name, ariaPressed: String(name === "A") }));
   const copy = made("button", { type: "button", textContent: "Copy to the other", title: "Let the other design be as this one is" });
   const reset = made("button", { type: "button", textContent: "As the base" });
@@ -191,6 +191,7 @@ export async function mount(panel) {
 
   level.textContent = "Not playing.";
   await restore(kept(about.session) ?? { slot, states: { [slot]: { base: about.bases[0].id, values: {} } } });
+  play.disabled = false;
   design.ready = true;
   return design;
 }
