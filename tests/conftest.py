@@ -40,5 +40,5 @@ def _cache_of_its_own(tmp_path_factory):
     """Neither use what the user's diagnoses have kept, nor leave anything there."""
     with pytest.MonkeyPatch.context() as patch:
         folder = tmp_path_factory.mktemp("cache")
-        patch.setattr("noise.diagnosis.causes.local_cache._folder", lambda: folder)
+        patch.setattr("noise.diagnosis.causes.local_cases._folder", lambda: folder)
         yield

@@ -3,6 +3,8 @@
 In order: does the rig file describe the recordings to within what repeats differ by; where not;
 which causes are how probable together; how far parameters alone, and the likeliest of these with
 them, close the gap on recordings that no fit has seen, and how probable that leaves them.
+
+Which bushing is compared with where the rig file states none: that shipped for its material.
 """
 
 from __future__ import annotations
@@ -15,8 +17,9 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from models.condition import known_condition
+from models.rig import Rig
+from models.rig_file import load_material_rig, material_names
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
-from noise.diagnosis.assumed_fit import assumed_fit
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.bench.silent import unchecked_units
 from noise.diagnosis.causes.location import differences, locate, stage_findings
@@ -36,6 +39,34 @@ from sim.effects.effect import Effect, Stage
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
     from noise.diagnosis.fit.judge import Judged
+
+
+def assumed_fit(rig: Rig, interferences: Sequence[float]) -> str:
+    """Say which shipped fit a rig has that was given none of its own; empty where it was.
+
+    Parameters
+    ----------
+    rig : Rig
+    interferences : sequence of float
+        Of the recordings [m].
+
+    Examples
+    --------
+    >>> assumed_fit(load_material_rig("fluorocarbon-thesis"), [0.279e-3])
+    'no [[fit]] of its own in the rig file: the bushing is that shipped for fluorocarbon-thesis, \
+0.279 mm: 665 Nm/rad, breaks at 10.7, slides at 8 N m'
+    """
+    shipped = [name for name in material_names() if load_material_rig(name).fits == rig.fits]
+    if not shipped:
+        return ""
+    name = rig.material if rig.material in shipped else shipped[0]
+    fits = [rig.fit(interference) for interference in sorted(set(interferences))]
+    each = "; ".join(
+        f"{1e3 * fit.interference:.3g} mm: {fit.elastomer_stiffness:.4g} Nm/rad, breaks at "
+        f"{fit.critical_torque:.3g}, slides at {fit.kinetic_torque:.3g} N m"
+        for fit in fits
+    )
+    return f"no [[fit]] of its own in the rig file: the bushing is that shipped for {name}, {each}"
 
 
 _SHOWN = 5

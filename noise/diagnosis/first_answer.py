@@ -1,27 +1,254 @@
-"""The first answer of a diagnosis: is there a gap, and which cause is how probable."""
+"""The first answer of a diagnosis: is there a gap, and which cause is how probable.
+
+What the shipped models of causes have not seen or cannot tell, and what that costs.
+
+The models learned from recordings through sensors up to `NOISIEST` times as noisy as the good ones
+of `sim.acquisition`, and through converters as coarse as the thesis's. Against repeats that are
+simulated through a rig's own sensors a gap stays what it is, whatever the sensors; the
+probabilities of causes do not. Nor do they where a rig's responses come from a poor hammer test:
+its errors look like those of a sensor's gain or of the plate.
+
+Channels whose peaks are flat, as an overload leaves them and as no vibration has them.
+
+A range that is reached in all recordings is told by `noise.diagnosis.bench.faults`; an amplifier
+that overloads before the anti-alias filter leaves no single largest value, but samples that pile up
+at the ends of the signal. Whatever swings smoothly passes its peak as a parabola does: within a
+small distance w of the end it is 1 / (sqrt(2) - 1) = 2.4 times as long as between w and 2 w, and
+less where peaks have unequal heights. More is an overload, unless the simulation has it as well.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from models.rig import Rig
-from noise.diagnosis.bench.flat_tops import flat_channels
+from models.sensors import Sensors
+from models.units import CHANNEL_UNITS
 from noise.diagnosis.causes.joint import Hypothesis, joint_probabilities, marginals, with_none
-from noise.diagnosis.causes.unlearned import poor_responses, unlearned_sensors
 from noise.diagnosis.causes.unseen import unseen_causes
 from noise.diagnosis.causes.verdict import UNUSUAL, likeliest, needs_explaining
+from noise.diagnosis.evidence.bands import USABLE
+from noise.diagnosis.evidence.bench_context import lacking_coherence
 from noise.diagnosis.evidence.summary import CaseTable, case_table
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.gap.distance import Gap
 from noise.diagnosis.simulated.model_runs import Model
+from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.constant_version import constant_version
 from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
+    from models.recording import Recording
+    from models.rig import Rig
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
+
+_KINDS = ("torque", "acceleration", "pressure")
+
+_WIDTHS = (0.02, 0.05, 0.1, 0.15)
+"""Distances from an end, over the span [-]: the lower an amplifier cuts, the wider its filter's
+ringing spreads what it left; assumed."""
+
+_ENDS = (0.001, 0.999)
+"""Quantiles that a signal's ends are [-]; single impacts lie beyond; assumed."""
+
+_LEAST = 0.02
+"""Share of the samples that a pile has at least [-]; fewer may be the foot of an impact;
+assumed."""
+
+_BOTH, _ONE = 3.0, 4.5
+"""Ratios from which a channel is piled up at both ends, and at one [-]: beyond the 2.4 of a
+parabola, and measured on 139 development cases without clipping, where the largest were 2.3 and
+2.8."""
+
+_FEWEST = 3
+"""Recordings: in a single short one, of a few peaks, chance makes ratios up to 5 (measured on the
+same)."""
+
+_OF_SIMULATION = 0.5
+"""Share of a ratio that the simulation's must stay below [-]; assumed."""
+
+_FEWEST_VALUES = 40
+"""That a signal takes; with fewer the steps of a converter are what piles up; assumed."""
+
+
+def flat_channels(
+    recordings: Sequence[Recording], simulated: Callable[[Recording], Recording]
+) -> tuple[str, ...]:
+    """Name the kinds of channel whose peaks are flat in most recordings, unlike the simulation's.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        Of one rig; fewer than three tell nothing.
+    simulated : callable
+        Returns what the rig file makes of the condition of a recording; asked where peaks are flat.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> tone = np.sin(np.arange(9000.0))[None]
+    >>> plain, cut = (Recording(x, 30e3, (Channel("pressure"),))
+    ...               for x in (tone, np.clip(tone, -0.6, 0.6)))
+    >>> flat_channels([cut] * 3, lambda _: plain), flat_channels([plain] * 3, lambda _: plain)
+    (('pressure',), ())
+    """
+    found = []
+    repeats: list[Recording] = []
+    for kind in _KINDS:
+        having = [r for r in recordings if r.first(kind) is not None]
+        if len(having) < _FEWEST or (flat := _flatness(having, kind)) < 1.0:
+            continue
+        repeats = repeats or [simulated(r) for r in recordings]
+        made = [r for r in repeats if r.first(kind) is not None]
+        if len(made) < _FEWEST or _flatness(made, kind) < _OF_SIMULATION * flat:
+            found.append(kind)
+    return tuple(found)
+
+
+def _flatness(recordings: Sequence[Recording], kind: str) -> float:
+    """How far a channel is beyond the ratios that are an overload's [-]."""
+    each = [pile_ups(r.samples[row]) for r in recordings if (row := r.first(kind)) is not None]
+    middle = np.median(each, axis=0)
+    return float(max(middle.min(axis=0).max() / _BOTH, middle.max() / _ONE))
+
+
+def pile_ups(signal: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How many times as many samples lie at either end of a signal as just below it.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        [any unit]
+
+    Returns
+    -------
+    ndarray, shape (2, n_widths)
+        At the upper end and at the lower, within several widths [-]; 0 where few samples are.
+
+    Examples
+    --------
+    >>> pile_ups(np.sin(np.arange(9000.0))).max().round(1)
+    np.float64(2.4)
+    """
+    low, high = np.quantile(signal, _ENDS)
+    span = float(high - low)
+    ratios = np.zeros((2, len(_WIDTHS)))
+    if not span or np.unique(signal).size < _FEWEST_VALUES:
+        return ratios
+    for i, from_end in enumerate(((high - signal) / span, (signal - low) / span)):
+        within = np.sort(from_end[from_end < 2.0 * _WIDTHS[-1]])
+        for j, width in enumerate(_WIDTHS):
+            at, below = np.searchsorted(within, (width, 2.0 * width)).tolist()
+            if at >= _LEAST * signal.size:
+                ratios[i, j] = at / (below - at + 1.0)
+    return ratios
+
+
+NOISIEST = 6.0
+"""Noise of the sensors that were learned with, over that of good ones at most [-]."""
+
+_POOR = 0.05
+"""What a good hammer test's coherence lacks of 1 at most, median over frequency [-]. On development
+benches of the second rig good tests lack 0.001 and poor ones 0.10; between these it is assumed."""
+
+
+def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """Say which sensors the causes were not learned with; empty where all are as they were.
+
+    Parameters
+    ----------
+    sensors : Sensors
+        Their noise stated or estimated.
+    recordings : sequence of Recording
+        Through them.
+
+    Returns
+    -------
+    tuple of str
+        One line, or none.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from models.recording import Channel, Recording
+    >>> from models.sensors import Sensor, Sensors
+    >>> run = Recording(np.zeros((1, 4)), 30e3, (Channel("torque"),))
+    >>> unlearned_sensors(Sensors({"torque": Sensor(full_scale=102.5, bits=16)}), [run])
+    ()
+    """
+    usual = Acquisition().noise
+    rough: list[str] = []
+    full: list[str] = []
+    filtered: dict[float, list[str]] = {}
+    for kind in dict.fromkeys(c.kind for r in recordings for c in r.channels if c.kind in usual):
+        sensor = sensors.of(kind)
+        level = _level(usual[kind] if sensor.noise is None else sensor.noise, sensor.step)
+        most = _level(NOISIEST * usual[kind], THESIS_CONVERTER.of(kind).step)
+        rows = [(r, row) for r in recordings if (row := r.first(kind)) is not None]
+        if level > most:
+            rough.append(f"{kind} {level:.2g} {CHANNEL_UNITS[kind]} (at most {most:.2g})")
+        if sensor.full_scale is not None:
+            end = sensor.full_scale - 1.5 * sensor.step
+            if any(abs(r.samples[row]).max() >= end for r, row in rows):
+                full.append(kind)
+        if sensor.antialias is not None and sensor.antialias < USABLE * rows[0][0].rate:
+            filtered.setdefault(sensor.antialias, []).append(kind)
+    found = [f"noise and rounding of {', '.join(rough)}"] if rough else []
+    found += [f"a filter at {corner:g} Hz ({', '.join(on)})" for corner, on in filtered.items()]
+    found += [f"a range that is reached ({', '.join(full)})"] if full else []
+    if not found:
+        return ()
+    return (
+        f"the causes were learned with better sensors than these: {'; '.join(found)}; their "
+        "probabilities are less sure here, and none is named within what repeats through the same "
+        "sensors differ by",
+    )
+
+
+def poor_responses(rig: Rig, recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """Say that measured responses are too poor to name what they may feign; empty where not.
+
+    Parameters
+    ----------
+    rig : Rig
+    recordings : sequence of Recording
+        Whose supports' responses are looked at.
+
+    Returns
+    -------
+    tuple of str
+        One line, or none.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_rig
+    >>> poor_responses(load_rig("fluorocarbon"), [])
+    ()
+    """
+    lacking = lacking_coherence(rig, recordings) if rig.measured else 0.0
+    if lacking <= _POOR:
+        return ()
+    return (
+        f"the rig file's responses were measured with a coherence of {1.0 - lacking:.2f} only: "
+        "what they are off by looks like a gain error or another plate, so nothing is named within "
+        "what repeats differ by; more hits, and harder ones, would tell",
+    )
+
+
+def _level(noise: float, step: float) -> float:
+    """Add noise and rounding, as standard deviations [unit of the channel]."""
+    return math.hypot(noise, step / math.sqrt(12.0))
 
 
 _WITHIN_REPEATS = 0.9
@@ -54,7 +281,7 @@ class FirstAnswer:
     unlearned : tuple of str
         What is said of sensors that the probabilities were not learned with.
     flat : tuple of str
-        Kinds of channel that are overloaded, as `noise.diagnosis.bench.flat_tops` tells.
+        Kinds of channel that are overloaded, as `noise.diagnosis.first_answer` tells.
     """
 
     comparison: CaseComparison

@@ -1,36 +1,173 @@
-"""From recordings to a rig: single recordings first, all of them together, the law of friction."""
+"""From recordings to a rig: single recordings first, all of them together, the law of friction.
+
+Numbers that only a law gives a meaning to, each with its 90 % interval.
+
+Whether the structure fits: recorded acceleration and sound against what the rig predicts.
+
+An identification changes bushing and contact; clamp, beams and plate stay those that are known, the
+shipped bench's where nothing is. How far off these are, levels tell.
+"""
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import welch
 
 from models.bushing import TemperatureDependence
 from models.errors import ParameterError
 from models.rig import Rig
 from models.rig_file import rig_text
 from models.schema import remarks
+from noise.base.interval import SURE_90
 from noise.diagnosis.bench.check import unit_findings
+from noise.diagnosis.bench.units import unit_of
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers, read_again
 from noise.identification.evidence import table_evidence, with_evidence
 from noise.identification.law_choice import MARGIN, Choice, choose_law, overall
-from noise.identification.law_numbers import law_numbers
+from noise.identification.law_model import LOCAL
 from noise.identification.law_priors import fitted_evidence
 from noise.identification.levels import torque_levels
-from noise.identification.outcome import Identification, Seen, values_of
+from noise.identification.outcome import Identification, Number, Seen, values_of
 from noise.identification.static_test import static_evidence, static_notes
-from noise.identification.structure_check import structure_notes
 from noise.identification.subjects import subjects_of
 from noise.identification.table_fit import held_against
 from noise.identification.table_number import TableNumber
 from noise.identification.table_rig import identify_from_table
+from sim.effects import EFFECTS
+from sim.friction import friction_law
+from sim.run import simulate
+from sim.temperature import at_temperature
 
 if TYPE_CHECKING:
     from noise.identification.known import Beforehand
-    from noise.identification.measured import Measurements
+    from noise.identification.law_fit import LawFit
+    from noise.identification.measured import Measured, Measurements
+
+_BAND = 50.0, 10e3
+"""In which levels are compared [Hz]; assumed."""
+
+_SECONDS = 0.4
+_MOST = 4
+"""Recordings that are looked at for each channel."""
+
+_CLOSE = 3.0
+"""Offset up to which a structure is said to fit [dB]; assumed."""
+
+_KINDS = {"acceleration": "acceleration", "pressure": "sound"}
+
+
+def level_offsets(rig: Rig, recordings: Sequence[Measured]) -> dict[str, float]:
+    """Return by how much recorded levels exceed simulated ones, median over recordings.
+
+    Parameters
+    ----------
+    rig : Rig
+    recordings : sequence of Measured
+
+    Returns
+    -------
+    dict of str to float
+        By channel [dB]; without those that no recording has.
+    """
+    offsets: dict[str, list[float]] = {}
+    for kind in _KINDS:
+        having = [one for one in recordings if one.recording.first(kind) is not None][:_MOST]
+        for one in having:
+            row, at = one.recording.first(kind), one.condition
+            ambient = replace(at_temperature(rig, at.temperature), temperature=None)
+            try:
+                run = simulate(
+                    ambient, at.speed, interference=at.interference,
+                    support_stiffness=at.support_stiffness, seconds=_SECONDS,
+                )  # fmt: skip
+            except ParameterError:
+                continue
+            assert row is not None  # it has the channel
+            levels = (
+                _level(np.asarray(one.recording.samples[row], dtype=np.float64), one.rate),
+                _level(run.recording[kind], run.recording.rate),
+            )
+            if all(map(math.isfinite, levels)):
+                offsets.setdefault(kind, []).append(levels[0] - levels[1])
+    return {kind: float(np.median(found)) for kind, found in offsets.items()}
+
+
+def _level(signal: NDArray[np.float64], rate: float) -> float:
+    frequency, density = welch(signal, rate, nperseg=min(signal.size, 4096))
+    inside = (frequency >= _BAND[0]) & (frequency <= min(_BAND[1], 0.4 * rate))
+    power = float(np.sum(density[inside]) * (frequency[1] - frequency[0]))
+    return 10.0 * math.log10(power) if power > 0.0 and math.isfinite(power) else -math.inf
+
+
+def structure_notes(rig: Rig, recordings: Sequence[Measured]) -> list[str]:
+    """Say how recorded acceleration and sound compare with what the rig's structure predicts.
+
+    Returns
+    -------
+    list of str
+        Empty where neither was recorded.
+    """
+    notes = []
+    for kind, offset in level_offsets(rig, recordings).items():
+        told = f"measured {_KINDS[kind]} is {abs(offset):.0f} dB "
+        told += "above" if offset > 0.0 else "below"
+        if abs(offset) <= _CLOSE:
+            told = f"measured {_KINDS[kind]} is within {_CLOSE:g} dB of"
+        unit = unit_of(kind, 10.0 ** (offset / 20.0))
+        after = "; measure responses with frf" + (f", or is it in {unit}?" if unit else "")
+        after = "" if abs(offset) <= _CLOSE else after
+        notes.append(f"the structure is that of the known bench: {told} what it predicts{after}")
+    return notes
+
+
+def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
+    """Torques as the law means them, and the law's own parameters, by the curvature of the fit.
+
+    Parameters
+    ----------
+    fit : LawFit
+        To all recordings.
+    rig : Rig
+        Identified by it.
+    """
+    model, spread = fit.model, np.sqrt(np.diag(fit.covariance))
+    error = {group: float(spread[model.n_local + g]) for g, group in enumerate(model.groups)}
+    numbers = []
+    for one in rig.fits:
+        kinetic, drop = (
+            error[LOCAL.index(name), one.interference] for name in ("kinetic_torque", "drop")
+        )
+        share = 1.0 - one.kinetic_torque / one.critical_torque
+        for name, value, of in (
+            ("law_kinetic_torque", one.kinetic_torque, kinetic),
+            ("law_critical_torque", one.critical_torque, math.hypot(kinetic, share * drop)),
+        ):
+            low, high = _interval(value, of)
+            numbers.append(Number(name, "Nm", value, low, high, 0, one.interference))
+    candidate = model.candidate
+    units = (
+        EFFECTS[candidate.effect].parameters
+        if candidate.effect
+        else friction_law(candidate.law).parameters
+    )
+    for i, name in enumerate(candidate.free):
+        value = math.exp(fit.vector[model.n_common + i])
+        low, high = _interval(value, float(spread[model.n_common + i]))
+        numbers.append(Number(f"friction.{name}", units[name].unit, value, low, high, 0))
+    return numbers
+
+
+def _interval(value: float, error: float) -> tuple[float, float]:
+    away = math.exp(SURE_90 * min(error, 2.0))
+    return value / away, value * away
 
 
 class NothingSlipsError(ParameterError):

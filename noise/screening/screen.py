@@ -4,36 +4,214 @@ Each design is mapped in each environment, at constant speed and, where any of t
 caller does, swinging to and fro, over conditions that all share; then graded, and its parts are
 looked at. A design that cannot be simulated is refused by name, and what else fails is told; the
 others go on.
+
+Designs whose contact never lets go in use, which are quiet for no good reason.
+
+A shaft that turns on winds the bushing up until the contact slips. Where it would have to wind it
+up further than rubber bears, or longer than a run of the map lasts at the fastest speed of use,
+with every fit and support, nothing is known of the design's noise, and it gets no rank; most often
+a torque or a stiffness is in another unit. A shaft that swings may well never make the contact
+slip, which is a result.
+
+First hint of what would make a design quieter, told from its map and from stability.
+
+A map says with which support and at which interference the use is quietest; stability, a
+hundredth of a second for a whole use, which change of the bushing by a fifth steadies most of it.
+Neither simulates the changed design: what a hint brings is told by screening it, and the smallest
+change that is enough by the advice of its tolerances (`noise.screening.parts.advice`).
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import BushingNoiseError, ParameterError
-from models.rig import Rig
+from models.rig import Rig, effective_stiffness
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.batch import Journal
 from noise.screening.design.design import Design, Swinging, Use
-from noise.screening.design.environments import DRY, environment, in_environment
+from noise.screening.design.environments import (
+    DRY,
+    FIT_PARAMETERS,
+    environment,
+    in_environment,
+    scaled_fit,
+)
 from noise.screening.design.loading import load_designs
 from noise.screening.map.batches import Evaluator, batch_evaluator, keeping
 from noise.screening.map.grid import Grid, shared_grid, shared_motions
-from noise.screening.map.mapping import DesignMap, map_design
+from noise.screening.map.mapping import DesignMap, growth_rates, map_design
+from noise.screening.map.point import LONGEST_POINT
 from noise.screening.map.provenance import fits_remark
 from noise.screening.outcome import Screening
 from noise.screening.parts.statistics import statistics_of
-from noise.screening.ranking.first_hint import first_hint
 from noise.screening.ranking.margins import critical_points
-from noise.screening.ranking.never_slips import why_never_slipping
+from noise.screening.ranking.plain_words import fit_words, supports_words
 from noise.screening.ranking.ranking import standings
+from noise.screening.ranking.use_risk import ends_and_middle
+from sim.analysis.critical_speeds import motion_from_rest
+from sim.analysis.regime import never_slips
 from sim.effects import EFFECTS
+
+if TYPE_CHECKING:
+    from noise.screening.map.grid import Grid
+
+_CHANGE = 0.2
+"""Of a parameter of the bushing, as a share of its value."""
+
+_NO_TORQUE = 1e-12
+"""[N m]"""
+
+_SPEEDS = 17
+"""Of the use, at which stability is asked, at the ends and the middle of the other axes."""
+
+_BETTER = 0.8
+"""Share of what is noisy, or unsteady, that must be left at most for a hint."""
+
+
+def first_hint(rig: Rig, found: DesignMap) -> str:
+    """Say what would make a design quieter; empty where it is quiet or nothing is known to.
+
+    Parameters
+    ----------
+    rig : Rig
+        In the environment of the map.
+    found : DesignMap
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import Use
+    >>> from noise.screening.screen import screen
+    >>> use = Use(speed=(1.0, 5.0, 9.0), support_stiffness=(2214.0,))
+    >>> screen(["PDMS"], use).standings[0].hint
+    ''
+    >>> screen(["fluorocarbon-thesis"], use).standings[0].hint
+    'quietest at 0.178 mm: 33% of the use is noisy, not 44%'
+    """
+    noisy = found.label[..., found.grid.used] != "none"
+    if not noisy.any():
+        return ""
+    return "; ".join(filter(None, (_by_stability(rig, found.grid), _by_map(noisy, found))))
+
+
+def _by_stability(rig: Rig, grid: Grid) -> str:
+    """Name the change that steadies most, of laws that stability tells of, with the shaft turning.
+
+    A constant torque slides stably at any speed, however it sticks and slips.
+    """
+    if grid.frequency:
+        return ""
+    now = _unsteady(rig, grid)
+    if now == 0.0:
+        return ""
+    tried = [
+        (_unsteady(changed, grid), name, change)
+        for name in FIT_PARAMETERS
+        for aimed in (-_CHANGE, _CHANGE)
+        for changed, change in [_changed(rig, name, 1.0 + aimed)]
+        if change
+    ]
+    share, name, change = min(tried)
+    if share > _BETTER * now:
+        return ""
+    return f"{name} {change:+.0%}: by stability {share:.0%} of the use is unsteady, not {now:.0%}"
+
+
+def _unsteady(rig: Rig, grid: Grid) -> float:
+    """Share of the use at which steady sliding cannot last [-]."""
+    axes = tuple(
+        np.array(ends_and_middle(axis))
+        for axis in (grid.temperature, grid.support_stiffness, grid.interference)
+    )
+    return float(np.mean(growth_rates(rig, axes, np.linspace(*grid.use, _SPEEDS)) > 0.0))
+
+
+def _changed(rig: Rig, name: str, factor: float) -> tuple[Rig, float]:
+    """Change a parameter of all fits, no further than until both torques are one.
+
+    The change is told as a share of the value [-].
+    """
+    ratio = min(fit.critical_torque / max(fit.kinetic_torque, _NO_TORQUE) for fit in rig.fits)
+    factor = {
+        "critical_torque": max(factor, 1.0 / ratio),
+        "kinetic_torque": min(factor, ratio),
+    }.get(name, factor)
+    changed = replace(rig, fits=tuple(scaled_fit(fit, {name: factor}) for fit in rig.fits))
+    return changed, factor - 1.0
+
+
+def _by_map(noisy: NDArray[np.bool_], found: DesignMap) -> str:
+    """Name the support or the interference at which the use is quietest by far."""
+    overall = float(noisy.mean())
+    tried = list(_shares(noisy, found))
+    share, where = min(tried, default=(overall, ""))
+    if share > _BETTER * overall:
+        return ""
+    return f"quietest {where}: {share:.0%} of the use is noisy, not {overall:.0%}"
+
+
+def _shares(noisy: NDArray[np.bool_], found: DesignMap) -> Iterator[tuple[float, str]]:
+    grid, own = found.grid, ~found.substituted
+    for i, support in enumerate(grid.support_stiffness):
+        yield float(noisy[:, i].mean()), supports_words([support])
+    for i, fit in enumerate(grid.interference):
+        if own[:, :, i].any():
+            yield float(noisy[:, :, i].mean()), fit_words([fit])
+
+
+_MOST_TWIST = 2.0
+"""Of a bushing [rad]: one half as thick as its radius is then sheared by 400 %, and tears."""
+
+
+def why_never_slipping(rig: Rig, grid: Grid) -> str:
+    """Say why the contact slips at no point of a map; empty where it does.
+
+    Parameters
+    ----------
+    rig : Rig
+        In its environment.
+    grid : Grid
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import Use, load_design
+    >>> from noise.screening.map.grid import grid_of
+    >>> design = load_design("fluorocarbon-thesis")
+    >>> grid = grid_of(design, Use(speed=(5.0,), interference=(0.279e-3,)))
+    >>> why_never_slipping(design.rig, grid)
+    ''
+    >>> in_nmm = design.rig.changed(critical_torque="x1000", kinetic_torque="x1000")
+    >>> why_never_slipping(in_nmm, grid)
+    'never slips: the contact holds 10700 Nm, for which the shaft winds the bushing up by 16.1 rad'
+    """
+    twist, torque, interference, support = min(
+        (fit.critical_torque / effective_stiffness(fit, support), fit.critical_torque, at, support)
+        for at, support in itertools.product(grid.interference, grid.support_stiffness)
+        for fit in (rig.fit(at),)
+    )
+    swing = bool(grid.frequency)
+    fastest = grid.use[1]
+    way = fastest / (2.0 * math.pi * min(grid.frequency)) if swing else fastest * LONGEST_POINT
+    if twist <= (way if swing else min(way, _MOST_TWIST)):
+        return ""
+    if not swing and twist <= _MOST_TWIST:
+        motion = motion_from_rest(rig, fastest, interference, support, seconds=LONGEST_POINT)
+        if not never_slips(motion):
+            return ""
+    return (
+        f"never slips: the contact holds {torque:g} Nm, for which the shaft winds the bushing up "
+        f"by {twist:.3g} rad"
+    )
+
 
 DEFAULT_SIMULATIONS = 500
 """Of a map, more or less: what two cores do of the calibrated fluorocarbon in eight seconds."""

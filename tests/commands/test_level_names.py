@@ -15,7 +15,7 @@ from models.rig_file import load_material_rig
 from noise.app.opened import open_paths
 from noise.app.sounds import SoundCache, bands, level_course
 from noise.cli import main
-from noise.diagnosis.fit.labels_and_levels import labels_and_levels
+from noise.diagnosis.fit.fits import labels_and_levels
 from noise.labels.labelling import label
 from noise.recordings import read_recording, write_recording
 from noise.screening.map import point

@@ -9,9 +9,8 @@ import pytest
 
 from models.rig_file import load_material_rig, load_rig, material_names
 from noise.cli import main
-from noise.diagnosis.assumed_fit import assumed_fit
 from noise.diagnosis.case import Case
-from noise.diagnosis.diagnose import case_remarks
+from noise.diagnosis.diagnose import assumed_fit, case_remarks
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG_FILE, at, run, write_case
 

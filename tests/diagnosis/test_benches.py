@@ -15,7 +15,7 @@ from noise.diagnosis.cases.rigs import draw_setting
 from noise.diagnosis.cases.starts import STARTS, draw_start
 from noise.diagnosis.cases.truth import Truth, seen_through
 from noise.diagnosis.evidence.evidence import aligned
-from noise.training.causes.build import known_cases_of_a_rig
+from noise.training.causes.store import known_cases_of_a_rig
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.friction import LAWS, friction_law

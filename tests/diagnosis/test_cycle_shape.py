@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from models.condition import FIXED
-from noise.diagnosis.evidence.contact_summary import slip_starts
+from noise.diagnosis.evidence.contact_summary import cycle_shape, slip_starts
 from noise.diagnosis.evidence.reconstruction import reconstruct
-from noise.diagnosis.evidence.slip_summary import cycle_shape
 from sim.bushing import lumped_bushing
 from tests.helpers.small_rigs import RATE, RIG, at, run
 

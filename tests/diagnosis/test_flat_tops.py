@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from noise.diagnosis.bench.flat_tops import flat_channels, pile_ups
 from noise.diagnosis.causes.location import locate, stage_findings
+from noise.diagnosis.first_answer import flat_channels, pile_ups
 from sim.acquisition import decimate
 from tests.helpers.made_posteriors import NAMES, made_nulls
 from tests.helpers.small_rigs import at, run, table_of

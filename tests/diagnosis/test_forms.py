@@ -12,7 +12,7 @@ from models.rig import LawSpec
 from models.transfer_functions.filtering import filter_signal, impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.fit.case_comparison import CaseComparison
-from noise.diagnosis.fit.forms.drawn import drawn_forms
+from noise.diagnosis.fit.fit_effect import drawn_forms
 from noise.diagnosis.fit.forms.estimated import estimated_forms
 from noise.diagnosis.fit.forms.wiener import Noise, wiener_estimate
 from noise.diagnosis.simulated.model_runs import Model

@@ -10,10 +10,9 @@ from models.condition import FIXED
 from models.errors import ParameterError
 from noise.diagnosis.case import Case
 from noise.diagnosis.causes import local_cases as local
-from noise.diagnosis.causes.hypotheses import local_answer
+from noise.diagnosis.causes.hypotheses import fit_local_model, local_answer
 from noise.diagnosis.causes.joint import joint_probabilities, marginals
-from noise.diagnosis.causes.local_cache import LocalCache
-from noise.diagnosis.causes.local_model import fit_local_model
+from noise.diagnosis.causes.local_cases import LocalCache
 from noise.diagnosis.causes.posterior import CAUSES, load_posterior
 from noise.diagnosis.evidence.summary import case_table
 from sim.effects import EFFECTS
@@ -29,7 +28,7 @@ EXCLUSIVE = ("none", "parameters", "unknown")
 
 @pytest.fixture(autouse=True)
 def cache_folder(tmp_path, monkeypatch):
-    monkeypatch.setattr("noise.diagnosis.causes.local_cache._folder", lambda: tmp_path)
+    monkeypatch.setattr("noise.diagnosis.causes.local_cases._folder", lambda: tmp_path)
     return tmp_path
 
 
@@ -211,7 +210,7 @@ def test_cases_that_cannot_be_simulated_leave_the_first_answer_and_are_told(post
 
 
 def test_another_rig_has_local_cases_of_its_own_and_old_ones_go(posterior, monkeypatch):
-    monkeypatch.setattr("noise.diagnosis.causes.local_cache._MOST", 2)
+    monkeypatch.setattr("noise.diagnosis.causes.local_cases._MOST", 2)
     files = [LocalCache.of((name,), posterior) for name in ("one", "two", "three")]
     assert len({file.path for file in files}) == 3
     known = {(frozenset({"clipping"}), 1): np.ones(3)}

@@ -15,7 +15,7 @@ from noise.diagnosis.cases.strengths import drawn_effect
 from noise.diagnosis.cases.truth import KINDS
 from noise.diagnosis.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from noise.diagnosis.simulated.repeats import CHANNELS, Scatter
-from noise.training.causes.build import known_cases_of_a_rig
+from noise.training.causes.store import known_cases_of_a_rig
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG, SECONDS, at, run
 

@@ -20,8 +20,14 @@ from noise.diagnosis.causes.verdict import (
     next_measurement,
 )
 from noise.diagnosis.gap.distance import Gap
-from noise.training.causes.boosting import grow_cause_trees
-from noise.training.causes.fit import Known, causes_of, train_posterior, with_channels, with_fewer
+from noise.training.causes.fit import (
+    Known,
+    causes_of,
+    grow_cause_trees,
+    train_posterior,
+    with_channels,
+    with_fewer,
+)
 from sim.effects import EFFECTS
 from tests.helpers.made_posteriors import MOVES, NAMES, made_cases, made_posterior, made_table
 

@@ -15,9 +15,8 @@ from models.rig import LawSpec
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.evidence.evidence import scale_of
 from noise.diagnosis.evidence.summary import case_table
-from noise.diagnosis.fit.candidates import drawn_candidates, plain_candidates
 from noise.diagnosis.fit.case_comparison import CaseComparison
-from noise.diagnosis.fit.fit_effect import fit_effect
+from noise.diagnosis.fit.fit_effect import drawn_candidates, fit_effect, plain_candidates
 from noise.diagnosis.fit.fit_parameters import fit_parameters, split
 from noise.diagnosis.simulated.model_runs import Model
 from sim.effects import EFFECTS

@@ -15,13 +15,13 @@ from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.cli import main
 from noise.diagnosis.case import read_case
-from noise.diagnosis.causes.unlearned import poor_responses, unlearned_sensors
 from noise.diagnosis.causes.verdict import needs_explaining
+from noise.diagnosis.first_answer import poor_responses, unlearned_sensors
 from noise.diagnosis.gap.distance import Gap
 from noise.diagnosis.gap.floor import case_gap
 from noise.diagnosis.gap.signature import NAMES
+from noise.diagnosis.preparation.prepare import with_seen_sensors
 from noise.diagnosis.preparation.sensor_noise import estimated_noise
-from noise.diagnosis.preparation.sensors_seen import with_seen_sensors
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.nominal import nominal_recordings
 from noise.diagnosis.simulated.repeats import Scatter

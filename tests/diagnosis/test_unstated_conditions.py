@@ -12,8 +12,7 @@ from hypothesis import given, settings, strategies as st
 from models.condition import Condition, KnownCondition
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
-from noise.diagnosis.case import usable
-from noise.diagnosis.unstated.conditions import with_told_conditions
+from noise.diagnosis.case import usable, with_told_conditions
 from noise.recordings.sidecar import parse_sidecar
 from tests.helpers.small_rigs import only, run
 

@@ -29,7 +29,7 @@ from noise.base.tables import write_table
 from noise.cli import main
 from noise.pages.diagnosis import write_diagnosis
 from noise.training.classifier.described_samples import Sample
-from noise.training.classifier.kept_samples import load_samples, save_samples
+from noise.training.classifier.fit import load_samples, save_samples
 from tests.helpers.logger_files import WRITERS, Wave, uff
 from tests.helpers.made_diagnoses import one_effect
 from tests.helpers.made_reviews import row, screen_rows, write_screen

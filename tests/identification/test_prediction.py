@@ -6,7 +6,7 @@ import pytest
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from noise.identification.excerpts import excerpts_of
-from noise.identification.prediction import foretold, friction_of
+from noise.identification.law_model import foretold, friction_of
 from sim.bushing import lumped_bushing
 from sim.constant_version import constant_version
 from sim.motion import simulate_motion

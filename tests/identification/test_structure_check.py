@@ -7,8 +7,8 @@ import pytest
 
 from models.condition import Condition
 from models.rig_file import load_material_rig
+from noise.identification.identify import level_offsets, structure_notes
 from noise.identification.measured import measured
-from noise.identification.structure_check import level_offsets, structure_notes
 from sim.run import simulate
 
 RIG = load_material_rig("fluorocarbon-thesis")

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from noise.screening.map.interpolate import interpolate_levels
-from noise.screening.map.refine import refined_map
+from noise.screening.map.mapping import interpolate_levels, refined_map
 
 
 def brute(shape, code_at):

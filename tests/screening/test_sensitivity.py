@@ -6,7 +6,7 @@ from hypothesis import given, settings, strategies as st
 from scipy import stats
 
 from models.errors import ParameterError
-from noise.screening.parts.sensitivity import sobol_indices
+from noise.screening.parts.robustness import sobol_indices
 
 ANGLES = {f"x{i}": stats.uniform(-np.pi, 2.0 * np.pi) for i in (1, 2, 3)}
 WEIGHTS = np.array([0.0, 1.0, 4.5, 9.0, 99.0, 99.0])

@@ -17,10 +17,10 @@ from models.errors import ParameterError
 from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.thesis import page, row, table
-from noise.thesis.explanations import WHY
 from noise.thesis.heat import RUBBER, STEEL, Layer, heat_shares, interface_rise, temperature_rise
 from noise.thesis.repetition import repetition_rate
 from noise.thesis.stiffness import fixed_free_frequencies, free_free_frequencies
+from noise.thesis.table import WHY
 from sim.analysis.critical_damping import critical_damping, largest_sticking
 from sim.analysis.critical_speeds import critical_speeds, regime_at
 from sim.analysis.regime import Regime

@@ -3,9 +3,16 @@
 import numpy as np
 import pytest
 
-from noise.training.classifier.augmentation.codecs import coded, quantised
-from noise.training.classifier.augmentation.microphones import levelled, through_a_microphone
-from noise.training.classifier.augmentation.recorder import RATES, augmented, recorded, resampled
+from noise.training.classifier.augmentation.recorder import (
+    RATES,
+    augmented,
+    coded,
+    levelled,
+    quantised,
+    recorded,
+    resampled,
+    through_a_microphone,
+)
 from noise.training.classifier.augmentation.rooms import in_a_room
 from noise.training.draws import coloured_noise
 

@@ -5,11 +5,17 @@ import pytest
 
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
-from noise.training.classifier.friction_sources.creaks import CREAKS, creak, pulses, random_slips
+from noise.training.classifier.described_samples import (
+    CREAKS,
+    SQUAWKS,
+    creak,
+    pulses,
+    random_slips,
+    squawk,
+)
 from noise.training.classifier.friction_sources.limit_cycle import ENVELOPE_RATE, amplitudes
 from noise.training.classifier.friction_sources.modal_body import ModalBody, random_body
 from noise.training.classifier.friction_sources.slider import Slips, random_drive, slide
-from noise.training.classifier.friction_sources.squawks import SQUAWKS, squawk
 from noise.training.classifier.friction_sources.squeals import SQUEALS, squeal
 
 RATE = 48e3

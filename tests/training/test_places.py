@@ -3,14 +3,16 @@
 import numpy as np
 import pytest
 
-from noise.training.classifier.augmentation.cabins import CABINS, orders, shaped_noise
 from noise.training.classifier.augmentation.places import (
+    CABINS,
     LEARNED,
     LEFT_OUT,
     PLACES,
     a_weighted,
     in_a_place,
+    orders,
     place,
+    shaped_noise,
 )
 
 RATE = 48_000

@@ -8,10 +8,15 @@ import pytest
 from models.errors import ParameterError
 from noise.classifier import LABELS
 from noise.noise_definition import label_by_physics
-from noise.training.classifier.bushing_recordings import bushing_recording
 from noise.training.classifier.bushings import random_run, stretch
+from noise.training.classifier.described_samples import (
+    SHARES,
+    SOURCES,
+    bushing_recording,
+    draw,
+    draw_from,
+)
 from noise.training.classifier.designs import random_extras
-from noise.training.classifier.samples import SHARES, SOURCES, draw, draw_from
 from sim.effects import EFFECTS
 
 
@@ -97,7 +102,7 @@ def test_an_unknown_source_is_refused():
 
 
 def test_groups_come_in_their_shares(monkeypatch):
-    from noise.training.classifier import samples
+    from noise.training.classifier import described_samples as samples
 
     # What each would sound like does not matter here.
     monkeypatch.setattr(samples, "draw_from", lambda source, _: source)

@@ -12,9 +12,8 @@ from noise.labels.windows import FEATURE_NAMES
 from noise.training.classifier import cross_fitting
 from noise.training.classifier.described_samples import draw_sample
 from noise.training.classifier.designs import random_design
-from noise.training.classifier.fit import learn, train
+from noise.training.classifier.fit import learn, load_real_sounds, train
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
-from noise.training.classifier.real_sounds import load_real_sounds
 from noise.training.classifier.surroundings import may_sound
 
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _FLAT = len(STAGES) / 140.0
 """p-value of the measurement where a channel's peaks are flat [-]: none of 139 development cases
-without clipping had such (`noise.diagnosis.bench.flat_tops`), and there are five stages."""
+without clipping had such (`noise.diagnosis.first_answer`), and there are five stages."""
 
 _WHOLE_BAND = (0.0, 1800.0)
 """Of a difference that is in no band: where the contact's cycle lives [Hz]; assumed."""

@@ -3,12 +3,16 @@
 Nobody knows the form that the real effect has, so a fit begins with many: the simulator's own with
 parameters drawn over all that they may be, forms drawn from the library of variants, and forms
 estimated from the recordings themselves. What comes nearest at a look is searched about.
+
+Forms drawn from the library of variants: what a real rig might have that no formula foresees.
+
+Candidates that a fit of an effect begins with: its forms, from weak to strong.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -17,7 +21,9 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.rig import LawSpec
-from noise.diagnosis.fit.candidates import drawn_candidates, plain_candidates
+from noise.diagnosis.cases.strengths import drawn_effect
+from noise.diagnosis.cases.variants import VARIANTS
+from noise.diagnosis.cases.variants.common import Recipe
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.fit_parameters import (
     Fitted,
@@ -26,11 +32,85 @@ from noise.diagnosis.fit.fit_parameters import (
     offset_cost,
     spreads,
 )
-from noise.diagnosis.fit.forms.drawn import drawn_forms
 from noise.diagnosis.fit.forms.estimated import estimated_forms
+from noise.diagnosis.fit.forms.form import Form
 from noise.diagnosis.fit.pattern_search import pattern_search
 from noise.diagnosis.simulated.model_runs import Model
+from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage
+
+_BEYOND_DEFAULT = (0.1, 0.3, 1.0, 3.0, 10.0)
+"""Strengths tried of an effect that is not the library's, over its default."""
+
+
+def plain_candidates(effect: Effect) -> list[LawSpec]:
+    """Forms of an effect at their defaults, its strength over two decades about its own."""
+    declared = effect.parameters[effect.strength]
+    size = abs(declared.default) or 1.0
+    signs = (1.0, -1.0) if declared.low < 0.0 else (1.0,)
+    values = {
+        min(max(sign * factor * size, declared.low), declared.high)
+        for sign in signs
+        for factor in _BEYOND_DEFAULT
+    }
+    return [
+        LawSpec(effect.name, {"form": form, effect.strength: value})
+        for form in effect.forms
+        for value in sorted(values - {0.0})
+    ]
+
+
+def drawn_candidates(effect: Effect, count: int, rng: np.random.Generator) -> Iterator[LawSpec]:
+    """Draw an effect as the library of cases does, strengths from weak to strong."""
+    if EFFECTS.get(effect.name) is not effect:
+        return
+    for i in range(count):
+        strength = float(np.exp(rng.uniform(np.log(0.02), 0.0)))
+        spec = drawn_effect(effect.name, strength, rng)
+        yield LawSpec(effect.name, {**spec.parameters, "form": effect.forms[i % len(effect.forms)]})
+
+
+_TRIED = (0.1, 0.4)
+"""Strengths that a fit looks at; 1 is what nobody overlooks."""
+
+
+def drawn_forms(name: str, count: int, seed: int) -> list[Form]:
+    """Draw further forms of an effect, each recipe as often as the others.
+
+    Parameters
+    ----------
+    name : str
+        Of `sim.effects.EFFECTS`; others have none.
+    count, seed : int
+
+    Returns
+    -------
+    list of Form
+        Of one number, ``strength``, from 0 to 1.
+
+    Examples
+    --------
+    >>> [form.name for form in drawn_forms("clipping", 2, 0)]
+    ['drawn 0', 'drawn 1']
+    """
+    if name not in VARIANTS:
+        return []
+    recipes = VARIANTS[name]
+    order = np.random.default_rng(seed).permutation(len(recipes))
+    return [_form(name, recipes[order[i % order.size]], i, seed) for i in range(count)]
+
+
+def _form(name: str, recipe: Recipe, number: int, seed: int) -> Form:
+    made: dict[float, Effect] = {}
+
+    def make(values: Mapping[str, float]) -> Effect:
+        strength = values["strength"]
+        if strength not in made:
+            made[strength] = recipe(strength, np.random.default_rng([seed, number]))
+        return made[strength]
+
+    return Form(name, f"drawn {number}", {"strength": _TRIED[0]}, {"strength": 1.0}, make, _TRIED)
+
 
 _DRAWN = 18
 """Of the simulator's own forms tried, and of variants; what a fit may cost settles it, as all

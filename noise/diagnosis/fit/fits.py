@@ -1,31 +1,157 @@
-"""What the fits of a diagnosis say in figures: how far each closes the gap, and what is left."""
+"""What the fits of a diagnosis say in figures: how far each closes the gap, and what is left.
+
+What is left once the likeliest hypothesis is fitted: how much, in which channel and band.
+
+Held-out recordings beside simulations of them, to be seen and heard.
+
+Label and level of a recording and of its simulations, as the user hears them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.kernels.levels import a_weighted_level
+from models.errors import ParameterError
+from models.recording import Recording
 from noise.base.interval import SURE_90
+from noise.classifier import load_classifier
 from noise.diagnosis.cases.rigs import OFFSETS
-from noise.diagnosis.findings import EffectFinding
+from noise.diagnosis.evidence.friction_curves import friction_curves
+from noise.diagnosis.findings import EffectFinding, Illustration, LabelsAndLevels, Remainder
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit_effect import strength_of
 from noise.diagnosis.fit.fit_parameters import Fitted
-from noise.diagnosis.fit.illustrations import heard_of, illustrations_of, simulated_by
 from noise.diagnosis.fit.improve import improved_rig
-from noise.diagnosis.fit.remainder import remainder_of
-from noise.diagnosis.simulated.model_runs import ModelRuns
+from noise.diagnosis.gap.by_channel import worst_places
+from noise.diagnosis.simulated.model_runs import Model, ModelRuns
+from noise.labels.segments import file_label, label_recording
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
+    from noise.diagnosis.fit.case_comparison import CaseComparison
+
+    Simulated = Callable[[Recording], Recording]
     from noise.diagnosis.causes.posterior import Posterior
     from noise.diagnosis.fit.hypothesis_fits import CaseFits, HypothesisFit
     from noise.diagnosis.fit.judge import Judged
     from noise.diagnosis.outcome import Diagnosis
+    from noise.diagnosis.simulated.model_runs import Model
+
+
+def labels_and_levels(
+    name: str, measured: Recording, before: Recording, after: Recording | None
+) -> LabelsAndLevels:
+    """Label three recordings of one condition, and give their A-weighted levels."""
+    return LabelsAndLevels(
+        recording=name,
+        label_measured=_label(measured),
+        label_before=_label(before),
+        label_after=None if after is None else _label(after),
+        level_measured=_level(measured),
+        level_before=_level(before),
+        level_after=None if after is None else _level(after),
+    )
+
+
+def _label(recording: Recording) -> str:
+    return file_label(label_recording(recording, load_classifier())).label
+
+
+def _level(recording: Recording) -> float:
+    row = recording.first("pressure")
+    if row is None:
+        return math.nan
+    return a_weighted_level(recording.samples[row], recording.rate)
+
+
+_DRAWN, _HEARD = 2, 3
+"""Held-out recordings that are drawn, and that are listened to."""
+
+_SEED = 7
+
+
+def simulated_by(runs: ModelRuns | CaseComparison, model: Model | None = None) -> Simulated:
+    """Return how a recording is simulated by a model, by default the rig as it is."""
+    return lambda recording: runs.simulated(model or Model(), recording, _SEED)
+
+
+def illustrations_of(
+    case: Case, held: Sequence[int], before: Simulated, after: Simulated | None = None
+) -> tuple[Illustration, ...]:
+    """Show held-out recordings beside the nominal model, and beside what was found.
+
+    Parameters
+    ----------
+    case : Case
+    held : sequence of int
+        These recordings.
+    before, after : callable
+        Simulate a recording.
+    """
+    return tuple(_illustration(case, i, before, after) for i in held[:_DRAWN])
+
+
+def heard_of(
+    case: Case, held: Sequence[int], before: Simulated, after: Simulated
+) -> tuple[LabelsAndLevels, ...]:
+    """Listen to held-out recordings and to simulations of them.
+
+    Parameters
+    ----------
+    case, held, before, after
+        As of `illustrations_of`.
+    """
+    return tuple(
+        labels_and_levels(
+            case.names[i], case.recordings[i], before(case.recordings[i]), after(case.recordings[i])
+        )
+        for i in held[:_HEARD]
+    )
+
+
+def _illustration(case: Case, i: int, before: Simulated, after: Simulated | None) -> Illustration:
+    measured = case.recordings[i]
+    shown = {"measured": measured, "before": before(measured)}
+    if after is not None:
+        shown["after"] = after(measured)
+    found = {name: friction_curves(recording, case.rig) for name, recording in shown.items()}
+    contacts = {name: curves for name, curves in found.items() if curves is not None}
+    return Illustration(case.names[i], measured, shown["before"], shown.get("after"), contacts)
+
+
+_LEFT = 2.0
+"""Floors from which on a gap after a fit is one to explain; assumed. Of simulated repeats 5 % are
+farther off (`noise.diagnosis.text.agreement_sentences.AGREES`)."""
+
+
+def remainder_of(comparison: CaseComparison, model: Model, held: Sequence[int]) -> Remainder | None:
+    """Tell what a fitted model leaves on recordings that no fit has seen.
+
+    Parameters
+    ----------
+    comparison : CaseComparison
+    model : Model
+    held : sequence of int
+        These recordings.
+
+    Returns
+    -------
+    Remainder or None
+        None where it leaves no more than repeats differ by, or cannot be simulated there.
+    """
+    try:
+        deviations = np.array(comparison.deviations(model, held))
+    except ParameterError:
+        return None
+    gap = rms(comparison.squared(model, held))
+    return None if gap < _LEFT else Remainder(gap, *worst_places(deviations))
 
 
 def add_fits(

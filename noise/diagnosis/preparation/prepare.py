@@ -3,22 +3,278 @@
 In order: the start is left out, the speed is what the angle says, the noise and the resolution of
 sensors are taken from the recordings, where the rig file does not state them, and of recordings
 that are long or finely sampled a part is looked at.
+
+As much of long and finely sampled recordings as a diagnosis looks at.
+
+Whatever is compared with a recording is simulated as long and as finely, many times over. Two
+seconds hold a hundred slips and more, and nothing above 10 kHz counts, so that more of a recording
+would cost in proportion and tell little.
+
+The sensors of a rig as recordings show them, where its file does not state their noise.
+
+The step of a converter, found in the samples that went through it: all are multiples of it.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.preparation.bounded import bounded
+import numpy as np
+from numpy.typing import NDArray
+
+from models.sensors import Sensor
+from models.units import CHANNEL_UNITS
 from noise.diagnosis.preparation.measured_speed import at_measured_speeds
-from noise.diagnosis.preparation.sensors_seen import with_seen_sensors
+from noise.diagnosis.preparation.sensor_noise import LOUDEST, estimated_noise
 from noise.diagnosis.preparation.settled_part import settled_parts
+from sim.acquisition import Acquisition, decimate
 
 if TYPE_CHECKING:
     from models.recording import Recording
     from models.rig import Rig
+
+_LOOKED_AT = 8192
+"""Samples of a recording."""
+
+_ROUNDED = 2.0**-22
+"""Error of samples that are kept in 32 bits, over the largest [-]."""
+
+_CLEAR = 20.0
+"""A step is so many times that error at least; assumed."""
+
+_REACHES = (1.0, 4.0, 64.0, np.inf)
+"""Steps that values are apart at most, from which the step is found more and more exactly."""
+
+_SAME = 1e-4
+"""Relative difference of the steps of recordings through one converter [-]; assumed."""
+
+_FEWEST = 3
+"""Different values between which a step can be told."""
+
+
+def converter_step(recordings: Sequence[Recording], kind: str) -> float:
+    """Find the step in which a kind of channel was sampled.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    kind : str
+
+    Returns
+    -------
+    float
+        [unit of the channel]; 0 where there is none, or not the same in all recordings.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> x = 0.05 * np.random.default_rng(0).integers(-40, 40, (1, 3000))
+    >>> run = Recording(x.astype(np.float32).astype(float), 30e3, (Channel("torque"),))
+    >>> round(converter_step([run], "torque"), 6)
+    0.05
+    """
+    rows = [(r.samples, row) for r in recordings if (row := r.first(kind)) is not None]
+    steps = np.array([_step(samples[row]) for samples, row in rows])
+    told = steps[np.isfinite(steps)]
+    if not told.size:
+        return 0.0
+    middle = float(np.median(told))
+    return middle if np.allclose(told, middle, rtol=_SAME, atol=0.0) else 0.0
+
+
+def _step(x: NDArray[np.float64]) -> float:
+    """Greatest common divisor of what samples differ by; 0 if none, NaN if they say nothing."""
+    values = np.unique(x[:: max(1, x.size // _LOOKED_AT)])
+    if values.size < _FEWEST:
+        return np.nan
+    error = _ROUNDED * float(np.abs(values).max())
+    apart = np.diff(values)
+    step = float(apart.min())
+    while step > _CLEAR * error:
+        for reach in _REACHES:  # the step's own error counts as often as a difference has steps
+            steps = np.round(apart / step)
+            near = steps <= reach
+            if not near.any():
+                continue
+            left = float(np.abs(apart - step * steps)[near].max())
+            if left > 2.0 * error:
+                step = left
+                break
+            step = float(apart[near].sum() / steps[near].sum())
+        else:
+            return step
+    return 0.0
+
+
+_BITS = 24
+"""Of the converter that a step is written as; its range is never reached."""
+
+
+def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, tuple[str, ...]]:
+    """Return a rig with noise and resolution of its sensors, where these can be told.
+
+    What is stated stays. A noise that cannot be told is that of good sensors.
+
+    Parameters
+    ----------
+    rig : Rig
+    recordings : sequence of Recording
+
+    Returns
+    -------
+    rig : Rig
+    notes : tuple of str
+        What was found, and what could not be, a line each.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from models.recording import Channel, Recording
+    >>> from models.rig_file import load_material_rig
+    >>> noise = 0.01 * np.random.default_rng(0).standard_normal((1, 60_000))
+    >>> run = Recording(noise, 30e3, (Channel("torque"),))
+    >>> seen, notes = with_seen_sensors(load_material_rig("fluorocarbon-thesis"), [run])
+    >>> round(seen.sensors.of("torque").noise, 3), notes
+    (0.01, ('noise of the sensors (white, RMS), by the recordings: torque 0.01 N m; ...',))
+    """
+    usual = Acquisition().noise
+    found = dict(rig.sensors.by_kind)
+    told, untold, louder, steps = [], [], [], []
+    recorded = dict.fromkeys(c.kind for r in recordings for c in r.channels if c.kind in usual)
+    for kind in recorded:
+        sensor, unit = rig.sensors.of(kind), CHANNEL_UNITS[kind]
+        if not sensor.step and (step := converter_step(recordings, kind)):
+            sensor = _in_steps(sensor, step)
+            steps.append(f"{kind} {step:.2g} {unit}")
+        if sensor.noise is None:
+            level = estimated_noise(recordings, kind, sensor.step)
+            if level is None:
+                untold.append(kind)
+            elif level > LOUDEST * usual[kind] and not rig.sensors.noise_from_recordings:
+                louder.append(f"{kind} {level:.2g} {unit}")
+            else:
+                sensor = replace(sensor, noise=level)
+                told.append(f"{kind} {level:.2g} {unit}")
+        found[kind] = sensor
+    notes = []
+    if told:
+        notes.append(
+            f"noise of the sensors (white, RMS), by the recordings: {', '.join(told)}; a hiss of "
+            "the room that is in all recordings counts as theirs"
+        )
+    if steps:
+        notes.append(f"steps of the converter, by the recordings: {', '.join(steps)}")
+    if untold:
+        notes.append(
+            f"noise of the sensors of {', '.join(untold)}: these recordings do not tell it (no "
+            "white floor between the slips); that of good sensors is assumed, which [sensors] of "
+            "the rig file can replace"
+        )
+    if louder:
+        notes.append(
+            f"more white noise than usual sensors have, taken for a difference from the rig file: "
+            f"{', '.join(louder)}; if it is the sensors' own, state it under [sensors]"
+        )
+    return replace(rig, sensors=replace(rig.sensors, by_kind=found)), tuple(notes)
+
+
+def _in_steps(sensor: Sensor, step: float) -> Sensor:
+    """Return a sensor with a converter of some step, within the range that it may have."""
+    if sensor.full_scale is None:
+        return replace(sensor, full_scale=math.ldexp(step, _BITS - 1), bits=_BITS)
+    bits = 1 + math.log2(sensor.full_scale / step)
+    whole = round(bits)
+    return replace(sensor, bits=whole) if abs(bits - whole) < 1e-3 else sensor
+
+
+LONGEST = 2.0
+"""Of a recording the last part of this length is looked at, in which it has settled [s]; what a
+diagnosis may cost settles it; assumed."""
+
+HIGHEST_RATE = 51.2e3
+"""Recordings at higher rates are filtered and thinned out [Hz]; assumed."""
+
+
+def bounded(
+    rig: Rig, recordings: Sequence[Recording]
+) -> tuple[Rig, tuple[Recording, ...], tuple[str, ...]]:
+    """Keep of recordings what a diagnosis looks at.
+
+    Parameters
+    ----------
+    rig : Rig
+    recordings : sequence of Recording
+
+    Returns
+    -------
+    rig : Rig
+        Its sensors as they are at the lower rate: with less noise, and without steps.
+    recordings : tuple of Recording
+        At most `LONGEST`, at `HIGHEST_RATE` or below.
+    notes : tuple of str
+        What was left out, a line each.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> from models.rig_file import load_material_rig
+    >>> long = Recording(np.zeros((1, 288_000)), 96e3, (Channel("torque"),))
+    >>> _, (short,), notes = bounded(load_material_rig("PDMS"), [long])
+    >>> short.rate, short.duration
+    (48000.0, 2.0)
+    >>> print("; ".join(notes))
+    1 of 1 recordings is sampled above 51.2 kHz and was filtered and thinned out; 1 of 1 recordings
+    is longer than 2 s, of which the last 2 s were looked at
+    """
+    factors = [math.ceil(recording.rate / HIGHEST_RATE) for recording in recordings]
+    kept = tuple(_last(_thinned(r, k)) for r, k in zip(recordings, factors, strict=True))
+    n, fine = len(kept), sum(k > 1 for k in factors)
+    long = sum(recording.duration > LONGEST for recording in recordings)
+    notes = []
+    if fine:
+        are = "is" if fine == 1 else "are"
+        notes.append(
+            f"{fine} of {n} recordings {are} sampled above {HIGHEST_RATE / 1e3:g} kHz and "
+            f"{'was' if fine == 1 else 'were'} filtered and thinned out"
+        )
+    if long:
+        notes.append(
+            f"{long} of {n} recordings {'is' if long == 1 else 'are'} longer than {LONGEST:g} s, "
+            f"of which the last {LONGEST:g} s were looked at"
+        )
+    return _with_thinned_sensors(rig, min(factors, default=1)), kept, tuple(notes)
+
+
+def _thinned(recording: Recording, factor: int) -> Recording:
+    if factor == 1:
+        return recording
+    samples = np.stack([decimate(row, factor) for row in recording.samples])
+    return replace(recording, samples=samples, rate=recording.rate / factor)
+
+
+def _last(recording: Recording) -> Recording:
+    n = round(LONGEST * recording.rate)
+    if recording.samples.shape[1] <= n:
+        return recording
+    return replace(recording, samples=np.ascontiguousarray(recording.samples[:, -n:]))
+
+
+def _with_thinned_sensors(rig: Rig, factor: int) -> Rig:
+    if factor == 1:
+        return rig
+    thinned = {kind: _thinned_sensor(s, factor) for kind, s in rig.sensors.by_kind.items()}
+    return replace(rig, sensors=replace(rig.sensors, by_kind=thinned))
+
+
+def _thinned_sensor(sensor: Sensor, factor: int) -> Sensor:
+    """Of white noise a filter passes what it passes of the band; steps become such noise."""
+    if sensor.noise is None:
+        return replace(sensor, bits=None)
+    noise = math.sqrt((sensor.noise**2 + sensor.step**2 / 12.0) / factor)
+    return replace(sensor, noise=noise, bits=None)
 
 
 @dataclass(frozen=True, eq=False)

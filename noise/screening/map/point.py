@@ -12,13 +12,19 @@ the irregularity that the rig states.
 A bar on the road swings: it runs from one turning on, a whole cycle is heard, and names and regimes
 are those of the two intervals in which it moves at half its peak speed or more, whichever is
 livelier. Every turning sticks, which by itself is neither regime nor noise.
+
+Intervals of a swing in which the shaft moves fast, each nearly of one speed.
+
+Where the shaft turns back its torque turns from one side to the other, which is neither vibration
+nor noise. In between, the slow trend of the torque with the speed is taken off.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +34,6 @@ from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
 from models.rig import Rig, damping_at
 from noise.noise_definition import NoiseCriteria, noise_criteria
-from noise.screening.map.fast_intervals import fast_intervals
 from sim.analysis.regime import LEAST_OSCILLATION, Regime
 from sim.analysis.slips import motion_slips
 from sim.constant_version import constant_version
@@ -39,6 +44,58 @@ from sim.pipeline import Plan, radiate_motion, run_motion
 from sim.shaft import ConstantSpeed, Oscillation
 from sim.temperature import at_temperature
 from sim.timing import SCREENING, SCREENING_SLOW, Timing
+
+if TYPE_CHECKING:
+    from sim.motion import Motion
+
+_FAST_SHARE = 0.5
+"""Of the peak speed, above which a swing is judged."""
+
+
+def fast_intervals(motion: Motion, *, swings: bool) -> list[Motion]:
+    """List the parts of a motion that are nearly of one speed.
+
+    Parameters
+    ----------
+    motion : Motion
+        Of a whole swing, or at constant speed.
+    swings : bool
+
+    Returns
+    -------
+    list of Motion
+        All of it, or the two longest intervals at half the peak speed or more.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.motion import simulate_motion
+    >>> from sim.shaft import Oscillation
+    >>> motion = simulate_motion(load_material_rig("PDMS"), Oscillation(0.26, 4.0), rate=30e3,
+    ...                          interference=0.3e-3, support_stiffness=2214.0, seconds=0.25)
+    >>> [round(part.torque.size / motion.rate, 3) for part in fast_intervals(motion, swings=True)]
+    [0.083, 0.042]
+    """
+    if not swings:
+        return [motion]
+    fast = np.abs(motion.shaft_speed) >= _FAST_SHARE * np.abs(motion.shaft_speed).max()
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], fast, [False]]).astype(int)))
+    pieces = sorted(edges.reshape(-1, 2), key=lambda edge: edge[0] - edge[1])[:2]
+    return [_piece(motion, first, last) for first, last in pieces]
+
+
+def _piece(motion: Motion, first: int, last: int) -> Motion:
+    """Part of a motion, without the slow trend of its torque over a swing."""
+    kept = {
+        field.name: getattr(motion, field.name)[first:last]
+        for field in fields(motion)
+        if field.name != "rate"
+    }
+    time = np.linspace(-1.0, 1.0, last - first)
+    trend = np.polynomial.Polynomial.fit(time, kept["torque"], 3)(time)
+    kept["torque"] = kept["torque"] - trend + trend.mean()
+    return replace(motion, **kept)
+
 
 REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 """In the order of their codes."""

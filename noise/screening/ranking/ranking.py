@@ -9,10 +9,13 @@ noisy, of all designs alike, since the two must not be compared with each other.
 The exposure stands beside it, and says how loud the use is: a point counts 2 to the power of
 (L_AFmax - 40 dB) / 10, Stevens' rule that ten decibels are twice as loud, and nothing where there
 is no noise.
+
+Advice in words: the least change that widens the margin, and the least that ends the noise.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -22,8 +25,8 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.show import short_repr
+from noise.screening.design.tolerances import PARAMETERS
 from noise.screening.map.batches import LABELS
-from noise.screening.parts.advice_words import advice_words
 from noise.screening.parts.estimate import Estimate
 from noise.screening.ranking.plain_words import plain_words
 from noise.screening.ranking.risk import Candidate, ranked
@@ -33,6 +36,36 @@ if TYPE_CHECKING:
     from noise.screening.map.mapping import DesignMap
     from noise.screening.parts.statistics import Statistics
     from noise.screening.ranking.margins import CriticalPoint
+
+
+def advice_words(one: Statistics) -> str:
+    """Tell the least change that widens the margin, and the least that ends the noise."""
+    stands = one.robustness
+    if stands is None:
+        return ""
+    said = []
+    for aim, advised in (("margin", stands.margin_advice), ("noise", stands.noise_advice)):
+        enough = [found for found in advised if found.enough]
+        # What stands on an island is the worse advice, however small the change.
+        best = next((found for found in enough if found.steady), next(iter(enough), None))
+        if best is None and advised:
+            said.append(f"no single change {_FAILS[aim]}")
+        if best is not None:
+            to = f"{one.nominal[best.name] * best.value:.3g} {PARAMETERS[best.name]}"
+            brings = _DOES[aim]
+            if aim == "margin":
+                by = f"{brings} by {best.gain:.2g} rad/s"
+                brings = by if math.isfinite(best.gain) else "leaves no speed that vibrates"
+            said.append(f"{best.name} {best.change:+.1%} to {to} {brings}")
+    return "; ".join(said)
+
+
+_DOES = {"margin": "widens the margin", "noise": "ends the noise in the middle of the use"}
+
+_FAILS = {
+    "margin": "widens the margin as far as asked",
+    "noise": "ends the noise in the middle of the use",
+}
 
 
 @short_repr

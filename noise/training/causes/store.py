@@ -2,13 +2,21 @@
 
 A chunk is one NPZ file, named by its seeds: numbers of all its recordings in single precision, and
 a header that says of each case what it is about and of what bench. Other programs may read it.
+
+Training cases: drawn, simulated, and each summarised as a user's case would be.
+
+What takes time are simulated repeats of the rig as its file has it. The cases of a rig share them
+where they would differ by less than chance: where the noise of sensors was estimated about alike,
+and the speeds that the angle tells.
 """
 
 from __future__ import annotations
 
 import json
+import math
+import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, astuple
+from dataclasses import asdict, astuple, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,13 +25,114 @@ from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from models.condition import KnownCondition, known_condition
-from models.errors import ParameterError
+from models.errors import BushingNoiseError, ParameterError
+from models.recording import Recording
+from models.rig import Rig
+from models.sensors import Sensors
 from noise.base.files import atomic, check_target
-from noise.diagnosis.cases.draw import SHARED
+from noise.base.progress import say
+from noise.diagnosis.cases.draw import SHARED, DrawnCase, draw_case
 from noise.diagnosis.cases.truth import Truth
-from noise.diagnosis.evidence.summary import CaseTable
-from noise.training.causes.build import known_cases_of_a_rig
-from noise.training.causes.fit import Known
+from noise.diagnosis.evidence.summary import CaseTable, NominalNumbers, Numbers, case_table
+from noise.diagnosis.preparation.prepare import prepared
+from noise.training.causes.fit import Known, with_rows
+from sim.acquisition import Acquisition
+
+_SAME_NOISE, _SAME_SPEED = 0.2, 8e-3
+"""Relative differences up to which estimates are taken for the same."""
+
+_FEWEST = 2
+"""Recordings of a case."""
+
+
+def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
+    """Draw cases of one rig and summarise them; those that cannot be simulated are left out.
+
+    Examples
+    --------
+    >>> cases = known_cases_of_a_rig([400_000, 400_001])
+    >>> all(case.table.measured.shape == case.table.nominal.shape for case in cases)
+    True
+    """
+    shared: list[_Shared] = []
+    known = []
+    for seed in seeds:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # a response that ends early says so in each case
+                case = draw_case(seed)
+                table = _table(case, shared)
+        except BushingNoiseError:
+            continue
+        except Exception as error:  # one case is no reason to lose all others
+            say(f"case {seed} is left out: {type(error).__name__}: {error}")
+            continue
+        if table is not None:
+            single = with_rows(table, _single)
+            known.append(Known(single, case.truth, seed // SHARED, case.departures, seed))
+    return known
+
+
+def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
+    """Summarise a case as a user's would be, with repeats of earlier ones where these serve."""
+    ready = prepared(case.rig, case.recordings)
+    if len(ready.recordings) < _FEWEST:
+        return None
+    repeats = next((s for s in shared if s.serves(ready.rig)), None)
+    if repeats is None:
+        repeats = _Shared(ready.rig)
+        shared.append(repeats)
+    return case_table(ready.recordings, repeats.rig, nominal=repeats)
+
+
+def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
+    """Draw cases of one rig after the other; the first seed begins a rig."""
+    rigs = [seeds[i : i + SHARED] for i in range(0, len(seeds), SHARED)]
+    drawn = Parallel(n_jobs=workers, return_as="generator")(
+        delayed(known_cases_of_a_rig)(rig) for rig in rigs
+    )
+    return (case for cases in drawn for case in cases)
+
+
+@dataclass(frozen=True, eq=False)
+class _Shared(NominalNumbers):
+    """Repeats that several cases of a rig share, and the speeds that they were simulated at."""
+
+    speeds: dict[tuple[object, ...], list[float]] = field(default_factory=dict)
+
+    def serves(self, rig: Rig) -> bool:
+        """Whether a rig is the same but for estimates that hardly differ."""
+        same = replace(rig, sensors=self.rig.sensors) == self.rig
+        return same and _alike(self.rig.sensors, rig.sensors)
+
+    def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
+        """Mean and standard deviation of repeats, at a speed that is there if one is near."""
+        c = known_condition(recording.condition)
+        known = self.speeds.setdefault((c.interference, c.support_stiffness), [])
+        near = min(known, key=lambda v: abs(v - c.speed), default=math.inf)
+        if abs(near - c.speed) > _SAME_SPEED * abs(c.speed):
+            known.append(c.speed)
+            near = c.speed
+        return super().moments(replace(recording, condition=replace(c, speed=near)))
+
+
+def _alike(one: Sensors, other: Sensors) -> bool:
+    """Whether sensors are the same but for estimates of noise and steps that hardly differ."""
+    for kind, usual in Acquisition().noise.items():
+        a, b = one.of(kind), other.of(kind)
+        if (a.bits, a.antialias) != (b.bits, b.antialias) or not math.isclose(a.step, b.step):
+            return False
+        levels = [usual if sensor.noise is None else sensor.noise for sensor in (a, b)]
+        least = 0.1 * a.step  # less than that is lost in the rounding
+        if not math.isclose(*levels, rel_tol=_SAME_NOISE, abs_tol=least):
+            return False
+    return True
+
+
+def _single(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Round to single precision: cases stored in half the space are still the same ones."""
+    return x.astype(np.float32).astype(np.float64)
+
 
 CHUNK = 40 * SHARED
 """Seeds of a file."""

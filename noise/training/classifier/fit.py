@@ -1,31 +1,56 @@
 """Training of the classifier: on simulation, made-up background sounds and some real ones.
 
-What a simulated sample is called follows from its physics (`noise.training.classifier.samples`),
+What a simulated sample is called follows from its physics (`.described_samples`),
 never from its features; samples whose name hangs on a bound of the definition are not used. What
 calibrates, and what is scored, was left out of what the trees were grown of
 (`noise.training.classifier.cross_fitting`). Another set of samples, of kinds that are known, is
 scored by the classifier itself.
+
+Simulated samples kept in a file: to simulate them takes longer than to learn from them.
+
+Real sounds that the classifier learns beside simulated ones; they say what it takes for a noise.
+
+Stored are the features of their windows, not the sounds (``data/real_sounds.npz``), and their
+sources and licences, none of which forbids it: CC0, CC BY and MIT. After a change of the features
+they are taken again from the sounds themselves, a folder of them with a table ``sources.csv`` of
+the columns ``file, class, source, licence``::
+
+    python -m noise.training.classifier.fit FOLDER
 """
 
 from __future__ import annotations
 
+import csv
+import hashlib
+import json
+import re
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import resources
+from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from joblib import Parallel, delayed
+from numpy.typing import NDArray
 
+from models.blocks import RecordingBlocks
 from models.errors import ParameterError
+from models.foreign_file import read_arrays, reading
+from noise.base.files import atomic
 from noise.base.labels import LABELS
+from noise.base.model_file import ModelKind, load_model, save_model
 from noise.batch.pool import ending_with_this
 from noise.classifier.model import Classifier
 from noise.labels.segmentation import clearest
-from noise.labels.windows import columns_of
+from noise.labels.windows import FEATURE_NAMES, columns_of, describe
+from noise.recordings import read_recording
 from noise.training.classifier.cross_fitting import grown, left_out_scores, named, with_trees_of
 from noise.training.classifier.described_samples import Sample, draw_sample
-from noise.training.classifier.kept_samples import load_samples, save_samples
 from noise.training.classifier.masked_rows import (
     KINDS,
     SUBSETS,
@@ -36,8 +61,209 @@ from noise.training.classifier.masked_rows import (
 )
 from noise.training.classifier.operating_point import scores
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, own_card
-from noise.training.classifier.real_sounds import load_real_sounds
 from noise.training.classifier.surroundings import may_sound
+
+_KIND = ModelKind(
+    "set of real sounds",
+    1,
+    "python -m noise.training.classifier.fit FOLDER, not into",
+    ("noise.training.classifier", "real_sounds.npz"),
+)
+
+_LABELS = {"creak": "creak", "squawk": "squawk", "squeal": "squeal", "background": "unknown"}
+"""What a class is called; others hang on a bound of the definition."""
+
+_FRICTION = ("hacksaw", "hand_saw")
+"""Files called so are friction, whatever their class: neither a noise nor a stranger."""
+
+_CLEAN = re.compile(r"(CC0|CC BY [34]|CC-BY |MIT)")
+"""How a licence begins that lets anyone learn from a sound and pass on what was learned."""
+
+_WEIGHT_OF_NOISE, _WEIGHT_OF_OTHERS = 15.0, 4.0
+"""Simulated samples that a sound counts as [-], by how sources left out are named."""
+
+_QUIET_DB = 30.0
+"""Windows that lie so far below a sound's loudest are pauses."""
+
+
+@dataclass(frozen=True, eq=False)
+class RealSounds:
+    """Features of real sounds.
+
+    Parameters
+    ----------
+    samples : tuple of OwnSample
+        Each a whole sound, by the name of its source.
+    kinds : tuple of str
+        Of the sounds, as their files are called.
+    licences : mapping of str to str
+        By source.
+    """
+
+    samples: tuple[OwnSample, ...]
+    kinds: tuple[str, ...]
+    licences: Mapping[str, str]
+
+
+def load_real_sounds() -> RealSounds:
+    """Load those that are stored with the program.
+
+    Examples
+    --------
+    >>> sorted({sample.label for sample in load_real_sounds().samples})
+    ['creak', 'squeal', 'unknown']
+    """
+    return load_model(None, _KIND, _built)
+
+
+def describe_folder(folder: Path) -> RealSounds:
+    """Describe the sounds of a folder that have a clean licence."""
+    samples, kinds, licences = [], [], {}
+    with (folder / "sources.csv").open(encoding="utf-8", newline="") as table:
+        rows = [row for row in csv.DictReader(table) if _CLEAN.match(row["licence"])]
+    for row in rows:
+        label = _LABELS.get(row["class"])
+        if label is None or any(word in row["file"] for word in _FRICTION):
+            continue
+        blocks = RecordingBlocks.of(read_recording(folder / row["file"]))
+        found = describe(blocks.track(0))
+        loud = found.level > found.level.max() - _QUIET_DB
+        source = _source(row["source"], row["licence"])
+        samples.append(_sample(found.features[loud], label, source))
+        kinds.append(Path(row["file"]).stem)
+        licences[source] = row["licence"]
+    return RealSounds(tuple(samples), tuple(kinds), licences)
+
+
+def _source(said: str, licence: str) -> str:
+    """Return who recorded a sound, as far as it is known: the same name, the same source."""
+    repository, _, file = said.partition(":")
+    stem = Path(file).stem
+    if "ESC-10" in repository:  # 5-198411-F: fold, recording, cut
+        return f"{repository.partition('@')[0]}:{stem.split('-')[1]}"
+    if "(" in licence and "CC0 per file" not in licence and "sound origin" not in licence:
+        return f"{repository.partition('@')[0]}:{licence.partition('(')[2].rstrip(')')}"
+    if "OpenSFX" in repository or "SNU" in repository:
+        return f"{repository.partition('@')[0]}:{stem.partition(' ')[0]}"
+    return repository
+
+
+def _sample(features: NDArray[np.float32], label: str, source: str) -> OwnSample:
+    noise = label not in ("none", "unknown")
+    return OwnSample(features, label, source, _WEIGHT_OF_NOISE if noise else _WEIGHT_OF_OTHERS)
+
+
+def _store(found: RealSounds, path: Path) -> None:
+    header = {
+        "feature_names": FEATURE_NAMES,
+        "labels": [s.label for s in found.samples],
+        "sources": [s.name for s in found.samples],
+        "kinds": found.kinds,
+        "licences": found.licences,
+        "card": {},
+    }
+    features = np.concatenate([s.features for s in found.samples])
+    arrays = {
+        "features": features[:, _COLUMNS].astype(np.float16),
+        "counts": np.array([len(s.features) for s in found.samples]),
+    }
+    save_model(path, _KIND, header, arrays)
+
+
+_COLUMNS = [i for i, name in enumerate(FEATURE_NAMES) if name.startswith("pressure_")]
+
+
+def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> RealSounds:
+    if tuple(header["feature_names"]) != FEATURE_NAMES:
+        raise ValueError("its features are others")
+    x = np.full((len(arrays["features"]), len(FEATURE_NAMES)), np.nan, dtype=np.float32)
+    x[:, _COLUMNS] = arrays["features"]
+    each = np.split(x, np.cumsum(arrays["counts"])[:-1])
+    told = zip(each, header["labels"], header["sources"], strict=True)
+    return RealSounds(
+        tuple(_sample(*one) for one in told), tuple(header["kinds"]), header["licences"]
+    )
+
+
+if __name__ == "__main__":
+    target = resources.files("noise.training.classifier") / "data" / "real_sounds.npz"
+    _store(describe_folder(Path(sys.argv[1])), Path(str(target)))
+
+
+_PACKAGES = ("models", "sim", "features", "noise")
+_LIBRARIES = ("librosa", "numba", "numpy", "scikit-learn", "scipy", "soundfile")
+"""What the samples come from."""
+
+
+def save_samples(path: Path, call: Sequence[object], samples: Sequence[Sample]) -> None:
+    """Keep samples.
+
+    Parameters
+    ----------
+    path : Path
+        Ends in .npz.
+    call : sequence
+        What decides the samples beside the program, as JSON can hold it.
+    samples : sequence of Sample
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be written.
+    """
+    with atomic(path) as temporary:
+        np.savez_compressed(
+            temporary,
+            said=np.array(_said(call)),
+            features=np.concatenate([sample.features for sample in samples]),
+            windows=np.array([len(sample.features) for sample in samples]),
+            label=np.array([sample.label for sample in samples]),
+            ambiguous=np.array([sample.ambiguous for sample in samples]),
+            name=np.array([sample.name for sample in samples]),
+        )
+
+
+def load_samples(path: Path, call: Sequence[object]) -> list[Sample] | None:
+    """Return the samples of a call; None where the file has not those, or is none.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> one = Sample(np.zeros((2, 3), dtype=np.float32), "creak", False, "bushing")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_samples(Path(folder) / "kept.npz", (0, 1), [one])
+    ...     (found,) = load_samples(Path(folder) / "kept.npz", (0, 1))
+    ...     found.features.shape, found.label, load_samples(Path(folder) / "kept.npz", (0, 2))
+    ((2, 3), 'creak', None)
+    """
+    try:
+        with reading(path, "file of samples"):
+            kept = read_arrays(path)
+            if str(kept["said"]) != _said(call):
+                return None
+            parts = np.split(kept["features"], np.cumsum(kept["windows"])[:-1])
+            told = (kept[name].tolist() for name in ("label", "ambiguous", "name"))
+            return [Sample(*one) for one in zip(parts, *told, strict=True)]
+    except ParameterError:  # none, or damaged
+        return None
+
+
+def _said(call: Sequence[object]) -> str:
+    return json.dumps([_program(), *call])
+
+
+@cache  # a process goes on with the program that it has loaded
+def _program() -> str:
+    """Digest of the program's sources and models, and of the libraries' versions."""
+    digest, root = hashlib.sha256(), Path(__file__).parents[3]
+    for library in _LIBRARIES:
+        digest.update(f"{library} {version(library)}\n".encode())
+    for path in sorted(one for package in _PACKAGES for one in (root / package).rglob("*")):
+        if path.is_file() and path.parent.name != "__pycache__":
+            digest.update(path.relative_to(root).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()
+
 
 N_TRAINING = 4300
 """Samples that are learned from."""
@@ -73,7 +299,7 @@ def train(
     surroundings : str
         What else may sound, of `noise.training.classifier.surroundings.SURROUNDINGS`.
     keep : Path, optional
-        File that keeps the simulated samples (`noise.training.classifier.kept_samples`): they are
+        File that keeps the simulated samples (`noise.training.classifier.fit`): they are
         taken from it where it holds those of the same call by the same program.
     progress : callable, optional
         ``progress(samples, total)`` passes the samples on and shows how far it is.

@@ -1,7 +1,7 @@
 """Recorded sounds beside the simulated ones: what they are, and what is left out together.
 
 The user's own windows are such sounds, and those that are stored with the program
-(`noise.training.classifier.real_sounds`). Each counts as several simulated samples: it is rare, and
+(`noise.training.classifier.fit`). Each counts as several simulated samples: it is rare, and
 it is what the classifier is wanted for. All of them are learned from, and all of them are scored,
 by trees that were grown without any sound of the same source.
 """

@@ -1,11 +1,24 @@
 """Places where engineers record, and how a sound is put into one by its level in dB(A).
 
 Some families are never learned from, so that a score on them is one of places left out.
+
+What is heard in halls where benches stand: hydraulics, ventilation, compressors, work.
+
+A hydraulic pump whines at its pistons' rate and many harmonics, modulated by its shaft, and its
+valves hiss; fans hum at their blades' rate; somebody hammers or grinds at the other end.
+
+What is heard in a vehicle's cabin: road, wind, engine or motor, and the fan.
+
+Tyres shake the body below some 500 Hz, where most of the power lies; their air-borne hum has its
+hump near 800 Hz, and the cavity of the tyre rings near 220 Hz. Wind falls more gently and comes in
+gusts. An engine fires once every two turns and cylinder, with half orders; an electric motor
+whines at high orders of its shaft, its inverter near 8 to 10 kHz.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +27,326 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from scipy.signal import fftconvolve
 
 from features.kernels.levels import a_weighting
-from noise.training.classifier.augmentation.cabins import CABINS, cabin
-from noise.training.classifier.augmentation.halls import HALLS
+from noise.training.classifier.augmentation.rooms import in_a_room
 from noise.training.classifier.background_sounds.blows import slam
-from noise.training.classifier.background_sounds.building import blow, placed
+from noise.training.classifier.background_sounds.building import blow, placed, wavering
 from noise.training.classifier.background_sounds.people import speech
 from noise.training.classifier.background_sounds.signals import music
+from noise.training.draws import log_uniform, wandering
+
+_SHAPE_SPREAD = 4.0
+"""Standard deviation of a drawn spectrum about its shape at each point [dB]."""
+
+_ROAD = (
+    (20, 0), (32, 0), (63, -6), (125, -17), (250, -28), (500, -36), (900, -41), (1600, -50),
+    (3000, -61), (6000, -74), (12000, -88),
+)  # fmt: skip
+_WIND = (
+    (20, 0), (63, -8), (125, -14), (250, -21), (500, -27), (1000, -33), (2000, -40), (4000, -49),
+    (8000, -60), (14000, -70),
+)  # fmt: skip
+_FAN = ((20, -8), (100, -3), (400, 0), (1000, -4), (2500, -14), (6000, -28), (12000, -44))
+"""Spectra [dB] over frequency [Hz]."""
+
+
+class Cabin(NamedTuple):
+    """A family of cabins; ranges of what its members are.
+
+    Parameters
+    ----------
+    road, wind, fan, drive : pair of float
+        Levels of the four [dB].
+    turns : pair of float
+        Of the crankshaft or motor [1/s].
+    cylinders : tuple of int
+        ``0`` is an electric motor.
+    roll_off : pair of float
+        How fast the amplitudes of the orders fall with their frequency [-].
+    """
+
+    road: tuple[float, float]
+    wind: tuple[float, float]
+    fan: tuple[float, float]
+    drive: tuple[float, float]
+    turns: tuple[float, float]
+    cylinders: tuple[int, ...]
+    roll_off: tuple[float, float]
+
+
+CABINS = {
+    "petrol_car": Cabin((-6, 6), (-14, 4), (-45, -20), (-14, 2), (13, 70), (3, 4, 6), (1.5, 3.0)),
+    "diesel_car": Cabin((-6, 6), (-14, 4), (-45, -20), (-8, 6), (12, 55), (4, 5, 6), (1.2, 2.5)),
+    "electric_car": Cabin((-4, 6), (-12, 5), (-40, -16), (-46, -22), (10, 180), (0,), (0.3, 1.5)),
+    "standing_car": Cabin((-60, -30), (-50, -20), (-16, 0), (-6, 6), (11, 17), (3, 4), (1.0, 2.5)),
+    "van": Cabin((-2, 8), (-8, 6), (-36, -12), (-6, 6), (12, 55), (4,), (1.0, 2.2)),
+    "lorry": Cabin((-8, 4), (-10, 4), (-34, -10), (0, 8), (9, 30), (6,), (1.0, 2.2)),
+    "convertible": Cabin((-8, 2), (4, 14), (-45, -25), (-10, 2), (15, 70), (4, 6), (1.2, 2.5)),
+}
+"""By name."""
+
+
+def cabin(kind: str, n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Return `n` samples of a cabin's noise.
+
+    Parameters
+    ----------
+    kind : str
+        One of `CABINS`.
+    n : int
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Of unit standard deviation [-].
+
+    Examples
+    --------
+    >>> sound = cabin("petrol_car", 4800, 48e3, np.random.default_rng(0))
+    >>> sound.shape, round(float(sound.std()), 6)
+    ((4800,), 1.0)
+    """
+    what = CABINS[kind]
+    road = _road(n, rate, rng)
+    wind = shaped_noise(n, rate, _WIND, rng)
+    wind *= np.exp(rng.uniform(0.0, 0.5) * wandering(n, rate, rng.uniform(0.3, 3.0), rng))
+    fan = shaped_noise(n, rate, _FAN, rng)
+    turns = log_uniform(*what.turns, rng) * wavering(n, rate, 0.4, rng.uniform(0.0, 0.15), rng)
+    cylinders = int(rng.choice(what.cylinders))
+    roll_off = rng.uniform(*what.roll_off)
+    if cylinders:
+        drive = orders(turns, rate, 0.5, 0.5 * cylinders, roll_off, rng)
+    else:
+        drive = orders(turns, rate, 4.0, float(rng.choice((24.0, 36.0, 48.0))), roll_off, rng)
+        drive += 10.0 ** rng.uniform(-2.5, -0.5) * _inverter(turns, rate, rng)
+    levels = (what.road, what.wind, what.fan, what.drive)
+    sound = np.zeros(n)
+    for part, level in zip((road, wind, fan, drive), levels, strict=True):
+        sound += 10.0 ** (rng.uniform(*level) / 20.0) * part / (part.std() + 1e-12)
+    return np.asarray(sound / sound.std())
+
+
+def shaped_noise(
+    n: int, rate: float, shape: Sequence[tuple[float, float]], rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Noise whose spectrum follows a shape, but for a random deviation at each point and a tilt.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    shape : sequence of pair of float
+        Frequencies [Hz], rising, and spectral density there [dB].
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Of unit standard deviation [-].
+
+    Examples
+    --------
+    >>> noise = shaped_noise(4800, 48e3, ((20, 0), (8000, -40)), np.random.default_rng(0))
+    >>> round(float(noise.std()), 6)
+    1.0
+    """
+    at, level = np.array(shape, dtype=np.float64).T
+    octave = np.log2(at)
+    level = level + rng.normal(0.0, _SHAPE_SPREAD, at.size)
+    level += rng.uniform(-2.0, 2.0) * (octave - octave.mean())
+    m = next_fast_len(n, real=True)
+    frequency = np.maximum(rfftfreq(m, 1.0 / rate), 10.0)
+    gain = 10.0 ** (np.interp(np.log2(frequency), octave, level) / 20.0)
+    noise = irfft(rfft(rng.standard_normal(m)) * gain, m)[:n]
+    return np.asarray(noise / noise.std())
+
+
+def orders(
+    turns: NDArray[np.float64],
+    rate: float,
+    spacing: float,
+    main: float,
+    roll_off: float,
+    rng: np.random.Generator,
+) -> NDArray[np.float64]:
+    """Return the orders of a turning shaft; those that the main one divides are the strongest.
+
+    Parameters
+    ----------
+    turns : ndarray, shape (n,)
+        Of the shaft [1/s].
+    rate : float
+        [Hz]
+    spacing, main : float
+        Distance of the orders, and the order of firing, teeth or pistons [-].
+    roll_off : float
+        Their amplitudes fall with the order to this power [-].
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> sound = orders(np.full(4800, 25.0), 48e3, 0.5, 2.0, 1.0, np.random.default_rng(0))
+    >>> sound.shape
+    (4800,)
+    """
+    phase = 2.0 * np.pi * np.cumsum(turns) / rate
+    sound = np.zeros(turns.size)
+    weaker = rng.uniform(0.03, 0.4)
+    numbers = np.unique(np.r_[spacing * np.arange(1, 9), main * np.arange(1, 16)])
+    for number in numbers.tolist():
+        if number * float(turns.max()) > 0.45 * rate:
+            break
+        strength = (number / main) ** -roll_off * rng.lognormal(0.0, 0.6)
+        if number % main:
+            strength *= weaker * min(1.0, (number / main) ** roll_off)
+        sound += strength * np.sin(number * phase + rng.uniform(0.0, 6.3))
+    return sound
+
+
+def _road(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Draw the noise of rolling over a rough surface, at times over joints."""
+    sound = shaped_noise(n, rate, _ROAD, rng)
+    cavity = rng.uniform(190.0, 250.0)
+    narrow = ((20, -60), (cavity / 1.2, -25), (cavity, 0), (1.2 * cavity, -25), (8000, -60))
+    sound += rng.uniform(0.0, 0.5) * shaped_noise(n, rate, narrow, rng)
+    rough = rng.uniform(0.0, 0.6) * wandering(n, rate, log_uniform(0.3, 10.0, rng), rng)
+    sound *= np.exp(rough)
+    if rng.random() < 0.25:  # a joint under the front axle and then under the rear
+        gap = rng.uniform(0.08, 0.25)
+        times = np.arange(rng.random(), n / rate, rng.uniform(0.4, 1.5))
+        joints = placed(n, np.r_[times, times + gap], np.ones(2 * times.size), rate)
+        thump = blow(rate, (40.0, 500.0), (0.01, 0.06), rng, noise=0.5)
+        knocks = fftconvolve(joints, thump)[:n] if times.size else joints
+        sound += log_uniform(1.0, 6.0, rng) * knocks / (np.abs(knocks).max() + 1e-12)
+    return sound
+
+
+def _inverter(
+    turns: NDArray[np.float64], rate: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Switching tone with side lines at multiples of the motor's electrical frequency."""
+    carrier = rng.uniform(7e3, 10e3)
+    phase = 2.0 * np.pi * np.cumsum(turns) / rate * float(rng.choice((3.0, 4.0)))
+    time = np.arange(turns.size) / rate
+    sound = np.zeros(turns.size)
+    if carrier < 0.4 * rate:
+        for side in (-4, -2, 0, 2, 4):
+            angle = 2.0 * np.pi * carrier * time + side * phase + rng.uniform(0.0, 6.3)
+            sound += rng.uniform(0.1, 1.0) * np.sin(angle)
+    return sound
+
+
+_AIR = ((20, 2), (80, 3), (250, 0), (1000, -8), (3000, -18), (8000, -32), (16000, -46))
+_HISS = ((20, -40), (300, -22), (1500, -6), (5000, 0), (12000, -4), (20000, -12))
+"""Spectra of ventilation and of valves [dB] over frequency [Hz]."""
+
+_BLADES = (5.0, 7.0, 8.0, 9.0, 11.0)
+_PISTONS = (7.0, 9.0, 11.0)
+
+
+def hydraulic_hall(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Draw pumps of axial pistons at mains speed, valves, and a fan."""
+    sound = _air(n, rate, rng)
+    for _ in range(int(rng.integers(1, 3))):
+        turns = _mains_turns(rng) * wavering(n, rate, 0.3, 0.004, rng)
+        pump = orders(turns, rate, 1.0, float(rng.choice(_PISTONS)), rng.uniform(0.0, 1.2), rng)
+        sound += 10.0 ** rng.uniform(-1.0, 0.6) * pump / pump.std()
+    valves = 10.0 ** rng.uniform(-1.5, 0.0) * shaped_noise(n, rate, _HISS, rng)
+    return np.asarray(sound + valves)
+
+
+def workshop(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Draw ventilation, blows at random, and a grinder or a drill far away."""
+    sound = _air(n, rate, rng)
+    count = rng.poisson(rng.uniform(0.0, 3.0) * n / rate)
+    if count:
+        hits = placed(n, rng.uniform(0.0, n / rate, count), rng.lognormal(0.0, 0.7, count), rate)
+        ring = blow(rate, (150.0, 5000.0), (0.005, 0.1), rng, noise=0.5)
+        blows = fftconvolve(hits, ring)[:n]
+        sound += rng.uniform(0.5, 4.0) * blows / (np.abs(blows).max() + 1e-12)
+    if rng.random() < 0.4:
+        turns = rng.uniform(60.0, 180.0) * wavering(n, rate, 1.0, 0.1, rng)
+        tool = orders(turns, rate, 1.0, float(rng.integers(2, 9)), rng.uniform(0.3, 1.2), rng)
+        tool = tool / tool.std() + 0.5 * shaped_noise(n, rate, _HISS, rng)
+        working = np.clip(2.0 * wandering(n, rate, 0.5, rng) + 0.5, 0.0, 1.0)
+        sound += rng.uniform(0.02, 0.6) * working * tool
+    return sound
+
+
+def engine_cell(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Draw an engine on a dynamometer behind glass, and strong ventilation."""
+    turns = rng.uniform(13.0, 100.0) * wavering(n, rate, 0.3, 0.02, rng)
+    firing = 0.5 * float(rng.choice((3, 4, 6, 8)))
+    engine = orders(turns, rate, 0.5, firing, rng.uniform(0.3, 1.5), rng)
+    return np.asarray(rng.uniform(0.3, 3.0) * engine / engine.std() + _air(n, rate, rng))
+
+
+def laboratory(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Draw computers' fans, a power supply's hum and soft ventilation."""
+    sound = _air(n, rate, rng)
+    for _ in range(int(rng.integers(1, 4))):
+        turns = rng.uniform(12.0, 80.0) * wavering(n, rate, 0.3, 0.01, rng)
+        fan = orders(turns, rate, 1.0, float(rng.choice(_BLADES)), rng.uniform(0.5, 2.0), rng)
+        sound += 10.0 ** rng.uniform(-1.6, -0.2) * fan / fan.std()
+    return sound
+
+
+def bench_with_a_motor(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Draw the bench's own drive: a motor with a gear, whose teeth mesh, and its inverter."""
+    turns = rng.uniform(2.0, 50.0) * wavering(n, rate, 0.5, 0.02, rng)
+    gear = orders(turns, rate, 1.0, float(rng.integers(10, 40)), rng.uniform(0.5, 2.0), rng)
+    whine = np.sin(2.0 * np.pi * rng.uniform(2e3, 0.4 * min(rate, 4e4)) * np.arange(n) / rate)
+    sound = _air(n, rate, rng) + 10.0 ** rng.uniform(-1.0, 0.3) * gear / (gear.std() + 1e-12)
+    return np.asarray(sound + (rng.random() < 0.4) * 10.0 ** rng.uniform(-2.0, -0.7) * whine)
+
+
+def climate_chamber(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Draw a chamber's blower and its refrigerating compressor."""
+    turns = rng.uniform(15.0, 50.0) * wavering(n, rate, 0.2, 0.003, rng)
+    blower = orders(turns, rate, 1.0, float(rng.choice(_BLADES)), rng.uniform(0.6, 1.5), rng)
+    cold = orders(np.full(n, _mains_turns(rng)), rate, 1.0, 2.0, rng.uniform(0.3, 1.2), rng)
+    sound = _air(n, rate, rng) + rng.uniform(0.1, 1.5) * blower / blower.std()
+    return np.asarray(sound + rng.uniform(0.1, 1.5) * cold / cold.std())
+
+
+def compressor_room(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Draw a piston compressor: beats of air and metal, a dozen in a second, and a belt."""
+    time = np.arange(n) / rate
+    beat = np.cos(2.0 * np.pi * log_uniform(6.0, 25.0, rng) * time + rng.uniform(0.0, 6.3))
+    pulses = np.exp(rng.uniform(1.0, 8.0) * (beat - 1.0))
+    metal = shaped_noise(n, rate, _HISS, rng)
+    sound = _air(n, rate, rng) * (0.3 + pulses) + rng.uniform(0.02, 0.5) * metal * pulses
+    return np.asarray(sound)
+
+
+def _air(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    air = shaped_noise(n, rate, _AIR, rng)
+    return in_a_room(air, rate, rng) if rng.random() < 0.2 else air
+
+
+def _mains_turns(rng: np.random.Generator) -> float:
+    """Return turns of an asynchronous motor of two or four poles at 50 or 60 Hz [1/s]."""
+    return float(rng.choice((25.0, 30.0, 50.0, 60.0))) * rng.uniform(0.95, 0.995)
+
+
+HALLS: Mapping[str, Callable[[int, float, np.random.Generator], NDArray[np.float64]]] = {
+    recipe.__name__: recipe
+    for recipe in (
+        hydraulic_hall, workshop, engine_cell, laboratory, bench_with_a_motor, climate_chamber,
+        compressor_room,
+    )
+}  # fmt: skip
+"""By name; each takes the number of samples, the rate [Hz] and a generator."""
+
 
 PLACES = (*CABINS, *HALLS)
 """Families of cabins and halls."""

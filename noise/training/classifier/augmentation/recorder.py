@@ -1,23 +1,239 @@
-"""Recording chain of the augmentation: room, noise, microphone, rate, gain, codec and cut."""
+"""Recording chain of the augmentation: room, noise, microphone, rate, gain, codec and cut.
+
+Losses of storage: lossy codecs and few bits.
+
+Vorbis and MP3 are the real ones, through memory, where libsndfile has them; elsewhere their steep
+low-pass stands in.
+
+Microphones and what recorders do behind them: a band, a gain that follows, a limit.
+"""
 
 from __future__ import annotations
 
+import io
 import math
 from dataclasses import dataclass
 
 import numpy as np
+import soundfile
 from numpy.typing import NDArray
-from scipy.signal import resample_poly
+from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
+from scipy.signal import firwin, lfilter, oaconvolve, resample_poly
 
 from noise.training.classifier.augmentation.backgrounds import background
-from noise.training.classifier.augmentation.codecs import coded, quantised
-from noise.training.classifier.augmentation.microphones import (
-    clipped,
-    levelled,
-    through_a_microphone,
-)
 from noise.training.classifier.augmentation.places import a_weighted, in_a_place, place
 from noise.training.classifier.augmentation.rooms import in_a_room
+from noise.training.draws import coloured_noise, log_uniform, low_pass, wandering
+
+_BANDS = {
+    "free": ((15.0, 250.0), (5e3, 20e3), 2, 4.0),
+    "phone": ((80.0, 250.0), (6.5e3, 12e3), 4, 7.0),
+    "pocket": ((80.0, 250.0), (700.0, 3e3), 3, 8.0),
+    "stethoscope": ((30.0, 150.0), (800.0, 3e3), 4, 12.0),
+}
+"""Between which frequencies the ends of the band lie [Hz], order, and most of the ripple [dB]."""
+
+
+def through_a_microphone(
+    sound: NDArray[np.float64], rate: float, rng: np.random.Generator, *, kind: str = "free"
+) -> NDArray[np.float64]:
+    """Colour by slopes at both ends of the band and a gentle ripple between.
+
+    A phone's band is narrower, 100 Hz to 8 kHz or so, and steeper, of second order; its ripple
+    larger. In a pocket it hears little above 2 kHz, and cloth that rubs; a stethoscope's membrane
+    and tube end about there too, and resound.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [any unit]
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+    kind : {"free", "phone", "pocket", "stethoscope"}
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `sound`]
+
+    Examples
+    --------
+    >>> through_a_microphone(np.ones(480), 48e3, np.random.default_rng(0)).shape
+    (480,)
+    """
+    m = next_fast_len(sound.size, real=True)
+    frequency = rfftfreq(m, 1.0 / rate)
+    lows, highs, order, most = _BANDS[kind]
+    low, high = log_uniform(*lows, rng), log_uniform(*highs, rng)
+    gain = 1.0 / np.sqrt(
+        (1.0 + (low / np.maximum(frequency, 1.0)) ** order) * (1.0 + (frequency / high) ** order)
+    )
+    octaves = np.log2(np.maximum(frequency, 20.0) / 1e3)
+    ripple = np.sin(rng.uniform(1.0, 4.0) * octaves + rng.uniform(0.0, 6.3))
+    gain *= 10.0 ** (rng.uniform(0.0, most) / 20.0 * ripple)
+    heard = irfft(rfft(sound, m) * gain, m)[: sound.size]
+    return heard + _rubbing(heard, rate, rng) if kind == "pocket" else np.asarray(heard)
+
+
+def _rubbing(
+    sound: NDArray[np.float64], rate: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Return what cloth adds that moves against the microphone: soft noise that comes and goes."""
+    n = sound.size
+    noise = low_pass(coloured_noise(n, rng.uniform(0.5, 1.5), rng), rng.uniform(500, 4000), rate)
+    strokes = np.maximum(wandering(n, rate, log_uniform(0.5, 6.0, rng), rng), 0.0) ** 2
+    return np.asarray(10.0 ** rng.uniform(-2.0, -0.5) * sound.std() * strokes * noise / noise.std())
+
+
+def levelled(
+    sound: NDArray[np.float64], rate: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Compress as an automatic gain does: the gain falls as the smoothed level rises.
+
+    The level of the output rises by 1 dB where that of the input rises by 1.3 to 4 dB.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [any unit]
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> quiet_then_loud = np.repeat([0.01, 1.0], 48_000) * np.sin(np.arange(96_000))
+    >>> even = levelled(quiet_then_loud, 48e3, np.random.default_rng(0))
+    >>> bool(np.std(even[60_000:]) < 60.0 * np.std(even[:40_000]))
+    True
+    """
+    time = rng.uniform(0.02, 0.4)
+    pole = math.exp(-1.0 / (time * rate))
+    power = lfilter([1.0 - pole], [1.0, -pole], sound**2)
+    floor = 1e-4 * float(np.mean(sound**2)) + 1e-300
+    exponent = 0.5 * (1.0 - 1.0 / rng.uniform(1.3, 4.0))
+    return np.asarray(sound * (power + floor) ** -exponent)
+
+
+def clipped(sound: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
+    """Limit to 30-90 % of the peak, hard or softly.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [any unit]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `sound`]
+
+    Examples
+    --------
+    >>> wave = np.sin(np.arange(100.0))
+    >>> bool(np.abs(clipped(wave, np.random.default_rng(0))).max() < 0.95)
+    True
+    """
+    limit = rng.uniform(0.3, 0.9) * float(np.abs(sound).max())
+    if not limit > 0.0:
+        return sound
+    if rng.random() < 0.5:
+        return np.clip(sound, -limit, limit)
+    return np.asarray(limit * np.tanh(sound / limit))
+
+
+_AT_ONCE = 4096
+"""Frames given to an encoder together; libsndfile's Vorbis encoder overflows its stack on many."""
+
+_MP3_RATES = (16_000, 22_050, 24_000, 32_000, 44_100, 48_000)
+
+
+def coded(sound: NDArray[np.float64], rate: int, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Pass through a lossy codec at a random quality; the length stays.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        Within -1 to 1 [full scale].
+    rate : int
+        [Hz]
+    rng : numpy.random.Generator
+
+    Examples
+    --------
+    >>> tone = 0.5 * np.sin(2 * np.pi * 1e3 * np.arange(24_000) / 48e3)
+    >>> decoded = coded(tone, 48_000, np.random.default_rng(0))
+    >>> decoded.shape, bool(np.corrcoef(tone, decoded)[0, 1] > 0.9)
+    ((24000,), True)
+    """
+    kind, quality = rng.random(), float(rng.uniform(0.1, 0.8))
+    cutoff = min(rng.uniform(10e3, 17e3), 0.45 * rate)
+    if kind < 0.45:
+        decoded = _round_trip(sound, rate, "OGG", "VORBIS", quality)
+    elif kind < 0.75 and rate in _MP3_RATES:
+        decoded = _round_trip(sound, rate, "MP3", "MPEG_LAYER_III", quality)
+    else:
+        decoded = None
+    if decoded is None:
+        return np.asarray(oaconvolve(sound, firwin(101, cutoff, fs=rate), mode="same"))
+    return decoded
+
+
+def quantised(
+    sound: NDArray[np.float64], bits: int, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Round to so many bits of full scale 1, with or without dither; clip at full scale.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [full scale]
+    bits : int
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [full scale]
+
+    Examples
+    --------
+    >>> quantised(np.array([0.3, 2.0]), 2, np.random.default_rng(1)).tolist()
+    [0.5, 0.5]
+    """
+    steps = 2.0 ** (bits - 1)
+    dither = rng.uniform(-0.5, 0.5, sound.size) if rng.random() < 0.3 else 0.0
+    return np.asarray(np.clip(np.round(sound * steps + dither), -steps, steps - 1.0) / steps)
+
+
+def _round_trip(
+    sound: NDArray[np.float64], rate: int, container: str, subtype: str, quality: float
+) -> NDArray[np.float64] | None:
+    """Encode and decode in memory; ``None`` where libsndfile cannot."""
+    if container not in soundfile.available_formats():
+        return None
+    memory = io.BytesIO()
+    try:
+        with soundfile.SoundFile(
+            memory, "w", rate, 1, subtype, format=container, compression_level=1.0 - quality
+        ) as file:
+            for first in range(0, sound.size, _AT_ONCE):
+                file.write(sound[first : first + _AT_ONCE])
+        memory.seek(0)
+        decoded, _ = soundfile.read(memory)
+    except (soundfile.LibsndfileError, TypeError):  # an older soundfile has no quality to set
+        return None
+    if decoded.size < sound.size:
+        decoded = np.pad(decoded, (0, sound.size - decoded.size))
+    return np.asarray(decoded[: sound.size])
+
 
 RATES = (16_000, 22_050, 30_000, 32_000, 44_100, 48_000, 96_000)
 """Sampling rates that recordings come in [Hz]."""
@@ -103,7 +319,7 @@ def recorded(
         Sampling rate [Hz].
     rng : numpy.random.Generator
     kind : str
-        Of the microphone, as `noise.training.classifier.augmentation.microphones` has them.
+        Of the microphone, as `noise.training.classifier.augmentation.recorder` has them.
 
     Returns
     -------
