@@ -92,7 +92,7 @@ def test_methods_of_what_a_notebook_imports_say_what_they_take_and_return(name):
 
 
 def test_the_package_lists_each_of_its_names_once():
-    *groups, _ = noise.__doc__.split("Recordings, runs, sweeps")
+    *groups, _ = noise.__doc__.split("Results print themselves")
     listed = re.findall(r"`(\w+)`", "".join(groups))
     assert sorted(listed) == sorted(noise.__all__)
 
