@@ -53,6 +53,7 @@ THIS = "bushing-noise"
 
 
 def _by_power(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:
+    """Mean weighted by power."""
     return float(np.average(values, weights=power))
 
 

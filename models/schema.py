@@ -197,7 +197,7 @@ class Quantity(Entry):
     Parameters
     ----------
     size : float
-        Of the unit of the key, in SI units.
+        Of the unit of the key [SI unit].
     unit : str
         Shown behind values.
     low, high : float
@@ -272,7 +272,7 @@ class Quantity(Entry):
         return self.infinite if math.isinf(value) else self.of(value)
 
     def of(self, value: float) -> float:
-        """Return a value in SI units in the unit of the key, without the noise of rounding."""
+        """Return a value [SI unit] in the unit of the key [`unit`], without noise of rounding."""
         return value if self.size == 1.0 else float(f"{value / self.size:.12g}")
 
     def remark(self, *values: float) -> str:

@@ -179,7 +179,10 @@ def sensor_signals(motion: Motion, sound: Sound, n_settling: int) -> Signals:
 def apply_sensor_effects(
     signals: Signals, effects: Sequence[ActiveEffect], rate: float, rng: np.random.Generator
 ) -> Signals:
-    """Let the effects on sensors change signals of a run in one block, in their order."""
+    """Let the effects on sensors change signals of a run in one block, in their order.
+
+    The sampling rate is that of the signals [Hz].
+    """
     for active in effects:
         signals = active.sensed(signals, rate, {"rng": rng, "whole": True})
     return signals

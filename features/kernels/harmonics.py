@@ -371,11 +371,11 @@ def harmonics_of(
     Parameters
     ----------
     x : ndarray, shape (n_samples,)
-        Mean removed.
+        Mean removed [unit].
     spectrum : Spectrum
         Of `x`.
     floor : ndarray, shape (n_bins,)
-        `noise_floor` of it.
+        `noise_floor` of it [unit^2/Hz].
     lines : Lines
         Of it; the band they were sought in is what shares refer to.
     lowest, highest : float

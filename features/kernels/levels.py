@@ -182,7 +182,7 @@ def fine_third_octaves(
     Parameters
     ----------
     x : ndarray, shape (n_samples,)
-        Checked already.
+        Checked already [unit].
     rate : float
         Sampling rate [Hz].
     reference : float

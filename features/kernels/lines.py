@@ -253,7 +253,7 @@ def interpolated(values: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArra
     Parameters
     ----------
     values : ndarray, shape (n,)
-        In any unit.
+        [unit]
     peaks : ndarray of int, shape (n_peaks,)
         Samples at which they are highest.
 

@@ -353,7 +353,7 @@ def pulses_of(
 
     Parameters
     ----------
-    whole, high : ndarray of complex
+    whole, high : ndarray of complex, shape (n,)
         Analytic signal of all that counts, and of the band in which pulses are sought.
     high_rate : float
         Sampling rate of the latter [Hz].

@@ -284,7 +284,7 @@ def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
     Parameters
     ----------
     x : ndarray, shape (n_samples,)
-        In any unit.
+        [unit]
     rate : float
         Sampling rate [Hz].
     resolution : float

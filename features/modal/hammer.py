@@ -251,7 +251,8 @@ def force_nulls(
 
     Returns
     -------
-    ndarray, shape (n,)
+    ndarray of bool, shape (n,)
+        True at a null; one entry per frequency [-].
 
     Examples
     --------

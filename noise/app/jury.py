@@ -255,12 +255,12 @@ def bradley_terry(share: NDArray[np.float64]) -> NDArray[np.float64]:
     Parameters
     ----------
     share : ndarray, shape (..., n, n)
-        Votes for the sound of the row against that of the column, half of one for no difference.
+        Votes for the sound of the row against that of the column [-]; one half for no difference.
 
     Returns
     -------
     ndarray, shape (..., n)
-        Their mean is zero.
+        Their mean is zero [-].
 
     Notes
     -----

@@ -43,7 +43,7 @@ class Source:
     path : Path, optional
         Of a recording.
     seconds : float
-        That are simulated; infinite for a recording.
+        Length that is simulated [s]; infinite for a recording.
     notes : tuple of str
         What the user should know before it is simulated.
     """

@@ -250,7 +250,7 @@ def friction_types() -> Grid:
 
 
 def spectra_by_support(material: str, speed: float, fit: float) -> Grid:
-    """Autospectra of the recorded torque with long and with short beams."""
+    """Autospectra of the torque with both beams, by speed [rad/s] and interference fit [m]."""
     row = []
     for letter, support in (("(a)", LONG), ("(b)", SHORT)):
         trace = recorded_trace(material, Case(speed, fit, support))

@@ -39,7 +39,7 @@ class Unwrapping:
 
     Parameters
     ----------
-    jumps : tuple of (int, ndarray, ndarray)
+    jumps : tuple of (int, ndarray of shape (n,), ndarray of shape (n,))
         Row; number of the sample after each jump; what is added from there on [rad].
     notes : tuple of str
     """

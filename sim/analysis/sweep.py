@@ -53,8 +53,16 @@ class Sweep:
     Parameters
     ----------
     conditions : ndarray of Condition, shape (...)
+        In SI units, as `Condition` has them.
     features : dict of str to ndarray, shape (...)
         By the names of `FEATURES`, in their units.
+
+    Examples
+    --------
+    >>> rates = np.array([66.0, 199.0])
+    >>> at = np.array([Condition(speed=1.0), Condition(speed=2.5)])
+    >>> Sweep(at, {"slip_frequency": rates})["slip_frequency"]
+    array([ 66., 199.])
     """
 
     conditions: NDArray[np.object_]

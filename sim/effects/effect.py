@@ -151,7 +151,7 @@ class ActiveEffect:
         return self.effect.drive(speed, rate, self.form, self.values, given)
 
     def sensed(self, signals: Signals, rate: float, memory: Memory) -> Signals:
-        """Signals of the next block as the effect makes sensors read them."""
+        """Signals of the next block, at a rate [Hz], as the effect makes sensors read them."""
         if self.effect.sensors is None:
             return signals
         given = memory if self.effect.in_blocks else memory["rng"]

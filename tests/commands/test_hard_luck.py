@@ -32,7 +32,7 @@ run()
 """
 
 
-@pytest.mark.parametrize("at", ["noise.cli", "noise.commands.features", "features"])
+@pytest.mark.parametrize("at", ["noise.cli", "noise.commands.features", "noise.recordings"])
 def test_an_interrupt_while_a_command_is_loaded_is_one_line(tmp_path, at):
     script = tmp_path / "bushing-noise"
     script.write_text(SCRIPT)

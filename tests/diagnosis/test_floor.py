@@ -72,7 +72,7 @@ def test_a_floor_of_no_kind_is_refused():
         Floor("up", 1.0)
     with pytest.raises(ParameterError, match=r"reflection = 1\.2"):
         Floor("y", 1.0, 1.2)
-    with pytest.raises(ParameterError, match="position = inf"):
+    with pytest.raises(ParameterError, match="position_m = inf"):
         Floor("y", float("inf"))
 
 

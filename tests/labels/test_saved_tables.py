@@ -29,7 +29,11 @@ def quick():
 
     def label_recording(recording, classifier, *, per_track=False):
         certain = {label: float(label == "none") for label in LABELS}
-        return [Segment("all", 0.0, recording.duration, "none", certain, 62.5, None, -20.0)]
+        return [
+            Segment(
+                "all", 0.0, recording.n_samples / recording.rate, "none", certain, 62.5, None, -20.0
+            )
+        ]
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("noise.labels.labelling.label_recording", label_recording)

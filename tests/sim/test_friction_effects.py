@@ -27,6 +27,7 @@ from sim.contact import (
     TIME,
     TORQUE,
     TWIST,
+    call_hook,
 )
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage, activated
@@ -98,7 +99,7 @@ def touch(effect, state=None, *, critical=10.7, kinetic=8.0, stiffness=665.0, **
     contact[CRITICAL], contact[KINETIC], contact[STIFFNESS] = critical, kinetic, stiffness
     state = np.zeros(effect.n_states) if state is None else np.array(state, dtype=float)
     rates = np.zeros(effect.n_states)
-    effect.function(now, effect.values, state, rates, contact)
+    call_hook(effect.function, now, effect.values, state, rates, contact)
     return contact, rates
 
 

@@ -8,7 +8,15 @@ import pytest
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
-from sim.contact import N_CONTACT, N_CONTEXT, SHAFT_INERTIA, SHAFT_LAG, SHAFT_LAG_RATE, SHAFT_TORQUE
+from sim.contact import (
+    N_CONTACT,
+    N_CONTEXT,
+    SHAFT_INERTIA,
+    SHAFT_LAG,
+    SHAFT_LAG_RATE,
+    SHAFT_TORQUE,
+    call_hook,
+)
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage, activated
 from sim.friction import friction_law
@@ -52,7 +60,7 @@ def solve(*hooks, rig=TRUE_STICK, speed=1.0, stiffness=3745.0, samples=3000, ref
 def shaft_torque(effect, lag, rate):
     context, contact = np.zeros(N_CONTEXT), np.zeros(N_CONTACT)
     context[SHAFT_LAG], context[SHAFT_LAG_RATE] = lag, rate
-    effect.function(context, effect.values, np.zeros(0), np.zeros(0), contact)
+    call_hook(effect.function, context, effect.values, np.zeros(0), np.zeros(0), contact)
     return contact[SHAFT_TORQUE], contact[SHAFT_INERTIA]
 
 

@@ -74,7 +74,7 @@ class RawRecording:
     notes: tuple[str, ...] = ()
 
     def whole(self) -> NDArray[np.float64]:
-        """Read all samples, block by block, in the memory of the result and no more."""
+        """Read all samples, shape (n_channels, n_samples), in the memory of the result alone."""
         samples = np.empty((self.n_channels, self.n_samples))
         for first in range(0, self.n_samples, _BLOCK):
             last = min(first + _BLOCK, self.n_samples)

@@ -146,7 +146,7 @@ class Row:
     first: int = 0
 
     def read(self, first: int, last: int) -> NDArray[np.float64]:
-        """Read samples of the recording [SI unit of the channel]."""
+        """Read samples of the recording, shape (n,) [SI unit of the channel]."""
         begin, end = self.first + first, self.first + last
         block = np.array(self.logged.read(begin, end), dtype=np.float64)
         if block.shape != (last - first,):

@@ -310,7 +310,7 @@ def with_fewer(case: Known, rng: np.random.Generator) -> Known:
 def with_rows(
     table: CaseTable, change: Callable[[NDArray[np.float64]], NDArray[np.float64]]
 ) -> CaseTable:
-    """Return a table with the same change of measured, nominal and scattered numbers."""
+    """Return a table with the same change of all numbers, arrays of shape (..., n_numbers)."""
     return replace(
         table,
         measured=change(table.measured),

@@ -205,6 +205,8 @@ def _unit(response: NDArray[np.float64]) -> NDArray[np.float64]:
 def random_slips(material: str, n: int, rate: float, rng: np.random.Generator) -> Slips:
     """Draw a drive and a contact, and find their slips; at least eight a second on the whole.
 
+    The rate is in Hz [1/s].
+
     Examples
     --------
     >>> slips = random_slips("tree", 48_000, 48e3, np.random.default_rng(1))
