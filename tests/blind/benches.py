@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .effects import CAUSES, DEVELOPMENT, FOREIGN, forms_of
 from .effects.listed import Listed, draw_listed
 from .laws import CONSTANT, Law, draw_law
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from .effects import Form
 
 __all__ = [
     "BITS", "CHANNELS", "KINDS", "NOISE", "SIZES", "Bench", "Kind", "draw_bench", "place_of",
@@ -42,7 +45,8 @@ class Kind:
     `noise`: factors of `NOISE`; `converter`: share of benches whose samples have steps, of `BITS`
     bits and up to four more; `stated`: share whose rig file states its sensors; `sizes`: the
     largest factor from the thesis's; `wrong_speed`: largest relative error of what sidecars say;
-    `warmer`: largest error of the temperature [K]; `responses`: how the hammer test was.
+    `warmer`: largest error of the temperature [K]; `responses`: how the hammer test was;
+    `foreign`: whether effects have the forms of `effects.foreign`.
     """
 
     rates: tuple[int, ...] = (25_600, 30_000, 32_000, 44_100, 48_000)
@@ -58,6 +62,7 @@ class Kind:
     wrong_speed: float = 0.0
     warmer: float = 0.0
     responses: tuple[str, ...] = ("good",)
+    foreign: bool = False
 
 
 _STARTS = ("rest", "run_up", "swing")
@@ -75,8 +80,10 @@ KINDS = {
     "conditions": Kind(wrong_speed=0.03, warmer=5.0),
     "responses": Kind(responses=("poor", "poor", "none")),
     "together": Kind(noise=(1.0, 4.0), converter=0.67, stated=0.5, starts=_STARTS),
+    "noisy": Kind(noise=(3.0, 30.0), converter=0.5, starts=("settled", "rest")),
+    "foreign_forms": Kind(foreign=True),
 }
-"""All kinds by name; the last is what the worst figures so far came from."""
+"""All kinds by name; `together` is what the worst figures so far came from."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +119,13 @@ class Bench:
         unseen = () if "acceleration" in self.channels else (
             "beam_modes", "slip_pulse", "plate_modes", "room_reflections",
         )  # fmt: skip
-        return (*creeping, *unseen, *(one.effect for one in self.listed))
+        own = [c for c in CAUSES if KINDS[self.kind].foreign and not self.forms(c, DEVELOPMENT)]
+        return (*creeping, *unseen, *own, *(one.effect for one in self.listed))
+
+    def forms(self, effect: str, kept_for: str) -> list[Form]:
+        """Forms that an effect may have here; strangers are the same everywhere."""
+        foreign = KINDS[self.kind].foreign and effect in CAUSES
+        return forms_of(effect, FOREIGN[kept_for] if foreign else kept_for)
 
     def range_of(self, channel: str) -> float:
         """Largest value of a channel's converter: the thesis's, doubled for stronger rigs."""

@@ -36,6 +36,9 @@ __all__ = [
 
 _LEAST_RATE = 75e3
 
+_LARGEST_WANDER = 4.0
+"""Noise, over that of a quiet bench, beyond which only what is white of it grows."""
+
 
 @dataclass(frozen=True, eq=False)
 class Case:
@@ -97,7 +100,7 @@ def _stepped(samples, step):
 
 
 def sampled(x, decimation, level, name, rng):
-    """Decimate, scale by a gain of 1 % scatter, add coloured noise and drift; 32-bit samples."""
+    """Decimate, scale by a gain of 1 % scatter, add noise, its wander and drift; 32-bit samples."""
     y = resample_poly(x, 1, decimation, padtype="line")
     white = rng.standard_normal(y.size)
     f = np.fft.rfftfreq(y.size)
@@ -105,7 +108,8 @@ def sampled(x, decimation, level, name, rng):
     gain = 1.0 if name == "angle" else 1.0 + 0.01 * rng.standard_normal()
     drift = 2.0 * rng.standard_normal() * np.linspace(-1.0, 1.0, y.size)
     loud = level * np.exp(0.1 * rng.standard_normal())
-    samples = (gain * y + loud * (white + 2.0 * slow + drift)).astype(np.float32)
+    wander = loud * min(1.0, _LARGEST_WANDER * NOISE[name] / level)
+    samples = (gain * y + loud * white + wander * (2.0 * slow + drift)).astype(np.float32)
     if not np.isfinite(samples).all():
         raise RuntimeError(f"{name} is not finite")
     return samples

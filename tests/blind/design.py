@@ -213,7 +213,7 @@ def draw_design(
     secret = stream(seed, kept_for, kind, index, 5)
     forms = []
     for name in names:
-        offered = forms_of(name, kept_for)
+        offered = bench.forms(name, kept_for)
         strength = float(np.exp(secret.uniform(np.log(WEAKEST), 0.0)))
         forms.append((offered[int(secret.integers(len(offered)))], strength))
     offsets = {}

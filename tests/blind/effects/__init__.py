@@ -5,6 +5,7 @@ from __future__ import annotations
 from . import (
     drive,
     elastomer,
+    foreign,
     friction,
     measurement,
     radiation,
@@ -12,18 +13,22 @@ from . import (
     strangers,
     structure,
 )
+from .foreign import FOREIGN
 from .form import DEVELOPMENT, FORMS, SEALED, Form
 
 __all__ = [
-    "CAUSES", "DEVELOPMENT", "FORMS", "SEALED", "STRANGERS", "Form", "forms_of",
+    "CAUSES", "DEVELOPMENT", "FOREIGN", "FORMS", "SEALED", "STRANGERS", "Form", "forms_of",
 ]  # fmt: skip
 
-_MODULES = (drive, friction, elastomer, structure, radiation, measurement, sensor_faults, strangers)
+_MODULES = (
+    drive, friction, elastomer, structure, radiation, measurement, sensor_faults, strangers,
+    foreign,
+)  # fmt: skip
 
 STRANGERS = tuple(sorted({f.effect for f in FORMS.values() if f.effect.startswith("stranger_")}))
 CAUSES = tuple(sorted({f.effect for f in FORMS.values()} - set(STRANGERS)))
 
 
 def forms_of(effect: str, kept_for: str) -> list[Form]:
-    """Forms of an effect in one of the two sets, by name."""
+    """Forms of an effect in one of the sets, by name."""
     return [FORMS[k] for k in sorted(FORMS) if k[0] == effect and FORMS[k].kept_for == kept_for]
