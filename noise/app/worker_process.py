@@ -16,8 +16,8 @@ from threading import Condition, Thread
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from models.errors import BushingNoiseError
+from noise.base.processes import interrupts_blocked
 from noise.batch import one_thread
-from noise.batch.pool import interrupts_blocked
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection

@@ -17,15 +17,12 @@ import hashlib
 import os
 import platform
 import re
-import time
 import uuid
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
-from io import FileIO
 from pathlib import Path, PurePosixPath
-from typing import Any
 
 from models.errors import ParameterError
 
@@ -171,10 +168,6 @@ def _remove(path: Path) -> None:
         return
 
 
-_PATIENCE = 0.05
-"""Between looks at a lock that another has, on Windows [s]."""
-
-
 @contextmanager
 def locked(target: Path, *, wait: bool = True) -> Iterator[None]:
     """Keep others who take the same lock from a file until the block ends.
@@ -205,73 +198,25 @@ def locked(target: Path, *, wait: bool = True) -> Iterator[None]:
     ...     there, list(Path(folder).iterdir())
     (['.labels.csv.lock'], [])
     """
+    from filelock import FileLock, Timeout
+
     path = target.with_name(f".{target.name}.lock")
+    lock = FileLock(path, timeout=-1 if wait else 0)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        file = _held(path, wait=wait)
-    except BlockingIOError:
+        lock.acquire()
+    except Timeout:
         raise ParameterError(
             f"{target}: is being written by another process; wait for it"
         ) from None
     except OSError as error:
         raise ParameterError(f"{target}: cannot be written ({error.strerror or error})") from None
-    with file:
-        try:
-            yield
-        finally:
-            _free(path)
-
-
-def _held(path: Path, *, wait: bool) -> FileIO:
-    """Open and lock the file that stands there once the lock is held."""
-    while True:
-        file = path.open("a+b", buffering=0)
-        _claim(file, wait=wait)
-        # Who held it before may have removed the file while this process waited for it.
-        try:
-            if os.path.samestat(os.fstat(file.fileno()), path.stat()):
-                return file
-        except FileNotFoundError:
-            pass
-        file.close()
-
-
-def _claim(file: FileIO, *, wait: bool) -> None:
     try:
-        import fcntl
-    except ImportError:  # Windows
-        _claim_on_windows(file, wait=wait)
-        return
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-    except BlockingIOError:
-        file.close()
-        raise
-    except OSError:  # a file system without locks
-        return
-
-
-def _claim_on_windows(file: FileIO, *, wait: bool) -> None:
-    import msvcrt
-
-    lock: Any = msvcrt
-    while True:
-        try:
-            lock.locking(file.fileno(), lock.LK_NBLCK, 1)
-            return
-        except OSError:
-            if not wait:
-                file.close()
-                raise BlockingIOError from None
-            time.sleep(_PATIENCE)
-
-
-def _free(path: Path) -> None:
-    """Remove the file while it is held; where an open file cannot be removed, it stays."""
-    try:
-        path.unlink(missing_ok=True)
-    except OSError:
-        return
+        yield
+    finally:
+        with suppress(OSError):  # an open file cannot be removed on Windows
+            path.unlink()  # while it is held; who waited for it makes another
+        lock.release()
 
 
 def export_paths(

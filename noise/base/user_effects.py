@@ -1,7 +1,7 @@
 """Effects of the user's own, checked, as ``--effects`` and `noise.diagnose` take them.
 
-They are code that the program has not seen, so what they return is checked, and what goes wrong in
-them is told with the file, the effect and the line, not as a defect of the program.
+They are code that the program has not seen: what goes wrong in them is told with the file, the
+effect and the line, not as a defect of the program.
 """
 
 from __future__ import annotations
@@ -12,19 +12,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from models.errors import BushingNoiseError, ParameterError
 
-if TYPE_CHECKING:
-    from sim.effects.effect import Effect, Signals
-    from sim.motion import Motion
+if TYPE_CHECKING:  # compiled functions take a second to load
+    from sim.effects.effect import Effect
 
-    _Result = TypeVar("_Result")
-
-
-_LONGEST_MESSAGE = 300
-"""Messages of compilers go on for pages."""
+_LONGEST_MESSAGE = 300  # letters: those of compilers go on for pages
 
 
 def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
@@ -50,33 +45,25 @@ def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
     >>> "slip_pulse" in effect_library(None)
     True
     """
-    from sim.effects import EFFECTS
+    from sim.effects import EFFECTS, load_effects
 
     own: dict[str, Effect] = {}
     for path in [paths] if isinstance(paths, Path) else paths or ():
-        for name, effect in _own_effects(path).items():
+        try:
+            library = load_effects(path)
+        except (ParameterError, SystemExit) as error:
+            text = _one_line(error).removeprefix(f"effects {path}: ") or "stops the program"
+            raise ParameterError(f"--effects {path}: {text}") from None
+        for name in library.keys() - EFFECTS.keys():
             if name in own:
                 raise ParameterError(
                     f"--effects {path}: effect {name!r} is defined in another file as well"
                 )
-            own[name] = _guarded(effect, path)
+            own[name] = _checked_effect(library[name], path)
     return ChainMap(own, EFFECTS) if own else EFFECTS  # type: ignore[arg-type]  # only read
 
 
-def _own_effects(path: Path) -> dict[str, Effect]:
-    from sim.effects import EFFECTS, load_effects
-
-    try:
-        library = load_effects(path)
-    except (ParameterError, SystemExit) as error:
-        text = _one_line(error) or "stops the program"
-        raise ParameterError(
-            f"--effects {path}: {text.removeprefix(f'effects {path}: ')}"
-        ) from None
-    return {name: effect for name, effect in library.items() if name not in EFFECTS}
-
-
-def _guarded(effect: Effect, path: Path) -> Effect:
+def _checked_effect(effect: Effect, path: Path) -> Effect:
     """Return the effect with its functions checked."""
     where = f"--effects {path}: effect {effect.name!r}"
     if not effect.forms:
@@ -87,13 +74,18 @@ def _guarded(effect: Effect, path: Path) -> Effect:
         raise ParameterError(f"{where}: needs one of drive, contact, force and sensors")
     if effect.contact is not None:
         _compile(effect.contact, where)
-    return replace(
-        effect,
-        drive=_checked(effect.drive, f"{where}: drive", path, _like_first),
-        force=_checked(effect.force, f"{where}: force", path, _like_torque),
-        sensors=_checked(effect.sensors, f"{where}: sensors", path, _same_signals),
-        pack=_checked(effect.pack, f"{where}: pack", path, _numbers),
-    )
+    like: dict[str, Callable[[Any], Any]] = {
+        "drive": lambda angle: angle,
+        "force": lambda motion: motion.torque,
+        "sensors": lambda signals: signals,
+        "pack": lambda _: None,
+    }
+    hooks: dict[str, Any] = {
+        hook: _checked(function, f"{where}: {hook}", path, like[hook])
+        for hook in like
+        if (function := getattr(effect, hook)) is not None
+    }
+    return replace(effect, **hooks)
 
 
 def _compile(contact: Any, where: str) -> None:
@@ -117,73 +109,46 @@ def _compile(contact: Any, where: str) -> None:
 
 
 def _checked(
-    function: Callable[..., _Result] | None,
-    where: str,
-    path: Path,
-    fault: Callable[[tuple[object, ...], object], str],
-) -> Callable[..., _Result] | None:
-    """Return a function that tells errors with their place, and what is wrong with its result."""
-    if function is None:
-        return None
+    function: Callable[..., Any], where: str, path: Path, like: Callable[[Any], Any]
+) -> Callable[..., Any]:
+    """Return a function whose errors name their place; its result is like something given to it."""
 
     @wraps(function)
-    def checked(*arguments: object) -> _Result:
+    def checked(first: Any, *others: object) -> Any:
         try:
-            result = function(*arguments)
+            result = function(first, *others)
         except BushingNoiseError:
             raise
         except Exception as error:
+            frames = traceback.extract_tb(error.__traceback__)
+            own = [frame for frame in frames if Path(frame.filename).name == path.name]
+            place = f"{Path((own or frames)[-1].filename).name}, line {(own or frames)[-1].lineno}"
             raise ParameterError(
-                f"{where}: {type(error).__name__}: {_one_line(error)} ({_place(error, path)})"
+                f"{where}: {type(error).__name__}: {_one_line(error)} ({place})"
             ) from error
-        if wrong := fault(arguments, result):
+        if wrong := _fault(result, like(first)):
             raise ParameterError(f"{where} {wrong}")
         return result
 
     return checked
 
 
-def _place(error: Exception, path: Path) -> str:
-    """Return the last line of the user's file on the way to an error."""
-    frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if Path(frame.filename).name == path.name]
-    last = (own or frames)[-1]
-    return f"{Path(last.filename).name}, line {last.lineno}"
-
-
-def _array_fault(result: object, size: int) -> str:
+def _fault(result: Any, like: Any) -> str:
+    """Say what is wrong with a result: it has to be an array, or signals, of the same size."""
     import numpy as np
 
-    if not isinstance(result, np.ndarray) or result.shape != (size,):
-        shape = getattr(result, "shape", type(result).__name__)
-        return f"must return an array of shape ({size},), not {shape}"
+    if isinstance(like, dict):
+        if not isinstance(result, dict) or list(result) != list(like):
+            return f"must return a dict of the signals it was given: {', '.join(like)}"
+        faults = {name: _fault(result[name], signal) for name, signal in like.items()}
+        return next((f"{fault} for {name!r}" for name, fault in faults.items() if fault), "")
+    shape = (getattr(result if like is None else like, "size", 0),)
+    if not isinstance(result, np.ndarray) or result.shape != shape:
+        found = getattr(result, "shape", type(result).__name__)
+        return f"must return an array of shape {shape}, not {found}"
     if result.dtype != np.float64 or not np.isfinite(result).all():
         return "must return finite numbers of type float64"
     return ""
-
-
-def _like_first(arguments: tuple[object, ...], result: object) -> str:
-    return _array_fault(result, arguments[0].size)  # type: ignore[attr-defined]
-
-
-def _like_torque(arguments: tuple[object, ...], result: object) -> str:
-    motion: Motion = arguments[0]  # type: ignore[assignment]
-    return _array_fault(result, motion.torque.size)
-
-
-def _same_signals(arguments: tuple[object, ...], result: object) -> str:
-    given: Signals = arguments[0]  # type: ignore[assignment]
-    if not isinstance(result, dict) or list(result) != list(given):
-        return f"must return a dict of the signals it was given: {', '.join(given)}"
-    for name, signal in given.items():
-        if wrong := _array_fault(result[name], signal.size):
-            return f"{wrong} for {name!r}"
-    return ""
-
-
-def _numbers(_arguments: tuple[object, ...], result: object) -> str:
-    size = getattr(result, "size", 0)
-    return _array_fault(result, size)
 
 
 def _one_line(error: BaseException) -> str:

@@ -8,13 +8,21 @@ from noise.batch.journal import (
     Journal,
     JournalReader,
     call_identity,
-    file_identity,
     journal_path,
     kept_results,
     open_journal,
 )
-from noise.batch.run import DIED, BatchRows, perform_all
-from noise.batch.work import Done, Job, Work, find_jobs, one_thread
+from noise.batch.work import (
+    DIED,
+    BatchRows,
+    Done,
+    Job,
+    Work,
+    file_identity,
+    find_jobs,
+    one_thread,
+    perform_all,
+)
 
 __all__ = [
     "DIED",

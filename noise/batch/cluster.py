@@ -51,7 +51,7 @@ def cluster(scheduler: str) -> Iterator[Callable[..., Generator[tuple[int, Any]]
     Yields
     ------
     callable
-        ``spread(perform, calls)``, as `noise.batch.pool.spread_over_processes`.
+        ``spread(perform, calls)``, as `noise.base.processes.spread_over_processes`.
 
     Raises
     ------

@@ -24,8 +24,7 @@ from typing import Any
 from models.errors import BushingNoiseError, ParameterError
 from noise.base.files import locked
 from noise.base.progress import note
-from noise.batch.work import Done, Job, Work
-from noise.recordings.sidecar import find_sidecar
+from noise.batch.work import Done, Job, Work, file_identity
 
 RESULTS_VERSION = 1
 """Of all that a journal holds. To be raised by hand whenever labels, features or screened points
@@ -253,23 +252,6 @@ def journal_path(target: Path) -> Path:
     '.labels.csv.journal'
     """
     return target.with_name(f".{target.name}.journal")
-
-
-def file_identity(path: Path) -> list[int] | None:
-    """Size [byte] and time of the last change [ns] of a recording, then those of its sidecar.
-
-    None where the file cannot be looked at.
-
-    Examples
-    --------
-    >>> file_identity(Path("nowhere.wav")) is None
-    True
-    """
-    try:
-        parts = [path, *filter(None, [find_sidecar(path)])]
-        return [value for part in parts for value in (part.stat().st_size, part.stat().st_mtime_ns)]
-    except OSError:
-        return None
 
 
 def call_identity(*decisive: object) -> str:

@@ -39,7 +39,7 @@ from noise.diagnosis.preparation.measured_speed import measured_speed
 from noise.diagnosis.preparation.prepare import prepared
 from noise.diagnosis.preparation.settled_part import shortest
 from noise.recordings import find_recordings, read_recording
-from noise.recordings.logged_speed import as_logged
+from noise.recordings.rotation import as_logged
 from noise.recordings.sidecar import sidecar_text
 from sim.bushing import lumped_bushing
 

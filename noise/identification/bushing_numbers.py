@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.base.interval import SURE_90
+from noise.base import SURE_90
 from noise.identification.bushing_fit import phases_of
 from noise.identification.law_model import LOCAL
 from noise.identification.law_priors import fitted_evidence

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.base.interval import SURE_90
+from noise.base import SURE_90
 from noise.identification.outcome import Number
 
 if TYPE_CHECKING:

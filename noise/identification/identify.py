@@ -25,7 +25,7 @@ from models.errors import ParameterError
 from models.rig import Rig
 from models.rig_file import rig_text
 from models.schema import remarks
-from noise.base.interval import SURE_90
+from noise.base import SURE_90
 from noise.diagnosis.bench.check import unit_findings
 from noise.diagnosis.bench.units import unit_of
 from noise.identification.bushing_fit import fit_bushing

@@ -19,7 +19,7 @@ from noise.diagnosis.bench.conditions import speed_words
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 from noise.identification.static_test import StaticTest, static_test
 from noise.recordings import find_recordings, read_recording
-from noise.recordings.logged_speed import as_logged
+from noise.recordings.rotation import as_logged
 
 SHORTEST = LEAD + TAIL + 0.1
 """Shorter recordings show too few cycles [s]; assumed."""

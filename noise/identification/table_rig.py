@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from models.condition import FIXED
 from models.rig import LawSpec, Rig
 from models.rig_file import rig_text
-from noise.base.interval import SURE_90
+from noise.base import SURE_90
 from noise.identification.evidence import UNITS, table_evidence, with_evidence
 from noise.identification.outcome import Identification, Number
 from noise.identification.static_test import static_evidence, static_notes

@@ -27,8 +27,8 @@ from noise.labels.segments import Segment
 from noise.labels.table import ASSUMED, COLUMNS, CONDITIONS, HUMAN, assumes_material
 from noise.labels.windows import can_be_described, describe, tracks
 from noise.recordings.files import names_channels, open_blocks
-from noise.recordings.logged_speed import agrees, as_logged
 from noise.recordings.meaning import PascalPerFullScale
+from noise.recordings.rotation import agrees, as_logged
 
 _DIGITS = 4
 """Of what is inferred, which is known to far fewer."""

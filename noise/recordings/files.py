@@ -26,8 +26,8 @@ from noise.recordings.folders import OTHERS, what_to_do
 from noise.recordings.formats import RawRecording, check_rate, formats
 from noise.recordings.formats.isolated import open_isolated
 from noise.recordings.meaning import Meaning, PascalPerFullScale, check_finite, describe
+from noise.recordings.rotation import find_turns
 from noise.recordings.sidecar import sidecar_of
-from noise.recordings.unwrapping import find_turns
 
 MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""

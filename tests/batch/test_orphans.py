@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 SCRIPT = """
 import os, sys, time
 from joblib import Parallel, delayed
-from noise.batch.pool import ending_with_this
+from noise.base.processes import ending_with_this
 def rest(seconds):
     time.sleep(seconds)
     return os.getpid()

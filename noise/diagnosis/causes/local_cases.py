@@ -32,7 +32,7 @@ from models.radiation.impulse_responses import ImpulseResponses
 from models.recording import Recording
 from models.rig import Rig
 from noise.base.model_file import ModelKind, load_model, save_model
-from noise.batch.pool import ending_with_this
+from noise.base.processes import ending_with_this
 from noise.diagnosis.cases.draw import active_effect, draw_offsets, unknown_effect
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.cases.structures import draw_structure

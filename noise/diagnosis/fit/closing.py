@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from noise.base.interval import SURE_90
+from noise.base import SURE_90
 from noise.diagnosis.gap.distance import closed_fraction
 
 CLOSABLE = 0.5

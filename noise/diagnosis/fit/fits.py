@@ -19,7 +19,7 @@ import numpy as np
 from features.kernels.levels import a_weighted_level
 from models.errors import ParameterError
 from models.recording import Recording
-from noise.base.interval import SURE_90
+from noise.base import SURE_90
 from noise.classifier import load_classifier
 from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.evidence.friction_curves import friction_curves

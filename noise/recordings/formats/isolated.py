@@ -1,38 +1,33 @@
 """Loggers' files read in a process of its own, with limits on time and memory.
 
 Libraries that follow the pointers of a file hang on one that leads in a circle, set aside the 4 GB
-that a damaged length asks for, or die. They do so in a process that is killed when it takes too
+that a damaged length asks for, or die. They do so in a process that is ended when it takes too
 long and may not have more memory than a file of that size can need; whatever becomes of it, here it
-is one recording refused. A process lives on from file to file, since it costs a second to start,
-and ends with the one that asks it. Samples come over part by part, so that reading takes the memory
-of the result and no more.
-
-A pool of `multiprocessing` would import the caller's script again, and could not be used by the
-processes of a batch.
+is one recording refused. A process lives on from file to file, since it costs a second to start.
+Samples come over part by part, so that reading takes the memory of the result and no more.
 """
 
 from __future__ import annotations
 
-import atexit
 import os
-import pickle
 import signal
-import subprocess
-import sys
-import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from concurrent.futures import BrokenExecutor, TimeoutError as TookLongerError
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import RecordingError, not_installed
+from models.foreign_file import one_line
+from noise.base.processes import Worker
 from noise.recordings.formats import RawRecording, formats
+from noise.recordings.formats.logged import describe_channels
 
 _PATIENCE = 15.0
 """How long an answer may take, beside the size of the file [s]."""
@@ -43,9 +38,7 @@ _SLOWEST = 1e6
 _ALLOWANCE = 2 << 30
 """Memory that a file may take, beside four times its size [byte]."""
 
-_LONGEST_REASON = 200  # letters
-
-_idle: list[tuple[int, Any]] = []
+_idle: list[tuple[int, Worker]] = []
 """A process that waits for its next file, and whose it is: a fork needs one of its own."""
 
 
@@ -75,143 +68,116 @@ def open_isolated(path: Path) -> Iterator[RawRecording]:
         raise RecordingError(message)
     path.open("rb").close()  # a file that may not be read is not damaged
     size = path.stat().st_size
-    process = _borrowed()
-
     seconds = _PATIENCE + size / _SLOWEST
-    idle = False
+    worker, at_rest = _borrowed(), False
 
-    def ask(question: object) -> Any:
-        nonlocal idle
-        idle = False
-        late = threading.Timer(seconds, process.kill)
-        late.start()
+    def ask(perform: Callable[..., Any], *given: object) -> Any:
+        nonlocal at_rest
+        at_rest = False
         try:
-            pickle.dump(question, process.stdin)
-            process.stdin.flush()
-            answer = pickle.load(process.stdout)
-        except (EOFError, OSError, pickle.UnpicklingError) as error:
-            took = f"took longer than {seconds:.0f} s"
-            reason = took if late.finished.is_set() else "ended the process"
-            raise RecordingError(
-                f"{path}: is damaged or no {of.name} file (reading it {reason})"
-            ) from error
-        finally:
-            late.cancel()
-        if isinstance(answer, str):  # after which it waits for another file
-            idle = True
-            raise RecordingError(answer)
-        return answer
+            answer = worker.submit(_timed, seconds, perform, *given).result(seconds)
+        except RecordingError:
+            at_rest = True
+            raise
+        except TookLongerError:
+            reason = f"took longer than {seconds:.0f} s"
+        except (BrokenExecutor, OSError):
+            reason = "ended the process"
+        else:
+            at_rest = True
+            return answer
+        raise RecordingError(f"{path}: is damaged or no {of.name} file (reading it {reason})")
 
     try:
-        folder = os.curdir if path.is_absolute() else str(Path.cwd())
-        raw = ask((folder, path, _ALLOWANCE + 4 * size, seconds))
-        yield replace(raw, read=lambda first, last: ask((first, last)))
-        with suppress(RecordingError):  # it died of the last part
-            idle = ask(None)
+        raw = ask(_open, os.curdir if path.is_absolute() else Path.cwd(), path, size)
+        yield replace(raw, read=lambda first, last: ask(raw.read, first, last))
     finally:
-        if idle and not _idle:
-            _idle.append((os.getpid(), process))
+        if at_rest:
+            with suppress(RecordingError):  # it died of the last part
+                ask(_close)
+        if at_rest and not _idle:
+            _idle.append((os.getpid(), worker))
         else:
-            _end(process)
+            worker.end()
 
 
-def _borrowed() -> Any:
-    with suppress(IndexError):
-        owner, process = _idle.pop()
-        if owner == os.getpid() and process.poll() is None:
-            return process
-    call = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
-    return subprocess.Popen(
-        [sys.executable, "-c", call],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-    )
-
-
-def _end(process: Any) -> None:
-    process.kill()
-    process.wait()
-    for pipe in (process.stdin, process.stdout):
-        with suppress(OSError):  # what it did not take is lost with it
-            pipe.close()
-
-
-@atexit.register
-def _end_with_us() -> None:
-    while _idle:
-        owner, process = _idle.pop()
-        if owner == os.getpid():
-            _end(process)
+def _borrowed() -> Worker:
+    with suppress(IndexError, BrokenExecutor):
+        owner, worker = _idle.pop()
+        if owner == os.getpid() and worker.submit(os.getpid).result():
+            return worker
+    return Worker()
 
 
 # --- in the process that reads -------------------------------------------------------------------
 
 
-def serve() -> None:
-    """Read what is asked for on standard input, until there is nobody left to ask."""
-    answers = os.fdopen(os.dup(1), "wb")
+class _Opened(NamedTuple):
+    """The file that is open, how to refuse it, and what closes it."""
+
+    file: ExitStack
+    raw: RawRecording
+    refusal: str
+    memory: int
+
+
+_opened: list[_Opened] = []
+
+
+def _timed(seconds: float, perform: Callable[..., Any], *given: object) -> Any:
+    """Do a call in a process that ends should nobody be there any more to end it."""
+    alarm = getattr(signal, "alarm", lambda _: None)
+    alarm(int(seconds) + 10)
+    try:
+        return perform(*given)
+    finally:
+        alarm(0)
+
+
+def _open(folder: str | Path, path: Path, size: int) -> RawRecording:
+    _close()
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)  # some libraries print what they cannot follow
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # meant for the process that asks
-
-    def receive() -> Any:
-        _alarm(0.0)
-        question = pickle.load(sys.stdin.buffer)
-        _alarm(seconds)  # should nobody be there any more to kill it
-        return question
-
-    def send(value: object) -> None:
-        pickle.dump(value, answers, protocol=5)
-        answers.flush()
-
-    seconds = 0.0
-    with suppress(EOFError):
-        while True:
-            folder, path, memory, patience = receive()
-            seconds = patience + 10.0
-            _alarm(seconds)
-            os.chdir(folder)
-            send(_serve_file(path, memory, send, receive) or True)
-
-
-def _alarm(seconds: float) -> None:
-    if hasattr(signal, "alarm"):
-        signal.alarm(int(seconds))
-
-
-def _serve_file(
-    path: Path, memory: int, send: Callable[[object], None], receive: Callable[[], Any]
-) -> str:
-    """Send the channels of a file, then parts of them as asked for; return why it is refused."""
-    from noise.recordings.formats.logged import describe_channels
-
+    os.dup2(nowhere, 2)
+    os.close(nowhere)
+    os.chdir(folder)
     of = formats()[path.suffix.lower()]
+    import_module(of.library)
+    memory = _ALLOWANCE + 4 * size
+    _limit_memory(memory)
+    refusal = f"{path}: is damaged or no {of.name} file"
+    with ExitStack() as stack, _refusing(refusal, memory):
+        channels, properties = stack.enter_context(of.channels(path))  # type: ignore[misc]
+        raw = describe_channels(path, channels, properties)
+        _opened.append(_Opened(stack.pop_all(), raw, refusal, memory))
+    return replace(raw, read=_read)
+
+
+def _read(first: int, last: int) -> NDArray[np.float64]:
+    (opened,) = _opened
+    with _refusing(opened.refusal, opened.memory):
+        return opened.raw.read(first, last)
+
+
+def _close() -> None:
+    while _opened:
+        with suppress(Exception):  # of a damaged file
+            _opened.pop().file.close()
     _limit_memory(None)
+
+
+@contextmanager
+def _refusing(refusal: str, memory: int) -> Iterator[None]:
     try:
-        import_module(of.library)
-        _limit_memory(memory)
-        with of.channels(path) as (channels, properties):  # type: ignore[misc]
-            raw = describe_channels(path, channels, properties)
-            send(replace(raw, read=_elsewhere))
-            while (part := receive()) is not None:
-                send(raw.read(*part))
-    except RecordingError as error:
-        return str(error)
+        yield
+    except RecordingError:
+        raise
     except MemoryError:
-        return (
-            f"{path}: is damaged or no {of.name} file (reading it took more than "
-            f"{memory / 1e9:.1f} GB of memory)"
-        )
+        reason = f"reading it took more than {memory / 1e9:.1f} GB of memory"
+        raise RecordingError(f"{refusal} ({reason})") from None
     except Exception as error:
-        reason = " ".join(f"{type(error).__name__}: {error}".split())[:_LONGEST_REASON]
-        return f"{path}: is damaged or no {of.name} file ({reason})"
-    return ""
-
-
-def _elsewhere(first: int, last: int) -> NDArray[np.float64]:
-    """Stand in for what reads samples, which stays with the file."""
-    raise NotImplementedError
+        reason = one_line(f"{type(error).__name__}: {error}")
+        raise RecordingError(f"{refusal} ({reason})") from None
 
 
 def _limit_memory(more: int | None) -> None:

@@ -44,7 +44,7 @@ from models.foreign_file import read_arrays, reading
 from noise.base.files import atomic
 from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
-from noise.batch.pool import ending_with_this
+from noise.base.processes import ending_with_this
 from noise.classifier.model import Classifier
 from noise.labels.segmentation import clearest
 from noise.labels.windows import FEATURE_NAMES, columns_of, describe

@@ -1,4 +1,4 @@
-"""Angles of encoders that start again after a turn, made to go on.
+"""Rotation of the shaft: angles that start again after a turn, and speeds beside logged ones.
 
 An encoder gives 0 to 2 pi, 0 to 360 degrees, or counts from 0 up to where its counter overflows.
 Where the step from one sample to the next differs by more than 2 rad from the usual step, the angle
@@ -26,6 +26,12 @@ _JUMP = 2.0
 
 _STRETCH = 1 << 16
 """Samples of which the median step is the usual one."""
+
+_AS_LOGGED = 0.005
+"""A measured speed that is off by no more is the one that was logged [-]."""
+
+_DIGITS = 4
+"""Of a measured speed, of which an angle tells no more."""
 
 _TURN = 2.0 * math.pi
 _NEAR = 0.1  # of a turn, by which jumps of whole turns may be off: the speed changes meanwhile
@@ -120,3 +126,45 @@ def _period(sizes: NDArray[np.float64]) -> tuple[float, bool]:
     mean = float(sizes.mean())
     alike = bool(np.all(np.abs(sizes - mean) < _ALIKE * mean))
     return (mean if alike and sizes.size >= _MANY else 0.0), False
+
+
+def agrees(measured: float, logged: float) -> bool:
+    """Whether a measured speed is the one that was logged, whatever the sense of rotation.
+
+    Parameters
+    ----------
+    measured, logged : float
+        [rad/s]
+
+    Examples
+    --------
+    >>> agrees(-4.999989, 5.0), agrees(10.0, 5.0)
+    (True, False)
+    """
+    return abs(abs(measured) - abs(logged)) <= _AS_LOGGED * abs(logged)
+
+
+def as_logged(measured: float, logged: float | None) -> float:
+    """Return a measured speed as it is written.
+
+    Parameters
+    ----------
+    measured : float
+        [rad/s]
+    logged : float or None
+        [rad/s]; ``None`` where none was.
+
+    Returns
+    -------
+    float
+        The logged one with the sign of the measured one where they agree, else the measured one
+        with as many digits as a channel tells [rad/s].
+
+    Examples
+    --------
+    >>> as_logged(-4.999989, 5.0), as_logged(10.00002, 5.0), as_logged(4.999989, None)
+    (-5.0, 10.0, 5.0)
+    """
+    if logged is not None and agrees(measured, logged):
+        return math.copysign(logged, measured)
+    return float(f"{measured:.{_DIGITS}g}")

@@ -2,14 +2,15 @@
 
 Each is given one piece at a time, so that when one dies it is known which piece it was at. That one
 is tried once more, in a new process. Where no process can be started the work is done in this one.
-A process ends by itself when the one that it works for is gone, and sees no interrupt that is meant
-for that one.
+A process ends by itself when the one that it works for is gone, sees no interrupt that is meant for
+that one, and does not run the caller's script again.
 """
 
 from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 import time
 from collections import Counter, deque
@@ -19,6 +20,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from functools import lru_cache, partial
 from multiprocessing import get_context, resource_tracker
+from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
 Given = ParamSpec("Given")
@@ -90,8 +92,13 @@ class Worker:
         self._executor = ProcessPoolExecutor(
             1, get_context("spawn"), initializer=_watch, initargs=(os.getpid(),)
         )
+        script = sys.modules["__main__"]
         with interrupts_blocked():
-            self._begun = self._submitted(os.getpid)
+            sys.modules["__main__"] = ModuleType("__main__")  # which it would import
+            try:
+                self._begun = self._submitted(os.getpid)
+            finally:
+                sys.modules["__main__"] = script
 
     @property
     def process(self) -> int | None:
