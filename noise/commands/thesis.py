@@ -17,7 +17,8 @@ _PAGE_ENDING = ".md"
 DESCRIPTION = (
     "Compute every checkable number of the thesis: from its program as it is listed, from its "
     "equations exactly, and with the calibrated material; with a verdict each. With --plots, "
-    "draw its figures instead, with --out as well. Each takes less than a minute."
+    "draw its figures instead, with --out as well. The table takes less than a minute, the figures "
+    "a few."
 )
 
 EPILOG = "example: bushing-noise thesis --out thesis.csv"
@@ -28,9 +29,9 @@ OPTIONS = (
         "on standard output)"
     ),
     Option("--plots FOLDER", Path).help(
-        "folder for the figures that show data, as computed here, figure-5.3.png and so on "
-        "(3.3, 5.1 to 5.9, 5.13 to 5.26, 6.1 to 6.10, B1, C1, G3, H1), and torque and frequency "
-        "against speed for each fit, speeds-0.279mm.png and so on; their names are printed"
+        "folder for the figures that show runs and sweeps, as computed here, figure-5.3.png and "
+        "so on (5.1 to 5.9, 5.13 to 5.26, 6.1 to 6.10, H1), and torque and slip frequency against "
+        "speed for each fit, speeds-0.279mm.png and so on; their names are printed"
     ),
     seed("accepted as by every command; nothing here is random"),
 )
@@ -73,9 +74,9 @@ def _write_table(out: Path | None) -> None:
 def _draw(folder: Path) -> None:
     say("preparing")
     from noise.pictures.figure import write_picture
-    from noise.pictures.thesis import FIGURES, thesis_pictures
+    from noise.pictures.thesis import N_PICTURES, thesis_pictures
 
-    for name, figure in track(thesis_pictures(), "drawing", total=len(FIGURES), unit="picture"):
+    for name, figure in track(thesis_pictures(), "drawing", total=N_PICTURES, unit="picture"):
         path = folder / f"{name}.png"
         write_picture(path, figure)
         print(path)

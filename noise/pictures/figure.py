@@ -18,7 +18,6 @@ from noise.base.files import atomic
 from noise.base.progress import readable
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.figure import Figure
 
     from noise.labels.conditions import Range
@@ -122,16 +121,6 @@ def new_figure(height: float, title: str) -> Figure:
         readable(title), fontsize=13.0, fontweight="bold", color="#222222", parse_math=False
     )
     return figure
-
-
-def legend_below(figure: Figure, *, columns: int) -> None:
-    """Put one legend for all panels under them; what several of them show is named once."""
-    named: dict[str, Artist] = {}
-    for axes in figure.axes:
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            named.setdefault(label, handle)
-    handles, labels = list(named.values()), list(named)
-    figure.legend(handles, labels, loc="outside lower center", ncols=columns, columnspacing=1.5)
 
 
 def check_picture_path(path: Path) -> None:

@@ -289,7 +289,7 @@ def _spectra(figure: SubFigure, run: Run, window: Window) -> None:
     cycles = window.frequency if recording.condition.speed is not None else None
     title = "Autospectra: one-sided power spectral density, Hann window, "
     for axes, kind in zip(rows, KINDS, strict=True):
-        words = _spectrum(axes, recording, kind)
+        words = draw_spectrum(axes, recording, kind)
         if cycles is not None:
             axes.axvline(cycles, color=GREY, linestyle="--", linewidth=1.0, zorder=1)
     if cycles is not None:
@@ -299,8 +299,8 @@ def _spectra(figure: SubFigure, run: Run, window: Window) -> None:
     figure.align_ylabels(rows)
 
 
-def _spectrum(axes: Axes, recording: Recording, name: str) -> str:
-    """Draw a channel's autospectrum; return how it was computed."""
+def draw_spectrum(axes: Axes, recording: Recording, name: str) -> str:
+    """Draw a channel's autospectrum on axes; return how it was computed."""
     kind = KINDS[name]
     spectrum = autospectrum(recording[name], recording.rate)
     shown = spectrum.frequency >= max(_LOWEST, spectrum.spacing)

@@ -1,273 +1,247 @@
-"""Pictures of the thesis that can be drawn: which figures there are, and what each shows.
+"""Figures of the thesis that show data, drawn by the plots that every run and sweep has.
 
-Its Figures 5.1 to 5.26 and H1 are measurements, 3.3, 6.1 to 6.10 and G3 computed, B1 and C1 fitted
-to its tables; here all are computed: by the program that it lists, where that can, by its equations
-exactly, and by the calibrated material. The measured curves are lost; what tables and text say of
-them is drawn in black. Recordings are of the materials as they are shipped, everything else is of
-their constant version. Drawings, formulas and photographs (3.1, 3.2, 3.4 to 3.6, 4.1 to 4.3, 5.10
-to 5.12, A1, A2, G1, G2) and the certificate D1 are left out. Where caption and text of a figure
-contradict each other the caption is followed: of 6.1 the text has 3745 Nm/rad, of 5.16(b) as well.
+Its Figures 5.1 to 5.26 and H1 are measurements, 6.1 to 6.10 computed; here all are computed.
+Recordings of Chapter 5 are of the materials as they are shipped, runs of Chapter 6 and static tests
+of the thesis's own model, and torque over speed of the materials' constant version. What a table or
+the text says of a figure stands in the table of `noise.thesis.table`. Where caption and text of a
+figure contradict each other the caption is followed: of 6.1 the text has 3745 Nm/rad, of 5.16(b) as
+well.
 
-A further figure is a further entry of `FIGURES`.
+A further figure is a further entry of `RUNS`, `SPECTRA` or `SWEEPS`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
+import math
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+import numpy as np
 from matplotlib.figure import Figure
+from scipy.fft import rfft, rfftfreq
 
 from models.condition import FIXED
-from noise.pictures.figure import KINDS, support_words
-from noise.pictures.panels import plot_panels
-from noise.pictures.thesis_bench import (
-    acoustic_responses,
-    mode_shapes,
-    potentiometer_line,
-    temperature_distribution,
-    torque_cell_line,
-)
-from noise.pictures.thesis_panels import (
-    FRICTION_TYPES,
-    Grid,
-    by_damping,
-    channels,
-    friction_types,
-    histories,
-    orbits,
-    spectra,
-    spectra_by_support,
-    static_tests,
-    sweeps_of,
-    torque_and_spectrum,
-    torque_of_fits,
-    torque_over_speed,
-)
-from noise.pictures.thesis_runs import (
-    CLAMP,
-    DISPLACEMENT,
-    FITS,
-    SHOWN,
-    SLIDING,
-    SUPPORTS,
-    TORQUE,
-    Trace,
-    traces,
-)
-from noise.thesis.runs import (
-    CALIBRATED,
-    LONG,
-    SHORT,
-    Case,
-)
+from models.drawing import styled
+from models.radiation.rig_response import impulse_responses
+from models.rig_file import load_material_rig
+from models.transfer_functions.transfer_function import TransferFunction
+from noise.pictures.figure import new_figure, support_words
+from noise.pictures.run import draw_spectrum, plot_run
+from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, Case, rig_of
+from sim.analysis.critical_damping import critical_damping, with_damping
+from sim.analysis.sweep import sweep
+from sim.run import Run, simulate
 
-SLOW, FAST = Case(1.0, 0.279, LONG), Case(10.0, 0.279, LONG)
-LARGE, DAMPED = Case(1.0, 0.381, SHORT), Case(7.5, 0.279, SHORT)
-"""Cases of Chapter 6."""
-
-_RUBBER = Case(10.0, 0.127, LONG)
-_PDMS = Case(0.25, 0.381, LONG)
 _NEW, _FILM, _CLEANED = "natural-rubber", "natural-rubber-film", "natural-rubber-film-removed"
-_FILM_MODES = {f"{mode:g} Hz": mode for mode in (900.0, 4500.0, 6000.0)}
-"""Of the acceleration beside the first torsional one (5.2.3) [Hz]."""
+_FITS, _SUPPORTS = (0.178, 0.279, 0.381), (LONG, SHORT, FIXED)
+"""[mm] and [Nm/rad]"""
 
-Column = tuple[str, list[tuple[str, Case]]]
+_STATIC_SPEED = 0.05
+"""Of the shaft in a static test [rad/s]."""
 
-_TYPES = [(f"{name}, {case}", case) for name, case in FRICTION_TYPES.items()]
+_CRITICAL = math.nan
+"""Stands for the damping at which stick-slip ends."""
 
-
-def _at_speeds(mark: str, fit: float, support: float, *speeds: float) -> Column:
-    cases = [(f"{speed:g} rad/s", Case(speed, fit, support)) for speed in speeds]
-    return f"{mark}{fit:g} mm, {support_words(support)}", cases
-
-
-def _at_fits(mark: str, support: float) -> Column:
-    cases = [(f"{fit:g} mm", Case(1.0, fit, support)) for fit in FITS]
-    return f"{mark}1 rad/s, {support_words(support)}", cases
+_AUDIBLE, _RADIATION_RATE = (20.0, 15e3), 96e3
+"""Span of the acoustic responses, and the rate of their computation [Hz]."""
 
 
-def _at_supports(mark: str, fit: float, speed: float) -> Column:
-    cases = [(support_words(one), Case(speed, fit, one)) for one in SUPPORTS]
-    return f"{mark}{fit:g} mm, {speed:g} rad/s", cases
+def _at_speeds(fit: float, support: float, *speeds: float) -> list[Case]:
+    return [Case(speed, fit, support) for speed in speeds]
 
 
-def _about_slips(case: Case, shown: float, seconds: float = 0.5) -> list[Trace]:
-    return [trace.about_a_slip(shown) for trace in traces(case, seconds)]
+def _at_supports(fit: float, speed: float) -> list[Case]:
+    return [Case(speed, fit, support) for support in _SUPPORTS]
 
 
-def _onset(shown: float) -> list[Trace]:
-    return [trace.during(0.0, shown) for trace in traces(FAST)]
+_FOUR_TYPES = [
+    Case(1.0, 0.279, FIXED),
+    Case(1.0, 0.279, SHORT),
+    Case(4.3, 0.178),
+    Case(7.9, 0.279, SHORT),
+]
+"""Stick-slip, with feedback, triangular and harmonic."""
 
 
-class ThesisFigure(NamedTuple):
-    """A figure of the thesis: its name, what it says, and the panels that it shows."""
+class Runs(NamedTuple):
+    """Runs that a figure shows, drawn as `noise.pictures.run` draws every run.
 
-    name: str
-    title: str
-    panels: Callable[[], Grid]
+    Parameters
+    ----------
+    material : str
+    cases : sequence of Case
+        Pictures of single runs have a letter each, where there are several.
+    seconds : float
+        Length of each [s].
+    from_rest : bool
+        Whether the start is shown; otherwise the rig has settled.
+    """
 
-    def picture(self) -> Figure:
-        """Compute what it shows, and draw it."""
-        return plot_panels(self.panels(), title=self.title)
+    material: str
+    cases: Sequence[Case]
+    seconds: float = 1.0
+    from_rest: bool = False
 
 
-def _figure(number: str, title: str, panels: Callable[..., Grid], *given: object) -> ThesisFigure:
-    return ThesisFigure(f"figure-{number}", f"Figure {number}: {title}", partial(panels, *given))
+RUNS = {
+    "5.1": Runs(CALIBRATED, _FOUR_TYPES),
+    "5.4": Runs("PDMS", [Case(0.25, 0.381)]),
+    "5.7": Runs(_NEW, [Case(10.0, 0.127)]),
+    "5.8": Runs(_NEW, [Case(5.0, 0.127)]),
+    "5.9": Runs(_FILM, [Case(2.5, 0.127)]),
+    "5.19": Runs(_CLEANED, [Case(10.0, 0.127)]),
+    "5.21": Runs(CALIBRATED, [Case(1.0, 0.381)]),
+    "5.22": Runs(CALIBRATED, [Case(5.0, 0.279)]),
+    "5.23": Runs(CALIBRATED, [Case(5.0, 0.279, SHORT)]),
+    "5.24": Runs(CALIBRATED, [Case(10.0, 0.279, SHORT)]),
+    "5.25": Runs(THESIS, _at_supports(0.279, _STATIC_SPEED), 2.0, from_rest=True),
+    "5.26": Runs(THESIS, _at_supports(0.381, _STATIC_SPEED), 2.0, from_rest=True),
+    "6.1-6.3": Runs(THESIS, [Case(1.0)]),
+    "6.4-6.6": Runs(THESIS, [Case(10.0)], 0.2, from_rest=True),
+    "6.7": Runs(THESIS, [Case(1.0, 0.381, SHORT)]),
+    "6.8-6.9": Runs(CALIBRATED, [Case(1.0)]),
+    "6.10": Runs(
+        THESIS,
+        [Case(7.5, 0.279, SHORT, damping) for damping in (0.05, _CRITICAL, 0.1)],
+        0.2,
+        from_rest=True,
+    ),
+}
+"""By the numbers of the figures: histories, phase planes and autospectra of each run."""
+
+SPECTRA = {
+    "5.2": Runs(CALIBRATED, _FOUR_TYPES),
+    "5.14": Runs(CALIBRATED, _at_speeds(0.279, LONG, 1.0, 2.5, 5.0, 7.5)),
+    "5.15": Runs(
+        CALIBRATED, [Case(1.0, fit, support) for support in (LONG, FIXED) for fit in _FITS]
+    ),
+    "5.16": Runs(
+        CALIBRATED,
+        [*_at_speeds(0.178, LONG, 1.0, 2.5, 4.0), *_at_speeds(0.178, FIXED, 1.0, 2.5, 4.0)],
+    ),
+    "5.17": Runs(CALIBRATED, _at_speeds(0.279, FIXED, 1.0, 2.5, 5.0, 7.5)),
+    "5.18": Runs(CALIBRATED, [*_at_supports(0.178, 2.5), *_at_supports(0.279, 7.5)]),
+    "5.20": Runs(_CLEANED, [Case(10.0, 0.127), Case(10.0, 0.127, SHORT)]),
+}
+"""By the numbers of the figures: autospectra of the torque, one below the other."""
 
 
-def _recording(number: str, what: str, material: str, case: Case, *more: object) -> ThesisFigure:
-    title = f"{what}, {case}\nsimulated and recorded, {material}"
-    return _figure(number, title, channels, material, case, *more)
+class Swept(NamedTuple):
+    """Torque and slip frequency over speed, drawn by `sim.analysis.sweep.Sweep.plot`.
+
+    Parameters
+    ----------
+    material : str
+    speeds : tuple of float
+        The slowest and the fastest [rad/s].
+    fits, supports : sequence of float
+        [mm] and [Nm/rad], a curve for each pair.
+    """
+
+    material: str
+    speeds: tuple[float, float]
+    fits: Sequence[float]
+    supports: Sequence[float]
 
 
-FIGURES = (
-    _figure(
-        "3.3",
-        "modes of beams, clamp and bushing, on the assumptions of 3.1.1\n"
-        "mass and inertia of the clamp, which the thesis does not give, chosen for 140 and 250 Hz",
-        mode_shapes,
-    ),
-    _figure("5.1", "four types of friction, simulated and recorded in two models", friction_types),
-    _figure(
-        "5.2", "frequency content of the types of Figure 5.1",
-        spectra, ("stick-slip", _TYPES[:2]), ("oscillations", _TYPES[2:]),
-    ),
-    _figure("5.3", "torque against speed, fluorocarbon, clamp fixed", torque_of_fits),
-    *(
-        ThesisFigure(
-            f"speeds-{fit:g}mm",
-            f"Torque and frequency against speed, fluorocarbon, {fit:g} mm",
-            partial(sweeps_of, fit),
-        )
-        for fit in FITS
-    ),
-    _figure(
-        "5.4", f"PDMS slides steadily, {_PDMS}\nsimulated and recorded",
-        partial(channels, with_spectra=False), "PDMS", _PDMS, ("torque", "acceleration"),
-    ),
-    *(
-        _figure(
-            number, f"torque against speed, PDMS, {fit:g} mm, simulated",
-            partial(torque_over_speed, rise=3.0, slowest=0.25),
-            "PDMS", fit, {LONG: 17.0, FIXED: 17.0},
-        )
-        for number, fit in (("5.5", 0.254), ("5.6", 0.381))
-    ),
-    _recording("5.7", "natural rubber, new", _NEW, _RUBBER),
-    _recording(
-        "5.8", "natural rubber, new", _NEW, _RUBBER.at(5.0),
-        ("torque",), {"noise to 1250 Hz": 1250.0},
-    ),
-    _recording(
-        "5.9", "natural rubber on its transfer film", _FILM, _RUBBER.at(2.5),
-        ("torque", "acceleration"), _FILM_MODES,
-    ),
-    _figure(
-        "5.13", "torque against speed, natural rubber, film removed, 0.127 mm, simulated",
-        torque_over_speed, _CLEANED, _RUBBER.interference_mm, {LONG: 19.75, SHORT: 10.0},
-    ),
-    _figure(
-        "5.14", "torque with increasing speed",
-        spectra, _at_speeds("", 0.279, LONG, 1.0, 2.5, 5.0, 7.5),
-    ),
-    _figure(
-        "5.15", "torque with increasing interference",
-        spectra, _at_fits("(a) ", LONG), _at_fits("(b) ", FIXED),
-    ),
-    _figure(
-        "5.16", "torque with increasing speed", spectra,
-        *(_at_speeds(m, 0.178, k, 1.0, 2.5, 4.0) for m, k in (("(a) ", LONG), ("(b) ", FIXED))),
-    ),
-    _figure(
-        "5.17", "torque with increasing speed",
-        spectra, _at_speeds("", 0.279, FIXED, 1.0, 2.5, 5.0, 7.5),
-    ),
-    _figure(
-        "5.18", "torque with increasing stiffness of the support",
-        spectra, _at_supports("(a) ", 0.178, 2.5), _at_supports("(b) ", 0.279, 7.5),
-    ),
-    _recording("5.19", "natural rubber, film removed", _CLEANED, _RUBBER),
-    _figure(
-        "5.20", "natural rubber, film removed, torque at 10 rad/s, 0.127 mm, simulated",
-        spectra_by_support, _CLEANED, _RUBBER.speed, _RUBBER.interference_mm,
-    ),
-    *(
-        _recording(number, noise, CALIBRATED, case, tuple(KINDS))
-        for number, noise, case in (
-            ("5.21", "creak", Case(1.0, 0.381, LONG)),
-            ("5.22", "squawk", Case(5.0, 0.279, LONG)),
-            ("5.23", "squawk", Case(5.0, 0.279, SHORT)),
-            ("5.24", "squeal", Case(10.0, 0.279, SHORT)),
-        )
-    ),
-    *(
-        _figure(
-            number, f"torque in a slow turn until it slips or slides, {fit:g} mm, simulated",
-            static_tests, fit,
-        )
-        for number, fit in (("5.25", 0.279), ("5.26", 0.381))
-    ),
-    _figure(
-        "6.1", f"slips at {SLOW}",
-        lambda: histories(_about_slips(SLOW, 0.014, 1.0), peak_speed=24.0),
-    ),
-    _figure(
-        "6.2", f"torque against sliding speed at {SLOW}",
-        lambda: orbits(_about_slips(SLOW, 0.05, 1.0), SLIDING, TORQUE),
-    ),
-    _figure(
-        "6.3", f"phase plane at {SLOW}",
-        lambda: orbits(_about_slips(SLOW, 0.05, 1.0), DISPLACEMENT, SLIDING),
-    ),
-    _figure(
-        "6.4", f"from rest at {FAST}",
-        lambda: histories(_onset(0.02), across="Time from rest [ms]", peak_speed=18.0),
-    ),
-    _figure(
-        "6.5", f"torque against sliding speed at {FAST}, from rest",
-        lambda: orbits(_onset(0.1), SLIDING, TORQUE),
-    ),
-    _figure(
-        "6.6", f"phase plane at {FAST}, from rest",
-        lambda: orbits(_onset(0.1), DISPLACEMENT, SLIDING),
-    ),
-    _figure(
-        "6.7", f"slips at {LARGE}", lambda: histories(_about_slips(LARGE, 0.025), peak_speed=45.0)
-    ),
-    _figure(
-        "6.8", f"torque over time and its autospectrum at {SLOW}", torque_and_spectrum, SLOW
-    ),
-    _figure(
-        "6.9", f"torque and acceleration of the clamp at {SLOW}",
-        lambda: histories([one.settled(SHOWN) for one in traces(SLOW, 1.0)], (TORQUE, CLAMP)),
-    ),
-    _figure("6.10", f"phase plane by damping, {DAMPED}", by_damping, DAMPED),
-    _figure("B1", "calibration of the potentiometer", potentiometer_line),
-    _figure("C1", "calibration of the torque cell", torque_cell_line),
-    _figure(
-        "G3",
-        "temperature rise at 30 Nm and 10 rad/s, equation (G3)\n"
-        "contact of 7.69 cm², which the thesis does not give, chosen for its 26 K",
-        temperature_distribution,
-    ),
-    _figure(
-        "H1", "acoustic response of the modelled rig; where the hammer struck is not known",
-        acoustic_responses,
-    ),
-)  # fmt: skip
-"""All of them, in the thesis's order."""
+SWEEPS = {
+    "figure-5.3": Swept(CALIBRATED, (0.5, 13.0), _FITS, [FIXED]),
+    **{f"speeds-{fit:g}mm": Swept(CALIBRATED, (0.5, 13.0), [fit], _SUPPORTS) for fit in _FITS},
+    "figure-5.5": Swept("PDMS", (0.25, 17.0), [0.254], [LONG, FIXED]),
+    "figure-5.6": Swept("PDMS", (0.25, 17.0), [0.381], [LONG, FIXED]),
+    "figure-5.13": Swept(_CLEANED, (1.0, 19.75), [0.127], [LONG, SHORT]),
+}
+"""By the names of the pictures."""
+
+_STEPS = 25
+"""Speeds of a sweep."""
+
+N_PICTURES = sum(len(shown.cases) for shown in RUNS.values()) + len(SPECTRA) + len(SWEEPS) + 1
 
 
 def thesis_pictures() -> Iterator[tuple[str, Figure]]:
-    """Draw the thesis's pictures, one after the other.
+    """Draw the thesis's figures, one after the other.
 
     Yields
     ------
     name : str
-        Such as ``"figure-5.14"``; sweeps of a fit, on all supports, are ``"speeds-0.279mm"``.
+        Such as ``"figure-5.22"``, with a letter where a figure shows several runs,
+        ``"figure-5.14a"``; sweeps of a fit, on all supports, are ``"speeds-0.279mm"``.
     figure : matplotlib.figure.Figure
     """
-    for figure in FIGURES:
-        yield figure.name, figure.picture()
+    for number, shown in RUNS.items():
+        for i, case in enumerate(shown.cases):
+            letter = chr(ord("a") + i) if len(shown.cases) > 1 else ""
+            figure = plot_run(_simulated(shown, case))
+            figure.suptitle(f"Figure {number}{letter}: {figure.get_suptitle()}")
+            yield f"figure-{number}{letter}", figure
+    for number, shown in SPECTRA.items():
+        yield f"figure-{number}", torque_spectra(number, shown)
+    for name, swept in SWEEPS.items():
+        yield name, sweep_picture(name, swept)
+    yield "figure-H1", acoustic_responses()
+
+
+def _simulated(shown: Runs, case: Case) -> Run:
+    rig = load_material_rig(shown.material)
+    at = {"interference": case.interference, "support_stiffness": case.support_stiffness}
+    if case.damping is not None:
+        damping = case.damping
+        if math.isnan(damping):
+            damping = critical_damping(rig, case.speed, **at, highest=0.1)
+        rig = with_damping(rig, damping)
+    settling = 0.0 if shown.from_rest else None
+    return simulate(rig, case.speed, **at, seconds=shown.seconds, settling=settling)
+
+
+def torque_spectra(number: str, shown: Runs) -> Figure:
+    """Draw autospectra of the recorded torque, a row a run."""
+    with styled():
+        figure = new_figure(1.0 + 2.0 * len(shown.cases), f"Figure {number}: {shown.material}")
+        rows = figure.subplots(len(shown.cases), 1, sharex=True)
+        for axes, case in zip(rows, shown.cases, strict=True):
+            draw_spectrum(axes, _simulated(shown, case).recording, "torque")
+            axes.set_title(str(case))
+        rows[-1].set_xlabel("Frequency [Hz]")
+    return figure
+
+
+def sweep_picture(name: str, shown: Swept) -> Figure:
+    """Draw mean torque and slip frequency over speed."""
+    found = sweep(
+        rig_of(shown.material),
+        np.geomspace(*shown.speeds, _STEPS),
+        1e-3 * np.array(shown.fits)[:, np.newaxis, np.newaxis],
+        np.array(shown.supports)[:, np.newaxis],
+        settling=0.5,
+    )
+    with styled():
+        figure = new_figure(7.0, f"{name}: {shown.material}, torque and slips over speed")
+        for axes, feature in zip(
+            figure.subplots(2, 1, sharex=True), ("torque_mean", "slip_frequency"), strict=True
+        ):
+            found.plot(feature, axes)
+            axes.set_ylim(bottom=0.0)
+    return figure
+
+
+def acoustic_responses() -> Figure:
+    """Draw sound pressure per torque at the clamp, by support (Figure H1).
+
+    Examples
+    --------
+    >>> [axes.get_title("left") for axes in acoustic_responses().axes]
+    ['2214 Nm/rad', '3745 Nm/rad', 'clamp fixed']
+    """
+    rig = rig_of(CALIBRATED)
+    with styled():
+        figure = new_figure(9.0, "Figure H1: acoustic response of the modelled rig")
+        for axes, support in zip(figure.subplots(3, 1), _SUPPORTS, strict=True):
+            response = impulse_responses(rig, 0.279e-3, support, _RADIATION_RATE).torque_to_pressure
+            frequency = rfftfreq(response.size, 1.0 / _RADIATION_RATE)
+            shown = (frequency > _AUDIBLE[0]) & (frequency <= _AUDIBLE[1])
+            TransferFunction(
+                frequency[shown], rfft(response)[shown], None, "N m", "Pa", "torque to pressure"
+            ).plot(axes)
+            axes.set_title(support_words(support))
+    return figure

@@ -21,9 +21,6 @@ _ANGLES_PRINTED = (1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 5 / 6, 1.0)
 _ANGLES_MEANT = (0.0, 1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1.0)
 """Over pi."""
 
-POTENTIOMETER_ANGLES = tuple(math.pi * angle for angle in _ANGLES_MEANT)
-"""At which the voltages of Table B1 were read [rad], as they are meant."""
-
 TORQUE_CELL = (
     -483.0, -426.0, -361.0, -302.0, -240.0, -183.0, -120.0, -63.0, 0.0,
     63.0, 121.0, 184.0, 243.0, 306.0, 365.0, 428.0, 488.0,
