@@ -19,14 +19,6 @@ class Wave:
     rate: float = 51200.0
 
 
-def write_tdms(path: Path, waves: list[Wave], conditions: dict[str, object] | None = None) -> Path:
-    return tdms(
-        path,
-        *((w.name, w.samples, {"wf_increment": 1 / w.rate, "unit_string": w.unit}) for w in waves),
-        root=conditions,
-    )
-
-
 def tdms(path: Path, *channels: tuple, root: dict[str, object] | None = None) -> Path:
     """Channels of one group: name, samples, properties."""
     with TdmsWriter(path) as file:
@@ -35,40 +27,17 @@ def tdms(path: Path, *channels: tuple, root: dict[str, object] | None = None) ->
     return path
 
 
-def write_mdf(path: Path, waves: list[Wave], conditions: dict[str, object] | None = None) -> Path:
-    groups = []
-    for rate in dict.fromkeys((w.rate, w.samples.size) for w in waves):
-        together = [w for w in waves if (w.rate, w.samples.size) == rate]
-        time = np.arange(together[0].samples.size) / together[0].rate
-        groups.append([Signal(w.samples, time, unit=w.unit, name=w.name) for w in together])
-    return mdf(path, *groups, conditions=conditions)
-
-
-def mdf(
-    path: Path,
-    *groups: list[Signal],
-    unit: str = "s",
-    sync: int = 1,
-    conditions: dict[str, object] | None = None,
-) -> Path:
+def mdf(path: Path, *groups: list[Signal], unit: str = "s", sync: int = 1, root=None) -> Path:
     """Groups of signals, the unit of their master channels, and what that is (1 is time)."""
     with MDF(version="4.10") as file:
         for signals in groups:
             file.append(signals)
             master = file.groups[-1].channels[0]
             master.unit, master.sync_type = unit, sync
-        for key, value in (conditions or {}).items():
+        for key, value in (root or {}).items():
             file.header._common_properties[key] = str(value)
         file.save(path, overwrite=True)
     return path
-
-
-def write_hdf5(path: Path, waves: list[Wave], conditions: dict[str, object] | None = None) -> Path:
-    return hdf5(
-        path,
-        *((w.name, w.samples, {"unit": w.unit, "rate_Hz": w.rate}) for w in waves),
-        root=conditions,
-    )
 
 
 def hdf5(path: Path, *datasets: tuple, root: dict[str, object] | None = None) -> Path:
@@ -98,10 +67,26 @@ def uff(path: Path, *functions: tuple, step: float = 1 / 51200, axis: str = "s")
     return path
 
 
-def write_uff(path: Path, waves: list[Wave], conditions: dict[str, object] | None = None) -> Path:
-    assert not conditions, "universal files state none"
-    return uff(path, *((w.samples, w.unit) for w in waves), step=1 / waves[0].rate)
+def _tdms_of(path: Path, waves: list[Wave], root: dict[str, object] | None = None) -> Path:
+    stated = [{"wf_increment": 1 / w.rate, "unit_string": w.unit} for w in waves]
+    return tdms(
+        path, *((w.name, w.samples, s) for w, s in zip(waves, stated, strict=True)), root=root
+    )
 
 
-WRITERS = {".tdms": write_tdms, ".mf4": write_mdf, ".h5": write_hdf5}
+def _mdf_of(path: Path, waves: list[Wave], root: dict[str, object] | None = None) -> Path:
+    groups: dict[tuple[float, int], list[Signal]] = {}
+    for w in waves:
+        time = np.arange(w.samples.size) / w.rate
+        one = Signal(w.samples, time, unit=w.unit, name=w.name)
+        groups.setdefault((w.rate, w.samples.size), []).append(one)
+    return mdf(path, *groups.values(), root=root)
+
+
+def _hdf5_of(path: Path, waves: list[Wave], root: dict[str, object] | None = None) -> Path:
+    stated = ((w.name, w.samples, {"unit": w.unit, "rate_Hz": w.rate}) for w in waves)
+    return hdf5(path, *stated, root=root)
+
+
+WRITERS = {".tdms": _tdms_of, ".mf4": _mdf_of, ".h5": _hdf5_of}
 """Of formats that state conditions, channel names and a rate for each channel."""

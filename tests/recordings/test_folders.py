@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from models.errors import RecordingError
+from models.errors import ParameterError, RecordingError
 from noise.recordings import find_recordings, read_recording
-from noise.recordings.folders import files_below
 
 
 @pytest.fixture
@@ -42,12 +41,25 @@ def test_a_folder_that_is_there_keeps_its_own_name_whatever_links_lead_to_it(day
     assert names(tmp_path) == ["day1/run07.wav", "day1/run08.wav"]
 
 
-def test_a_link_to_nowhere_and_what_is_hidden_are_left_out(day):
-    (day / "run09.wav").symlink_to(day / "gone.wav")
-    (day / ".trash").mkdir()
-    (day / ".trash" / "run01.wav").touch()
-    (day / ".run02.wav").touch()
-    assert names(day) == ["run07.wav", "run08.wav"]
+def test_files_are_in_order_and_what_is_hidden_is_left_out(tmp_path):
+    files = ["b.wav", "a/z.FLAC", "a/b/c.ogg", "a.wav", "a.json", "notes.txt"]
+    for name in (*files, ".part.wav", ".git/x.wav", "a/._z.wav"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    (tmp_path / "folder.wav").mkdir()
+    found = find_recordings([tmp_path])
+    assert [name for _, name in found] == ["a.wav", "a/b/c.ogg", "a/z.FLAC", "b.wav"]
+    assert all(file == tmp_path / name for file, name in found)
+    for name in ("notes.txt", "a/._z.wav"):  # which stand for themselves where they are named
+        assert find_recordings(str(tmp_path / name)) == [(tmp_path / name, Path(name).name)]
+
+
+@pytest.mark.parametrize("name", ["nowhere", "nowhere.wav", "x" * 5000])
+def test_a_path_that_does_not_exist_is_refused(tmp_path, name):
+    with pytest.raises(ParameterError):
+        find_recordings([tmp_path, tmp_path / name])
+    with pytest.raises(RecordingError):
+        read_recording(tmp_path / f"{name}.wav")
 
 
 def test_what_is_no_file_is_told_of_in_one_line_and_never_opened(day, tmp_path, capsys):
@@ -61,44 +73,32 @@ def test_what_is_no_file_is_told_of_in_one_line_and_never_opened(day, tmp_path, 
     )
 
 
-def test_a_folder_that_nobody_may_look_into_costs_no_other(day, tmp_path, capsys, monkeypatch):
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (PermissionError(13, "Permission denied"), "left out day2: cannot be looked into"),
+        (FileNotFoundError(2, "No such file or directory"), ""),
+    ],
+)
+def test_a_folder_that_cannot_be_looked_into_or_goes_away_costs_no_other(
+    day, tmp_path, capsys, monkeypatch, error, told
+):
     (tmp_path / "day2").mkdir()
     listed = os.scandir
 
     def refusing(place):
         if Path(place).name == "day2":
-            raise PermissionError(13, "Permission denied", str(place))
+            raise type(error)(*error.args, str(place))
         return listed(place)
 
     monkeypatch.setattr(os, "scandir", refusing)
     assert names(tmp_path) == ["day1/run07.wav", "day1/run08.wav"]
-    assert "left out day2: cannot be looked into" in capsys.readouterr().err
-
-
-def test_a_folder_that_goes_away_while_it_is_searched_costs_no_other(day, tmp_path, monkeypatch):
-    (tmp_path / "day2").mkdir()
-    (tmp_path / "day2" / "run10.wav").touch()
-    listed = os.scandir
-
-    def vanishing(place):
-        if Path(place).name == "day2":
-            raise FileNotFoundError(2, "No such file or directory", str(place))
-        return listed(place)
-
-    monkeypatch.setattr(os, "scandir", vanishing)
-    assert [name for _, name in files_below(tmp_path)] == ["day1/run07.wav", "day1/run08.wav"]
+    assert told in capsys.readouterr().err
 
 
 def test_recordings_that_are_not_read_are_named_once_with_what_to_do(day, tmp_path, capsys):
-    for name in (
-        "memo.m4a",
-        "MEMO2.WMA",
-        "day1/a.aac",
-        "day1/b.caf",
-        "x.mat",
-        "notes.txt",
-        "p.pdf",
-    ):
+    others = ("memo.m4a", "MEMO2.WMA", "day1/a.aac", "day1/b.caf", "x.mat", "notes.txt", "p.pdf")
+    for name in others:
         (tmp_path / name).touch()
     assert names(tmp_path) == ["day1/run07.wav", "day1/run08.wav"]
     assert capsys.readouterr().err.splitlines() == [
@@ -107,10 +107,3 @@ def test_recordings_that_are_not_read_are_named_once_with_what_to_do(day, tmp_pa
         f"bushing-noise: note: {tmp_path}: left out x.mat: not read; export as TDMS, MDF4, HDF5, "
         "UFF58 or WAV from the program that wrote it",
     ]
-
-
-def test_a_recording_that_is_not_read_is_refused_with_what_to_do(tmp_path):
-    path = tmp_path / "memo.M4A"
-    path.write_bytes(b"ftypM4A ")
-    with pytest.raises(RecordingError, match=r"ffmpeg -i memo.M4A memo.wav"):
-        read_recording(path)

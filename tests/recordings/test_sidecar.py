@@ -59,12 +59,7 @@ def one_channel(**entries: object) -> dict[str, object]:
 
 def test_everything_that_the_format_knows_is_read():
     found = parse_sidecar(json.dumps(FULL))
-    assert [channel.name for channel in found.channels] == [
-        "torque",
-        "acceleration",
-        "pressure",
-        "angle",
-    ]
+    assert [one.name for one in found.channels] == ["torque", "acceleration", "pressure", "angle"]
     assert found.channels[1].position == (0.08, 0.0, 0.0)
     assert found.scales == (None, None, 63.0, None)
     assert found.calibrated is True
@@ -72,11 +67,6 @@ def test_everything_that_the_format_knows_is_read():
     assert condition.interference == pytest.approx(0.279e-3, rel=1e-12)
     assert (condition.speed, condition.support_stiffness) == (5.0, 2214.0)
     assert (condition.material, condition.temperature) == ("fluorocarbon", 23.0)
-
-
-def test_nothing_need_be_said():
-    assert parse_sidecar("{}") == Sidecar()
-    assert parse_sidecar('{"conditions": {}}').condition == Condition()
 
 
 OF_OTHERS = [
@@ -108,20 +98,6 @@ def test_a_file_of_another_program_is_passed_over_with_a_note(tmp_path, content)
     assert run.notes == (found.note,)
 
 
-@pytest.mark.parametrize(
-    ("content", "reason"),
-    [
-        ({"channels": ["torque"], "operator": "me"}, "channel 1 is 'torque'"),
-        ({"channels": [{"name": "torque", "unit": "kN m"}], "operator": "me"}, "has unit 'kN m'"),
-        ({"conditions": {"speed_rpm": 48}, "operator": "me"}, "state speed_rad_s"),
-        ({"conditions": {"speed_rad_s": "5"}, "operator": "me"}, "speed_rad_s = '5'"),
-        ({"calibrated": True, "channels": 2, "operator": "me"}, "channels is 2"),
-    ],
-)
-def test_a_broken_sidecar_of_ours_is_refused_whatever_else_stands_in_it(content, reason):
-    assert reason in refusal(content)
-
-
 def test_null_support_is_the_fixed_clamp_and_a_missing_one_unknown():
     fixed = parse_sidecar('{"conditions": {"support_stiffness_Nm_rad": null}}')
     assert fixed.condition.support_stiffness == FIXED
@@ -129,89 +105,62 @@ def test_null_support_is_the_fixed_clamp_and_a_missing_one_unknown():
 
 
 @pytest.mark.parametrize(
-    ("key", "ours"),
+    ("name", "units"),
     [
-        ("speed_rpm", "speed_rad_s"),
-        ("interference_m", "interference_mm"),
-        ("temperature_F", "temperature_C"),
-        ("support_stiffness_Nmm_rad", "support_stiffness_Nm_rad"),
+        ("torque", ["N m", "Nm", "N·m"]),
+        ("acceleration_2", ["m/s^2", "m/s2", "m/s²"]),
+        ("speed", ["rad/s"]),
     ],
 )
-def test_a_condition_in_another_unit_is_refused_by_name(key, ours):
-    with pytest.raises(RecordingError, match=f"'{key}', which is not read; state {ours}"):
-        parse_sidecar(json.dumps({"conditions": {key: 48.0}}))
+def test_spellings_of_one_unit_are_alike(name, units):
+    for unit in units:
+        found = parse_sidecar(json.dumps({"channels": [{"name": name, "unit": unit}]}))
+        assert found.channels == (Channel(name),)
 
 
-@pytest.mark.parametrize(
-    ("name", "unit"),
-    [
-        ("torque", "N m"),
-        ("torque", "Nm"),
-        ("torque", "N·m"),
-        ("acceleration_2", "m/s^2"),
-        ("acceleration_2", "m/s2"),
-        ("acceleration_2", "m/s²"),
-        ("speed", "rad/s"),
-        ("force", "N"),
-    ],
-)
-def test_spellings_of_one_unit_are_alike(name, unit):
-    found = parse_sidecar(json.dumps({"channels": [{"name": name, "unit": unit}]}))
-    assert found.channels == (Channel(name),)
-
-
-@pytest.mark.parametrize("unit", ["kN", "kN m", "nm", "mN m", "", 5, None, ["N m"]])
-def test_other_units_are_refused(unit):
-    message = refusal(one_channel(unit=unit))
-    assert "channel 'torque' has unit" in message
-    assert message.endswith("expected 'N m'")
+def conditions_of(**entries: object) -> dict[str, object]:
+    return {"conditions": entries}
 
 
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        ("", "is no JSON"),
         ("{", "is no JSON"),
         (b"\xff\xfe\xfa", "is no JSON"),
         ("[" * 100_000, "is no JSON"),
         ('{"a": ' + "1" * 5000 + "}", "is no JSON"),
         ({"calibrated": "yes"}, "calibrated = 'yes' must be true or false"),
-        ({"calibrated": 1}, "calibrated = 1 must be"),
+        ({"calibrated": True, "channels": 2, "operator": "me"}, "channels is 2"),
         ({"channels": {}}, "channels is {}, expected a list"),
-        ({"channels": ["torque"]}, "channel 1 is 'torque'"),
+        ({"channels": ["torque"], "operator": "me"}, "channel 1 is 'torque'"),
         ({"channels": [{"unit": "N m"}]}, "channel 1 has name None"),
-        ({"channels": [{"name": "temperature"}]}, "channel 1 has name 'temperature'"),
         ({"channels": [{"name": "torque_1"}]}, "channel 1 has name 'torque_1'"),
         ({"channels": [{"name": "torque_" + "9" * 5000}]}, "channel 1 has name"),
         ({"channels": [{"name": "angle"}] * 3}, "channel 'angle' is named 3 times"),
+        *(
+            (one_channel(unit=unit), "channel 'torque' has unit")
+            for unit in ("kN", "kN m", "nm", "mN m", "", 5, None, ["N m"])
+        ),
         (one_channel(scale=0), "channel 'torque': scale = 0 must be a number above 0"),
-        (one_channel(scale=-1.0), "scale = -1.0 must be"),
         (one_channel(scale="2"), "scale = '2' must be"),
         (one_channel(scale=math.nan), "scale = nan must be"),
         (one_channel(position_m=[1, 2]), "must be a list of 3 numbers"),
-        (one_channel(position_m=[1, 2, None]), "position_m = None must be a number"),
         (one_channel(position_m=[1, 2, "3"]), "position_m = '3' must be a number"),
-        (one_channel(position_m=0.08), "must be a list of 3 numbers"),
         (one_channel(direction=[0, 0, 0]), "expected some length"),
         ({"conditions": []}, "conditions is [], expected an object"),
-        ({"conditions": {"speed_rad_s": "5"}}, "speed_rad_s = '5' must be a number"),
-        ({"conditions": {"speed_rad_s": True}}, "speed_rad_s = True"),
-        ({"conditions": {"speed_rad_s": math.nan}}, "speed_rad_s = nan"),
-        ({"conditions": {"speed_rad_s": -math.inf}}, "speed_rad_s = -inf"),
-        ({"conditions": {"speed_rad_s": 10**400}}, "speed_rad_s = 1000"),
-        (
-            {"conditions": {"interference_mm": -0.1}},
-            "mm = -0.1 must be a number from 0 to 10 mm",
-        ),
-        ({"conditions": {"support_stiffness_Nm_rad": 0}}, "support_stiffness_Nm_rad = 0 must be"),
-        ({"conditions": {"support_stiffness_Nm_rad": math.inf}}, "support_stiffness_Nm_rad = inf"),
-        ({"conditions": {"support_stiffness_Nm_rad": "fixed"}}, "support_stiffness_Nm_rad"),
-        (
-            {"conditions": {"temperature_C": -300}},
-            "C = -300 must be a number from -273.15",
-        ),
-        ({"conditions": {"material": 3}}, "material = 3 must be a text"),
-        ({"conditions": {"material": " "}}, "material is ' '"),
+        (conditions_of(speed_rad_s="5"), "speed_rad_s = '5' must be a number"),
+        (conditions_of(speed_rad_s=True), "speed_rad_s = True"),
+        (conditions_of(speed_rad_s=math.nan), "speed_rad_s = nan"),
+        (conditions_of(speed_rad_s=10**400), "speed_rad_s = 1000"),
+        (conditions_of(interference_mm=-0.1), "mm = -0.1 must be a number from 0 to 10 mm"),
+        (conditions_of(support_stiffness_Nm_rad=0), "support_stiffness_Nm_rad = 0 must be"),
+        (conditions_of(support_stiffness_Nm_rad="fixed"), "support_stiffness_Nm_rad"),
+        (conditions_of(temperature_C=-300), "C = -300 must be a number from -273.15"),
+        (conditions_of(material=3), "material = 3 must be a text"),
+        (conditions_of(material=" "), "material is ' '"),
+        (conditions_of(speed_rpm=48), "'speed_rpm', which is not read; state speed_rad_s"),
+        (conditions_of(interference_m=48), "which is not read; state interference_mm"),
+        (conditions_of(temperature_F=48), "which is not read; state temperature_C"),
     ],
 )
 def test_what_cannot_be_used_is_refused_in_one_line(content, reason):
@@ -225,11 +174,6 @@ def test_the_sidecar_is_the_file_of_the_same_stem(tmp_path):
     sidecar.write_bytes(b"\xef\xbb\xbf" + b'{"calibrated": false}')
     assert find_sidecar(recording) == sidecar
     assert read_sidecar(sidecar).calibrated is False
-
-
-def test_a_sidecar_that_cannot_be_opened_is_refused(tmp_path):
-    with pytest.raises(RecordingError, match="is a folder, not a file"):
-        read_sidecar(tmp_path)
 
 
 finite = st.floats(allow_nan=False, allow_infinity=False, width=32)
@@ -309,19 +253,16 @@ def torque(tmp_path):
     return write_recording(tmp_path / "run07", run)
 
 
-def test_a_call_killed_between_sidecar_and_samples_leaves_no_wrong_description(torque):
-    done = subprocess.run([sys.executable, "-c", DYING, torque, ".wav"], check=False)
+@pytest.mark.parametrize("last", [".json", ".wav"])
+def test_a_call_killed_while_it_writes_leaves_no_wrong_description(torque, last):
+    done = subprocess.run([sys.executable, "-c", DYING, torque, last], check=False)
     assert done.returncode == 9
+    if last == ".json":  # nothing was moved yet
+        assert read_recording(torque).channel_names == ("torque",)
+        return
     assert json.loads(torque.with_suffix(".json").read_text())["channels"][0]["unit"] == "m/s^2"
     with pytest.raises(RecordingError, match=r"run07\.json: was written with other samples"):
         read_recording(torque)
-
-
-def test_a_call_killed_before_both_leaves_what_was_there(torque):
-    assert (
-        subprocess.run([sys.executable, "-c", DYING, torque, ".json"], check=False).returncode == 9
-    )
-    assert read_recording(torque).channel_names == ("torque",)
 
 
 def test_a_sidecar_without_a_checksum_stays_valid_for_any_samples(torque):

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 import soundfile
 from hypothesis import given, strategies as st
 
-from models.blocks import RecordingBlocks
 from models.errors import RecordingError
 from models.recording import Channel, Recording
 from noise.classifier import load_classifier
@@ -113,20 +110,6 @@ def test_what_breaks_off_or_is_no_sound_is_refused_with_the_words_of_reading_the
         assert str(parts.value) == str(whole.value)
 
 
-def test_what_goes_wrong_with_a_recording_that_is_open_is_no_fault_of_its_file(tmp_path):
-    soundfile.write(tmp_path / "run.wav", noise(1, 1.0).T, RATE)
-    with pytest.raises(KeyError, match="mine"), open_blocks(tmp_path / "run.wav"):
-        raise KeyError("mine")
-
-
-def test_a_flac_that_breaks_off_is_refused(tmp_path):
-    path = tmp_path / "run.flac"
-    soundfile.write(path, noise(1, 20.0).T, RATE)
-    path.write_bytes(path.read_bytes()[:-40_000])
-    with pytest.raises(RecordingError), open_blocks(path) as blocks:
-        label_recording(blocks, load_classifier())
-
-
 @pytest.mark.parametrize(("rate", "channels"), [(48_000, 1), (22_050, 1), (44_100, 2)])
 def test_mp3_does_not_click_where_it_is_read_in_parts(tmp_path, rate, channels):
     path = tmp_path / "run.mp3"
@@ -143,12 +126,6 @@ def test_mp3_does_not_click_where_it_is_read_in_parts(tmp_path, rate, channels):
             np.testing.assert_allclose(np.concatenate(pieces, axis=1), at_once, atol=1e-6)
 
 
-def test_a_recording_in_memory_is_not_copied():
-    recording = Recording(noise(1, 1.0), float(RATE), (Channel("pressure"),))
-    part = RecordingBlocks.of(recording).cut(10, 20)
-    assert np.shares_memory(part.samples, recording.samples)
-
-
 @pytest.mark.parametrize("ending", WRITERS)
 def test_parts_of_a_loggers_file_are_those_of_the_whole(tmp_path, ending):
     x = noise(2, 1.0)
@@ -162,28 +139,3 @@ def test_parts_of_a_loggers_file_are_those_of_the_whole(tmp_path, ending):
         assert blocks.n_samples == whole.samples.shape[1]
         for first, last in [(0, 10), (300, 2000), (7000, 8000), (5, 320), (0, 8000)]:
             np.testing.assert_array_equal(blocks.read(first, last), whole.samples[:, first:last])
-
-
-@pytest.mark.parametrize("ending", WRITERS)
-def test_of_a_loggers_file_the_sidecar_names_what_it_likes(tmp_path, ending):
-    x = noise(2, 1.0)
-    waves = [Wave("A", "degC", x[0]), Wave("mic", "Pa", x[1])]
-    path = WRITERS[ending](tmp_path / f"run{ending}", waves)
-    named = {"channels": [{"name": "torque"}, {"name": "pressure"}]}
-    path.with_suffix(".json").write_text(json.dumps(named))
-    whole = read_recording(path)
-    with open_blocks(path) as blocks:
-        assert [channel.kind for channel in blocks.channels] == ["torque", "pressure"]
-        np.testing.assert_array_equal(blocks.read(100, 900), whole.samples[:, 100:900])
-
-
-def test_a_loggers_file_that_is_damaged_or_no_recording_is_refused_alike(tmp_path):
-    path = WRITERS[".h5"](tmp_path / "run.h5", [Wave("oil", "degC", noise(1, 1.0)[0])])
-    bad = tmp_path / "bad.h5"
-    bad.write_bytes(b"no file of that sort")
-    for one in (path, bad):
-        with pytest.raises(RecordingError) as whole:
-            read_recording(one)
-        with pytest.raises(RecordingError) as parts, open_blocks(one):
-            pass
-        assert str(parts.value) == str(whole.value)

@@ -1,0 +1,311 @@
+"""What a sample is worth: option, sidecar, description, name, comment, chain, calibrator's tone."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+import soundfile
+from hypothesis import given, strategies as st
+
+from models.calibration import Calibration
+from models.errors import ParameterError, RecordingError
+from models.recording import Channel
+from noise.recordings import read_recording
+from noise.recordings.calibrator import read_calibrator
+from noise.recordings.meaning import stated_full_scale
+
+RATE = 48_000
+HALF = np.full(480, 0.5)
+METER = "run_FS94.0dB(PK).wav"
+PASCAL_AT_94 = 20e-6 * 10 ** (94 / 20)
+
+
+def sound(path, samples=HALF, subtype="PCM_16", comment="", **sidecar):
+    samples = np.asarray(samples)
+    tracks = 1 if samples.ndim == 1 else samples.shape[1]
+    with soundfile.SoundFile(path, "w", RATE, tracks, subtype) as file:
+        if comment:
+            file.comment = comment
+        file.write(samples)
+    if sidecar:
+        path.with_suffix(".json").write_text(json.dumps(sidecar))
+    return path
+
+
+def named(*names, **more):
+    return [{"name": name, "unit": Channel(name).unit, **more} for name in names]
+
+
+def test_a_plain_sound_file_is_uncalibrated_pressure_on_every_track(tmp_path):
+    run = read_recording(sound(tmp_path / "run.wav", np.stack([HALF, -HALF, HALF], axis=1)))
+    assert run.channel_names == ("pressure", "pressure_2", "pressure_3")
+    assert (run.calibrated, run.rate, run.name) == (False, 48_000.0, "run.wav")
+    assert np.array_equal(run["pressure_2"], -HALF)
+    assert all(channel.full_scale == 1.0 for channel in run.channels)
+
+
+def test_float_samples_with_a_sidecar_are_in_the_units_named(tmp_path):
+    run = read_recording(sound(tmp_path / "run.wav", 60 * HALF, "FLOAT", channels=named("torque")))
+    assert run.calibrated
+    assert np.array_equal(run["torque"], 60 * HALF)
+
+
+def test_the_scale_of_integer_samples_is_applied_and_all_channels_need_one(tmp_path):
+    run = read_recording(sound(tmp_path / "run.flac", channels=named("torque", scale=100.0)))
+    assert run.channels == (Channel("torque", full_scale=100.0),)
+    assert np.array_equal(run["torque"], 100 * HALF)
+    pair, channels = np.stack([HALF, HALF], axis=1), named("torque", scale=100.0) + named("angle")
+    run = read_recording(sound(tmp_path / "run.wav", pair, channels=channels, calibrated=True))
+    assert not run.calibrated
+    assert np.array_equal(run.samples, pair.T)
+    assert [channel.full_scale for channel in run.channels] == [1.0, 1.0]
+
+
+@pytest.mark.parametrize("subtype", ["FLOAT", "PCM_16"])
+def test_what_the_sidecar_calls_uncalibrated_is_but_for_an_option(tmp_path, subtype):
+    scale = {"scale": 3.0} if subtype == "PCM_16" else {}
+    channels = named("pressure", **scale)
+    path = sound(tmp_path / METER, HALF, subtype, channels=channels, calibrated=False)
+    run = read_recording(path)
+    assert not run.calibrated
+    assert np.array_equal(run["pressure"], HALF)
+    assert read_recording(path, full_scale=4.0)["pressure"] == pytest.approx(2.0)
+
+
+def test_conditions_alone_calibrate_nothing(tmp_path):
+    path = sound(tmp_path / "run.wav", HALF, "FLOAT", conditions={"speed_rad_s": 2})
+    run = read_recording(path)
+    assert (run.condition.speed, run.calibrated) == (2.0, False)
+
+
+def test_calibration_goes_option_sidecar_description_name_comment(tmp_path):
+    path = sound(tmp_path / METER, comment="0dBFS = 120 dBSPL")
+    commented = tmp_path / "commented.wav"
+    commented.write_bytes(path.read_bytes())
+
+    def full_scale(file, option=None):
+        run = read_recording(file, full_scale=option)
+        assert run.calibrated
+        assert run["pressure"] == pytest.approx(0.5 * run.channels[0].full_scale)
+        return run.channels[0].full_scale
+
+    assert full_scale(commented) == pytest.approx(20.0)
+    assert full_scale(path) == pytest.approx(PASCAL_AT_94)
+    text = b"Sound: 0dBFS = 114 dBSPL".ljust(602, b"\0")
+    path.write_bytes(path.read_bytes() + b"bext" + (602).to_bytes(4, "little") + text)
+    assert full_scale(path) == pytest.approx(10 * PASCAL_AT_94)
+    sidecar = path.with_suffix(".json")
+    sidecar.write_text(json.dumps({"channels": named("pressure")}))
+    assert full_scale(path) == pytest.approx(10 * PASCAL_AT_94)
+    sidecar.write_text(json.dumps({"channels": named("pressure", scale=7.0)}))
+    assert full_scale(path) == 7.0
+    assert full_scale(path, 3.0) == 3.0
+
+
+def test_a_meter_calibrates_what_it_measures_and_names_it(tmp_path):
+    assert not read_recording(sound(tmp_path / METER, channels=named("torque"))).calibrated
+    path = sound(tmp_path / "run.wav", comment="Vibration: 0dBFS = 2.40 mps2")
+    assert read_recording(path)["acceleration"] == pytest.approx(1.2)
+    assert read_recording(path, full_scale=10.0)["pressure"] == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize("full_scale", [0, -1.0, math.nan, math.inf])
+def test_full_scale_is_a_positive_number(tmp_path, full_scale):
+    with pytest.raises(ParameterError, match="expected a positive number"):
+        read_recording(sound(tmp_path / "run.wav"), full_scale=full_scale)
+
+
+# What meters write
+
+
+@pytest.mark.parametrize(
+    ("text", "level"),
+    [
+        ("2019-10-17_SLM_012_Audio_FS129.9dB(PK)_00.wav", 129.9),
+        ("run_fs94dB_PK_.wav", 94.0),
+        ("run FS117,8 dB(PK)", 117.8),
+        ("Sound: 0dBFS = 109.7 dBSPL Time Zone: UTC-06:00 (DST)", 109.7),
+        ("0 dBFS=94 dB SPL", 94.0),
+    ],
+)
+def test_a_level_is_that_of_the_peak_at_full_scale(text, level):
+    found = stated_full_scale(text)
+    assert found.kind == "pressure"
+    assert 20 * math.log10(found.value / 20e-6) == pytest.approx(level, abs=1e-9)
+
+
+@pytest.mark.parametrize("unit", ["mps2", "m/s2", "m/s^2", "m/s²"])
+def test_a_vibration_meter_states_an_acceleration(unit):
+    found = stated_full_scale(f"Vibration: 0dBFS = 2.40 {unit} Time Zone: UTC-09:00")
+    assert (found.kind, found.value) == ("acceleration", 2.4)
+
+
+def test_other_texts_state_nothing():
+    for text in (
+        *("", "run07.wav", "OFFS94.0dB(PK).wav", "FS94.0dB(PKW).wav", "FS48000.wav"),
+        *("FS99999dB(PK)", "0dBFS = 0 mps2", "0dBFS = -3 mps2", "0dBFS = 94 dBSPLASH"),
+    ):
+        assert stated_full_scale(text) is None, text
+
+
+@given(st.text(alphabet="0dBFSPKL =().,-_9mps2²", max_size=40))
+def test_whatever_is_stated_is_a_positive_number(text):
+    found = stated_full_scale(text)
+    assert found is None or 0 < found.value < math.inf
+
+
+# Volts and counts by the calibration of the chain
+
+CELL = Calibration(
+    (-483.0, -240.0, 0.0, 243.0, 488.0), (-40.0, -20.0, 0.0, 20.0, 40.0), "mV", source="cell.csv"
+)
+BOTH = {"torque": CELL, "angle": Calibration.line(0.101, -7e-4, "V")}
+READINGS = np.array([np.linspace(-0.4, 0.45, 64), np.linspace(0.0, 0.3, 64)], np.float32)
+TORQUE = np.interp(1e3 * READINGS[0], CELL.readings, CELL.values)
+ANGLE = (READINGS[1] + 7e-4) / 0.101
+
+
+def chain(folder, samples, *channels, subtype="FLOAT", **more):
+    samples = np.transpose(np.atleast_2d(samples))
+    return sound(folder / "run.wav", samples, subtype, channels=list(channels), **more)
+
+
+def volts(name, unit="V", **more):
+    return {"name": name, "unit": unit, **more}
+
+
+def test_volts_become_torque_and_angle(tmp_path):
+    path = chain(tmp_path, READINGS, volts("torque"), volts("angle"))
+    assert not read_recording(path).calibrated
+    run = read_recording(path, calibrations=BOTH)
+    assert run.calibrated
+    assert run["torque"] == pytest.approx(TORQUE, abs=1e-5)
+    assert run["angle"] == pytest.approx(ANGLE, abs=1e-5)
+
+
+def test_integers_take_the_volts_of_full_scale_from_the_sidecar(tmp_path):
+    channels = [volts("torque", scale=1.25), volts("angle", "mV", scale=1250.0)]
+    path = chain(tmp_path, READINGS / 1.25, *channels, subtype="PCM_24")
+    run = read_recording(path, calibrations=BOTH)
+    assert run["torque"] == pytest.approx(TORQUE, abs=1e-4)
+    assert run["angle"] == pytest.approx(ANGLE, abs=1e-4)
+    assert run.channels[0].full_scale == pytest.approx(1250.0 * CELL.gain)
+
+
+def test_the_chain_is_asked_last(tmp_path):
+    plain = [{"name": "torque"}, {"name": "angle"}]
+    path = chain(tmp_path, [1e3 * READINGS[0], READINGS[1]], *plain, calibrated=False)
+    assert read_recording(path, calibrations=BOTH)["torque"] == pytest.approx(TORQUE, abs=1e-4)
+    path = chain(tmp_path, READINGS, volts("torque", "N m"), volts("angle"))
+    run = read_recording(path, calibrations=BOTH)
+    assert run["torque"] == pytest.approx(READINGS[0])
+    assert run["angle"] == pytest.approx(ANGLE, abs=1e-5)
+    path, microphone = chain(tmp_path, READINGS[0], volts("pressure")), Calibration.line(0.0433)
+    for option, first in ((None, -0.4 / 0.0433), (10.0, -4.0)):
+        run = read_recording(path, calibrations={"pressure": microphone}, full_scale=option)
+        assert run["pressure"][0] == pytest.approx(first)
+
+
+def test_readings_just_outside_are_noted(tmp_path):
+    path = chain(tmp_path, np.linspace(-480.0, 500.0, 64), volts("torque", "mV"))
+    run = read_recording(path, calibrations=BOTH)
+    assert run["torque"][-1] == pytest.approx(40.0 + 12.0 * 20.0 / 245.0)
+    assert run.notes == ("torque was read up to 1.2% of its span outside of cell.csv",)
+
+
+@pytest.mark.parametrize(
+    ("last", "channel", "subtype", "reason"),
+    [
+        (0.6, volts("torque"), "FLOAT", "reads 0.6, outside of cell.csv .-0.483 to"),
+        (0.1, volts("torque", "counts"), "FLOAT", "is in counts, and cell.csv in mV"),
+        (0.1, volts("torque"), "PCM_16", "holds fractions of full scale"),
+        (0.1, {"name": "torque"}, "PCM_16", "state its unit, 'mV', and scale"),
+        (0.1, volts("torque", "kV"), "FLOAT", "has unit 'kV', expected 'N m'"),
+    ],
+)
+def test_what_cannot_be_calibrated_is_refused_in_one_line(tmp_path, last, channel, subtype, reason):
+    path = chain(tmp_path, np.linspace(0.0, last, 64), channel, subtype=subtype)
+    with pytest.raises(RecordingError, match=reason) as refused:
+        read_recording(path, calibrations=BOTH)
+    assert "channel 'torque'" in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+# A calibrator's tone
+
+
+def tone(frequency=1000.0, amplitude=0.1, seconds=2.0, rate=RATE):
+    time = np.arange(round(seconds * rate)) / rate
+    return amplitude * np.sin(2 * np.pi * frequency * time + 0.3)
+
+
+def written(folder, samples, rate=RATE, subtype="PCM_24"):
+    soundfile.write(folder / "tone.wav", samples, rate, subtype=subtype)
+    return folder / "tone.wav"
+
+
+@given(
+    gain_db=st.floats(-60.0, -1.0),
+    noise_db=st.sampled_from([-300.0, -60.0, -30.0]),
+    level=st.sampled_from([93.8, 94.0, 114.0, 124.0]),
+    nominal=st.sampled_from([250.0, 251.2, 1000.0]),
+    off=st.one_of(st.just(0.0), st.floats(-0.01, 0.01)),
+    rate=st.sampled_from([8000, 44_100, 48_000, 51_200]),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_the_level_is_right_whatever_the_gain_with_noise_30_db_below_or_none(
+    tmp_path_factory, gain_db, noise_db, level, nominal, off, rate, seed
+):
+    amplitude = 10.0 ** (gain_db / 20.0) / 1.3  # room for the noise
+    pure = tone(nominal * (1.0 + off), 1.0, 1.3, rate)
+    noise = np.random.default_rng(seed).standard_normal(pure.size) * 10 ** (noise_db / 20.0)
+    noisy = amplitude * (pure + np.sqrt(0.5) * noise)
+    path = written(tmp_path_factory.mktemp("tone"), noisy, rate, "PCM_16")
+    (found,) = read_calibrator(path, level)
+    rms = np.sqrt(0.5) * amplitude * found.full_scale
+    assert 20.0 * np.log10(rms / 20e-6) == pytest.approx(level, abs=0.1)
+    assert found.frequency == pytest.approx(nominal * (1.0 + off), rel=1e-3)
+
+
+def test_each_track_has_its_own(tmp_path):
+    path = written(tmp_path, np.stack([tone(amplitude=0.1), tone(amplitude=0.2)], axis=1))
+    first, second = read_calibrator(path, 94.0)
+    assert first.full_scale == pytest.approx(2.0 * second.full_scale, rel=1e-3)
+    stereo = sound(tmp_path / "run.wav", np.full((100, 2), 0.5))
+    run = read_recording(stereo, full_scale=(first.full_scale, second.full_scale))
+    assert run["pressure"][0] == pytest.approx(2.0 * run["pressure_2"][0], rel=1e-3)
+    with pytest.raises(RecordingError, match="has 1 tracks, and full scale is given for 2"):
+        read_recording(sound(tmp_path / "mono.wav"), full_scale=(1.0, 2.0))
+
+
+def test_a_tone_in_float_samples_counts_as_they_are(tmp_path):
+    (found,) = read_calibrator(written(tmp_path, tone(amplitude=3.0), subtype="FLOAT"), 94.0)
+    assert found.full_scale == pytest.approx(1.0024 * np.sqrt(2.0) / 3.0, rel=1e-3)
+
+
+HISS = 0.01 * np.random.default_rng(0).standard_normal(2 * RATE)
+SPOILT = {
+    "437": (tone(437.0), "strongest tone is at 437 Hz"),
+    "silence": (np.zeros(RATE), "is silent"),
+    "short": (tone(seconds=0.2), "lasts 0.2 s; 0.5 s at least"),
+    "clipped": (np.clip(tone(amplitude=2.0), -1.0, 1.0 - 2**-23), "reaches full scale"),
+    "cut": (np.clip(tone(amplitude=0.5), -0.45, 0.45), "tops are cut off"),
+    "drift": (tone() * np.linspace(1.0, 1.2, 2 * RATE), "changes by 1.5 dB between 0 and 1.9 s"),
+    "late": (np.concatenate([np.zeros(RATE), tone()]), "tone is not there|level changes by"),
+    "harmonics": (tone() + tone(2000.0, 0.006), "harmonics are 6.0% of the tone, and may be 4%"),
+    "hum": (tone() + tone(50.0, 0.03), "other sound lies only 10 dB below"),
+    "hiss": (tone() + HISS, "other sound lies only 17 dB below"),
+    "of a track": (np.stack([tone(), tone(440.0)], axis=1), "track 2: is no calibrator's tone"),
+}
+
+
+@pytest.mark.parametrize("name", SPOILT)
+def test_what_is_not_one_stable_tone_is_refused_with_the_reason(tmp_path, name):
+    samples, reason = SPOILT[name]
+    with pytest.raises(RecordingError, match=reason) as refused:
+        read_calibrator(written(tmp_path, samples), 94.0)
+    assert "is no calibrator's tone: " in str(refused.value)
+    assert "\n" not in str(refused.value)

@@ -1,0 +1,527 @@
+"""TDMS, MDF4, HDF5 and universal files: what they state is used, or refused with the reason."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import soundfile
+from asammdf import MDF, Signal
+from nptdms import ChannelObject, TdmsWriter
+
+from models.condition import FIXED
+from models.errors import RecordingError
+from models.transfer_functions.uff import FREQUENCY_RESPONSE, UffFunction, write_uff_functions
+from noise.recordings import find_recordings, read_recording
+from noise.recordings.files import names_channels
+from tests.helpers.logger_files import WRITERS, Wave, hdf5, mdf, tdms, uff
+
+N, RATE = 4800, 48e3
+T = np.arange(N) / RATE
+X = np.sqrt(2) * np.sin(2 * np.pi * 1000 * T)  # 1 Pa rms
+STEP = {"wf_increment": 1 / RATE}
+DAY = np.datetime64("2024-01-01T10:00:00", "us")
+ENDINGS = {tdms: "tdms", mdf: "mf4", hdf5: "h5", uff: "uff"}
+
+
+def of(write, *channels, **how):
+    """Return what writes a file of some channels into a folder."""
+    return lambda folder: write(folder / f"x.{ENDINGS[write]}", *channels, **how)
+
+
+def clock(times, unit="s", name="Time"):
+    return (name, times, {"unit_string": unit, "unit": unit} if unit else {})
+
+
+def mic(x=X, unit="Pa", name="mic", **properties):
+    return (name, x, {"unit_string": unit, "unit": unit, **properties})
+
+
+def signal(x=X, t=T, unit="Pa", name="mic", **more):
+    return Signal(x, t, unit=unit, name=name, **more)
+
+
+def refusal(path):
+    with pytest.raises(RecordingError) as refused:
+        read_recording(path)
+    message = str(refused.value)
+    assert message.startswith(str(path))
+    assert "\n" not in message
+    return message
+
+
+def assert_refused(cases, name, folder):
+    make, reason = cases[name]
+    assert reason in refusal(make(folder))
+
+
+# --- the axis: 48 kHz, or refused for a reason that says what stands there ---------------------
+
+AXES = {
+    "tdms step": of(tdms, mic(**STEP)),
+    "tdms Time in s": of(tdms, mic(**STEP, wf_xname="Time", wf_xunit_string="s")),
+    "tdms step in ms": of(tdms, mic(wf_increment=1e3 / RATE, wf_xunit_string="ms")),
+    "tdms clock in ms": of(tdms, clock(1e3 * T, "ms"), mic()),
+    "tdms clock in us, by its name": of(tdms, clock(1e6 * T, "", "Time (us)"), mic()),
+    "tdms clock in min": of(tdms, clock(T / 60, "min"), mic()),
+    "tdms clock beside a step that nobody set": of(tdms, clock(T), mic(wf_increment=1.0)),
+    "mdf in ms": of(mdf, [signal(t=1e3 * T)], unit="ms"),
+    "mdf without a unit": of(mdf, [signal()], unit=""),
+    "mdf that begins late": of(mdf, [signal(t=T + 17.25)]),
+    "mdf beside events": of(mdf, [signal(X[:50], np.cumsum(1 + X[:50] ** 2), "degC")], [signal()]),
+    "hdf5 rate": of(hdf5, mic(fs=RATE)),
+    "hdf5 step of the file": of(hdf5, mic(), root={"dt": 1 / RATE}),
+    "hdf5 step in ms": of(hdf5, mic(dt=1e3 / RATE, x_unit="ms")),
+    "hdf5 time in ms": of(hdf5, mic(), clock(1e3 * T, "ms", "time")),
+    "hdf5 time_ms": of(hdf5, mic(), clock(1e3 * T, "", "time_ms")),
+    "hdf5 time packed": of(
+        hdf5, mic(), ("time", np.arange(N), {"units": "s", "scale_factor": 1 / RATE})
+    ),
+    "hdf5 seconds since": of(hdf5, mic(), clock(T, "seconds since 2024-01-01 10:00:00", "time")),
+    "hdf5 rate and time agree": of(hdf5, mic(fs=RATE), clock(1e3 * T, "ms", "time")),
+    "uff in s": of(uff, (X, "Pa"), step=1 / RATE),
+}
+
+
+@pytest.mark.parametrize("name", AXES)
+def test_the_sampling_rate_is_what_the_axis_states(name, tmp_path):
+    run = read_recording(AXES[name](tmp_path))
+    assert (run.rate, run.channel_names) == (RATE, ("pressure",))
+    np.testing.assert_allclose(run.samples[0], X, atol=1e-9)
+
+
+def test_a_clock_may_tell_the_time_of_day(tmp_path):
+    stamps = DAY + 125 * np.arange(N) * np.timedelta64(1, "us")
+    assert read_recording(of(tdms, ("Zeit", stamps, {}), mic())(tmp_path)).rate == 8000.0
+
+
+def test_a_tdms_clock_goes_on_in_another_segment_than_its_channels(tmp_path):
+    with TdmsWriter(tmp_path / "x.tdms") as file:
+        file.write_segment([ChannelObject("g", "Time", T), ChannelObject("g", "torque", X)])
+        file.write_segment([ChannelObject("g", "Time", T + T[-1] + 1 / RATE)])
+        file.write_segment([ChannelObject("g", "torque", X[::-1].copy())])
+    run = read_recording(tmp_path / "x.tdms")
+    assert run.rate == RATE
+    np.testing.assert_array_equal(run["torque"], np.concatenate([X, X[::-1]]))
+
+
+NO_TIME = {
+    "tdms spectrum": (
+        of(tdms, mic(wf_increment=1.0, wf_xunit_string="Hz")),
+        "stands over in 'Hz', expected time",
+    ),
+    "tdms spectrum, by its name": (
+        of(tdms, mic(wf_increment=2.0, wf_xname="Frequency")),
+        "stands over 'Frequency', expected time",
+    ),
+    "tdms step that nobody set": (of(tdms, mic(wf_increment=1.0)), "states no sampling rate"),
+    "tdms clock that contradicts the step": (
+        of(tdms, clock(2 * T), mic(**STEP)),
+        "states two sampling rates, 48000 and 24000 Hz",
+    ),
+    "mdf angle": (of(mdf, [signal()], unit="deg", sync=2), "over angle in 'deg', expected time"),
+    "mdf angle without a unit": (of(mdf, [signal()], unit="", sync=2), "stands over 'angle'"),
+    "mdf distance": (of(mdf, [signal()], unit="m", sync=3), "stands over distance in 'm'"),
+    "mdf times that are not even": (
+        of(mdf, [signal(t=T + 1e-3 * (T > 0.05))]),
+        "time that does not rise evenly",
+    ),
+    "hdf5 axis in Hz": (of(hdf5, mic(dt=0.5, x_unit="Hz")), "stands over in 'Hz', expected time"),
+    "hdf5 rate that the time contradicts": (
+        of(hdf5, mic(), clock(2 * T, "", "time"), root={"fs": RATE}),
+        "states two sampling rates",
+    ),
+    "hdf5 time of another length": (
+        of(hdf5, mic(), clock(T[:-9], "", "time")),
+        "states no sampling rate",
+    ),
+    "hdf5 rate that is none": (of(hdf5, mic(fs=1e-6)), "is 1e-06 Hz, expected 1 Hz to 10 MHz"),
+    "hdf5 rate beyond all": (of(hdf5, mic(fs=1e300)), "Hz, expected 1 Hz to 10 MHz"),
+}
+
+
+@pytest.mark.parametrize("name", NO_TIME)
+def test_what_does_not_stand_over_time_is_refused(name, tmp_path):
+    assert_refused(NO_TIME, name, tmp_path)
+
+
+# --- where channels begin: the same sample at the same time -------------------------------------
+
+LATE = 96  # samples: 2 ms
+A, B = X[: N - LATE], X[LATE:]  # of one signal, the second channel begins 2 ms late
+TA, TB = T[: N - LATE], T[LATE:]
+TIMES = (clock(TA, "", "one/time"), clock(1e3 * TB, "ms", "two/time"))
+PAIR = (mic(A, name="one/mic"), mic(B, name="two/mic"))
+
+
+def pair(key, first, second, **how):
+    return mic(A, name="a", **how, **{key: first}), mic(B, name="b", **how, **{key: second})
+
+
+STARTS = {
+    "tdms offset": of(tdms, *pair("wf_start_offset", 0.0, LATE / RATE, **STEP)),
+    "tdms time of day": of(
+        tdms, *pair("wf_start_time", DAY, DAY + np.timedelta64(2, "ms"), **STEP)
+    ),
+    "mdf masters": of(mdf, [signal(A, TA, name="a")], [signal(B, TB, name="b")]),
+    "mdf masters in ms": of(
+        mdf, [signal(A, 1e3 * TA, name="a")], [signal(B, 1e3 * TB, name="b")], unit="ms"
+    ),
+    "hdf5 times": of(hdf5, *PAIR, *TIMES),
+    "hdf5 rate and times": of(hdf5, *PAIR, *TIMES, root={"fs": RATE}),
+    "hdf5 t0": of(hdf5, *pair("t0", 0.0, LATE / RATE, fs=RATE)),
+    "uff abscissa": of(
+        uff, (A, "Pa", 15, 0.0, len(A)), (B, "Pa", 15, LATE / RATE, len(B)), step=1 / RATE
+    ),
+}
+
+
+@pytest.mark.parametrize("name", STARTS)
+def test_channels_are_aligned_by_their_start(name, tmp_path):
+    run = read_recording(STARTS[name](tmp_path))
+    assert run.samples.shape == (2, N - 2 * LATE)
+    np.testing.assert_allclose(run.samples[0], X[LATE : N - LATE], atol=1e-9)
+    np.testing.assert_allclose(run.samples[1], run.samples[0], atol=1e-9)
+    assert any("begin up to 2 ms apart" in note for note in run.notes)
+
+
+def begins(*late, n=N):
+    """Channels a, b, c that begin so late [s]; the last one has n samples."""
+    starts = [{} if one is None else {"wf_start_offset": one} for one in late]
+    lengths = [N] * (len(late) - 1) + [n]
+    stated = zip("abc"[: len(late)], lengths, starts, strict=True)
+    return of(tdms, *(mic(X[:m], name=name, **STEP, **start) for name, m, start in stated))
+
+
+TOGETHER = "channels of a recording must be sampled together"
+APART = {
+    "between samples": (begins(0.0, 10.4 / RATE), "'a' is sampled 0.40 of a step beside 'b'"),
+    "a third as long": (begins(0.0, 0.0, n=N // 3), "('a' 4800 from 0 s, 'b' 1600 from 0 s)"),
+    "one after the other": (begins(0.0, 1.0), "have 0 samples in common"),
+    "a start that is not stated": (
+        begins(0.0, 0.1, None),
+        "does not state when channel 'c' begins",
+    ),
+    "uff lengths": (of(uff, (X, "Pa"), (X[:900], "Pa")), TOGETHER),
+    **{
+        f"rates in {ending}": (
+            lambda folder, write=write, ending=ending: write(
+                folder / f"x{ending}", [Wave("a", "Pa", X), Wave("b", "Pa", X, 25600.0)]
+            ),
+            TOGETHER,
+        )
+        for ending, write in WRITERS.items()
+    },
+}
+
+
+@pytest.mark.parametrize("name", APART)
+def test_channels_that_cannot_be_aligned_are_refused(name, tmp_path):
+    assert_refused(APART, name, tmp_path)
+
+
+def test_a_few_samples_more_are_cut_with_a_note(tmp_path):
+    run = read_recording(begins(0.0, 0.0, n=N - 3)(tmp_path))
+    assert run.samples.shape == (2, N - 3)
+    assert "cut to the 4797 samples in common" in run.notes[0]
+
+
+# --- the value: 1 Pa rms, or refused ------------------------------------------------------------
+
+COUNTS = np.round(X / 1e-4).astype("i2")
+PACKED = {"scale_factor": 1e-4, "add_offset": 0.0}
+LINEAR = {
+    "NI_Number_Of_Scales": 1,
+    "NI_Scale[0]_Scale_Type": "Linear",
+    "NI_Scale[0]_Linear_Slope": 1e-4,
+    "NI_Scale[0]_Linear_Y_Intercept": 0.0,
+    "NI_Scale[0]_Linear_Input_Source": 0xFFFFFFFF,
+    "NI_Scaling_Status": "unscaled",
+}
+TEXT = {"lower_0": 9, "upper_0": 9, "text_0": b"error", "default": b""}
+
+VALUES = {
+    "hdf5 packed": of(hdf5, mic(COUNTS, fs=RATE, **PACKED)),
+    "hdf5 packed with an offset": of(
+        hdf5, mic(COUNTS + 5, fs=RATE, scale_factor=1e-4, add_offset=-5e-4)
+    ),
+    "hdf5 packed in mPa": of(hdf5, mic(COUNTS, "mPa", fs=RATE, scale_factor=0.1)),
+    "hdf5 with a gain of 1": of(hdf5, mic(fs=RATE, gain=1.0)),
+    "hdf5 unit behind the name": of(hdf5, ("Mic [kPa]", X / 1e3, {"fs": RATE})),
+    "hdf5 name of ours": of(hdf5, ("pressure", X, {"fs": RATE})),
+    "tdms packed": of(tdms, mic(COUNTS, **STEP, **PACKED)),
+    "tdms scale": of(tdms, mic(COUNTS, **STEP, **LINEAR)),
+    "mdf conversion": of(mdf, [signal(COUNTS, conversion={"a": 1e-4, "b": 0.0})]),
+    **{
+        f"tdms in {unit}": of(tdms, mic(X / value, unit, **STEP))
+        for unit, value in (("Pascal", 1), ("[Pa]", 1), ("PA", 1), ("N/m^2", 1), ("µPa", 1e-6))
+    },
+}
+
+
+@pytest.mark.parametrize("name", VALUES)
+def test_values_are_brought_to_si_by_all_that_is_stated(name, tmp_path):
+    run = read_recording(VALUES[name](tmp_path))
+    assert run.channel_names == ("pressure",)
+    np.testing.assert_allclose(run.samples[0], X, atol=1e-4)
+
+
+UNCLEAR = {
+    "a gain of whole numbers": (
+        of(hdf5, mic(COUNTS, fs=RATE, gain=20.0)),
+        "has gain 20, and does not state how to apply it",
+    ),
+    "a sensitivity of whole numbers": (
+        of(tdms, mic(COUNTS, **STEP, Sensitivity=0.05)),
+        "has sensitivity 0.05, and does not state how to apply it",
+    ),
+    "an infinite factor": (of(hdf5, mic(COUNTS, fs=RATE, scale_factor=np.inf)), "has factor inf"),
+    "a conversion that is partly text": (
+        of(mdf, [signal(COUNTS, conversion=TEXT)]),
+        "has a conversion that makes texts of its values",
+    ),
+    "a scale that is not known": (
+        of(tdms, mic(COUNTS, **STEP, **LINEAR | {"NI_Scale[0]_Scale_Type": "Magic"})),
+        "scale type 'Magic'",
+    ),
+    "volts": (of(tdms, mic(unit="V", **STEP)), "'mic' has unit 'V'; expected samples over time in"),
+    "no unit": (of(hdf5, mic(unit="", fs=RATE)), "states no unit"),
+    "a torque in Pa": (
+        of(hdf5, mic(name="torque", fs=RATE)),
+        "channel 'torque' has unit 'Pa', expected 'N m'",
+    ),
+    "furlongs": (of(uff, (X, "furlong")), "has unit 'furlong'"),
+    "no number": (of(hdf5, mic(np.full(99, np.nan), fs=RATE)), "'pressure' is nan at sample 0"),
+    "a condition that is none": (
+        of(tdms, mic(**STEP), root={"speed_rad_s": "fast"}),
+        "speed_rad_s = 'fast' must be a number",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", UNCLEAR)
+def test_values_that_are_not_clear_are_refused(name, tmp_path):
+    assert_refused(UNCLEAR, name, tmp_path)
+
+
+def test_a_sensitivity_beside_numbers_in_their_unit_is_noted(tmp_path):
+    run = read_recording(of(hdf5, mic(fs=RATE, sensitivity=0.05))(tmp_path))
+    np.testing.assert_array_equal(run.samples[0], X)
+    assert "sensitivity 0.05, which is not applied" in run.notes[0]
+
+
+def test_what_is_left_out_is_named_with_what_to_do(tmp_path, capfd):
+    others = (mic(unit="degC", name="Oil", **STEP), mic(unit="V", name="Supply", **STEP))
+    spectrum = mic(name="Spectrum", wf_increment=2.0, wf_xunit_string="Hz")
+    path = of(tdms, mic(**STEP), *others, spectrum)(tmp_path)
+    run = read_recording(path)
+    read_recording(path)
+    assert run.channel_names == ("pressure",)
+    said = capfd.readouterr().err
+    assert said.count("left out: 'Spectrum' stands over in 'Hz'") == 1
+    assert "'Oil' has unit 'degC'; 'Supply' has unit 'V'; a sidecar that names them" in said
+
+
+def test_a_unit_in_the_sidecar_stands_for_that_of_the_file(tmp_path):
+    path = of(hdf5, mic(unit="N mm", name="Arm", fs=RATE))(tmp_path)
+    path.with_suffix(".json").write_text('{"channels": [{"name": "torque"}]}')
+    np.testing.assert_allclose(read_recording(path)["torque"], 1e-3 * X)
+    path.with_suffix(".json").write_text('{"channels": [{"name": "torque", "unit": "N m"}]}')
+    run = read_recording(path)
+    np.testing.assert_array_equal(run["torque"], X)
+    assert "torque in N m stands for 'N mm' of channel 'Arm'" in run.notes[0]
+
+
+def test_full_scale_is_worth_nothing_where_samples_are_in_a_unit(tmp_path):
+    run = read_recording(of(tdms, mic(**STEP))(tmp_path), full_scale=20.0)
+    np.testing.assert_array_equal(run.samples[0], X)
+    assert "pressure is in Pa already" in run.notes[0]
+
+
+# --- one recording whatever holds it ------------------------------------------------------------
+
+
+@pytest.fixture(params=WRITERS)
+def write(request, tmp_path):
+    def writer(*waves, conditions=None):
+        path = tmp_path / f"run{request.param}"
+        return WRITERS[request.param](path, list(waves), conditions)
+
+    return writer
+
+
+def test_channels_are_named_by_their_units_and_brought_to_si(write, tmp_path):
+    waves = {
+        "Arm": ("N mm", "torque", 1e-3),
+        "Clamp z": ("g", "acceleration", 9.80665),
+        "Mic 1": ("mPa", "pressure", 1e-3),
+        "Encoder": ("deg", "angle", np.pi / 180),
+        "Drive": ("rpm", "speed", np.pi / 30),
+        "Load": ("kN", "force", 1e3),
+        "Mic 2": ("Pa", "pressure_2", 1.0),
+    }
+    path = write(*(Wave(name, unit, X) for name, (unit, _, _) in waves.items()))
+    assert [found for found, _ in find_recordings(tmp_path)] == [path]
+    run = read_recording(path)
+    assert (run.rate, run.calibrated) == (51200.0, True)
+    assert set(run.channel_names) == {name for _, name, _ in waves.values()}
+    for _, name, factor in waves.values():
+        np.testing.assert_allclose(run[name], factor * X, rtol=1e-12, atol=1e-15)
+
+
+def test_a_sidecar_overrides_channels_and_conditions_of_the_file(write):
+    stated = {
+        "speed_rad_s": 5.0,
+        "interference_mm": 0.279,
+        "support_stiffness_Nm_rad": "fixed",
+        "material": "PDMS",
+        "temperature_C": 23.0,
+        "operator": "somebody",
+    }
+    slow = Wave("oil", "degC", X[:400], 10.0)
+    path = write(Wave("a", "Pa", X), Wave("b", "V", 3 * X), slow, conditions=stated)
+    run = read_recording(path)
+    assert run.channel_names == ("pressure",)
+    condition = run.condition
+    assert condition.interference == pytest.approx(0.279e-3)
+    assert (condition.speed, condition.support_stiffness) == (5.0, FIXED)
+    assert (condition.material, condition.temperature) == ("PDMS", 23.0)
+    path.with_suffix(".json").write_text(
+        '{"channels": [{"name": "pressure"}, {"name": "torque"}],'
+        ' "conditions": {"speed_rad_s": 2.5}}'
+    )
+    run = read_recording(path)
+    np.testing.assert_array_equal(run["torque"], 3 * X)
+    assert (run.condition.speed, run.condition.material) == (2.5, "PDMS")
+
+
+KINDS = {"torque": "N m", "acceleration": "m/s^2", "pressure": "Pa", "angle": "rad"}
+
+
+@pytest.mark.parametrize("ending", ["wav", "tdms", "mf4", "h5", "uff"])
+def test_the_same_samples_are_the_same_recording_in_any_container(ending, tmp_path):
+    rows = dict(zip(KINDS, (8 + X, 30 * X, 0.1 * X, 10 * T), strict=True))
+    path = tmp_path / f"x.{ending}"
+    if ending == "wav":
+        soundfile.write(path, np.array(list(rows.values())).T, 48_000, subtype="DOUBLE")
+        names = [{"name": name, "unit": unit} for name, unit in KINDS.items()]
+        (tmp_path / "x.json").write_text(json.dumps({"channels": names}))
+    elif ending == "uff":
+        uff(path, *((rows[k], unit) for k, unit in KINDS.items()), step=1 / RATE)
+    else:
+        WRITERS[f".{ending}"](path, [Wave(k, unit, rows[k], RATE) for k, unit in KINDS.items()])
+    run = read_recording(path)
+    assert names_channels(path)
+    assert (set(run.channel_names), run.rate, run.calibrated) == (set(KINDS), RATE, True)
+    np.testing.assert_allclose(run["torque"], 8 + X, atol=1e-9)
+    np.testing.assert_allclose(run["angle"], 10 * T, atol=1e-9)
+    assert run.notes == ()
+
+
+# --- angles that wrap ---------------------------------------------------------------------------
+
+TURN = 2 * np.pi
+WRAPS = {
+    "a turn": (lambda a: a % TURN, TURN),
+    "a turn from -pi": (lambda a: (a + np.pi) % TURN - np.pi, TURN),
+    "ten turns": (lambda a: a % (10 * TURN), 10 * TURN),
+    "32-bit counts": (lambda a: a % (2**16 * TURN / 1000), 2**16 * TURN / 1000),
+    "backwards": (lambda a: -a % TURN, TURN),
+}
+
+
+@pytest.mark.parametrize("speed", [5.0, 700.0])
+@pytest.mark.parametrize(("wrap", "period"), WRAPS.values(), ids=WRAPS)
+def test_an_angle_goes_on_where_it_wraps(wrap, period, speed, tmp_path):
+    t = np.arange(int(4.3 * period / speed * 6000)) / 6000
+    soundfile.write(tmp_path / "x.wav", wrap(speed * t + 1.0), 6000, subtype="DOUBLE")
+    (tmp_path / "x.json").write_text('{"channels": [{"name": "angle"}]}')
+    run = read_recording(tmp_path / "x.wav")
+    assert abs(np.polyfit(t, run["angle"], 1)[0]) == pytest.approx(speed, rel=1e-3)
+
+
+def test_an_oscillation_over_the_end_of_a_turn_goes_on_as_well(tmp_path):
+    angle = 0.3 * np.sin(2 * np.pi * 20 * T)
+    run = read_recording(of(hdf5, mic(np.rad2deg(angle % TURN), "deg", fs=RATE))(tmp_path))
+    np.testing.assert_allclose(run["angle"] - run["angle"][0], angle - angle[0], atol=1e-9)
+
+
+def test_an_angle_that_jumps_otherwise_is_noted(tmp_path):
+    angle = 5.0 * T + 3.3 * (np.arange(N) >= 2000)
+    run = read_recording(of(hdf5, mic(angle, "rad", fs=RATE))(tmp_path))
+    np.testing.assert_array_equal(run["angle"], angle)
+    assert "angle jumps by 3.3 rad at sample 2000, which are no whole turns" in run.notes[0]
+
+
+# --- libraries, and files that are no recordings ------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("ending", "library", "extra"),
+    [(".tdms", "nptdms", "tdms"), (".mf4", "asammdf", "mdf"), (".h5", "h5py", "hdf5")],
+)
+def test_a_missing_library_is_named_with_the_command_that_installs_it(
+    tmp_path, monkeypatch, ending, library, extra
+):
+    monkeypatch.setitem(sys.modules, library, None)
+    path = tmp_path / f"run{ending}"
+    path.write_bytes(b"anything")
+    message = refusal(path)
+    assert library in message
+    assert message.endswith(f'run: pip install "bushing-noise[{extra}]"')
+
+
+def test_no_library_of_a_format_is_loaded_before_its_file_turns_up():
+    code = (
+        "import sys, noise.recordings.files;"
+        "assert not {'h5py', 'asammdf', 'nptdms', 'pyuff'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.parametrize("compression", [0, 1, 2])
+def test_packed_mdf_integers_are_converted(tmp_path, compression):
+    counts = np.arange(70_000, dtype=np.int16)
+    time, conversion = np.arange(counts.size) / 48e3, {"a": 0.5, "b": 1.0}
+    with MDF(version="4.10") as file:
+        file.append([signal(counts, time, conversion=conversion)])
+        path = file.save(tmp_path / "run.mf4", compression=compression)
+    np.testing.assert_allclose(read_recording(path)["pressure"], 1.0 + 0.5 * counts)
+
+
+def test_an_older_mdf_file_is_refused_by_its_version(tmp_path):
+    with MDF(version="3.30") as file:
+        file.append([signal()])
+        path = file.save(tmp_path / "run.mdf")
+    assert "version '3.30', expected 4" in refusal(path)
+
+
+def test_an_hdf5_dataset_without_its_numbers_is_refused(tmp_path):
+    path, other = tmp_path / "run.h5", tmp_path / "other"
+    other.write_bytes(bytes(8000))
+    for n, external in ((10**12, None), (1000, [(str(other), 0, 8000)])):
+        with h5py.File(path, "w") as file:
+            file.create_dataset("torque", (n,), "f8", external=external).attrs["rate"] = 48e3
+        assert "'torque'" in refusal(path)
+
+
+def test_a_response_function_is_no_recording(tmp_path):
+    path = tmp_path / "frf.uff"
+    write_uff_functions(path, [UffFunction(FREQUENCY_RESPONSE, 1 + T, X + 0j, "Pa", "N m")])
+    assert "holds no time functions" in refusal(path)
+
+
+DATA = os.environ.get("BUSHING_NOISE_REAL_DATA")
+
+
+@pytest.mark.skipif(not DATA, reason="BUSHING_NOISE_REAL_DATA names no folder of real recordings")
+def test_a_real_binary_universal_file_is_read_in_pascals():
+    run = read_recording(Path(DATA) / "uff" / "Sample_UFF58b_bin.uff")
+    assert (run.channel_names, run.rate, run.calibrated) == (("pressure",), 65536.0, True)
+    assert run.samples.shape == (1, 79292)

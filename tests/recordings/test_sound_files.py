@@ -1,0 +1,386 @@
+"""Sound files read to their end, whatever their header says of it, or refused for what is there."""
+
+from __future__ import annotations
+
+import io
+import struct
+import tracemalloc
+from itertools import pairwise
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import soundfile
+from hypothesis import given, strategies as st
+
+from models.errors import RecordingError
+from noise.recordings import read_recording
+from noise.recordings.formats.containers import bext_description, chunks
+from noise.recordings.formats.sound_file import open_sound_file
+
+RATE = 48_000
+SECONDS = 3
+
+
+def tone(start=2.0, end=2.5, rate=RATE, n_tracks=1):
+    """Silence with a tone of 1000 Hz between two times."""
+    t = np.arange(SECONDS * rate) / rate
+    x = 0.3 * np.sin(2 * np.pi * 1000 * t) * ((t >= start) & (t < end))
+    return np.stack([x] * n_tracks, axis=1)
+
+
+def encoded(samples, rate=RATE, **how):
+    file = io.BytesIO()
+    soundfile.write(file, samples, rate, **how)
+    return file.getvalue()
+
+
+def read(tmp_path, data, ending="wav"):
+    path = tmp_path / f"run.{ending}"
+    path.write_bytes(data)
+    with open_sound_file(path) as raw:
+        return SimpleNamespace(**vars(raw), samples=raw.whole())
+
+
+def assert_tones(raw, *expected):
+    """Compare the times between which there is a tone [s]."""
+    at = np.flatnonzero(np.abs(raw.samples[0]) > 0.03) / raw.rate
+    gaps = [0, *(i + 1 for i, (a, b) in enumerate(pairwise(at)) if b - a > 0.08), len(at)]
+    found = [(at[a], at[b - 1]) for a, b in pairwise(gaps)]
+    delay = 1.5e3 / raw.rate  # of an encoder, which a header would state
+    assert np.array(found) == pytest.approx(np.array(expected), abs=0.03 + delay)
+
+
+# Files as the library writes them
+
+FORMATS = [
+    ("wav", "FLOAT", False),
+    ("wav", "PCM_16", True),
+    ("wav", "IMA_ADPCM", True),
+    ("flac", "PCM_16", True),
+    ("aiff", "PCM_24", True),
+    ("rf64", "DOUBLE", False),
+    ("ogg", "VORBIS", True),
+    ("mp3", "MPEG_LAYER_III", True),
+]
+
+
+@pytest.mark.parametrize(("ending", "subtype", "fractional"), FORMATS)
+def test_a_whole_file_gives_its_samples_and_one_that_is_cut_is_refused(
+    tmp_path, ending, subtype, fractional
+):
+    t = np.arange(150_000)[:, None] / RATE
+    data = encoded(
+        0.5 * np.sin(2 * np.pi * 500 * t + np.arange(2)),
+        format=ending.upper(),
+        subtype=subtype,
+    )
+    raw = read(tmp_path, data, ending)
+    assert (raw.rate, raw.fractional, raw.notes) == (RATE, fractional, ())
+    assert np.array_equal(raw.samples, soundfile.read(io.BytesIO(data), always_2d=True)[0].T)
+    for share in (0.5, 0.9):
+        try:
+            cut = read(tmp_path, data[: int(share * len(data))], ending)
+        except RecordingError as error:
+            assert str(tmp_path) in str(error)  # noqa: PT017
+        else:  # without a length in its header, a shorter stream of OGG is a stream of OGG
+            assert ending == "ogg"
+            assert cut.samples.shape[1] < len(t)
+
+
+def test_a_header_that_announces_the_moon_takes_no_memory(tmp_path):
+    content = bytearray(encoded(tone(), format="FLAC"))
+    content[21] |= 0x0F  # the 36 bits that count the samples
+    content[22:26] = b"\xff" * 4
+    tracemalloc.start()
+    try:
+        with pytest.raises(RecordingError, match="68719476735 samples, more than a file of this"):
+            read(tmp_path, content, "flac")
+        assert tracemalloc.get_traced_memory()[1] < 1e6
+    finally:
+        tracemalloc.stop()
+
+
+def test_reading_takes_the_memory_of_the_result(tmp_path):
+    data = encoded(np.zeros((1_000_000, 4), np.float32), format="WAV", subtype="FLOAT")
+    tracemalloc.start()
+    try:
+        raw = read(tmp_path, data)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < 1.2 * raw.samples.nbytes == 1.2 * 32_000_000
+
+
+# MP3
+
+HIGH = (0, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192, 224, 256, 320)
+LOW = (0, 8, 16, 24, 32, 40, 48, 56, 64, 80, 96, 112, 128, 144, 160)
+
+
+def mp3(mode, rate=44100, n_tracks=1, **when):
+    how = {"bitrate_mode": mode, "compression_level": 0.5}
+    samples = tone(rate=rate, n_tracks=n_tracks, **when)
+    return encoded(samples, rate, format="MP3", subtype="MPEG_LAYER_III", **how)
+
+
+def headless(data):
+    """Take away the first frame, in which the length stands."""
+    bits = int.from_bytes(data[:4], "big")
+    low = bits >> 19 & 3 != 3
+    rate = (44100, 48000, 32000)[bits >> 10 & 3] >> {3: 0, 2: 1, 0: 2}[bits >> 19 & 3]
+    kbit = (LOW if low else HIGH)[bits >> 12 & 15]
+    size = (72 if low else 144) * kbit * 1000 // rate + (bits >> 9 & 1)
+    assert data[size : size + 1] == b"\xff"
+    return data[size:]
+
+
+@pytest.mark.parametrize("n_tracks", [1, 2])
+@pytest.mark.parametrize("rate", [48000, 44100, 22050, 8000])
+@pytest.mark.parametrize("mode", ["VARIABLE", "CONSTANT"])
+def test_an_mp3_without_a_header_is_read_to_its_end(tmp_path, mode, rate, n_tracks):
+    raw = read(tmp_path, headless(mp3(mode, rate, n_tracks)), "mp3")
+    assert raw.samples.shape[0] == n_tracks
+    assert raw.samples.shape[1] / raw.rate == pytest.approx(SECONDS, abs=0.15)
+    assert_tones(raw, (2.0, 2.5))
+
+
+def test_all_frames_of_an_mp3_without_a_header_are_read(tmp_path):
+    data = headless(mp3("CONSTANT"))
+    frames = round(len(data) * 44100 / (144 * 160_000))  # of 160 kbit/s
+    n = read(tmp_path, data, "mp3").samples.shape[1]
+    assert n == frames * 1152 - 529  # which is the delay of the decoder
+
+
+ID3V2 = b"ID3\x04\0\0\0\0\x02\x01" + b"\xff\xfb\x90\x64" * 64 + b"\0"
+ID3V1 = b"TAG" + b"t" * 125
+APE = b"APETAGEX" + struct.pack("<IIII", 2000, 40, 1, 0) + bytes(8) + bytes(40)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"), [(ID3V2, ID3V1), (b"", APE + ID3V1), (b"\0" * 777, b"\0" * 100)]
+)
+def test_tags_around_an_mp3_are_no_sound(tmp_path, before, after):
+    for data in (mp3("VARIABLE"), headless(mp3("CONSTANT"))):
+        bare = read(tmp_path, data, "mp3").samples
+        assert np.array_equal(read(tmp_path, before + data + after, "mp3").samples, bare)
+
+
+@pytest.mark.parametrize("between", [b"", ID3V1 + ID3V2])
+@pytest.mark.parametrize("first", [bytes, headless])
+@pytest.mark.parametrize("second", [bytes, headless])
+def test_of_joined_mp3_both_are_read(tmp_path, first, second, between):
+    data = first(mp3("VARIABLE")) + between + second(mp3("VARIABLE", start=0.5, end=1.0))
+    raw = read(tmp_path, data, "mp3")
+    assert raw.samples.shape[1] / raw.rate == pytest.approx(2 * SECONDS, abs=0.15)
+    assert_tones(raw, (2.0, 2.5), (3.5, 4.0))
+
+
+def test_an_mp3_that_is_cut_off_is_refused_where_it_has_a_header(tmp_path):
+    data = mp3("VARIABLE")
+    with pytest.raises(RecordingError, match=r"truncated; its header announces 1\d\d frames, \d+"):
+        read(tmp_path, data[: len(data) * 2 // 3], "mp3")
+    assert_tones(read(tmp_path, headless(data)[:-2000], "mp3"), (2.0, 2.5))
+
+
+def test_text_and_noise_are_no_mp3(tmp_path):
+    noise = np.random.default_rng(1).bytes(100_000)
+    no_frames = (b"\xff" * 20_000_000, b"\xff\xfb\x90\x00\x01" * 2_000_000)
+    for data in (noise, b"a diary\n" * 500, *no_frames, b"ID3", b"\xff\xfb\x90\x64"):
+        with pytest.raises(RecordingError, match="no sound file"):
+            read(tmp_path, data, "mp3")
+
+
+# Ogg and FLAC
+
+
+def open_length(flac):
+    content = bytearray(flac)
+    content[21] &= 0xF0  # the 36 bits that count the samples
+    content[22:26] = bytes(4)
+    return bytes(content)
+
+
+def parts(*starts, rate=RATE, n_tracks=1, **how):
+    return [encoded(tone(at, at + 0.5, rate, n_tracks), rate, **how) for at in starts]
+
+
+OGG, FLAC = {"format": "OGG", "subtype": "VORBIS"}, {"format": "FLAC"}
+
+
+@pytest.mark.parametrize("subtype", ["VORBIS", "OPUS"])
+def test_of_joined_ogg_all_are_read(tmp_path, subtype):
+    data = b"".join(parts(2.0, 1.0, 0.5, n_tracks=2, format="OGG", subtype=subtype))
+    raw = read(tmp_path, data, "opus" if subtype == "OPUS" else "ogg")
+    assert raw.samples.shape == (2, 3 * SECONDS * RATE)
+    assert_tones(raw, (2.0, 2.5), (4.0, 4.5), (6.5, 7.0))
+    assert raw.notes == ("3 sounds one after the other in one file are read as one",)
+
+
+def test_sounds_of_other_rates_in_one_file_are_refused(tmp_path):
+    data = b"".join(parts(2.0, **OGG) + parts(2.0, rate=44100, **OGG))
+    with pytest.raises(RecordingError, match="of 1 tracks at 48000 Hz and of 1 at 44100 Hz"):
+        read(tmp_path, data, "ogg")
+
+
+def test_a_part_of_joined_sounds_is_that_of_the_whole(tmp_path):
+    joined = {
+        "ogg": b"".join(parts(0.0, 2.0, **OGG)),
+        "mp3": headless(mp3("VARIABLE")) + mp3("VARIABLE"),
+        "flac": b"".join(parts(2.0, 1.0, **FLAC)),
+    }
+    for ending, data in joined.items():
+        whole = read(tmp_path, data, ending).samples
+        n = whole.shape[1]
+        with open_sound_file(tmp_path / f"run.{ending}") as raw:
+            for first, last in [(0, 10), (n // 2 - 9000, n // 2 + 9000), (100, 7000), (n - 9, n)]:
+                assert np.array_equal(raw.read(first, last), whole[:, first:last])
+
+
+@pytest.mark.parametrize("subtype", ["PCM_16", "PCM_24"])
+def test_a_flac_of_unknown_length_is_read_to_its_end(tmp_path, subtype):
+    data = encoded(tone(n_tracks=2), format="FLAC", subtype=subtype)
+    raw = read(tmp_path, open_length(data), "flac")
+    assert np.array_equal(raw.samples, read(tmp_path, data, "flac").samples)
+    one, other = parts(2.0, 1.0, **FLAC)
+    assert_tones(read(tmp_path, one + open_length(other), "flac"), (2.0, 2.5), (4.0, 4.5))
+
+
+def test_a_flac_of_unknown_length_that_breaks_off_says_what_there_is(tmp_path):
+    data = open_length(encoded(tone(0, 3), format="FLAC"))
+    with pytest.raises(RecordingError, match=r"does not say how long it is, and breaks off after"):
+        read(tmp_path, data[: len(data) * 2 // 3], "flac")
+
+
+# WAV
+
+
+def chunk(name, content, size=None):
+    length = len(content) if size is None else size
+    return name + struct.pack("<I", length) + content + b"\0" * (len(content) % 2)
+
+
+def riff(*parts, size=None, tag=b"RIFF"):
+    body = b"WAVE" + b"".join(parts)
+    return tag + struct.pack("<I", len(body) if size is None else size) + body
+
+
+def fmt(bits, *, code=1, extensible=False):
+    frame, kind = bits // 8, 0xFFFE if extensible else code
+    content = struct.pack("<HHIIHH", kind, 1, RATE, frame * RATE, frame, bits)
+    if extensible:
+        rest = bytes.fromhex("000000001000800000aa00389b71")
+        content += struct.pack("<HHIH", 22, bits, 4, code) + rest
+    return chunk(b"fmt ", content)
+
+
+X = tone(1.0)[:, 0]
+AS_16 = np.round(X * 32767).astype("<i2").tobytes()
+AS_24 = np.round(X * (2**23 - 1)).astype("<i4").view("u1").reshape(-1, 4)[:, :3].tobytes()
+AS_FLOAT = X.astype("<f4").tobytes()
+KINDS = {
+    "16 bits": (fmt(16), AS_16),
+    "24 bits": (fmt(24), AS_24),
+    "float": (fmt(32, code=3), AS_FLOAT),
+    "extensible": (fmt(16, extensible=True), AS_16),
+    "extensible float": (fmt(32, code=3, extensible=True), AS_FLOAT),
+}
+LONG = 0xFFFFFFFF
+HEAD = fmt(16)
+
+
+def assert_sound(raw, expected=X):
+    np.testing.assert_allclose(raw.samples, expected[np.newaxis], atol=1e-4)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    ("size", "whole"),
+    [(0, 0), (0, 36), (LONG, LONG), (0x7FFFFFFF, 8), (0x80000000, None), (0x7FFFF000, 0)],
+)
+def test_a_wav_whose_recorder_died_is_read_to_its_end(tmp_path, kind, size, whole):
+    head, data = KINDS[kind]
+    raw = read(tmp_path, riff(head, chunk(b"data", data, size), size=whole))
+    assert_sound(raw)
+    note = f"the recorder did not finish the header; the {len(data)} bytes that follow it are read"
+    assert raw.notes == (note,)
+
+
+def test_the_last_sample_of_a_recorder_that_died_may_be_half_there(tmp_path):
+    assert_sound(read(tmp_path, riff(HEAD, chunk(b"data", AS_16, 0))[:-3]), X[:-2])
+
+
+def test_an_empty_recording_is_one_whatever_chunks_follow(tmp_path):
+    for rest in (b"", chunk(b"LIST", b"INFOISFT\4\0\0\0rec\0"), chunk(b"bext", bytes(602))):
+        raw = read(tmp_path, riff(HEAD, chunk(b"data", b""), rest))
+        assert raw.samples.shape == (1, 0)
+
+
+def ds64(n, samples=0):
+    if n is None:
+        return chunk(b"ds64", b"\xff" * 24 + bytes(4))
+    return chunk(b"ds64", struct.pack("<QQQI", n and n + 72, n, samples, 0))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("tag", [b"RF64", b"BW64"])
+@pytest.mark.parametrize("finished", [True, 0, None])
+def test_files_of_64_bit_sizes_are_read_whatever_stands_there(tmp_path, kind, tag, finished):
+    head, data = KINDS[kind]
+    sizes = ds64(len(data), len(X)) if finished is True else ds64(finished)
+    raw = read(tmp_path, riff(sizes, head, chunk(b"data", data, LONG), size=LONG, tag=tag))
+    assert_sound(raw)
+    assert bool(raw.notes) is (finished is not True)
+
+
+@pytest.mark.parametrize("tag", [b"RIFF", b"RF64", b"BW64"])
+def test_what_follows_the_samples_is_none_of_them_and_named_where_it_is_no_chunk(tmp_path, tag):
+    sizes, size = (b"", len(AS_16)) if tag == b"RIFF" else (ds64(len(AS_16)), LONG)
+    data = chunk(b"data", AS_16, size)
+    raw = read(tmp_path, riff(sizes, HEAD, data, chunk(b"LIST", b"\x55" * 4001), tag=tag))
+    assert raw.samples.shape == (1, len(X))
+    assert raw.notes == ()
+    sizes, size = (b"", 2000) if tag == b"RIFF" else (ds64(2000), LONG)
+    raw = read(tmp_path, riff(sizes, HEAD, chunk(b"data", AS_16, size), tag=tag))
+    assert raw.samples.shape == (1, 1000)
+    rest = len(AS_16) - 2000
+    assert raw.notes == (f"{rest} bytes after the end that the header states are not read",)
+
+
+def test_an_odd_chunk_before_the_samples_may_lack_its_last_byte(tmp_path):
+    odd = b"LIST" + struct.pack("<I", 3) + b"abc"
+    assert_sound(read(tmp_path, riff(HEAD, odd, chunk(b"data", AS_16))))
+
+
+def test_a_second_wav_in_a_file_is_refused(tmp_path):
+    data = encoded(tone(), format="WAV")
+    with pytest.raises(RecordingError, match=f"a second WAV file begins at byte {len(data)}"):
+        read(tmp_path, data + data)
+
+
+# The description of Broadcast Wave files
+
+
+@pytest.mark.parametrize("tag", [b"RIFF", b"RF64", b"BW64"])
+@pytest.mark.parametrize("pad", [b"", b"\0", b"\x41"])
+def test_a_description_after_an_odd_number_of_bytes_is_found_padded_or_not(tmp_path, tag, pad):
+    text = chunk(b"bext", b"Sound: 0dBFS = 109.7 dBSPL".ljust(602, b"\0"))
+    odd = b"data" + struct.pack("<I", 4801) + b"\x11" * 4801 + pad
+    path = tmp_path / "run.wav"
+    path.write_bytes(riff(fmt(8), odd, text, tag=tag))
+    assert bext_description(path) == "Sound: 0dBFS = 109.7 dBSPL"
+    calibrated = read_recording(path)
+    assert calibrated.channels[0].full_scale == pytest.approx(20e-6 * 10 ** (109.7 / 20))
+
+
+@given(st.sampled_from([b"RIFF", b"RIFX", b"RF64", b"FORM", b"fLaC", b""]), st.binary(max_size=300))
+def test_any_bytes_end_the_walk(head, rest):
+    found = list(chunks(io.BytesIO(head + rest)))
+    assert all(part.start <= 4 + len(rest) for part in found)
+
+
+@given(st.binary(min_size=1, max_size=40))
+def test_any_description_is_text(tmp_path_factory, content):
+    path = tmp_path_factory.mktemp("bext") / "run.wav"
+    path.write_bytes(riff(chunk(b"bext", content)))
+    assert bext_description(path).encode("latin-1") in content
