@@ -13,10 +13,15 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy import fft, special
 
-from features.windows.arithmetic import OCTAVES, ordered_sum, padded_medians, padded_rows
+from features.windows.arithmetic import (
+    OCTAVES,
+    ordered_sum,
+    padded_medians,
+    padded_rows,
+    prominent_maxima,
+)
 from features.windows.blocks import RATE
 from features.windows.declared import RHYTHM_FEATURES
-from features.windows.maxima import prominent_maxima
 from models.compilation import COMPILED
 
 _STEP = 4

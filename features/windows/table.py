@@ -13,11 +13,15 @@ from numpy.typing import NDArray
 
 from features.windows.blocks import FRAME_RATE, RATE
 from features.windows.declared import TOP_FEATURES, WINDOW_FEATURES
-from features.windows.frames import FRAME_COLUMNS, describe_frames, frame_count
+from features.windows.frames import (
+    FRAME_COLUMNS,
+    describe_frames,
+    frame_count,
+    trajectory_features,
+)
 from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythm_features
 from features.windows.spectra import SEGMENT_HOP, long_spectra
 from features.windows.tones import tone_features
-from features.windows.trajectories import trajectory_features
 
 LENGTH = 0.5
 """Of a window [s]."""

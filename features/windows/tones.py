@@ -11,13 +11,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from features.windows.arithmetic import OCTAVES, ordered_sum, padded_rows
+from features.windows.arithmetic import OCTAVES, ordered_sum, padded_rows, prominent_maxima
 from features.windows.declared import TONE_FEATURES
-from features.windows.harmonics import harmonic_features
-from features.windows.maxima import prominent_maxima
 from features.windows.spectra import (
     BLOCK,
     FIRST,
+    LOBE,
     SPACING,
     WindowSpectra,
     line_power,
@@ -193,7 +192,7 @@ def _lines(
         "lowest_line": np.where(some, OCTAVES * np.log(lowest / top), np.nan),
         "line_spacing_spread": _spacing_spread(bins, count),
         **_clearest(level, floor, spectra.end),
-        **harmonic_features(spectra, bins, heights - strongest[:, None], count, place),
+        **_harmonics(spectra, bins, heights - strongest[:, None], count, place),
     }
 
 
@@ -206,3 +205,73 @@ def _spacing_spread(at: NDArray[np.int64], count: NDArray[np.int64]) -> NDArray[
     off = np.where(np.arange(at.shape[1] - 1) < n, off, 0.0)
     out[several] = ordered_sum(off, axis=1) / n[:, 0] / mean[:, 0]
     return out
+
+
+_DIVISORS = np.arange(1, 9)
+"""The strongest bin is one of these harmonics."""
+
+_LOWEST = 40.0
+"""Fundamental [Hz]."""
+
+_LOWER = 0.93
+"""A lower fundamental has more multiples, so it must explain notably more [ratio]."""
+
+
+def _harmonics(
+    spectra: WindowSpectra,
+    at: NDArray[np.int64],
+    height: NDArray[np.float32],
+    count: NDArray[np.int64],
+    place: NDArray[np.float64],
+) -> dict[str, NDArray[np.float64]]:
+    """Describe the fundamental whose multiples hold most of the power in lines.
+
+    Lines are given by bin and height [dB re the strongest bin], as many as `count` a window;
+    `place` is that of the strongest bin's maximum [bins].
+    """
+    base = place[:, None] / _DIVISORS
+    ratio = at[:, None, :] / base[:, :, None]
+    order = np.rint(ratio)
+    off = np.abs(ratio - order)
+    line = np.arange(at.shape[1]) < count[:, None]
+    weight = np.where(line, 10.0 ** (0.1 * height.astype(np.float64)), 0.0)[:, None, :]
+    fits = (order >= 1.0) & (off * base[:, :, None] <= (1.5 + 0.006 * at)[:, None, :])
+    fits &= line[:, None, :]
+    value = ordered_sum(np.where(fits, weight, 0.0), axis=2) * _LOWER**_DIVISORS
+    value[base * SPACING < _LOWEST] = 0.0
+    best = value.argmax(axis=1)
+    rows = np.flatnonzero(value.max(axis=1) > 0.0)
+    best = best[rows]
+    fundamental, number = base[rows, best], fits[rows, best].sum(axis=1)
+    off = np.where(fits[rows, best], off[rows, best] / np.maximum(order[rows, best], 1.0), 0.0)
+    inside, bins = _in_multiples(spectra.power[rows], fundamental, spectra.end)
+    share = np.minimum(1.0, inside / spectra.total[rows])
+    expected = bins / (spectra.end - FIRST)
+    found = {
+        "fundamental": OCTAVES * np.log(fundamental * (SPACING / 100.0)),
+        "harmonic_share": share,
+        "harmonic_count": number,
+        "inharmonicity": ordered_sum(off, axis=1) / np.maximum(number, 1),
+        "harmonic_gain": share.astype(np.float32) - expected,
+    }
+    out = {name: np.full(count.size, np.nan) for name in found}
+    for name, values in found.items():
+        out[name][rows] = values
+    return out
+
+
+def _in_multiples(
+    power: NDArray[np.float32], fundamental: NDArray[np.float64], end: int
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return power and number of the bins about the multiples of each fundamental [bins]."""
+    most = int(end / fundamental.min(initial=end))
+    multiple = np.arange(1, most + 1) * fundamental[:, None]
+    centre = np.rint(multiple).astype(np.int64)
+    counted = (multiple < end - LOBE) & (centre - LOBE >= FIRST)
+    aside = np.arange(-LOBE, LOBE + 1)
+    reach = np.minimum(LOBE, (0.4 * fundamental).astype(np.int64))
+    inside = counted[:, :, None] & (np.abs(aside) <= reach[:, None, None])
+    bins = np.where(inside, centre[:, :, None] + aside, 0).reshape(-1, most * aside.size)
+    inside = inside.reshape(bins.shape)
+    terms = np.where(inside, np.take_along_axis(power, bins, axis=1), 0.0).astype(np.float64)
+    return ordered_sum(terms, axis=1), inside.sum(axis=1)
