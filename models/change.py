@@ -17,14 +17,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
-from models.bushing import Sleeve
+from models.bushing import HARDNESS, Sleeve, shore_modulus
 from models.errors import ParameterError
-from models.rig import Fit, LawSpec, Rig, modulus_of
+from models.rig import Fit, LawSpec, Rig
 from models.schema import declared, did_you_mean, number, refuse_impossible
 
 _SLEEVE = {name: declared(Sleeve)[name].key for name in ("wall", "length", "youngs_modulus")}
@@ -42,8 +42,7 @@ _FACTOR = re.compile(r"x\s*(?P<number>[^\s%]+)")
 _PERCENT = re.compile(r"(?P<number>[+-]\s*[^\s%]+)\s*%")
 
 
-@dataclass(frozen=True)
-class _Amount:
+class _Amount(NamedTuple):
     """How a value changes: it is multiplied, or replaced."""
 
     factor: float = 1.0
@@ -51,17 +50,6 @@ class _Amount:
 
     def of(self, old: float) -> float:
         return old * self.factor if self.value is None else self.value
-
-
-@dataclass(frozen=True)
-class _Target:
-    """A number of the rig: `owner` is empty for those of the bushing, else a law's name."""
-
-    owner: str
-    name: str
-
-    def __str__(self) -> str:
-        return f"{self.owner}.{self.name}" if self.owner else self.name
 
 
 def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
@@ -93,21 +81,20 @@ def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
     >>> round(other.fit(0.279e-3).critical_torque, 3), other.friction.parameters["ageing_time"]
     (9.424, 0.000552)
     """
-    amounts: dict[_Target, _Amount] = {}
+    amounts: dict[str, _Amount] = {}
     for name, given in _flat(changes, where):
         target = _target(rig, name, where)
         if target in amounts:
             raise ParameterError(f"{where}: {target} is changed twice; give one change")
         amounts[target] = _amount(given, name, target, where)
-    bushing = {t.name: amount for t, amount in amounts.items() if not t.owner}
     try:
-        rig = _resized(rig, bushing, where)
+        rig = _resized(rig, amounts, where)
         made = replace(
             rig,
-            fits=tuple(replace(fit, **_changed(fit, _FIT, bushing)) for fit in rig.fits),
+            fits=tuple(replace(fit, **_changed(fit, _FIT, amounts)) for fit in rig.fits),
             friction=_changed_law(rig.friction, _FRICTION, amounts, where),
             effects=tuple(_changed_law(e, e.name, amounts, where) for e in rig.effects),
-            **_changed(rig, _RIG, bushing),
+            **_changed(rig, _RIG, amounts),
         )
     except ParameterError as error:
         raise ParameterError(f"{where}: {str(error).removeprefix(f'{where}: ')}") from None
@@ -140,70 +127,60 @@ def multiplied(
     rest, found = dict(factors), dict[str, str | float]()
     for name, given in _flat(changes, "change"):
         target = _target(rig, name, "change")
-        if target.owner not in ("", _FRICTION):
-            continue
-        factor = rest.pop(target.name, 1.0) if not target.owner else 1.0
-        amount = _amount(given, name, target, "change")
-        found[name] = (
-            _factor(amount.factor * factor) if amount.value is None else amount.value * factor
-        )
-    return found | {name: _factor(factor) for name, factor in rest.items()}
-
-
-def _factor(number: float) -> str:
-    return f"x{number:.6g}"
+        if target in _LONG or target.startswith(f"{_FRICTION}."):
+            factor = rest.pop(target, 1.0)
+            amount = _amount(given, name, target, "change")
+            value = amount.value
+            found[name] = f"x{amount.factor * factor:.6g}" if value is None else value * factor
+    return found | {name: f"x{factor:.6g}" for name, factor in rest.items()}
 
 
 def _flat(changes: Mapping[str, Any], where: str) -> Iterator[tuple[str, Any]]:
     for name, given in changes.items():
-        if name == "hardness_shore_A":
-            yield _LONG["youngs_modulus"], modulus_of(given, where) / 1e6
-            continue
-        if isinstance(given, Mapping):
+        if name == HARDNESS.key:
+            yield _LONG["youngs_modulus"], shore_modulus(HARDNESS.read(given, where)) / 1e6
+        elif isinstance(given, Mapping):
             yield from ((f"{name}.{key}", value) for key, value in given.items())
         else:
             yield name, given
 
 
-def _target(rig: Rig, name: str, where: str) -> _Target:
+def _target(rig: Rig, name: str, where: str) -> str:
+    """Name what a change is of: the short name of a quantity of the bushing, or `law.parameter`."""
     owners = {_FRICTION: rig.friction, **{effect.name: effect for effect in rig.effects}}
     owner, dot, key = name.partition(".")
     if dot and owner == rig.friction.name:
         owner = _FRICTION
     if dot and owner in owners:
-        return _Target(owner, key)
+        return f"{owner}.{key}"
     if name.partition("_mm")[0] == "interference":
         raise ParameterError(
             f"{where}: {name} is an operating condition, not a property of the bushing; leave it "
             "out and ask for it with --interference"
         )
     # The whole name of a quantity of the bushing: that parameters end alike makes it no other.
-    whole = [_Target("", short) for short, long in _LONG.items() if name in (short, long)]
-    found = whole or [_Target(own, name) for own, law in owners.items() if name in law.parameters]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        possible = " or ".join(map(str, found))
+    whole = [short for short, long in _LONG.items() if name in (short, long)]
+    found = whole or [f"{own}.{name}" for own, law in owners.items() if name in law.parameters]
+    if len(found) > 1:
+        possible = " or ".join(found)
         raise ParameterError(f"{where}: {name} can mean {possible}; write which")
-    known = [*_LONG, *(k for k in _LONG.values() if k not in _LONG)]
-    parameters = [f"{own}.{key}" for own, law in owners.items() for key in law.parameters]
-    hint = did_you_mean(name, [*known, *parameters, *(p.partition(".")[2] for p in parameters)])
-    raise ParameterError(
-        f"{where}: cannot change {name!r}{hint}; known are {', '.join([*known, *parameters])}"
-    )
+    if not found:
+        parameters = {f"{own}.{key}": key for own, law in owners.items() for key in law.parameters}
+        known = [*dict.fromkeys((*_LONG, *_LONG.values(), *parameters))]
+        hint = did_you_mean(name, [*known, *parameters.values()])
+        raise ParameterError(f"{where}: cannot change {name!r}{hint}; known are {', '.join(known)}")
+    return found[0]
 
 
-def _amount(given: Any, name: str, target: _Target, where: str) -> _Amount:
+def _amount(given: Any, name: str, target: str, where: str) -> _Amount:
     stated = f"{where}: {name} = {given!r}"
     if isinstance(given, str):
-        text = given.strip()
-        factor, percent = _FACTOR.fullmatch(text), _PERCENT.fullmatch(text)
-        by = math.nan
+        text, by = given.strip(), math.nan
         with suppress(ValueError):
-            if factor:
-                by = float(factor["number"])
-            elif percent:
-                by = 1.0 + float(percent["number"].replace(" ", "")) / 100.0
+            if found := _FACTOR.fullmatch(text):
+                by = float(found["number"])
+            elif found := _PERCENT.fullmatch(text):
+                by = 1.0 + float(found["number"].replace(" ", "")) / 100.0
         if not 0.0 < by < math.inf:
             raise ParameterError(
                 f"{stated} is no change; write a factor above 0 such as 'x2', a percentage above "
@@ -211,13 +188,11 @@ def _amount(given: Any, name: str, target: _Target, where: str) -> _Amount:
             )
         return _Amount(factor=by)
     to = number({name: given}, name, where, low=-math.inf)
-    long = _LONG.get(target.name)
-    if not target.owner and name != long:
+    if target in _LONG and name != _LONG[target]:
         raise ParameterError(
-            f"{stated} has no unit; write {long} = {to:g}, or a factor such as 'x2'"
+            f"{stated} has no unit; write {_LONG[target]} = {to:g}, or a factor such as 'x2'"
         )
-    vanishes = to == 0.0 and target.name == "elastomer_damping_share"
-    if not target.owner and not (to > 0.0 or vanishes):
+    if target in _LONG and not (to > 0.0 or (to == 0.0 and target == "elastomer_damping_share")):
         raise ParameterError(f"{stated} must be above 0")
     return _Amount(value=to)
 
@@ -235,12 +210,10 @@ def _resized(rig: Rig, amounts: Mapping[str, _Amount], where: str) -> Rig:
             "youngs_modulus_MPa"
         )
     units = {name: declared(Sleeve)[name].size for name in named}
-    new = replace(
-        old,
-        **{
-            name: amounts[name].of(getattr(old, name) / unit) * unit for name, unit in units.items()
-        },
-    )
+    changed = {
+        name: amounts[name].of(getattr(old, name) / unit) * unit for name, unit in units.items()
+    }
+    new = replace(old, **changed)
     torque = new.friction_torque(1.0, 1.0) / old.friction_torque(1.0, 1.0)
     stiffness = new.torsional_stiffness / old.torsional_stiffness
     return replace(
@@ -259,33 +232,27 @@ def _resized(rig: Rig, amounts: Mapping[str, _Amount], where: str) -> Rig:
     )
 
 
-def _changed(
-    shown: Any, names: Mapping[str, str], amounts: Mapping[str, _Amount]
-) -> dict[str, Any]:
+def _changed(shown: Any, names: Iterable[str], amounts: Mapping[str, _Amount]) -> dict[str, Any]:
     """Return what becomes of the fields of an object that have an amount."""
     found: dict[str, Any] = {}
-    for name in names:
-        if name in amounts:
-            old, amount = getattr(shown, name), amounts[name]
-            if isinstance(old, Mapping):
-                found[name] = {support: amount.of(value) for support, value in old.items()}
-            else:
-                found[name] = amount.of(old)
+    for name in amounts.keys() & set(names):
+        old, of = getattr(shown, name), amounts[name].of
+        found[name] = {k: of(v) for k, v in old.items()} if isinstance(old, Mapping) else of(old)
     return found
 
 
-def _changed_law(
-    law: LawSpec, owner: str, amounts: Mapping[_Target, _Amount], where: str
-) -> LawSpec:
-    own = {target.name: amount for target, amount in amounts.items() if target.owner == owner}
+def _changed_law(law: LawSpec, owner: str, amounts: Mapping[str, _Amount], where: str) -> LawSpec:
     parameters = dict(law.parameters)
-    for name, amount in own.items():
+    for target, amount in amounts.items():
+        name = target.removeprefix(f"{owner}.")
+        if name == target:
+            continue
         old = parameters.get(name)
         if amount.value is None and not isinstance(old, int | float):
             stated = "does not state it as a number" if old is None else f"says {old!r}"
             raise ParameterError(
-                f"{where}: {owner}.{name} cannot be multiplied, since the rig {stated}; write "
-                "its value as a number"
+                f"{where}: {target} cannot be multiplied, since the rig {stated}; write its value "
+                "as a number"
             )
-        parameters[name] = amount.of(float(old)) if isinstance(old, int | float) else amount.of(0.0)
-    return replace(law, parameters=parameters) if own else law
+        parameters[name] = amount.of(float(old) if isinstance(old, int | float) else 0.0)
+    return replace(law, parameters=parameters) if parameters != law.parameters else law

@@ -22,10 +22,11 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from models.bench import refuse_plate
 from models.change import changed_rig
 from models.errors import ParameterError
 from models.foreign_file import LARGEST_TOML, parse_toml, reading, refusing
-from models.rig import LawSpec, Rig, refuse_plate, support_stiffness
+from models.rig import LawSpec, Rig
 from models.schema import (
     as_table,
     as_text,
@@ -52,12 +53,7 @@ _PLAIN_BUSHING = {
     "friction": {"law": "coulomb"},
 }
 
-LOWEST, HIGHEST = 100.0, 5000.0
-"""Band that a measured response must span [Hz]: slips repeat above 100 Hz where they sound as a
-tone, the clamp on its beams resonates at 140 Hz and above, and a torque that breaks loose has
-nothing left to say at 5 kHz."""
-
-_OUTPUTS = {"torque_to_acceleration": "m/s^2", "torque_to_pressure": "Pa"}
+_RESPONSES = ("torque_to_acceleration", "torque_to_pressure")
 
 
 def material_names() -> tuple[str, ...]:
@@ -315,7 +311,7 @@ def measured_responses(tables: Any, folder: Path, where: str) -> tuple[MeasuredR
     --------
     >>> measured_responses([{"torque_to_pressure": "a.npz"}], Path("."), "rig file r.toml")
     Traceback (most recent call last):
-    models.errors.ParameterError: rig file r.toml, measured_response 1: support_stiffness_Nm_rad ...
+    models.errors.ParameterError: rig file r.toml, measured_response 1: torque_to_pressure: ...
     """
     from models.transfer_functions.measured import MeasuredResponse, measured_with
 
@@ -326,42 +322,19 @@ def measured_responses(tables: Any, folder: Path, where: str) -> tuple[MeasuredR
     found: list[MeasuredResponse] = []
     for i, given in enumerate(tables, start=1):
         here = f"{where}, measured_response {i}"
-        table = as_table(given, "measured_response", here)
-        refuse_unknown(table, {"support_stiffness_Nm_rad", *_OUTPUTS}, here)
-        support = table.get("support_stiffness_Nm_rad")
-        try:
-            stiffness = support_stiffness(str(support))
-        except ParameterError:
+        table = dict(as_table(given, "measured_response", here))
+        for key in table.keys() & set(_RESPONSES):
+            table[key] = folder / as_text(table[key], key, here)
+        entry = read_table(MeasuredResponse, table, here)
+        if entry.torque_to_acceleration is entry.torque_to_pressure is None:
+            raise ParameterError(f"{here}: names no response; give {' or '.join(_RESPONSES)}")
+        if measured_with(tuple(found), entry.support_stiffness) is not None:
             raise ParameterError(
-                f"{here}: support_stiffness_Nm_rad = {support!r} must be a number in Nm/rad, or "
-                '"fixed"'
-            ) from None
-        responses = {
-            key: _response(folder / as_text(table[key], key, here), unit, f"{here}: {key}")
-            for key, unit in _OUTPUTS.items()
-            if key in table
-        }
-        if not responses:
-            raise ParameterError(f"{here}: names no response; give {' or '.join(_OUTPUTS)}")
-        if measured_with(tuple(found), stiffness) is not None:
-            raise ParameterError(
-                f"{here}: support_stiffness_Nm_rad = {stiffness:g} has an entry already; give one "
-                "a support"
+                f"{here}: support_stiffness_Nm_rad = {entry.support_stiffness:g} has an entry "
+                "already; give one a support"
             )
-        found.append(MeasuredResponse(stiffness, **responses))
+        found.append(entry)
     return tuple(found)
-
-
-def _response(path: Path, unit: str, where: str) -> Any:
-    from models.transfer_functions.files import read_transfer_function
-    from models.transfer_functions.transfer_function import check_band
-
-    try:
-        transfer = read_transfer_function(path, input_unit="N m", output_unit=unit)
-        check_band(transfer, LOWEST, HIGHEST)
-    except ParameterError as error:
-        raise ParameterError(f"{where}: {error}") from None
-    return transfer
 
 
 def rig_text(rig: Rig, notes: Sequence[str] = (), base: str | None = None) -> str:
@@ -397,9 +370,7 @@ def rig_text(rig: Rig, notes: Sequence[str] = (), base: str | None = None) -> st
     table = front | {k: _rounded(v) for k, v in stated.items() if k not in (*same, "sleeve")}
     if base is None and (sensors := sensors_table(rig.sensors)):
         table["sensors"] = sensors
-    plain = {k: v for k, v in table.items() if not (isinstance(v, Mapping) or k == "fit")}
-    tables = {k: v for k, v in table.items() if isinstance(v, Mapping)}
-    return toml_text({**plain, **tables, "fit": table["fit"]}, notes)
+    return toml_text(table, notes)
 
 
 def changed_rig_text(
@@ -452,14 +423,23 @@ def changed_rig_text(
     """
     tables: dict[str, Any] = {
         "friction": {} if friction is None else {"law": friction.name, **friction.parameters},
-        "change": changes,
-        "tolerances": tolerances,
-        "design.heard": heard or {},
+        "change": _nested(changes),
+        "tolerances": _nested(tolerances),
+        "design": {"heard": heard} if heard else {},
         "measured_response": list(responses),
     }
     content: dict[str, Any] = {"base": base, "effects": [str(spec) for spec in effects]}
     content |= {name: table for name, table in tables.items() if table}
     return toml_text(_rounded(content), notes)
+
+
+def _nested(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Put ``law.parameter`` into a table of the law."""
+    found: dict[str, Any] = {}
+    for name, value in table.items():
+        law, _, parameter = name.rpartition(".")
+        (found.setdefault(law, {}) if law else found)[parameter] = value
+    return found
 
 
 def _rounded(value: Any) -> Any:

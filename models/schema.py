@@ -5,13 +5,12 @@ From the declarations follow reading, with refusals that name key, value and wha
 remarks on values that are unusual; and writing. Fields without a declaration are in no file.
 """
 
-import json
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
 from difflib import get_close_matches
-from functools import lru_cache
+from functools import lru_cache, partial
 from reprlib import repr as show
 from typing import Any, TypeVar
 
@@ -90,7 +89,7 @@ def as_text(value: Any, key: str, where: str) -> str:
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of a file: any value, as it stands.
+    """An entry of a file.
 
     Parameters
     ----------
@@ -100,7 +99,7 @@ class Entry:
 
     key: str
 
-    def read(self, value: Any, where: str, old: Any = None) -> Any:  # noqa: ARG002
+    def read(self, value: Any, where: str, old: Any = None) -> Any:
         """Return what a file's value means; `old` is that of the base which the file changes.
 
         Raises
@@ -108,62 +107,68 @@ class Entry:
         ParameterError
             It cannot be used; the message begins with `where` and names the key.
         """
-        return value
+        raise NotImplementedError
 
     def write(self, value: Any) -> Any:
         """Return the value as a file states it."""
         return value
 
 
-class Text(Entry):
-    """A text."""
-
-    def read(self, value: Any, where: str, old: Any = None) -> Any:  # noqa: ARG002
-        """Return the text."""
-        return as_text(value, self.key, where)
-
-
-class Texts(Entry):
-    """A list of texts."""
-
-    def read(self, value: Any, where: str, old: Any = None) -> Any:  # noqa: ARG002
-        """Return a tuple of texts."""
-        if not isinstance(value, list):
-            raise ParameterError(f"{where}: {self.key} must be a list of texts")
-        return tuple(as_text(each, self.key, where) for each in value)
-
-    def write(self, value: Any) -> Any:
-        """Return a list of texts."""
-        return list(value)
-
-
-class Flag(Entry):
-    """True or false."""
-
-    def read(self, value: Any, where: str, old: Any = None) -> Any:  # noqa: ARG002
-        """Return the truth value."""
-        if not isinstance(value, bool):
-            raise ParameterError(f"{where}: {self.key} = {show(value)} must be true or false")
-        return value
-
-
 @dataclass(frozen=True)
-class Vector(Entry):
-    """A list of so many finite numbers."""
+class ReadBy(Entry):
+    """An entry that functions read and write.
 
-    size: int
+    Parameters
+    ----------
+    reads : callable
+        From a file's value, the key and what messages begin with to what the value means.
+    writes : callable
+        Back to a file's value.
+    """
+
+    reads: Callable[[Any, str, str], Any]
+    writes: Callable[[Any], Any] = lambda value: value
 
     def read(self, value: Any, where: str, old: Any = None) -> Any:  # noqa: ARG002
-        """Return a tuple of numbers."""
-        if not isinstance(value, list) or len(value) != self.size:
-            raise ParameterError(
-                f"{where}: {self.key} = {show(value)} must be a list of {self.size} numbers"
-            )
-        return tuple(number({self.key: each}, self.key, where, low=-math.inf) for each in value)
+        """Return what `reads` makes of a file's value."""
+        return self.reads(value, self.key, where)
 
     def write(self, value: Any) -> Any:
-        """Return a list of numbers."""
-        return list(value)
+        """Return what `writes` makes of the value."""
+        return self.writes(value)
+
+
+def _texts(value: Any, key: str, where: str) -> tuple[str, ...]:
+    if not isinstance(value, list):
+        raise ParameterError(f"{where}: {key} must be a list of texts")
+    return tuple(as_text(each, key, where) for each in value)
+
+
+def _flag(value: Any, key: str, where: str) -> bool:
+    if not isinstance(value, bool):
+        raise ParameterError(f"{where}: {key} = {show(value)} must be true or false")
+    return value
+
+
+def _vector(value: Any, key: str, where: str, size: int) -> tuple[float, ...]:
+    if not isinstance(value, list) or len(value) != size:
+        raise ParameterError(f"{where}: {key} = {show(value)} must be a list of {size} numbers")
+    return tuple(number({key: each}, key, where, low=-math.inf) for each in value)
+
+
+Text = partial(ReadBy, reads=as_text)
+"""A text."""
+
+Texts = partial(ReadBy, reads=_texts, writes=list)
+"""A list of texts."""
+
+Flag = partial(ReadBy, reads=_flag)
+"""True or false."""
+
+
+def Vector(key: str, size: int) -> Entry:  # noqa: N802  # stands among types
+    """Declare a list of so many finite numbers."""
+    return ReadBy(key, partial(_vector, size=size), list)
 
 
 @dataclass(frozen=True)
@@ -316,7 +321,7 @@ def declared(kind: Any) -> dict[str, Any]:
 
     Examples
     --------
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> declared(Beams)["lever"].key
     'lever_m'
     """
@@ -353,7 +358,7 @@ def read_table(
 
     Examples
     --------
-    >>> from models.rig import Floor
+    >>> from models.bench import Floor
     >>> read_table(Floor, {"normal": "y", "position_m": -1}, "rig, floor")
     Floor(normal='y', position=-1.0, reflection=1.0)
     """
@@ -396,7 +401,7 @@ def quantities(shown: Any) -> Iterator[tuple[Quantity, list[float]]]:
 
     Examples
     --------
-    >>> from models.rig import Floor
+    >>> from models.bench import Floor
     >>> [(one.key, values) for one, values in quantities(Floor("y", -1.0))]
     [('position_m', [-1.0]), ('reflection', [1.0])]
     """
@@ -457,49 +462,19 @@ def toml_text(content: Mapping[str, Any], notes: Iterable[str] = ()) -> str:
     Parameters
     ----------
     content : mapping
-        Plain values first, then tables by name and lists of tables; a dot in a name of either
-        parts it. Tables in tables stand in one line.
+        Tables and lists of tables by name.
     notes : iterable of str
         Lines of comment at the top.
 
     Examples
     --------
-    >>> print(toml_text({"base": "PDMS", "change": {"slip_pulse.amplitude": "x2"}}), end="")
+    >>> print(toml_text({"base": "PDMS", "change": {"damping": "x2"}}, ["mine"]), end="")
+    # mine
     base = "PDMS"
     <BLANKLINE>
     [change]
-    slip_pulse.amplitude = "x2"
+    damping = "x2"
     """
-    lines = [f"# {note}".rstrip() for note in notes]
-    for key, value in content.items():
-        if isinstance(value, Mapping):
-            lines += ["", f"[{key}]", *_lines(value)]
-        elif isinstance(value, list) and value and isinstance(value[0], Mapping):
-            for table in value:
-                lines += ["", f"[[{key}]]", *_lines(table)]
-        else:
-            lines += _lines({key: value})
-    return "\n".join(lines) + "\n"
+    import tomli_w
 
-
-def _lines(table: Mapping[str, Any]) -> list[str]:
-    return [f"{_key(key)} = {_value(value)}" for key, value in table.items()]
-
-
-def _key(name: str) -> str:
-    parts = name.split(".")
-    bare = all(part.replace("_", "a").isalnum() and part[0].isalpha() for part in parts if part)
-    return name if bare and all(parts) and name.isascii() else _value(name)
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, int | float):
-        short = f"{value:.9g}"
-        return short if float(short) == value else repr(float(value))
-    if isinstance(value, list):
-        return f"[{', '.join(map(_value, value))}]"
-    if isinstance(value, Mapping):
-        return f"{{ {', '.join(_lines(value))} }}"
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return "".join(f"# {note}".rstrip() + "\n" for note in notes) + tomli_w.dumps(content)

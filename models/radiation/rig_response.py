@@ -22,9 +22,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from models.bench import HIGHEST_PLATE_FREQUENCY, Beams, Microphone, Plate
 from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses
-from models.rig import HIGHEST_PLATE_FREQUENCY, Beams, Microphone, Plate, Rig, damping_at
+from models.rig import Rig, damping_at
 from models.structure.beams import (
     ACCELERATION,
     ANCHOR_FORCE,

@@ -97,7 +97,7 @@ def radiated_spectrum(
     Examples
     --------
     >>> from models.structure.plate import plate_modes
-    >>> from models.rig import Plate
+    >>> from models.bench import Plate
     >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
     >>> modes = plate_modes(steel, 16e3)
     >>> power = radiated_spectrum(modes, modes.shape([0.1], [0.05]).T, [1.0], [3e3])
@@ -149,7 +149,7 @@ def radiated_power(modes: PlateModes, velocity: NDArray[np.complex128], frequenc
     Far above its critical frequency the first mode is a piston of mean square 1/4:
 
     >>> from models.structure.plate import plate_modes
-    >>> from models.rig import Plate
+    >>> from models.bench import Plate
     >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
     >>> first = np.array([1.0 + 0.0j])
     >>> round(radiated_power(plate_modes(steel, 100.0), first, 8e3) / (413.2 * 0.54 / 4), 2)
@@ -222,7 +222,7 @@ def third_octave_power(
     Examples
     --------
     >>> from models.structure.plate import plate_modes
-    >>> from models.rig import Plate
+    >>> from models.bench import Plate
     >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
     >>> modes = plate_modes(steel, 4e3)
     >>> bands = third_octave_power(modes, modes.shape([0.1], [0.05]).T, low=500.0, high=2e3)

@@ -59,10 +59,10 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.signal import bilinear, lfilter
 
+from models.bench import Beams, Microphone
 from models.condition import CONDITION
 from models.errors import ParameterError
 from models.radiation.rayleigh import SOUND_SPEED, rayleigh_integral
-from models.rig import Beams, Microphone
 from models.structure.modal import ModalModel, add_ringing
 
 
@@ -88,7 +88,7 @@ def torsional_stiffness(beams: Beams, length: float) -> float:
     The thesis rounds the first one to 2214; anchors that yield make it less:
 
     >>> from dataclasses import replace
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> [round(torsional_stiffness(steel, length), 1) for length in (0.123, 0.092)]
     [2198.6, 3745.1]
@@ -126,7 +126,7 @@ def beam_length(beams: Beams, stiffness: float) -> float:
 
     Examples
     --------
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> round(beam_length(steel, 2214.0), 4)
     0.1225
@@ -148,7 +148,7 @@ def bending_stiffness(beams: Beams) -> float:
 
     Examples
     --------
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> round(bending_stiffness(Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)), 3)
     13.549
     """
@@ -160,7 +160,7 @@ def mass_per_length(beams: Beams) -> float:
 
     Examples
     --------
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> round(mass_per_length(Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)), 4)
     0.6452
     """
@@ -347,7 +347,7 @@ def rigid_clamp_inertia(beams: Beams, support_stiffness: float, clamp_inertia: f
 
     Examples
     --------
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> round(1 / rigid_clamp_inertia(steel, 2214.0, 1 / 1200))
     1688
@@ -392,7 +392,7 @@ def on_anchors(beams: Beams, support_stiffness: float, clamp_inertia: float) -> 
 
     Examples
     --------
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3, anchor_rotation=250.0)
     >>> [on_anchors(steel, k, 1 / 1200).anchor_rotation for k in (1000.0, 2214.0)]
     [inf, 250.0]
@@ -448,7 +448,7 @@ def beam_structure(
     --------
     At rest the two anchors balance the torque:
 
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> model = beam_structure(steel, 2214.0, 1 / 1200, 0.02, 40e3)
     >>> _, force, moment = model.frequency_response([0.0])[:, TORQUE, 0].real
@@ -573,7 +573,7 @@ def beams_pressure(
 
     Examples
     --------
-    >>> from models.rig import Beams, Microphone
+    >>> from models.bench import Beams, Microphone
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> heard = beams_pressure(
     ...     steel, 2214.0, 1 / 1200, 0.02, (0.0, 0.1), Microphone((0.2, 0.1, 0.5)), 48e3, 4800, 2e4

@@ -27,8 +27,8 @@ import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
 from numpy.typing import ArrayLike, NDArray
 
+from models.bench import Microphone, Plate
 from models.radiation.rayleigh import rectangle_integral
-from models.rig import Microphone, Plate
 from models.show import short_repr
 from models.structure.modal import ModalModel, add_ringing
 from models.structure.plate_ritz import ritz_modes
@@ -320,7 +320,7 @@ def plate_modes(plate: Plate, highest_frequency: float) -> PlateModes:
 
     Examples
     --------
-    >>> from models.rig import Plate
+    >>> from models.bench import Plate
     >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
     >>> modes = plate_modes(steel, 16e3)
     >>> modes.frequencies[:3].round(1), modes.frequencies.size
@@ -375,7 +375,7 @@ def acceleration_model(
 
     Examples
     --------
-    >>> from models.rig import Plate
+    >>> from models.bench import Plate
     >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
     >>> modes = plate_modes(steel, 16e3)
     >>> moment = modes.slope([0.1], [0.05]).T
@@ -421,10 +421,10 @@ def pressure_response(
 
     Examples
     --------
-    >>> from models.rig import Plate
+    >>> from models.bench import Plate
     >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
     >>> modes = plate_modes(steel, 500.0)
-    >>> from models.rig import Microphone
+    >>> from models.bench import Microphone
     >>> force = modes.shape([0.1], [0.05]).T
     >>> heard = pressure_response(modes, force, Microphone((0.2, 0.1, 1.0)), 48e3, 4800)
     >>> bool(np.any(heard[0, :138])), bool(np.any(heard[0, 138:]))

@@ -20,14 +20,13 @@ at time zero, as does its inverse, and multiplied by it again. The normal equati
 transforms, solved by conjugate gradients in some twenty steps.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from typing import TYPE_CHECKING
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,11 +34,17 @@ from scipy.fft import irfft, rfft
 from scipy.interpolate import CubicSpline
 from scipy.sparse.linalg import LinearOperator, cg
 
-from models.condition import same_support
+from models.bench import HIGHEST_PLATE_FREQUENCY
+from models.condition import CONDITION, same_support
 from models.errors import ParameterError
-from models.rig import HIGHEST_PLATE_FREQUENCY
+from models.schema import ReadBy
 from models.show import short_repr
-from models.transfer_functions.transfer_function import TransferFunction, trusted_band
+from models.transfer_functions.files import read_transfer_function
+from models.transfer_functions.transfer_function import (
+    TransferFunction,
+    check_band,
+    trusted_band,
+)
 from models.units import same_unit
 
 if TYPE_CHECKING:
@@ -212,6 +217,21 @@ LARGEST_MISFIT = 0.5
 """Share of a response that may come before its cause; more is no noise but an error of sign."""
 
 
+LOWEST, HIGHEST = 100.0, 5000.0
+"""Band that a measured response must span [Hz]: slips repeat above 100 Hz where they sound as a
+tone, the clamp on its beams resonates at 140 Hz and above, and a torque that breaks loose has
+nothing left to say at 5 kHz."""
+
+
+def _response(path: Path, key: str, where: str, unit: str) -> TransferFunction:
+    try:
+        transfer = read_transfer_function(path, input_unit="N m", output_unit=unit)
+        check_band(transfer, LOWEST, HIGHEST)
+    except ParameterError as error:
+        raise ParameterError(f"{where}: {key}: {error}") from None
+    return transfer
+
+
 @short_repr
 @dataclass(frozen=True, eq=False)
 class MeasuredResponse:
@@ -230,9 +250,13 @@ class MeasuredResponse:
     True
     """
 
-    support_stiffness: float
-    torque_to_acceleration: TransferFunction | None = None
-    torque_to_pressure: TransferFunction | None = None
+    support_stiffness: Annotated[float, CONDITION["support_stiffness"]]
+    torque_to_acceleration: Annotated[
+        TransferFunction | None, ReadBy("torque_to_acceleration", partial(_response, unit="m/s^2"))
+    ] = None
+    torque_to_pressure: Annotated[
+        TransferFunction | None, ReadBy("torque_to_pressure", partial(_response, unit="Pa"))
+    ] = None
 
 
 def measured_with(
@@ -259,8 +283,8 @@ def measured_with(
 
 
 def with_measured(
-    modelled: ImpulseResponses, measured: tuple[MeasuredResponse, ...], support_stiffness: float
-) -> ImpulseResponses:
+    modelled: "ImpulseResponses", measured: tuple[MeasuredResponse, ...], support_stiffness: float
+) -> "ImpulseResponses":
     """Put the measured responses of a support in place of the modelled ones.
 
     Parameters

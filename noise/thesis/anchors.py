@@ -107,7 +107,7 @@ def fit_anchors(
 
     Examples
     --------
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> stuck = ClampOnBeams(steel, 0.123, 0.96, 1 / 1050, 6.13e5, 750.0)
     >>> fit = fit_anchors(stuck, {0.123: [250.0], 0.092: [320.0]},

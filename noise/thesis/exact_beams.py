@@ -20,7 +20,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models.rig import Beams
+from models.bench import Beams
 from models.structure.beams import bending_stiffness, mass_per_length
 
 
@@ -87,7 +87,7 @@ def boundary_conditions(
     --------
     At a natural frequency the conditions can be met without a load:
 
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> loose = ClampOnBeams(steel, 0.123, 0.0, 0.0)
     >>> cantilever = wave_frequency(loose, np.array([1.8751]))
@@ -173,7 +173,7 @@ def wavenumber(
 
     Examples
     --------
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> wavenumber(ClampOnBeams(steel, 0.123, 0.96, 1 / 1050), [1000.0]).real.round(1)
     array([37.])
@@ -200,7 +200,7 @@ def wave_frequency(structure: ClampOnBeams, wave: ArrayLike) -> NDArray[np.float
     --------
     The first mode of a cantilever:
 
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> round(float(wave_frequency(ClampOnBeams(steel, 0.123, 0.0, 0.0), 1.8751)), 1)
     169.5
@@ -240,7 +240,7 @@ def natural_frequencies(
     Examples
     --------
     >>> from noise.thesis.exact_beams import ClampOnBeams
-    >>> from models.rig import Beams
+    >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> rig = ClampOnBeams(steel, 0.123, 0.96, 1 / 1050, 6.13e5, 750.0)
     >>> natural_frequencies(rig, 4e3).round()

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from models.rig import Beams
+from models.bench import Beams
 from noise.thesis.exact_beams import ClampOnBeams, RootMotion, natural_frequencies
 from noise.thesis.row import Row, number
 from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, Case, rig_of, strongest_line

@@ -19,10 +19,10 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 from scipy.signal import csd
 
+from models.bench import HIGHEST_PLATE_FREQUENCY
 from models.errors import ParameterError
 from models.radiation.rig_response import anchor_drives, first_mode_damping
 from models.radiation.sound_power import third_octave_power
-from models.rig import HIGHEST_PLATE_FREQUENCY
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import plate_modes
 from sim.effects import EFFECTS

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import lfilter
 
+from models.bench import HIGHEST_PLATE_FREQUENCY
 from models.radiation.impulse_responses import radiate
 from models.radiation.rig_response import impulse_responses
 from models.radiation.sound_power import third_octave_power
-from models.rig import HIGHEST_PLATE_FREQUENCY
 from models.rig_file import load_material_rig
 from models.structure.modal import acceleration_section
 from models.structure.plate import plate_modes

@@ -7,8 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from models.bench import Floor, Microphone, Plate
 from models.errors import ParameterError
-from models.rig import Floor, Microphone, Plate
 from models.structure.plate import plate_modes, pressure_response
 
 UPRIGHT = Plate(0.5, 0.4, 0.01, 2e11, 7850.0, 0.3, 0.05, (0.0, 0.0))

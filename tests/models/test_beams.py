@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
+from models.bench import Beams
 from models.errors import ParameterError
-from models.rig import Beams
 from models.structure.beams import (
     ACCELERATION,
     ANCHOR_FORCE,

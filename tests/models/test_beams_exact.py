@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.linalg import eigh
 
-from models.rig import Beams
+from models.bench import Beams
 from models.structure.beams import (
     ACCELERATION,
     ANCHOR_FORCE,

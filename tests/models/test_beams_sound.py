@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.special import mathieu_modsem1, mathieu_modsem2, mathieu_sem
 
+from models.bench import Beams, Microphone
 from models.errors import ParameterError
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
 from models.radiation.rig_response import impulse_responses
-from models.rig import Beams, Microphone
 from models.rig_file import load_material_rig
 from models.structure.beams import (
     PULSE,

@@ -114,7 +114,7 @@ def test_a_response_of_reversed_phase_is_refused(tmp_path, modelled):
         (("= 2214", "= 0"), "support_stiffness_Nm_rad"),
         (("= 2214", '= "stiff"'), "support_stiffness_Nm_rad = 'stiff' must be"),
         (("= 2214", "= true"), "support_stiffness_Nm_rad = True"),
-        (("support_stiffness_Nm_rad = 2214", ""), "support_stiffness_Nm_rad = None"),
+        (("support_stiffness_Nm_rad = 2214", ""), "support_stiffness_Nm_rad is missing"),
         (("torque_to_acceleration", "torque_to_force"), "unknown key 'torque_to_force'"),
         (('torque_to_acceleration = "a.npz"', ""), "names no response"),
         (('"a.npz"', "3"), "torque_to_acceleration = 3 must be a text"),

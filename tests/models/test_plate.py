@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
+from models.bench import Microphone, Plate
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
-from models.rig import Microphone, Plate
 from models.structure.plate import plate_modes, pressure_response
 
 RATE = 96e3

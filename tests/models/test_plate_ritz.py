@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from models.rig import Plate
+from models.bench import Plate
 from models.structure.plate import acceleration_model, plate_modes
 from models.structure.plate_ritz import ritz_modes
 

@@ -6,11 +6,12 @@ import math
 import numpy as np
 import pytest
 
+from models.bench import Beams, Microphone, Plate
 from models.condition import FIXED
 from models.errors import ParameterError
 from models.radiation.impulse_responses import radiate
 from models.radiation.rig_response import impulse_responses
-from models.rig import Beams, Fit, LawSpec, Microphone, Plate, Rig
+from models.rig import Fit, LawSpec, Rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import plate_modes, pressure_response
 from tests.helpers.spectra import path_spectra

@@ -6,9 +6,10 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, strategies as st
 
+from models.bench import Floor
 from models.condition import CONDITION
 from models.errors import ParameterError
-from models.rig import Floor, Rig, damping_at, parse_spec
+from models.rig import Rig, damping_at, parse_spec
 from models.rig_file import changed_rig_text, load_material_rig, load_rig, material_names, rig_text
 from models.schema import quantities, remarks
 from models.sensors import SENSOR_QUANTITIES, Sensor, Sensors
@@ -277,13 +278,16 @@ def fit(old, new):
             ("wlf_c2_K = 40 must be a number above 50",),
         ),
         ("[sleeve]\nhardness_shore_A = 60\nyoungs_modulus_MPa = 3", ("not both",)),
-        ("[sleeve]\nhardness_shore_A = 90", ("holds from 20 to 80",)),
+        (
+            "[sleeve]\nhardness_shore_A = 90",
+            ("must be a number from 20 to 80",),
+        ),
         ("[sleeve]\nwall_mm = 0", ("sleeve: wall_mm = 0",)),
         (CONTRACT + "[sleeve]\nwall_mm = 4", ("inner_radius_mm is missing",)),
         # changes
         (FIT + "[change]\nwall_mm = 6", ("wall needs a [sleeve] table",)),
         ("[change]\nwall = 6", ("has no unit; write wall_mm = 6",)),
-        ("[change]\nhardness_shore_A = 90", ("hardness of 90 Shore A",)),
+        ("[change]\nhardness_shore_A = 90", ("hardness_shore_A = 90",)),
         ('[change]\ndampin = "x2"', ("did you mean 'damping'", "slip_pulse.amplitude")),
         ("[change]\ndamping = 0.1", ("write damping_Nms_rad = 0.1",)),
         ('[change]\ndamping = "20 %"', ("with its sign",)),

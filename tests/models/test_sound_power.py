@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from models.bench import Microphone, Plate
 from models.errors import ParameterError
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
 from models.radiation.sound_power import (
@@ -12,7 +13,6 @@ from models.radiation.sound_power import (
     radiated_spectrum,
     third_octave_power,
 )
-from models.rig import Microphone, Plate
 from models.structure.plate import plate_modes, pressure_response
 
 STEEL = Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (0.0, 0.12))

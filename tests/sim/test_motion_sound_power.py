@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from models.bench import HIGHEST_PLATE_FREQUENCY
 from models.condition import FIXED
 from models.errors import ParameterError
 from models.radiation.rig_response import anchor_drives, first_mode_damping
 from models.radiation.sound_power import radiated_spectrum
-from models.rig import HIGHEST_PLATE_FREQUENCY
 from models.rig_file import load_material_rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import plate_modes

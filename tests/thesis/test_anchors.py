@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from models.bench import Beams
 from models.errors import ParameterError
-from models.rig import Beams
 from noise.thesis.anchors import fit_anchors
 from noise.thesis.exact_beams import ClampOnBeams, RootMotion, natural_frequencies
 

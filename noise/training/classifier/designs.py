@@ -9,7 +9,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from models.rig import Fit, LawSpec, Microphone, Plate, Rig
+from models.bench import Microphone, Plate
+from models.rig import Fit, LawSpec, Rig
 from models.rig_file import load_material_rig
 from noise.training.draws import log_uniform
 from sim.effects import EFFECTS

@@ -1,0 +1,348 @@
+"""The test bench as plain data: beams, baseplate, microphone and what reflects its sound.
+
+Quantities are in SI units; the keys of rig files, their units and bounds are declared beside the
+fields (`models.schema`).
+"""
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from models.errors import ParameterError
+from models.schema import (
+    Flag,
+    Quantity,
+    ReadBy,
+    Table,
+    Text,
+    Vector,
+    number,
+    refuse_impossible,
+)
+from models.show import short_repr
+
+EDGES = ("free", "simply_supported", "clamped")
+"""How an edge of the plate may be held."""
+
+HIGHEST_PLATE_FREQUENCY = 16e3
+"""Modes of the plate are computed up to it [Hz]: measured creaks fill the band to 15 kHz."""
+
+LEAST_HEIGHT = 0.01
+"""Of the microphone over the plate: three surface elements [m]."""
+
+FEWEST_MODES, MOST_MODES = 5, 5000
+"""Of the plate: fewer radiate no band, more take minutes."""
+
+MOST_SOLVED_MODES, MOST_UNLIKE_MODES = 1500, 600
+"""Where modes are solved for, and where opposite edges are unlike as well: 4 to 8 seconds."""
+
+
+@dataclass(frozen=True)
+class Beams:
+    """The two steel beams that carry the clamp; their length follows from the support stiffness.
+
+    Parameters
+    ----------
+    width, thickness : float
+        Cross-section [m].
+    lever : float
+        Distance R from the shaft's axis to the beams' roots at the clamp [m] (4.12).
+    youngs_modulus : float
+        [Pa]
+    density : float
+        [kg/m3]
+    damping_ratio : float
+        Of the beams' bending modes above the first torsional one [-].
+    accelerometer : float
+        Where on the beam it sits, as a fraction of the length from the clamp.
+    anchor_rotation : float, optional
+        Stiffness of an anchor against the slope of its beam [Nm/rad]; rigid as in 3.1.1.
+    anchor_translation : float, optional
+        Stiffness of an anchor against the deflection of its beam [N/m]; rigid as in 3.1.1. Neither
+        alters the support stiffness, only the modes above the first torsional one.
+    strike : float, optional
+        Where the reaction of a blow in the anchor's joint strikes the beam, as a fraction of the
+        length from the anchor.
+    radiating : bool, optional
+        Whether beams and clamp are heard as well, not the plate alone.
+    height : float, optional
+        Of beams and shaft over the plate [m]; for their sound.
+    clamp_width : float, optional
+        Of the clamp along the shaft, and its height [m]; for its sound.
+    """
+
+    width: Annotated[float, Quantity("width_m")]
+    thickness: Annotated[float, Quantity("thickness_m")]
+    lever: Annotated[float, Quantity("lever_m")]
+    youngs_modulus: Annotated[float, Quantity("youngs_modulus_Pa", unit="Pa")]
+    density: Annotated[float, Quantity("density_kgm3", unit="kg/m3")]
+    damping_ratio: Annotated[float, Quantity("damping_ratio", high=1.0)]
+    accelerometer: Annotated[float, Quantity("accelerometer", high=1.0, closed=True)]
+    anchor_rotation: Annotated[
+        float, Quantity("anchor_rotation_Nm_rad", unit="Nm/rad", infinite="rigid")
+    ] = math.inf
+    anchor_translation: Annotated[
+        float, Quantity("anchor_translation_N_m", unit="N/m", infinite="rigid")
+    ] = math.inf
+    strike: Annotated[float, Quantity("strike", high=1.0)] = 1 / 24
+    radiating: Annotated[bool, Flag("radiate")] = False
+    height: Annotated[float, Quantity("height_m", high=1.0)] = 0.06
+    clamp_width: Annotated[float, Quantity("clamp_width_m", high=1.0)] = 0.04
+
+
+_Losses = float | tuple[tuple[float, float], ...]
+_Edges = tuple[str, str, str, str]
+
+
+def _edges(value: Any, key: str, where: str) -> Any:  # noqa: ARG001
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _loss_factor(value: Any, key: str, where: str) -> Any:
+    """Read a loss factor, or a table of them by frequency in Hz."""
+    if not isinstance(value, Mapping):
+        return number({key: value}, key, where, high=1.0)
+    found = []
+    for frequency in value:
+        try:
+            hertz = number({frequency: float(frequency)}, frequency, where)
+        except ValueError:
+            raise ParameterError(
+                f"{where}: {key} has the entry {frequency!r}; entries are frequencies in Hz above 0"
+            ) from None
+        found.append((hertz, number(value, frequency, f"{where}, {key}", high=1.0)))
+    return tuple(sorted(found))
+
+
+def _written_losses(value: Any) -> Any:
+    return {f"{f:.6g}": loss for f, loss in value} if isinstance(value, tuple) else value
+
+
+@short_repr
+@dataclass(frozen=True)
+class Plate:
+    """The baseplate that the beams' anchors stand on.
+
+    Parameters
+    ----------
+    length, width, thickness : float
+        Along x, y and z [m]; the origin of all positions is the middle of its upper surface.
+    youngs_modulus : float
+        [Pa]
+    density : float
+        [kg/m3]
+    poisson_ratio : float
+        [-]
+    loss_factor : float, or tuple of (float, float)
+        Of all modes; or by frequency [Hz], in rising order: a power law between the entries, held
+        outside them.
+    clamp_position : tuple of 2 floats
+        Where the middle of the clamp stands over the plate, x and y [m]; the beams lie along x.
+    edges : one of `EDGES`, or tuple of 4 of them
+        All edges alike, or those at the smallest x, largest x, smallest y, largest y.
+
+    Raises
+    ------
+    ParameterError
+        If a quantity is not positive, a loss factor or Poisson's ratio out of range, or an edge
+        unknown.
+
+    Examples
+    --------
+    >>> Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (0.0, 0.0), edges="free").sides
+    ('free', 'free', 'free', 'free')
+    """
+
+    length: Annotated[float, Quantity("length_m", unit="m")]
+    width: Annotated[float, Quantity("width_m", unit="m")]
+    thickness: Annotated[float, Quantity("thickness_m", unit="m")]
+    youngs_modulus: Annotated[float, Quantity("youngs_modulus_Pa", unit="Pa")]
+    density: Annotated[float, Quantity("density_kgm3", unit="kg/m3")]
+    poisson_ratio: Annotated[float, Quantity("poisson_ratio", high=0.5)]
+    loss_factor: Annotated[
+        float | tuple[tuple[float, float], ...],
+        ReadBy("loss_factor", _loss_factor, _written_losses),
+    ]
+    clamp_position: Annotated[tuple[float, float], Vector("clamp_position_m", 2)]
+    edges: Annotated[str | _Edges, ReadBy("edges", _edges)] = "simply_supported"
+
+    def __post_init__(self) -> None:
+        refuse_impossible(self, "plate")
+        table = self.loss_table
+        if not table or not all(0.0 < loss <= 1.0 for _, loss in table):
+            raise ParameterError(
+                f"plate: loss_factor = {self.loss_factor} must be above 0 and at most 1"
+            )
+        if any(b <= a for (a, _), (b, _) in itertools.pairwise(((0.0, 0.0), *table))):
+            raise ParameterError("plate: loss_factor must be given for rising frequencies")
+        if len(self.sides) != 4 or not all(side in EDGES for side in self.sides):
+            raise ParameterError(
+                f"plate: edges = {self.edges!r} must be one of {', '.join(EDGES)}, "
+                "or a list of four of them"
+            )
+
+    @property
+    def sides(self) -> _Edges:
+        """Edges at the smallest x, largest x, smallest y, largest y."""
+        if isinstance(self.edges, str):
+            return (self.edges, self.edges, self.edges, self.edges)
+        return self.edges
+
+    @property
+    def loss_table(self) -> tuple[tuple[float, float], ...]:
+        """Loss factor by frequency [Hz]; a single entry holds for all."""
+        if isinstance(self.loss_factor, tuple):
+            return self.loss_factor
+        return ((1.0, self.loss_factor),)
+
+    @property
+    def mass_per_area(self) -> float:
+        """[kg/m2]."""
+        return self.density * self.thickness
+
+    @property
+    def stiffness_per_mass(self) -> float:
+        """D / (rho h), D = E h^3 / (12 (1 - nu^2)) being the bending stiffness [m4/s2]."""
+        return (
+            self.youngs_modulus * self.thickness**2 / (12 * (1 - self.poisson_ratio**2))
+        ) / self.density
+
+    def expected_modes(self, highest_frequency: float) -> float:
+        """How many modes it has up to a frequency [Hz], by its mean modal density.
+
+        Notes
+        -----
+        N = f S / 2 sqrt(rho h / D); L. Cremer, M. Heckl, *Structure-Borne Sound*, section 4.3.
+
+        Examples
+        --------
+        >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
+        >>> round(steel.expected_modes(16e3))
+        345
+        """
+        area = self.length * self.width
+        return 0.5 * highest_frequency * area / math.sqrt(self.stiffness_per_mass)
+
+
+def refuse_plate(plate: Plate, where: str) -> None:
+    """Refuse a plate whose modes are too few or too many, or that the clamp is off.
+
+    Raises
+    ------
+    ParameterError
+        The message begins with `where`.
+    """
+    x, y = plate.clamp_position
+    if abs(x) >= 0.5 * plate.length or abs(y) >= 0.5 * plate.width:
+        raise ParameterError(f"{where}: clamp_position_m = [{x:g}, {y:g}] lies off the plate")
+    modes = plate.expected_modes(HIGHEST_PLATE_FREQUENCY)
+    left, right, front, back = plate.sides
+    most, kind = MOST_MODES, "a plate"
+    if set(plate.sides) != {"simply_supported"}:
+        most, kind = MOST_SOLVED_MODES, "one whose edges are not all simply_supported"
+    if left != right or front != back:
+        most, kind = MOST_UNLIKE_MODES, "one whose opposite edges are unlike"
+    if not FEWEST_MODES <= modes <= most:
+        raise ParameterError(
+            f"{where}: a plate of {plate.length:g} x {plate.width:g} x {plate.thickness:g} m has "
+            f"about {modes:.3g} modes up to 16 kHz; {kind} must have {FEWEST_MODES} to {most}"
+        )
+
+
+@dataclass(frozen=True)
+class Floor:
+    """A plane that reflects the plate's sound, parallel to two of the axes.
+
+    Sensible are a plane at right angles to the plate, such as the floor beneath a plate that
+    stands upright in a wall: its one image is exact; and a plane over the plate and the microphone,
+    such as a ceiling: its first reflection is kept, straight and by way of the baffle. A floor
+    under a plate that lies flat is behind the baffle, where its sound does not go.
+
+    Parameters
+    ----------
+    normal : "x", "y" or "z"
+    position : float
+        Where it cuts that axis [m].
+    reflection : float
+        Pressure reflected over pressure arriving, -1 to 1 [-].
+
+    Raises
+    ------
+    ParameterError
+        If normal or reflection are none.
+    """
+
+    normal: Annotated[str, Text("normal")]
+    position: Annotated[float, Quantity("position_m", unit="m", low=-math.inf)]
+    reflection: Annotated[float, Quantity("reflection", low=-1.0, high=1.0)] = 1.0
+
+    def __post_init__(self) -> None:
+        if self.normal not in ("x", "y", "z"):
+            raise ParameterError(f'floor: normal = {self.normal!r} must be "x", "y" or "z"')
+        refuse_impossible(self, "floor")
+
+
+@short_repr
+@dataclass(frozen=True)
+class Microphone:
+    """Where the sound is heard.
+
+    Parameters
+    ----------
+    position : tuple of 3 floats
+        Relative to the middle of the plate's upper surface [m].
+    floor : Floor, optional
+
+    Raises
+    ------
+    ParameterError
+        If it is not at least 0.01 m over the plate.
+    """
+
+    position: Annotated[tuple[float, float, float], Vector("position_m", 3)]
+    floor: Annotated[Floor | None, Table("floor", Floor)] = None
+
+    def __post_init__(self) -> None:
+        height = self.position[2]
+        if not height >= LEAST_HEIGHT:
+            raise ParameterError(
+                f"microphone: position has z = {height:g} m, inside or behind the plate, whose "
+                f"surface is z = 0; it must be at least {LEAST_HEIGHT:g} m above the plate"
+            )
+
+    def images(self, plate: Plate) -> tuple[tuple[tuple[float, float, float], float], ...]:
+        """Give the positions at which the plate in its baffle is heard, each with its weight.
+
+        Raises
+        ------
+        ParameterError
+            If the floor cuts the plate, or stands between plate and microphone.
+
+        Examples
+        --------
+        >>> upright = Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
+        >>> Microphone((0.1, 0.2, 1.0), Floor("y", -0.5, 0.9)).images(upright)
+        (((0.1, 0.2, 1.0), 1.0), ((0.1, -1.2, 1.0), 0.9))
+        """
+        heard = ((self.position, 1.0),)
+        if self.floor is None:
+            return heard
+        x, y, z = self.position
+        plane, weight = self.floor.position, self.floor.reflection
+        if self.floor.normal == "z":
+            if plane <= z:
+                raise ParameterError(
+                    f"floor: position = {plane:g} m along z must be above the microphone at "
+                    f"{z:g} m; what is behind the plate's baffle reflects nothing"
+                )
+            return (*heard, ((x, y, 2 * plane - z), weight), ((x, y, 2 * plane + z), weight))
+        half, mine = (plate.length / 2, x) if self.floor.normal == "x" else (plate.width / 2, y)
+        if abs(plane) < half or (plane - mine) * plane <= 0.0:
+            raise ParameterError(
+                f"floor: position = {plane:g} m along {self.floor.normal} must have the plate, to "
+                f"+-{half:g} m, and the microphone, at {mine:g} m, on the same side of it"
+            )
+        mirrored = (2 * plane - x, y, z) if self.floor.normal == "x" else (x, 2 * plane - y, z)
+        return (*heard, (mirrored, weight))
