@@ -6,24 +6,14 @@ import numpy as np
 import pytest
 
 from features.kernels.levels import NOMINAL_THIRD_OCTAVES, sound_levels
-from features.table import feature_names, feature_vector
+from features.table import feature_vector
 
 RATE = 48e3
 OCTAVES = tuple(f"third_octave_{name}" for name in NOMINAL_THIRD_OCTAVES)
 
 
-def tone(frequency, seconds=1.0, rms=1.0):
-    return np.sqrt(2) * rms * np.sin(2 * np.pi * frequency * np.arange(RATE * seconds) / RATE)
-
-
 def noise(seconds=1.0, seed=0):
     return np.random.default_rng(seed).normal(size=round(RATE * seconds))
-
-
-@pytest.mark.parametrize("kind", ["pressure", "acceleration"])
-def test_one_third_octaves_are_there_by_their_nominal_frequencies(kind):
-    assert set(OCTAVES) <= set(feature_names(kind))
-    assert not set(OCTAVES) & set(feature_names("torque"))
 
 
 def test_they_are_the_levels_that_a_meter_shows():

@@ -29,14 +29,6 @@ def noise(n, seed=0):
 # --- the table -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_names_are_unique_and_the_vector_follows_them(kind):
-    names = feature_names(kind)
-    assert len(set(names)) == len(names)
-    assert tuple(feature_vector(noise(4800), 48e3, kind)) == names
-    assert 20 <= len(names) <= 80
-
-
 @pytest.mark.parametrize("feature", FEATURES, ids=lambda f: f"{f.kinds[0]}-{f.name}")
 def test_every_feature_says_what_it_is(feature):
     assert feature.definition.endswith(".")
@@ -80,23 +72,15 @@ def test_silence_is_finite_or_undefined_and_never_warns(kind, signal):
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("rate", [200.0, 2_000.0, 16_000.0, 65_536.0])
-@pytest.mark.parametrize("n", [16, 41, 960])
-def test_short_blocks_at_odd_rates_are_finite_or_undefined(kind, rate, n):
-    values = feature_vector(noise(n), rate, kind)
-    assert not any(math.isinf(value) for value in values.values())
-
-
-@pytest.mark.filterwarnings("error")
 @settings(max_examples=60)
 @given(
     n=st.integers(16, 3000),
     seed=st.integers(0, 2**16),
     shape=st.sampled_from(["clicks", "step", "ramp", "walk", "clipped", "tiny", "huge"]),
     kind=st.sampled_from(KINDS),
+    rate=st.sampled_from([200.0, 2e3, 16e3, 48e3, 65_536.0]),
 )
-def test_no_signal_raises_or_warns(n, seed, shape, kind):
+def test_no_signal_raises_or_warns(n, seed, shape, kind, rate):
     rng = np.random.default_rng(seed)
     x = rng.normal(size=n)
     signal = {
@@ -108,7 +92,7 @@ def test_no_signal_raises_or_warns(n, seed, shape, kind):
         "tiny": 1e-100 * x,
         "huge": 1e100 * x,
     }[shape]
-    values = feature_vector(signal, 48e3, kind)
+    values = feature_vector(signal, rate, kind)
     assert not any(math.isinf(value) for value in values.values())
     for name in ("line_share", "harmonicity", "periodicity"):
         assert 0.0 <= values[name] <= 1.0
@@ -125,14 +109,6 @@ def test_a_recording_gives_the_first_channel_of_each_kind():
     assert found["acceleration_level"] == feature_vector(x[0], 48e3, "acceleration")["level"]
     assert found["pressure_level"] == feature_vector(x[1], 48e3, "pressure")["level"]
     assert all(math.isnan(found[f"torque_{name}"]) for name in feature_names("torque"))
-
-
-def test_an_uncalibrated_recording_has_no_levels():
-    found = recording_features(
-        Recording(noise(4800)[np.newaxis], 48e3, (Channel("pressure"),), calibrated=False)
-    )
-    assert math.isnan(found["pressure_level"])
-    assert math.isfinite(found["pressure_centroid"])
 
 
 def test_an_error_names_recording_and_channel():

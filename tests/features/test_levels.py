@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from features.kernels.levels import NOMINAL_THIRD_OCTAVES, a_weighted, fast_levels, sound_levels
+from features.kernels.levels import a_weighted, fast_levels, sound_levels
 from models.errors import ParameterError
 
 PASCAL_DB = 93.9794
@@ -51,24 +51,6 @@ def test_a_burst_reads_on_the_fast_scale_as_the_standard_says(milliseconds, expe
     fast = fast_levels(burst, 48e3, np.array([0, 4800, 72000]), reference=1.0)
     assert fast[0] == -np.inf
     assert fast[1] == pytest.approx(expected, abs=0.1)
-
-
-def test_weighting_a_long_sound_block_by_block_leaves_no_seam(monkeypatch):
-    sound = tone(31.623, 8e3, 4.0) + np.random.default_rng(0).standard_normal(32000) * 1e-3
-    whole = a_weighted(sound, 8e3)
-    monkeypatch.setattr("features.kernels.levels._SEGMENT", 4.5)
-    assert np.abs(a_weighted(sound, 8e3) - whole).max() < 1e-4 * whole.std()
-
-
-def test_bands_that_rate_or_length_do_not_reach_are_not_measured():
-    bands = sound_levels(tone(1000, 30e3, 0.2), 30e3).third_octaves
-    measured = [band for band in NOMINAL_THIRD_OCTAVES if not math.isnan(bands[band])]
-    assert (measured[0], measured[-1]) == ("100", "10000")
-
-
-def test_silence_has_no_level_and_no_error():
-    levels = sound_levels(np.zeros(4800), 48e3)
-    assert levels.level == levels.level_a == levels.level_af_max == -math.inf
 
 
 def fast_level(signal, rate):

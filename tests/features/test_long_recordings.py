@@ -50,17 +50,6 @@ def test_there_is_no_jump_where_pieces_begin(kind, sound):
     check_alike(kind, run, recording_features(shorter), recording_features(run))
 
 
-@pytest.mark.parametrize("sound", sorted(SOUNDS))
-def test_pieces_of_a_sound_give_what_the_whole_gives(sound, monkeypatch):
-    run = stationary("pressure", sound, 12.0)
-    whole = recording_features(run)
-    with monkeypatch.context() as patch:
-        patch.setattr(features.table, "LONG", 1)
-        patch.setattr(features.table, "PIECE", 150_000)
-        found = recording_features(run)
-    check_alike("pressure", run, whole, found)
-
-
 def test_a_loud_stretch_counts_by_its_power(monkeypatch):
     t = np.arange(600_000) / RATE
     loud = np.where((t > 3.0) & (t < 6.0), 1.0, 1e-3)
@@ -74,27 +63,6 @@ def test_a_loud_stretch_counts_by_its_power(monkeypatch):
     for name in ("level", "level_a", "third_octave_1250", "crest", "hum_share", "line_frequency"):
         assert found[f"pressure_{name}"] == pytest.approx(whole[f"pressure_{name}"], abs=0.3), name
     assert found["pressure_kurtosis"] == pytest.approx(whole["pressure_kurtosis"], rel=0.05)
-
-
-def test_mean_and_oscillation_of_a_torque_that_drifts_are_those_of_the_whole(monkeypatch):
-    t = np.linspace(0.0, 1.0, 400_000)
-    run = Recording((5.0 + 3.0 * t + np.sin(9e3 * t))[np.newaxis], RATE, (Channel("torque"),))
-    whole = recording_features(run)
-    monkeypatch.setattr(features.table, "LONG", 1)
-    monkeypatch.setattr(features.table, "PIECE", 90_000)
-    found = recording_features(run)
-    for name in ("mean", "oscillation", "relative_oscillation"):
-        assert found[f"torque_{name}"] == pytest.approx(whole[f"torque_{name}"], rel=1e-9)
-
-
-def test_silence_and_a_constant_torque_are_described_as_ever(monkeypatch):
-    for kind, x in (("pressure", np.zeros(200_000)), ("torque", np.full(200_000, 5.0))):
-        run = Recording(x[np.newaxis], RATE, (Channel(kind),))
-        with monkeypatch.context() as patch:
-            whole = recording_features(run)
-            patch.setattr(features.table, "LONG", 1)
-            patch.setattr(features.table, "PIECE", 60_000)
-            assert recording_features(run) == pytest.approx(whole, nan_ok=True)
 
 
 def test_a_sample_that_is_no_number_is_named():

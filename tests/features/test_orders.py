@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from features.kernels.orders import order_map, speed_of_angle
+from features.kernels.orders import order_map
 from models.errors import ParameterError
 
 RATE = 24_000.0
@@ -15,10 +15,6 @@ def strongest(found):
     return orders[np.nanargmax(found.level, axis=0)]
 
 
-def middles(found):
-    return 0.5 * (found.speed_edges[:-1] + found.speed_edges[1:])
-
-
 @given(first=st.floats(300.0, 900.0), slowest=st.floats(0.5, 5.0), ratio=st.floats(1.5, 5.0))
 @settings(max_examples=15)
 def test_an_order_stays_while_the_speed_changes(first, slowest, ratio):
@@ -27,14 +23,6 @@ def test_an_order_stays_while_the_speed_changes(first, slowest, ratio):
     found = order_map(np.sin(order * np.cumsum(speed) / RATE), RATE, speed)
     assert found.level.shape[1] > 10
     assert strongest(found) == pytest.approx(np.full(found.level.shape[1], order), rel=0.12)
-
-
-def test_a_resonance_crosses_the_orders():
-    speed = np.linspace(2.0, 10.0, round(4.0 * RATE))
-    tone = np.sin(2.0 * np.pi * 1000.0 * np.arange(speed.size) / RATE)
-    found = order_map(tone, RATE, speed)
-    expected = 2.0 * np.pi * 1000.0 / middles(found)
-    assert strongest(found) == pytest.approx(expected, rel=0.12)
 
 
 def test_a_tone_has_its_level_at_every_speed():
@@ -55,8 +43,3 @@ def test_a_tone_has_its_level_at_every_speed():
 def test_what_has_no_orders_is_refused(signal, speed, said):
     with pytest.raises(ParameterError, match=said):
         order_map(signal, RATE, speed)
-
-
-def test_the_speed_of_an_angle_is_its_slope():
-    turned = 5.0 * np.arange(10_000) / RATE
-    assert speed_of_angle(turned, RATE) == pytest.approx(np.full(10_000, 5.0))

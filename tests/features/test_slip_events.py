@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.signal import lfilter
 
-from features.kernels.slips import in_intervals, pulses_of, slip_intervals, torque_slips
+from features.kernels.slips import in_intervals, slip_intervals, torque_slips
 from features.prepared import prepare
 
 
@@ -50,12 +50,6 @@ def test_each_slip_of_a_creak_is_one_pulse(rate, slips_a_second):
     assert found.rate == pytest.approx(slips.size / 0.96, rel=1e-3)
 
 
-def test_random_pulses_are_irregular():
-    slips = np.sort(np.random.default_rng(1).uniform(0.1, 3.9, 80))
-    found = acoustic_slips(creak(slips, seconds=4.0), 48e3)
-    assert found.irregularity > 0.5
-
-
 def test_noise_and_tones_are_not_impulsive():
     hiss = acoustic_slips(noise(48_000), 48e3)
     assert hiss.kurtosis == pytest.approx(3.0, abs=0.2)
@@ -66,12 +60,6 @@ def test_noise_and_tones_are_not_impulsive():
     assert tone.kurtosis == pytest.approx(1.5, abs=0.01)
     assert tone.crest_factor == pytest.approx(math.sqrt(2), rel=0.01)
     assert tone.rate == 0.0
-
-
-def test_silence_has_no_pulses():
-    found = pulses_of(np.zeros(4800, complex), np.zeros(4800, complex), 48e3)
-    assert found.rate == 0.0
-    assert math.isnan(found.kurtosis)
 
 
 @settings(max_examples=60)
@@ -95,21 +83,6 @@ def test_stick_slip_is_described_by_its_rate_drop_and_slope(frequency, drop, kin
     assert found.stick_fraction == pytest.approx(0.9, abs=0.02 + 0.25e-3 * frequency)
     assert found.stick_curvature == pytest.approx(1.0, abs=0.03)
     assert found.asymmetry < -1.0
-
-
-def test_slips_are_found_under_noise_and_superimposed_oscillation():
-    t = np.arange(30_000) / 30e3
-    torque = stick_slip(150) + 0.3 * np.sin(2 * np.pi * 930 * t) + 0.2 * noise(t.size)
-    found = torque_slips(torque, 30e3)
-    assert found.rate == pytest.approx(150, abs=3)
-    assert found.stick_slope == pytest.approx(450, rel=0.1)
-
-
-def test_a_torque_that_rises_ever_more_slowly_has_a_curvature_below_one():
-    phase = (100 * np.arange(30_000) / 30e3) % 1.0
-    torque = 8 + 2.7 * (1 - np.exp(-2 * phase)) / (1 - math.exp(-2))
-    # Later over earlier half of the rise's middle, from 0.2 to 0.8 of it: exp(-2 x 0.3).
-    assert torque_slips(torque, 30e3).stick_curvature == pytest.approx(math.exp(-0.6), abs=0.05)
 
 
 def test_an_oscillating_shaft_slips_in_both_directions():
@@ -149,20 +122,6 @@ def gliding_stick_slip(glide, rate=30e3, seconds=1.0, frequency=80.0):
 def test_the_glide_of_the_slip_rate_is_told_at_any_sampling_rate(glide, rate):
     found = torque_slips(gliding_stick_slip(glide, rate), rate)
     assert found.glide == pytest.approx(glide, abs=0.02)
-
-
-def test_a_slip_missed_or_made_up_does_not_move_the_glide():
-    torque = gliding_stick_slip(0.5)
-    slips = torque_slips(torque, 30e3).times
-    for number in (20, 50, 51, 80):  # a rise goes on where a slip was
-        first, last = (round(30e3 * slips[number + step]) for step in (-1, 1))
-        torque[first + 60 : last] = np.linspace(torque[first + 60], torque[last], last - first - 60)
-    first = round(30e3 * (slips[30] + slips[31]) / 2)
-    torque[first : first + 40] -= np.linspace(2.0, 0.0, 40)
-    found = torque_slips(torque, 30e3)
-    assert found.times.size == slips.size - 4 + 1
-    assert found.interval_variation > 0.2
-    assert found.glide == pytest.approx(0.5, abs=0.05)
 
 
 # --- slips of a sliding speed -----------------------------------------------------------------

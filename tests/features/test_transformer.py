@@ -59,11 +59,3 @@ def test_recordings_bring_their_own_rate_length_and_channels():
 def test_what_cannot_be_used_is_refused(transformer, X, message):
     with pytest.raises(ParameterError, match=message):
         transformer.fit(X).transform(X)
-
-
-def test_a_channel_that_cannot_be_analysed_is_named():
-    run = Recording(np.full((1, 400), np.nan), RATE, (Channel("pressure"),), name="run07.wav")
-    with pytest.raises(ParameterError, match=r"'run07\.wav', channel 'pressure': signal: sample 0"):
-        RecordingFeatures().fit_transform([run])
-    with pytest.raises(ParameterError, match="X mixes recordings with others"):
-        RecordingFeatures().fit([run, 1.0])

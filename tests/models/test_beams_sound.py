@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.special import mathieu_modsem1, mathieu_modsem2, mathieu_sem
@@ -11,20 +9,13 @@ from scipy.special import mathieu_modsem1, mathieu_modsem2, mathieu_sem
 from models.bench import Beams, Microphone
 from models.errors import ParameterError
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
-from models.radiation.rig_response import impulse_responses
-from models.rig_file import load_material_rig
 from models.structure.beams import (
-    PULSE,
     TORQUE,
     beam_length,
     beam_structure,
     beams_pressure,
     strip_section,
 )
-from models.transfer_functions.filtering import convolve
-from sim.effects import EFFECTS
-from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed
 
 RATE = 96e3
 STEEL = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.005, 0.4)
@@ -94,72 +85,9 @@ def test_far_below_the_corner_it_is_a_row_of_dipoles_with_their_near_field():
     assert np.abs(heard / expected) == pytest.approx(1.0, abs=0.04)
 
 
-def test_in_the_plane_of_symmetry_and_in_their_own_plane_they_are_silent():
-    aside = np.abs(pressure(n=4096)).max()
-    above = pressure(microphone=Microphone((0.0, 0.12, 0.5)), n=4096)
-    level = pressure(microphone=Microphone((-0.2, 0.5, STEEL.height)), n=4096)
-    assert np.abs(above).max() < 1e-12 * aside
-    assert np.abs(level).max() < 1e-12 * aside
-
-
 def test_a_microphone_on_the_clamp_is_refused():
     with pytest.raises(ParameterError, match="from the beams or the clamp; it must be at least"):
         pressure(microphone=Microphone((0.01, 0.12, 0.07)))
 
 
 # In the rig
-
-
-def rig(**beams):
-    bench = load_material_rig("fluorocarbon")
-    return replace(bench, beams=replace(bench.beams, **beams))
-
-
-def test_beams_add_to_the_plate_and_leave_the_acceleration():
-    silent, loud = (
-        impulse_responses(rig(radiating=each), 0.279e-3, 2214.0, RATE, seconds=0.2)
-        for each in (False, True)
-    )
-    assert np.array_equal(silent.torque_to_acceleration, loud.torque_to_acceleration)
-    beams = rig().beams
-    for at, name in ((TORQUE, "torque_to_pressure"), (PULSE, "pulse_to_pressure")):
-        added = getattr(loud, name) - getattr(silent, name)
-        alone = beams_pressure(
-            beams, 2214.0, rig().clamp_inertia,
-            (1 - rig().elastomer_damping_share) * rig().fit(0.279e-3).damping[2214.0]
-            / (2 * np.sqrt(2214.0 * rig().clamp_inertia)),
-            rig().plate.clamp_position, rig().microphone, RATE, added.size, 40e3,
-        )[at]  # fmt: skip
-        kept = slice(0, int(0.9 * added.size))
-        assert added[kept] == pytest.approx(alone[kept], abs=1e-9 * np.abs(alone).max())
-
-
-@pytest.mark.parametrize(("support", "speed"), [(2214.0, 1.0), (3745.0, 5.0)])
-def test_without_the_plate_a_creak_loses_10_db_above_2_khz(support, speed):
-    """A blow in the joint meets the beam within a fifth of its thickness of the end."""
-    interference = 0.381e-3
-    whole, no_beams = (
-        impulse_responses(rig(radiating=each), interference, support, RATE)
-        for each in (True, False)
-    )
-    motion = simulate_motion(
-        rig(), ConstantSpeed(speed), interference=interference, support_stiffness=support,
-        seconds=0.8, rate=RATE,
-    )  # fmt: skip
-    active = EFFECTS["slip_pulse"].active(rig().effects[0].parameters)
-    force = active.effect.force(motion, active.form, active.values)
-    torque = motion.torque - motion.torque[0]
-
-    def level(*responses):
-        heard = convolve(torque, responses[0]) + convolve(force, responses[1])
-        heard = heard[int(0.3 * RATE) :]
-        frequency = np.fft.rfftfreq(heard.size, 1 / RATE)
-        power = np.abs(np.fft.rfft(heard * np.hanning(heard.size))) ** 2
-        return 10 * np.log10(power[(frequency > 2e3) & (frequency < 15e3)].sum())
-
-    both = level(whole.torque_to_pressure, whole.pulse_to_pressure)
-    beams = level(
-        whole.torque_to_pressure - no_beams.torque_to_pressure,
-        whole.pulse_to_pressure - no_beams.pulse_to_pressure,
-    )
-    assert both - beams > 10.0

@@ -30,14 +30,6 @@ def tables(draw):
     return Calibration(tuple(readings.tolist()), tuple(values.tolist()))
 
 
-@given(table=tables(), shares=st.lists(st.floats(0.0, 1.0), min_size=1))
-def test_a_table_can_be_turned_round(table, shares):
-    readings = np.interp(shares, [0.0, 1.0], [table.readings[0], table.readings[-1]])
-    ends = sorted(zip(table.values, table.readings, strict=True))
-    back = Calibration(*map(tuple, zip(*ends, strict=True)))
-    assert back.of(table.of(readings)) == pytest.approx(readings, abs=1e-9)
-
-
 @given(table=tables(), out=st.floats(0.0, 0.2))
 def test_readings_outside_are_carried_on_by_a_twentieth_and_refused_beyond(table, out):
     low, high = table.readings[0], table.readings[-1]
@@ -102,21 +94,15 @@ def test_the_cell_of_the_thesis_gives_82_newton_metres_a_volt(tmp_path):
 @pytest.mark.parametrize(
     ("text", "cell", "parts"),
     [
-        ('calibration = { torque = "cel.csv" }', CELL, ("cel.csv", "there is no such file")),
         ('calibration = { torqe = "cell.csv" }', CELL, ("did you mean 'torque'",)),
         ("calibration = { torque = 82 }", CELL, ("torque = 82", '"cell.csv"', "sensitivity")),
-        ("calibration = { torque = {} }", CELL, ("sensitivity is missing",)),
         ("calibration = { torque = { sensitivity = 0 } }", CELL, ("sensitivity = 0",)),
-        ("calibration = { torque = { sensitivity = 1, ofset = 2 } }", CELL, ("'offset'",)),
         ("calibration = { torque = { sensitivity = 1, reading = 'kV' } }", CELL, ("counts",)),
         (None, "", ("has the columns none",)),
         (None, "reading_mV,torque\n1,2\n2,3\n3,4", ("torque_Nm", "did you mean 'torque_Nm'")),
-        (None, "reading_kV,torque_Nm\n1,2\n2,3\n3,4", ("reading_kV", "reading_V")),
         (None, CELL.replace("torque_Nm", "angle_rad"), ("expected torque_Nm",)),
         (None, CELL.replace("243,20", "243;20"), ("line 5", "243;20", "two numbers")),
-        (None, CELL.replace("243,20", "nan,20"), ("line 5", "two numbers")),
         (None, CELL.replace("243,20", "-243,20"), ("from torque_Nm = 0 to 20", "0 to -243")),
-        (None, CELL.replace("243,20", "0,20"), ("from torque_Nm = 0 to 20", "tell one value")),
         (None, CELL.replace("243,20", "243,0"), ("torque_Nm = 0 is in it twice",)),
         (
             "calibration.torque = { reading_mV = [0, 1, 2], torque_Nm = [0, 82] }",

@@ -63,12 +63,6 @@ def test_any_spacing_of_the_lines_will_do(spacing):
     assert difference(h) < 0.02
 
 
-def test_uneven_lines_will_do():
-    f = lines() + np.random.default_rng(2).uniform(-0.5, 0.5, lines().size)
-    h, _ = causal_impulse_response(TransferFunction(f, spectrum(f)), RATE, 20000)
-    assert difference(h) < 0.02
-
-
 def test_a_line_without_weight_does_not_matter():
     f = lines()
     spoilt = np.arange(f.size) % 7 == 3
@@ -84,13 +78,6 @@ def test_below_its_band_an_acceleration_falls_with_the_square_of_frequency():
     found = np.abs(np.fft.rfft(h, 96000))[[0, 20, 40]]
     assert found[0] < 1e-3 * found[2]
     np.testing.assert_allclose(found[1:], np.abs(spectrum(np.array([20.0, 40.0]))), rtol=0.1)
-
-
-def test_what_was_not_measured_above_stays_no_larger_than_what_was():
-    f = lines(high=5000.0)
-    h, _ = causal_impulse_response(TransferFunction(f, spectrum(f)), RATE, 20000)
-    gain = np.abs(np.fft.rfft(h, 96000))
-    assert gain[5500:].max() < gain[:5000].max()
 
 
 @settings(max_examples=15)

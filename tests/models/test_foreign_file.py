@@ -92,26 +92,6 @@ def test_whatever_a_library_raises_is_one_line_that_names_the_file(raised):
     assert len(message) < 300
 
 
-def test_an_interrupt_is_no_damage_of_a_file():
-    with pytest.raises(KeyboardInterrupt), refusing("run.h5", "recording"):
-        raise KeyboardInterrupt
-
-
-@pytest.mark.parametrize("array", [
-    np.zeros((0, 3)), np.array("a text"), np.array(3.0), np.array(["a", "bc"]), np.array(""),
-    np.asfortranarray(np.arange(6.0).reshape(2, 3)), np.array([1 + 2j]), np.array(b"bytes"),
-    np.arange(4, dtype=">i2"), np.array([True, False]),
-])  # fmt: skip
-def test_arrays_are_read_as_numpy_reads_them(tmp_path, array):
-    np.savez_compressed(tmp_path / "a.npz", x=array)
-    np.save(tmp_path / "a.npy", array)
-    for found in (read_arrays(tmp_path / "a.npz")["x"], read_array(tmp_path / "a.npy")):
-        expected = np.load(tmp_path / "a.npy")
-        assert found.dtype == expected.dtype
-        assert found.flags.f_contiguous == expected.flags.f_contiguous
-        np.testing.assert_array_equal(found, expected, strict=True)
-
-
 def npz(path, members, compression=zipfile.ZIP_DEFLATED):
     with zipfile.ZipFile(path, "w", compression) as archive:
         for name, content in members.items():
@@ -146,18 +126,10 @@ def test_a_header_that_announces_more_than_there_is_is_refused(tmp_path):
 @pytest.mark.parametrize("members", [
     {"x.npy": b""}, {"x.npy": b"no magic at all, but long enough for one"}, {"readme.txt": b"hi"},
     {"x.npy": npy(np.zeros(9))[:-5]}, {"x.npy": npy(np.zeros(9)).replace(b"(9,)", b"(9, ")},
-    {"x.npy": npy(np.zeros(9)).replace(b"'descr'", b"'dexcr'")},
-    {"x.npy": npy(np.zeros(9)).replace(b"(9,)", b"(-9,)"[:4])},
     {"x.npy": npy(np.zeros(9)).replace(b"<f8", b"|O8")},
 ])  # fmt: skip
 def test_a_member_that_is_no_array_is_refused(tmp_path, members):
     assert "damaged" in refusal(npz(tmp_path / "a.npz", members)) or members
-
-
-@pytest.mark.parametrize("compression", [zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
-def test_what_inflates_without_bounds_is_not_inflated(tmp_path, compression):
-    path = npz(tmp_path / "a.npz", {"x.npy": npy(np.zeros(9))}, compression)
-    assert "compressed in a way that is not known" in refusal(path)
 
 
 @pytest.mark.parametrize(("parse", "text"), [
@@ -170,10 +142,3 @@ def test_what_inflates_without_bounds_is_not_inflated(tmp_path, compression):
 def test_what_is_too_deep_is_refused_at_once(parse, text):
     with pytest.raises(ValueError, match="more than 100 deep in one another"):
         parse(text)
-
-
-def test_dots_that_are_no_depth_are_let_through():
-    rows = ", ".join(["1.5"] * 1000)
-    text = f"# {'.' * 300}\nx = [{rows}]\ntitle = 'contents, {'.' * 100}'"
-    assert len(parse_toml(text)["x"]) == 1000
-    assert parse_json('{"a": [[[[1]]]]}') == {"a": [[[[1]]]]}

@@ -1,15 +1,12 @@
 """Measured responses in place of modelled ones."""
 
-import math
-import warnings
-
 import numpy as np
 import pytest
 
 from models.errors import ParameterError
 from models.radiation.impulse_responses import radiate
 from models.radiation.rig_response import impulse_responses
-from models.rig_file import load_material_rig, load_rig, measured_responses
+from models.rig_file import load_material_rig, load_rig
 from models.transfer_functions.files import write_transfer_function
 from models.transfer_functions.transfer_function import TransferFunction
 from tests.helpers.spectra import path_spectra
@@ -66,14 +63,6 @@ def test_the_models_own_response_given_as_measured_gives_the_models_sound(tmp_pa
         assert np.std(found - true) < 0.015 * np.std(true)
 
 
-def test_what_was_not_measured_stays_modelled(tmp_path, modelled):
-    measured = impulse_responses(rig_with(tmp_path, modelled, 2.0), FIT, 2214.0, RATE, seconds=0.7)
-    assert measured.torque_to_pressure is modelled.torque_to_pressure
-    assert measured.pulse_to_acceleration is modelled.pulse_to_acceleration
-    found, true = radiate(measured, torque())[0], radiate(modelled, torque())[0]
-    assert np.std(found - 2.0 * true) < 0.015 * np.std(2.0 * true)
-
-
 def test_another_support_stays_modelled(tmp_path, modelled):
     rig = rig_with(tmp_path, modelled, 2.0)
     other = impulse_responses(load_material_rig("fluorocarbon"), FIT, 3745.0, RATE, seconds=0.1)
@@ -81,24 +70,10 @@ def test_another_support_stays_modelled(tmp_path, modelled):
         assert impulse_responses(rig, FIT, 3745.0, RATE, seconds=0.1) is other
 
 
-def test_a_bolted_clamp_may_be_measured_too(tmp_path, modelled):
-    rig = rig_with(tmp_path, modelled, text=ENTRY.replace("2214", '"fixed"'))
-    found = radiate(impulse_responses(rig, FIT, math.inf, RATE, seconds=0.7), torque())[0]
-    true = radiate(modelled, torque())[0]
-    assert np.std(found - true) < 0.015 * np.std(true)
-
-
 def test_a_response_that_ends_below_what_is_modelled_says_what_is_missing(tmp_path, modelled):
     rig = rig_with(tmp_path, modelled, f=F[F <= 8000])
     with pytest.warns(UserWarning, match="from 20 to 8000 Hz; what lies above, up to 16000 Hz"):
         impulse_responses(rig, FIT, 2214.0, RATE, seconds=0.3)
-
-
-def test_a_response_that_reaches_far_enough_warns_of_nothing(tmp_path, modelled):
-    rig = rig_with(tmp_path, modelled)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        impulse_responses(rig, FIT, 2214.0, RATE, seconds=0.2)
 
 
 def test_a_response_of_reversed_phase_is_refused(tmp_path, modelled):
@@ -140,10 +115,3 @@ def test_an_entry_that_cannot_be_used_is_refused_by_field(tmp_path, change, mess
     assert message in str(refused.value)
     assert f"rig file {path}, measured_response" in str(refused.value)
     assert "\n" not in str(refused.value)
-
-
-def test_entries_that_are_no_tables_are_refused(tmp_path):
-    with pytest.raises(ParameterError, match=r"given as \[\[measured_response\]\] tables"):
-        measured_responses(3, tmp_path, "rig file r.toml")
-    with pytest.raises(ParameterError, match="measured_response must be a table"):
-        measured_responses([3], tmp_path, "rig file r.toml")

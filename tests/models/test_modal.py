@@ -35,14 +35,6 @@ def test_sampled_mode_follows_the_continuous_one_up_to_a_sixth_of_the_rate(natur
         assert np.max(np.abs(_decibels(sampled / continuous))) < 0.2
 
 
-def test_sampled_mode_rings_at_its_frequency_with_its_damping():
-    _, a = displacement_section(1000.0, 0.02, RATE)
-    pole = np.roots(a)[0]
-    s = np.log(pole) * RATE
-    assert abs(s) / (2 * np.pi) == pytest.approx(1000.0, rel=1e-9)
-    assert -s.real / abs(s) == pytest.approx(0.02, rel=1e-9)
-
-
 def test_impulse_response_and_frequency_response_describe_the_same_structure():
     random = np.random.default_rng(3)
     n_modes = 6

@@ -61,14 +61,6 @@ def test_torque_reaches_the_microphone_through_both_anchors():
     assert np.abs(found.torque_to_pressure / expected) == pytest.approx(1, abs=0.05)
 
 
-@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
-def test_acceleration_peaks_at_the_first_torsional_mode(stiffness):
-    frequency = np.arange(100.0, 600.0, 0.5)
-    spectra = path_spectra(impulse_responses(BENCH, SQUEAKY, stiffness, RATE), frequency)
-    peak = frequency[np.argmax(np.abs(spectra.torque_to_acceleration))]
-    assert peak == pytest.approx(math.sqrt(stiffness * 1200) / (2 * math.pi), abs=1.5)
-
-
 def test_bolting_the_clamp_down_silences_the_pulses():
     bolted = impulse_responses(BENCH, TIGHT, FIXED, RATE)
     pulse = np.zeros(4800)
@@ -76,15 +68,6 @@ def test_bolting_the_clamp_down_silences_the_pulses():
     acceleration, pressure = radiate(bolted, np.zeros(4800), pulse)
     assert not np.any(acceleration)
     assert not np.any(pressure)
-
-
-def test_the_bolted_clamp_has_no_torsional_mode():
-    frequency = np.arange(150.0, 500.0, 1.0)
-    on_beams = path_spectra(impulse_responses(BENCH, TIGHT, 2214.0, RATE), frequency)
-    bolted = path_spectra(impulse_responses(BENCH, TIGHT, FIXED, RATE), frequency)
-    loudest = np.abs(on_beams.torque_to_acceleration).max()
-    assert np.abs(bolted.torque_to_acceleration).max() < 0.05 * loudest
-    assert np.any(bolted.torque_to_pressure)
 
 
 def test_sound_arrives_after_its_travel():
@@ -95,28 +78,7 @@ def test_sound_arrives_after_its_travel():
         assert before < 1e-9 * np.abs(path).max()
 
 
-def test_shared_responses_cannot_be_overwritten():
-    chain = impulse_responses(BENCH, SQUEAKY, 2214.0, RATE)
-    with pytest.raises(ValueError, match="read-only"):
-        chain.torque_to_pressure[0] = 1.0
-
-
 def test_anchors_off_the_plate_are_refused():
     narrow = dataclasses.replace(BENCH, plate=dataclasses.replace(BENCH.plate, length=0.4))
     with pytest.raises(ParameterError, match="off the plate"):
         impulse_responses(narrow, SQUEAKY, 2214.0, RATE)
-
-
-def test_beams_on_yielding_anchors_ring_lower_but_for_the_lumped_mode():
-    soft = dataclasses.replace(BENCH, beams=dataclasses.replace(BENCH.beams, anchor_rotation=155.0))
-    frequency = np.arange(100.0, 5000.0, 4.0)
-    found = []
-    for rig in (BENCH, soft):
-        paths = impulse_responses(rig, SQUEAKY, 2214.0, RATE, seconds=0.3)
-        spectrum = np.abs(path_spectra(paths, frequency).torque_to_acceleration)
-        inner = spectrum[1:-1]
-        peaks = np.flatnonzero((inner > spectrum[:-2]) & (inner > spectrum[2:]))
-        found.append(frequency[1 + peaks])
-    rigid, yielding = found
-    assert yielding[0] == rigid[0] == pytest.approx(259.4, abs=4.0)
-    assert np.all(yielding[1:3] < 0.95 * rigid[1:3])

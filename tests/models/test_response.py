@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
 
 from models.radiation.impulse_responses import ImpulseResponses, radiate
 
@@ -15,14 +14,6 @@ def test_a_steady_torque_is_silent(torque):
     acceleration, pressure = radiate(CHAIN, np.full(1000, torque))
     assert not np.any(acceleration)
     assert not np.any(pressure)
-
-
-@given(st.floats(-40, 40))
-@settings(max_examples=20)
-def test_the_mean_torque_is_not_heard(mean):
-    torque = np.random.default_rng(5).normal(size=500)
-    for lifted, plain in zip(radiate(CHAIN, torque + mean), radiate(CHAIN, torque), strict=True):
-        assert lifted == pytest.approx(plain, abs=1e-9)
 
 
 def test_torque_and_pulses_add_up():

@@ -69,13 +69,6 @@ def test_a_shipped_material_makes_a_plausible_rig_as_a_base_to_the_bit(tmp_path,
     assert loaded(tmp_path, f'material = "{name.lower()}"').fits == rig.fits
 
 
-def test_between_fits_properties_are_interpolated_and_outside_held():
-    rig = load_material_rig("fluorocarbon-thesis")
-    assert rig.fit(0.33e-3).elastomer_stiffness == pytest.approx(838.0)
-    assert rig.fit(1e-3) == rig.fits[-1]
-    assert rig.fit(1e-6).kinetic_torque == rig.fits[0].kinetic_torque
-
-
 def test_part_of_a_table_replaces_that_part(tmp_path):
     rig = loaded(
         tmp_path,
@@ -124,19 +117,6 @@ def test_a_factor_and_its_inverse_give_the_same_rig(name, power):
     there = RIG.changed(**{name: f"x{2.0**power}"})
     assert there.changed(**{name: f"x{2.0**-power}"}) == RIG
     assert (there == RIG) == (power == 0)
-
-
-@given(percent=st.floats(min_value=-90.0, max_value=400.0))
-def test_a_percentage_is_a_factor(percent):
-    changed = RIG.changed(damping=f"{percent:+.6f} %").fits[0].damping[2214.0]
-    by = 1.0 + percent / 100.0
-    assert math.isclose(changed, RIG.fits[0].damping[2214.0] * by, abs_tol=1e-7)
-
-
-def test_a_number_by_the_long_name_holds_at_every_fit_and_support():
-    rig = RIG.changed(damping_Nms_rad=0.09)
-    assert {value for fit in rig.fits for value in fit.damping.values()} == {0.09}
-    assert rig.friction == RIG.friction
 
 
 def test_a_name_of_the_bushing_is_the_bushings_although_an_effect_has_one_alike(tmp_path):
@@ -198,23 +178,14 @@ def fit(old, new):
     ("text", "parts"),
     [
         ("desing = 3", ("did you mean 'design'", "measured_response")),
-        ("[[fit]", ("no TOML",)),
         ("name = 3", ("name = 3 must be a text",)),
         ("clamp_inertia_kgm2 = 0", ("clamp_inertia_kgm2 = 0 must be a number from 1e-12",)),
-        (
-            "clamp_inertia = 1.0",
-            ("unknown key 'clamp_inertia'; did you mean 'clamp_inertia_kgm2'",),
-        ),
-        ("assumed = 3", ("assumed must be a list",)),
         ('effects = "none"', ("effects must be a list",)),
         ('effects = ["slip_pulse:loud"]', ("NAME:key=value",)),
         ("fit = 3", ("fit must be given as",)),
         ("elastomer_damping_share = 2", ("must be a number from 0 to 1",)),
         # fits
         (fit("= 665.0", "= -1.0"), ("fit 1: elastomer_stiffness_Nm_rad = -1.0", "Nm/rad")),
-        (fit("= 665.0", "= nan"), ("elastomer_stiffness_Nm_rad = nan",)),
-        (fit("= 665.0", '= "stiff"'), ("elastomer_stiffness_Nm_rad = 'stiff'",)),
-        (fit("= 665.0", "= true"), ("elastomer_stiffness_Nm_rad = True",)),
         (fit("= 665.0", f"= {10**400}"), ("elastomer_stiffness_Nm_rad",)),
         (fit("elastomer_stiffness_Nm_rad = 665.0", ""), ("elastomer_stiffness_Nm_rad is missing",)),
         (fit("torque_Nm = 10.7", "torque_Nm = 7.0"), ("critical_torque_Nm = 7", "is below")),
@@ -228,13 +199,7 @@ def fit(old, new):
         # structure
         ("plate = 3", ("plate must be a table",)),
         ("[plate]\nedge = 'free'", (", plate: unknown key 'edge'; did you mean 'edges'",)),
-        (
-            "[plate]\nthickness_m = -0.01",
-            ("plate: thickness_m = -0.01 must be a number above 0",),
-        ),
         ("[plate]\nlength_m = 1e6", ("modes up to 16 kHz; a plate must have 5 to 5000",)),
-        ("[plate]\nthickness_m = 0.0003", ("a plate must have 5 to 5000",)),
-        ("[plate]\nthickness_m = 1e3", ("modes up to 16 kHz",)),
         ("[plate]\nthickness_m = 0.001\nedges = 'free'", ("not all simply_supported must have",)),
         (
             "[plate]\nthickness_m = 0.003\nedges = ['free', 'clamped', 'free', 'free']",
@@ -242,76 +207,44 @@ def fit(old, new):
         ),
         ("[plate]\nclamp_position_m = [9, 0]", ("lies off the plate",)),
         ("[plate]\nedges = 'glued'", ("edges = 'glued' must be one of free, simply_supported",)),
-        ("[plate]\nedges = ['free', 'free']", ("a list of four",)),
-        ("[plate]\nedges = [['free'], 1, 'free', 'free']", ("a list of four",)),
-        ("[plate]\nloss_factor = {}", ("loss_factor",)),
-        ("[plate]\nloss_factor = { low = 0.1 }", ("entry 'low'",)),
         ("[plate]\nloss_factor = { '-5' = 0.1 }", ("entry '-5'",)),
-        ("[plate]\nloss_factor = { 100 = 0.0 }", ("100 = 0.0 must be a number above 0",)),
         ("[plate]\nloss_factor = { 100 = 0.1, 1e2 = 0.2 }", ("rising frequencies",)),
         ("[plate]\nloss_factor = 1.5", ("loss_factor = 1.5",)),
-        ("[plate]\npoisson_ratio = 0.7", ("poisson_ratio = 0.7", "at most 0.5")),
-        ("[microphone]\nposition_m = [0, 0]", ("microphone: position_m = [0, 0] must be a list",)),
         ("[microphone]\nposition_m = [0, 0, -1]", ("z = -1 m", "at least 0.01 m above the plate")),
-        ("[microphone]\nfloor = 3", ("microphone: floor must be a table",)),
         ("[microphone]\nfloor = { normal = 'up', position_m = 1 }", ("floor: normal = 'up'",)),
-        ("[microphone]\nfloor = { normal = 'x' }", ("floor: position_m is missing",)),
-        (
-            "[microphone]\nfloor = { normal = 'x', position_m = 2, reflection = 2 }",
-            ("reflection = 2 must be a number from -1 to 1",),
-        ),
         ("[microphone]\nfloor = { normal = 'x', position_m = 0.2 }", ("position = 0.2 m along x",)),
         ("[microphone]\nfloor = { normal = 'z', position_m = -1 }", ("above the microphone",)),
         ("[beams]\nradiate = 'yes'", ("beams: radiate = 'yes' must be true or false",)),
         ("[beams]\nanchor_rotation_Nm_rad = 'soft'", ('a number above 0 Nm/rad, or "rigid"',)),
-        ("[beams]\nanchor_translation_N_m = -1.0", ("anchor_translation_N_m = -1.0",)),
-        ("[beams]\nheight_m = 0", ("height_m = 0 must be",)),
-        ("[beams]\nstrike = 1.5", ("strike = 1.5 must be",)),
-        ("[beams]\nstiffness = 3", ("unknown key 'stiffness'",)),
         # bushing
         ("[temperature]\nreference_C = 23", ("glass_transition_C is missing",)),
-        ("temperature = 23", ("temperature must be a table",)),
         ("[temperature]\nreference_C = -30\nglass_transition_C = -20", ("not above glass",)),
-        ("[temperature]\nreference_C = 23\nglass_transition_c = 1", ("'glass_transition_C'",)),
-        (
-            "[temperature]\nreference_C = 23\nglass_transition_C = -20\nwlf_c2_K = 40",
-            ("wlf_c2_K = 40 must be a number above 50",),
-        ),
         ("[sleeve]\nhardness_shore_A = 60\nyoungs_modulus_MPa = 3", ("not both",)),
         (
             "[sleeve]\nhardness_shore_A = 90",
             ("must be a number from 20 to 80",),
         ),
-        ("[sleeve]\nwall_mm = 0", ("sleeve: wall_mm = 0",)),
         (CONTRACT + "[sleeve]\nwall_mm = 4", ("inner_radius_mm is missing",)),
         # changes
         (FIT + "[change]\nwall_mm = 6", ("wall needs a [sleeve] table",)),
         ("[change]\nwall = 6", ("has no unit; write wall_mm = 6",)),
-        ("[change]\nhardness_shore_A = 90", ("hardness_shore_A = 90",)),
         ('[change]\ndampin = "x2"', ("did you mean 'damping'", "slip_pulse.amplitude")),
         ("[change]\ndamping = 0.1", ("write damping_Nms_rad = 0.1",)),
         ('[change]\ndamping = "20 %"', ("with its sign",)),
-        ('[change]\ndamping = "x0"', ("a factor above 0",)),
-        ("[change]\ndamping_Nms_rad = -1", ("must be above 0",)),
         ('[change]\ninterference_mm = "x2"', ("operating condition", "--interference")),
         ('[change]\ncritical_torque = "x0.1"', ("critical_torque_Nm = 0.5892 is below",)),
         ('[change]\nslip_pulse.duration = "x2"', ("slip_pulse.duration", "as a number")),
         ('[change]\ndamping = "x2"\ndamping_Nms_rad = 0.1', ("damping is changed twice",)),
-        ('[change]\ncritical_torque = "x1e9"', ("must be a number from 1e-06 to 1e+07 Nm",)),
         ('[change]\nelastomer_damping_share = "x9"', ("must be a number from 0 to 1",)),
         # sensors
         ("[sensors]\nnoise = 3", ("from recordings",)),
         ("[sensors]\nragne = { torque = 1 }", ("'ragne'", "did you mean 'range'")),
-        ("[sensors]\nrange = { torqe = 1 }", ("sensors, range", "did you mean 'torque'")),
         ("[sensors]\nrange = 50", ("range = 50", "{ torque = 50 }")),
-        ("[sensors]\nrange = { torque = -1 }", ("range.torque = -1", "from 1e-09 to 1e+12 N m")),
-        ('[sensors]\nrange = { torque = "50 Nm" }', ("torque = '50 Nm'", "a number")),
         ("[sensors]\nbits = 12", ("bits without a range", "range = { torque = ... }")),
         ("[sensors]\nrange = { torque = 50 }\nbits = { pressure = 12 }", ("bits of pressure",)),
         ("[sensors]\nrange = { torque = 50 }\nbits = 12.5", ("bits = 12.5", "whole number")),
         ("[sensors]\nrange = { torque = 50 }\nbits = 64", ("bits = 64", "2 to 32 bit")),
         ("[sensors]\nantialias_hz = 0", ("antialias_hz = 0", "from 1 to 1e+09 Hz")),
-        ("[sensors]\nnoise = { torque = -0.1 }", ("torque = -0.1", "from 0 to")),
     ],
 )
 def test_what_cannot_be_used_is_refused_in_one_line(tmp_path, text, parts):
@@ -324,13 +257,6 @@ def test_what_cannot_be_used_is_refused_in_one_line(tmp_path, text, parts):
     assert all(part in message for part in parts), message
     assert message.startswith(f"rig file {tmp_path / 'rig.toml'}")
     assert "\n" not in message
-
-
-def test_what_is_not_there_is_refused_with_what_is(tmp_path):
-    with pytest.raises(ParameterError, match=r"nowhere\.toml"):
-        load_rig(tmp_path / "nowhere.toml")
-    with pytest.raises(ParameterError, match="PDMS"):
-        load_material_rig("teflon")
 
 
 # Remarks
@@ -406,9 +332,3 @@ def test_changes_written_out_are_those_that_are_read(tmp_path):
     )  # fmt: skip
     expected = replace(RIG, friction=parse_spec("coulomb")).changed(**changes)
     assert loaded(tmp_path, text) == expected
-
-
-def test_a_specification_is_read_as_it_is_written():
-    assert str(parse_spec("slip_pulse:amplitude=20,threshold=3.5")) == (
-        "slip_pulse:amplitude=20,threshold=3.5"
-    )

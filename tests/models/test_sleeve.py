@@ -9,7 +9,7 @@ from hypothesis import given, strategies as st
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
-from models.bushing import Sleeve, shore_modulus
+from models.bushing import Sleeve
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
 
@@ -22,16 +22,6 @@ sleeves = st.builds(
 )  # fmt: skip
 
 
-def constants(sleeve):
-    """Shear modulus, constrained modulus, bulk modulus."""
-    e, nu = sleeve.youngs_modulus, sleeve.poisson_ratio
-    return (
-        e / (2 * (1 + nu)),
-        e * (1 - nu) / ((1 + nu) * (1 - 2 * nu)),
-        e / (3 * (1 - 2 * nu)),
-    )
-
-
 @given(sleeves, st.floats(1e-5, 1e-3), st.floats(0.1, 10.0))
 def test_pressure_is_linear_in_interference_and_modulus(sleeve, interference, factor):
     pressure = sleeve.pressure(interference)
@@ -39,13 +29,6 @@ def test_pressure_is_linear_in_interference_and_modulus(sleeve, interference, fa
     assert sleeve.pressure(0.0) == 0.0 < pressure
     assert sleeve.pressure(factor * interference) == pytest.approx(factor * pressure)
     assert stiffer.pressure(interference) == pytest.approx(factor * pressure)
-
-
-@given(sleeves)
-def test_a_longer_or_thinner_sleeve_is_pressed_harder(sleeve):
-    pressure = sleeve.pressure(1e-4)
-    assert replace(sleeve, length=1.1 * sleeve.length).pressure(1e-4) > pressure
-    assert replace(sleeve, wall=0.9 * sleeve.wall).pressure(1e-4) > pressure
 
 
 @given(st.floats(0.0, 0.499))
@@ -64,14 +47,6 @@ def test_an_incompressible_sleeve_is_the_limit_of_nearly_incompressible_ones():
     assert replace(BUSHING, poisson_ratio=0.5).pressure(1e-4) == pytest.approx(last, rel=1e-6)
     with pytest.raises(ParameterError, match="give a length"):
         Sleeve(0.015, 0.006, math.inf, 5e6, 0.5)
-
-
-def test_a_disc_obeys_lame_in_plane_stress():
-    disc = replace(BUSHING, length=1e-6)
-    a, b, nu = 0.015, 0.0195, disc.poisson_ratio
-    by_lame = 2 * constants(disc)[0] * a * 1e-4 / (b * b - a * a)
-    by_lame *= (1 + nu) / (1 - nu) + (b / a) ** 2
-    assert disc.pressure(1e-4) == pytest.approx(by_lame, rel=1e-6)
 
 
 @pytest.mark.parametrize("nu", [0.45, 0.499, 0.4995])
@@ -131,11 +106,6 @@ def strain(s, t, r, z):
     return b, radius
 
 
-def test_gents_relation_rises_with_hardness_and_ends_where_it_was_measured():
-    moduli = [shore_modulus(hardness) for hardness in range(20, 81, 5)]
-    assert all(np.diff(moduli) > 0)
-
-
 @given(st.floats(0.5, 2.0))
 def test_a_longer_bushing_bears_more_torque_than_its_length_says(factor):
     """Its ends, where the rubber gives way, are a smaller part of it."""
@@ -146,11 +116,3 @@ def test_a_longer_bushing_bears_more_torque_than_its_length_says(factor):
         assert after.critical_torque / before.critical_torque == pytest.approx(ratio)
         assert after.elastomer_stiffness == pytest.approx(factor * before.elastomer_stiffness)
     assert changed.elastomer_inertia == pytest.approx(factor * RIG.elastomer_inertia)
-
-
-def test_there_and_back_is_the_same_bushing():
-    there = RIG.changed(wall_mm=6.0, hardness_shore_A=60.0)
-    back = there.changed(wall_mm=4.5, hardness_shore_A=75.0)
-    assert there.sleeve.wall == pytest.approx(0.006)
-    assert back.fits[1].kinetic_torque == pytest.approx(RIG.fits[1].kinetic_torque)
-    assert back.fits[1].elastomer_stiffness == pytest.approx(RIG.fits[1].elastomer_stiffness)

@@ -5,7 +5,7 @@ import pytest
 
 from models.errors import ParameterError
 from models.transfer_functions.files import ENDINGS, read_transfer_function, write_transfer_function
-from models.transfer_functions.transfer_function import TransferFunction, check_band, trusted_band
+from models.transfer_functions.transfer_function import TransferFunction, check_band
 from models.transfer_functions.uff import (
     TIME_RESPONSE,
     UffFunction,
@@ -45,17 +45,6 @@ def test_a_universal_file_keeps_the_sampling_rate(tmp_path, rate):
     assert 1 / back.x[1] == pytest.approx(rate, rel=1e-12)
 
 
-def test_of_several_functions_the_one_in_the_right_unit_is_read(tmp_path):
-    path = tmp_path / "both.unv"
-    write_uff_functions(
-        path, [UffFunction(4, F, k * H, unit, "N m") for k, unit in ((1, "m/s^2"), (2, "Pa"))]
-    )
-    sound = read_transfer_function(path, input_unit="N m", output_unit="Pa")
-    np.testing.assert_allclose(sound.response[-1], 2 * H[-1])
-    with pytest.raises(ParameterError, match="holds 0 frequency response functions in m/s"):
-        read_transfer_function(path, input_unit="N m", output_unit="m/s")
-
-
 def npz(path, **changed):
     content = {"frequency_hz": F, "response": H, "input_unit": "N m", "output_unit": "Pa"}
     content |= changed
@@ -66,17 +55,12 @@ def npz(path, **changed):
     ("changed", "message"),
     [
         ({"response": None}, "has no response"),
-        ({"input_unit": None}, "has no input_unit"),
         ({"response": np.abs(H)}, "response has type float64; it must be complex"),
-        ({"response": H[:-1]}, "response has shape (400,)"),
         ({"response": np.where(F == 0, np.nan, H)}, "response is (nan+0j) at line 1"),
         ({"response": 0 * H}, "zero throughout"),
         ({"frequency_hz": F[::-1]}, "frequency_hz falls from 312.5"),
         ({"frequency_hz": np.ones(401)}, "frequency_hz stays at 1 Hz at line 2; it must rise"),
-        ({"frequency_hz": F - 1}, "starts at -1 Hz"),
-        ({"frequency_hz": F[:3], "response": H[:3]}, "at least 8"),
         ({"coherence": 2 * np.ones(401)}, "coherence goes from 2 to 2"),
-        ({"coherence": np.ones(4)}, "coherence has shape (4,)"),
         ({"output_unit": np.array([1.0])}, "output_unit is array([1.]); it must be a text"),
         ({"frequency_hz": np.array(["a"] * 401)}, "it must be numbers"),
     ],
@@ -124,12 +108,6 @@ def test_a_damaged_file_is_one_line(tmp_path, ending, content):
     assert "\n" not in str(refused.value)
 
 
-@pytest.mark.parametrize("ending", ENDINGS)
-def test_a_missing_file_is_one_line(tmp_path, ending):
-    with pytest.raises(ParameterError, match="nowhere"):
-        read(tmp_path / f"nowhere{ending}")
-
-
 def test_an_unknown_ending_names_the_known_ones(tmp_path):
     with pytest.raises(ParameterError, match=r"\.npz, \.csv, \.uff or \.unv"):
         read(tmp_path / "beam.mat")
@@ -139,11 +117,6 @@ def test_a_missing_library_names_the_command_that_installs_it(tmp_path, monkeypa
     monkeypatch.setitem(__import__("sys").modules, "pyuff", None)
     with pytest.raises(ParameterError, match=r'pip install "bushing-noise\[uff\]"'):
         read(tmp_path / "beam.uff")
-
-
-def test_single_lines_of_low_coherence_leave_the_band_whole():
-    coherence = np.where(np.arange(401) % 9 == 0, 0.0, 0.9)
-    assert trusted_band(TransferFunction(F, H, coherence, "N m", "Pa")) == (F[1], F[-1])
 
 
 def test_what_does_not_cohere_does_not_count_towards_the_band():
@@ -178,20 +151,15 @@ def universal(path, unit, data_type, *, per="N", axis="Hz", of_axis=18, units=No
 @pytest.mark.parametrize(
     ("unit", "data_type", "more", "factor"),
     [
-        ("m/s^2", 12, {}, 1.0),
         ("m/s\u00b2", 12, {}, 1.0),
         ("g", 12, {}, 9.80665),
         ("m/s", 11, {}, W),
-        ("m", 8, {}, W**2),
         ("\u00b5m", 8, {}, 1e-6 * W**2),
         ("NONE", 8, {"per": "NONE"}, W**2),
-        ("NONE", 11, {"per": "kN"}, 1e-3 * W),
         ("NONE", 12, {"per": "NONE", "units": (5, 1e3, 1e3)}, 1.0),
         ("NONE", 12, {"units": (5, 1e3, 1.0)}, 1e-3),
-        ("NONE", 8, {"units": (5, 1e3, 1.0)}, 1e-3 * W**2),
         ("mm/s^2", 12, {"units": (5, 1e3, 1.0)}, 1e-3),
         ("m/N", 0, {"per": "NONE"}, W**2),
-        ("mm/s^2", 12, {"axis": "NONE"}, 1e-3),
     ],
 )
 def test_a_universal_response_is_converted_by_what_it_states(
@@ -213,13 +181,11 @@ def test_a_universal_response_is_converted_by_what_it_states(
         ),
         ("m/s^2", 15, {}, "'m/s^2', but has the data type of pressure"),
         ("V", 12, {}, "output_unit is 'V'; it must be 'm/s^2'"),
-        ("Pa", 15, {}, "output_unit is 'Pa'; it must be 'm/s^2'"),
         ("m/s^2", 12, {"per": "N m"}, "input_unit is 'N m'; it must be 'N'"),
         ("NONE", 12, {"per": "NONE", "direction": 4}, "input_unit is 'N m'; it must be 'N'"),
         ("m/s^2", 12, {"axis": "s"}, "goes over 's', but has the data type of frequency"),
         ("m/s^2", 12, {"axis": "s", "of_axis": 17}, "goes over s, expected frequency in Hz"),
         ("m/s^2", 12, {"axis": "NONE", "of_axis": 20}, "goes over data type 20"),
-        ("m/s^2", 12, {"axis": "order", "of_axis": 0}, "goes over order"),
     ],
 )
 def test_a_universal_response_that_is_another_one_is_refused(
@@ -240,24 +206,14 @@ def test_a_universal_response_that_states_no_unit_is_read_with_a_warning(tmp_pat
 @pytest.mark.parametrize(
     ("units", "factor"),
     [
-        (("Nm", "m/s**2"), 1.0),
         (("kN m", "mm/s^2"), 1e-6),
         (("N m", "m/s"), W),
-        (("N m", "mm"), 1e-3 * W**2),
     ],
 )
 def test_an_npz_is_converted_by_its_units(tmp_path, units, factor):
     path = tmp_path / "a.npz"
     npz(path, input_unit=units[0], output_unit=units[1])
     np.testing.assert_allclose(read(path).response, factor * H, rtol=1e-12)
-
-
-@pytest.mark.parametrize("units", [("N", "m/s^2"), ("N m", "Pa"), ("N m", "V"), ("N m", "rad/s")])
-def test_an_npz_of_other_quantities_is_refused(tmp_path, units):
-    path = tmp_path / "a.npz"
-    npz(path, input_unit=units[0], output_unit=units[1])
-    with pytest.raises(ParameterError, match=r"put_unit is .*; it must be"):
-        read(path)
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from models.units import CHANNEL_UNITS, SI_UNITS, kind_of_unit, quantity_of_unit, split_unit
+from models.units import kind_of_unit, split_unit
 
 G = 9.80665
 
@@ -28,12 +28,6 @@ def test_spellings_of_channels(spelling, kind, value):
 @pytest.mark.parametrize("spelling", ["V", "dB", "", "MN", "MPA", "nm", "kn", "%", "counts", "ms"])
 def test_units_of_no_channel_or_of_several(spelling):
     assert kind_of_unit(spelling) is None
-
-
-def test_si_units_are_one_of_their_own():
-    for quantity, unit in SI_UNITS.items():
-        assert quantity_of_unit(unit) == (quantity, 1.0)
-    assert set(CHANNEL_UNITS) <= set(SI_UNITS)
 
 
 @pytest.mark.parametrize(
