@@ -11,16 +11,13 @@ what they are given are pointers to the first of so many numbers, which costs le
 
 from __future__ import annotations
 
-from numba import float64, njit, types
-from numba.extending import intrinsic
+import ctypes
+from functools import lru_cache
+from typing import Any
 
-__all__ = [
-    "CREEP", "CRITICAL", "ELASTOMER_TORQUE", "HOOK_SIGNATURE", "KINETIC", "LAW_SIGNATURE",
-    "N_CONTACT", "N_CONTEXT", "SHAFT_ANGLE", "SHAFT_INERTIA", "SHAFT_LAG", "SHAFT_LAG_RATE",
-    "SHAFT_SPEED", "SHAFT_TORQUE", "SLIDING_SPEED", "STICKS", "STICK_TIME", "STIFFNESS", "TIME",
-    "TORQUE", "TWIST", "TWIST_RATE", "call_hook", "call_law", "no_hook", "no_law", "pointer",
-    "slipless",
-]  # fmt: skip
+from llvmlite import ir
+from numba import float64, int64, njit, types
+from numba.extending import intrinsic
 
 # Context.
 TIME = 0
@@ -67,7 +64,6 @@ SHAFT_TORQUE = 6
 N_CONTACT = 7
 
 _POINTER = types.CPointer(float64)
-_ARRAY = float64[::1]
 
 HOOK_SIGNATURE = types.void(_POINTER, _POINTER, _POINTER, _POINTER, _POINTER)
 """``hook(context, values, state, state_rates, contact)`` changes `contact`, fills `state_rates`."""
@@ -86,27 +82,66 @@ def pointer(_context, address):
     return _POINTER(address), cast
 
 
-@njit(HOOK_SIGNATURE, cache=True)
-def no_hook(context, values, state, state_rates, contact):
-    """Leave the contact as it is, in place of an effect that there is not."""
+@intrinsic
+def call_hook_at(_context, address, context, values, state, state_rates, contact):  # noqa: ARG001
+    """Call the effect's compiled function at an address; for compiled code."""
+    return types.void(int64, *[_POINTER] * 5), _called_at
 
 
-@njit(LAW_SIGNATURE, cache=True)
-def no_law(sliding_speed, coefficients, contact, state, state_rates):  # noqa: ARG001
-    """Torque in place of a law's where the contact truly sticks [Nm]: none."""
-    return 0.0
+@intrinsic
+def call_law_at(_context, address, speed, coefficients, contact, state, state_rates):  # noqa: ARG001
+    """Call the law's compiled function at an address; for compiled code."""
+    return float64(int64, float64, *[_POINTER] * 4), _called_at
 
 
-@njit(types.void(types.FunctionType(HOOK_SIGNATURE), *[_ARRAY] * 5), cache=True)
+def _called_at(context, builder, signature, arguments):  # noqa: ANN202
+    kinds = [context.get_value_type(kind) for kind in signature.args[1:]]
+    returned = signature.return_type
+    returns = ir.VoidType() if returned is types.void else context.get_value_type(returned)
+    function = builder.inttoptr(arguments[0], ir.FunctionType(returns, kinds).as_pointer())
+    result = builder.call(function, arguments[1:])
+    return context.get_dummy_value() if returned is types.void else result
+
+
+@intrinsic
+def _address(_context, function):  # noqa: ANN202
+    def codegen(context, builder, _signature, arguments):  # noqa: ANN202
+        first = builder.extract_value(arguments[0], 0)  # the address by C's convention
+        return builder.ptrtoint(first, context.get_value_type(int64))
+
+    return int64(function), codegen
+
+
+@njit(
+    [int64(types.FunctionType(signature)) for signature in (HOOK_SIGNATURE, LAW_SIGNATURE)],
+    cache=True,
+)
+def _address_of(function):  # noqa: ANN202
+    return _address(function)
+
+
+def address_of(function: Any) -> int:
+    """Address of an effect's or a law's compiled function, for compiled code; 0 for None."""
+    return 0 if function is None else _address_of(function)
+
+
 def call_hook(hook, context, values, state, state_rates, contact):
-    """Call an effect's compiled function with arrays, which Python could not."""
-    hook(context.ctypes, values.ctypes, state.ctypes, state_rates.ctypes, contact.ctypes)
+    """Call an effect's compiled function with arrays, by `HOOK_SIGNATURE`."""
+    arrays = context, values, state, state_rates, contact
+    _c_function(hook, None)(*(array.ctypes.data for array in arrays))
 
 
-@njit(float64(types.FunctionType(LAW_SIGNATURE), float64, *[_ARRAY] * 4), cache=True)
 def call_law(law, sliding_speed, coefficients, contact, state, state_rates):
-    """Call a law's compiled function with arrays; returns its torque [Nm]."""
-    return law(sliding_speed, coefficients.ctypes, contact.ctypes, state.ctypes, state_rates.ctypes)
+    """Call a law's compiled function with arrays, by `LAW_SIGNATURE`; returns its torque [Nm]."""
+    arrays = coefficients, contact, state, state_rates
+    function = _c_function(law, ctypes.c_double, ctypes.c_double)
+    return function(sliding_speed, *(array.ctypes.data for array in arrays))
+
+
+@lru_cache(maxsize=64)
+def _c_function(compiled: Any, *kinds: Any) -> Any:
+    kinds = *kinds, *[ctypes.c_void_p] * (6 - len(kinds))  # what it returns, then five arguments
+    return ctypes.CFUNCTYPE(*kinds)(address_of(compiled))
 
 
 @njit(cache=True)

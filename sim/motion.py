@@ -18,7 +18,7 @@ from sim.friction import friction_law
 from sim.motion_limits import blaming_the_unusual, refuse_fast, refuse_overflow
 from sim.parameters import resolve
 from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook
-from sim.solvers.contact_state import MOST_HOOKS, N_MOTION
+from sim.solvers.contact_state import N_MOTION
 from sim.solvers.stick_slip import advance_stick_slip, rest_state
 from sim.solvers.stick_slip_kernel import DIRECTION
 
@@ -355,19 +355,11 @@ def _integral(speed: NDArray[np.float64], step: float) -> NDArray[np.float64]:
 
 
 def contact_hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> tuple[Hook, ...]:
-    """List what acts on the contact, in the order of the effects.
-
-    Raises
-    ------
-    ParameterError
-        More effects act on the contact than the solver takes.
-    """
-    acting = [active for active in effects if active.effect.contact is not None]
-    if len(acting) > MOST_HOOKS:
-        names = ", ".join(active.effect.name for active in acting)
-        raise ParameterError(f"{names}: at most {MOST_HOOKS} effects can act on the contact")
+    """List what acts on the contact, in the order of the effects."""
     return tuple(
-        Hook(active.effect.contact, active.packed(rng), active.effect.n_states) for active in acting
+        Hook(active.effect.contact, active.packed(rng), active.effect.n_states)
+        for active in effects
+        if active.effect.contact is not None
     )
 
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from models.errors import ParameterError
 from models.rig import Fit, LawSpec, Rig
 from sim.bushing import LumpedBushing
-from sim.contact import CRITICAL, KINETIC, N_CONTACT, call_law
+from sim.contact import CRITICAL, KINETIC, N_CONTACT, address_of, call_law_at
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import friction_law
@@ -68,7 +68,7 @@ def friction_of(law: LawSpec, effects: tuple[LawSpec, ...] = ()) -> Friction:
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _driven(law, speed, step, substeps, coefficients, contact, state) -> None:  # type: ignore[no-untyped-def] # noqa: ANN001
+def _driven(law, speed, step, substeps, c, contact, state) -> None:  # type: ignore[no-untyped-def] # noqa: ANN001
     """Carry the inner state of a contact through sliding that is known (Heun's method)."""
     first, second, guess = np.zeros_like(state), np.zeros_like(state), np.zeros_like(state)
     h = step / substeps
@@ -76,10 +76,10 @@ def _driven(law, speed, step, substeps, coefficients, contact, state) -> None:  
         slope = (speed[i + 1] - speed[i]) / substeps
         for j in range(substeps):
             v = speed[i] + slope * j
-            call_law(law, v, coefficients, contact, state, first)
+            call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, first.ctypes)
             for m in range(state.size):
                 guess[m] = state[m] + h * first[m]
-            call_law(law, v + slope, coefficients, contact, guess, second)
+            call_law_at(law, v + slope, c.ctypes, contact.ctypes, guess.ctypes, second.ctypes)
             for m in range(state.size):
                 state[m] += 0.5 * h * (first[m] + second[m])
 
@@ -118,7 +118,10 @@ def foretold(
     for row, motion, run_in, speed in zip(torque, motions, run_ins, speeds, strict=True):
         inner = law.state()
         if inner.size:
-            _driven(law.torque, run_in, step, _SUBSTEPS, friction.coefficients, contact, inner)
+            _driven(
+                address_of(law.torque), run_in, step, _SUBSTEPS, friction.coefficients, contact,
+                inner,
+            )  # fmt: skip
         run = ContactRun(
             packed, critical, kinetic, float(speed), step, law=law.torque,
             coefficients=friction.coefficients, law_state=inner, hooks=friction.hooks,

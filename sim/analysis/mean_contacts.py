@@ -16,7 +16,6 @@ from numba import float64, int64, njit, types
 
 from models.compilation import COMPILED
 from sim.contact import (
-    HOOK_SIGNATURE,
     KINETIC,
     N_CONTEXT,
     SHAFT_SPEED,
@@ -26,6 +25,8 @@ from sim.contact import (
     TIME,
     TORQUE,
     TWIST,
+    address_of,
+    call_hook_at,
 )
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def average_contacts(
     """
     compiled: Any = _average
     compiled(
-        hook.function, np.ascontiguousarray(hook.values, dtype=np.float64), moments, speed,
+        address_of(hook.function), hook.values, moments, speed,
         np.zeros((4, hook.n_states)), np.zeros(N_CONTEXT), np.zeros((2, contacts.shape[1])),
         contacts,
     )  # fmt: skip
@@ -79,8 +80,7 @@ def average_contacts(
 
 @njit(
     types.void(
-        types.FunctionType(HOOK_SIGNATURE), _VECTOR, int64, _VECTOR, _MATRIX, _VECTOR, _MATRIX,
-        _MATRIX,
+        int64, _VECTOR, int64, _VECTOR, _MATRIX, _VECTOR, _MATRIX, _MATRIX,
     ),
     cache=True, **COMPILED,
 )  # fmt: skip
@@ -106,10 +106,15 @@ def _average(hook, values, moments, speeds, states, context, work, contacts) -> 
                 moved[i] = state[i] + 1e-6
             for i in range(given.size):
                 contact[i] = given[i]
-            hook(context.ctypes, values.ctypes, moved.ctypes, rates_moved.ctypes, contact.ctypes)
+            call_hook_at(
+                hook, context.ctypes, values.ctypes, moved.ctypes, rates_moved.ctypes,
+                contact.ctypes,
+            )  # fmt: skip
             for i in range(given.size):
                 contact[i] = given[i]
-            hook(context.ctypes, values.ctypes, state.ctypes, rates.ctypes, contact.ctypes)
+            call_hook_at(
+                hook, context.ctypes, values.ctypes, state.ctypes, rates.ctypes, contact.ctypes
+            )
             for i in range(state.size):
                 decay = min((rates_moved[i] - rates[i]) * 1e6 * step, 0.0)
                 state[i] += step * rates[i] * (math.expm1(decay) / decay if decay else 1.0)

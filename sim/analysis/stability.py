@@ -30,7 +30,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numba import boolean, float64, njit, types
+from numba import float64, int64, njit, types
 
 from models.compilation import PART
 from sim.bushing import packed_systems
@@ -38,11 +38,11 @@ from sim.constant_version import constant_version
 from sim.contact import (
     CRITICAL,
     KINETIC,
-    LAW_SIGNATURE,
     N_CONTACT,
     SHAFT_INERTIA,
     STIFFNESS,
-    no_law,
+    address_of,
+    call_law_at,
 )  # fmt: skip
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
@@ -152,8 +152,7 @@ def steady_sliding(
     matrices = np.zeros((v.size, 4 + state.size, 4 + state.size))
     compiled: Any = _linearised
     compiled(
-        law.torque or no_law, law.torque is not None, coefficients, state, systems, v, contacts,
-        matrices,
+        address_of(law.torque), coefficients, state, systems, v, contacts, matrices,
     )  # fmt: skip
     eigenvalues = np.linalg.eigvals(matrices) if v.size else np.zeros((0, 1), dtype=complex)
     rows, leading = np.arange(v.size), eigenvalues.real.argmax(axis=1)
@@ -214,14 +213,14 @@ def _solve(a, x) -> None:
 def _rates_and_slopes(law, c, v, contact, state, rates, low, slopes) -> None:
     """Fill the state's rates and their slopes over it."""
     n = state.size
-    law(v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
+    call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
     for j in range(n):
         kept = state[j]
         change = _STEP * abs(kept) + 1e-12
         state[j] = kept + change
-        law(v, c.ctypes, contact.ctypes, state.ctypes, slopes[n].ctypes)
+        call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, slopes[n].ctypes)
         state[j] = kept - change
-        law(v, c.ctypes, contact.ctypes, state.ctypes, low.ctypes)
+        call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, low.ctypes)
         state[j] = kept
         for i in range(n):
             slopes[i, j] = (slopes[n, i] - low[i]) / (2.0 * change)
@@ -229,13 +228,14 @@ def _rates_and_slopes(law, c, v, contact, state, rates, low, slopes) -> None:
 
 @njit(
     types.void(
-        types.FunctionType(LAW_SIGNATURE), boolean, _VECTOR, _VECTOR, float64[:, ::1], _VECTOR,
+        int64, _VECTOR, _VECTOR, float64[:, ::1], _VECTOR,
         float64[:, :, ::1], float64[:, :, ::1],
     ),
     cache=True, error_model="numpy",
 )  # fmt: skip
-def _linearised(law, has_law, c, rest, systems, speeds, contacts, matrices) -> None:
+def _linearised(law, c, rest, systems, speeds, contacts, matrices) -> None:
     """Fill the matrix of each condition: theta1, theta1', theta2, theta2', inner state."""
+    has_law = law != 0
     n = rest.size if has_law else 0
     state, rates, above, below = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     system, slopes = np.empty((n, n)), np.empty((n + 1, n))
@@ -266,8 +266,12 @@ def _linearised(law, has_law, c, rest, systems, speeds, contacts, matrices) -> N
                     break
             _rates_and_slopes(law, c, v, contact, state, rates, below, slopes)
             dv = _STEP * v
-            high = law(v + dv, c.ctypes, contacts[1, run].ctypes, state.ctypes, above.ctypes)
-            low = law(v - dv, c.ctypes, contacts[2, run].ctypes, state.ctypes, below.ctypes)
+            high = call_law_at(
+                law, v + dv, c.ctypes, contacts[1, run].ctypes, state.ctypes, above.ctypes
+            )
+            low = call_law_at(
+                law, v - dv, c.ctypes, contacts[2, run].ctypes, state.ctypes, below.ctypes
+            )
             slope = (high - low) / (2.0 * dv)
             for j in range(n):
                 a[4 + j, 1] = -(above[j] - below[j]) / (2.0 * dv)
@@ -276,9 +280,9 @@ def _linearised(law, has_law, c, rest, systems, speeds, contacts, matrices) -> N
                 kept = state[j]
                 change_of = _STEP * abs(kept) + 1e-12
                 state[j] = kept + change_of
-                high = law(v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
+                high = call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
                 state[j] = kept - change_of
-                low = law(v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
+                low = call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
                 state[j] = kept
                 a[1, 4 + j] = (high - low) / (2.0 * change_of) / j_e
         a[0, 1] = 1.0

@@ -11,17 +11,14 @@ begins with the new right-hand side. Outputs are read within the step that cover
 from __future__ import annotations
 
 import math
-from functools import lru_cache
-from typing import Any
 
-from numba import boolean, float64, int64, njit, types
+from numba import float64, int64, njit, types
 
 from models.compilation import COMPILED, PART
-from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, LAW_SIGNATURE, STICKS
+from sim.contact import CRITICAL, KINETIC, STICKS
 from sim.solvers import contact_state as at
 from sim.solvers.contact_rates import contact_rates
 from sim.solvers.contact_state import (
-    MOST_HOOKS,
     N_LAG,
     N_STAGES,
     Bushing,
@@ -40,7 +37,7 @@ from sim.solvers.tsitouras import (
     vertex,
 )
 
-__all__ = ["contact_loop"]
+__all__ = ["run_contact"]
 
 _GRACE = 2e-3
 """Time that is granted to what has just begun [s]."""
@@ -69,12 +66,10 @@ _KINK = 1e-7
 _LEAST_FACTOR = 0.2
 """By which a step is shortened that is too long to tell what ends it."""
 
-_HOOK = types.FunctionType(HOOK_SIGNATURE)
-_LAW = types.FunctionType(LAW_SIGNATURE)
 _VECTOR = float64[::1]
 _MATRIX = float64[:, ::1]
 _RECORD = types.BaseTuple.from_types
-_BUSHING = _RECORD([_VECTOR, boolean, _VECTOR, _VECTOR, _VECTOR], Bushing)
+_BUSHING = _RECORD([_VECTOR, int64, _VECTOR, _VECTOR, _VECTOR], Bushing)
 _HOOKS = _RECORD([int64, int64[:, ::1]], Hooks)
 _DRIVE = _RECORD([float64, _VECTOR, _VECTOR, _VECTOR], Drive)
 _ROWS = _RECORD([_MATRIX, *[_VECTOR] * 7], Rows)
@@ -140,48 +135,23 @@ def _turn_within(start, end_speed, k, h, slide, far_start, far_end):
     return x
 
 
-@lru_cache
-def contact_loop(*, with_effects: bool) -> Any:
-    """Return the compiled loop, with effects or for runs without any, which is faster.
-
-    Parameters
-    ----------
-    with_effects : bool
-        Else None takes the place of each hook and of `Hooks`.
-
-    Returns
-    -------
-    compiled function
-        `_run_contact`.
-
-    Examples
-    --------
-    >>> contact_loop(with_effects=False).py_func.__name__
-    '_run_contact'
-    """
-    hook, hooks = (_HOOK, _HOOKS) if with_effects else (types.none, types.none)
-    signature = types.void(
-        _BUSHING, _LAW, *[hook] * MOST_HOOKS, hooks, _DRIVE, _LIMITS, _VECTOR, _ROWS, _MATRIX,
-        int64[::1],
-    )  # fmt: skip
-    return njit(signature, cache=True, nogil=True, **COMPILED)(_run_contact)
-
-
-def _run_contact(
-    bushing, law, h0, h1, h2, h3, h4, h5, h6, h7, hooks, drive, limits, carried, rows,
-    out, direction_out,
-) -> None:  # fmt: skip
+@njit(
+    types.void(
+        _BUSHING, _HOOKS, _DRIVE, _LIMITS, _VECTOR, _ROWS, _MATRIX, int64[::1],
+    ),
+    cache=True, nogil=True, **COMPILED,
+)  # fmt: skip
+def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out) -> None:
     """Write the columns of `out`; `carried`, `rows` and the context are carried on.
 
     The drive may be known beyond the outputs, as far as steps may reach; where it is not, it goes
     on as it did.
     """
-    functions = (h0, h1, h2, h3, h4, h5, h6, h7)
-    s, has_law, context = bushing.system, bushing.has_law, bushing.context
+    s, has_law, context = bushing.system, bushing.law != 0, bushing.context
     k, start, end, u = rows.stages, rows.start, rows.end, rows.state
     slope, step, tolerance = drive.slope, drive.step, limits.tolerance
     n, d = direction_out.size, u.size
-    lag = d if hooks is None else d - N_LAG
+    lag = d - N_LAG if hooks.n > 0 else d
     last = max(drive.speed.size - 2, 0)  # segment of the drive
     t_crit, t_kin = s[8], s[9]
     bushing.contact[CRITICAL], bushing.contact[KINETIC] = t_crit, t_kin
@@ -215,8 +185,8 @@ def _run_contact(
             i = min(sample, last)
             stick_time = time - stick_start if mode == 0 else stick_length
             friction, e, holding, critical, caught, shaft = contact_rates(
-                N_STAGES, (sample - i) * step, i, time, stick_time, mode, bushing, law,
-                functions, hooks, drive, rows,
+                N_STAGES, (sample - i) * step, i, time, stick_time, mode, bushing, hooks,
+                drive, rows,
             )  # fmt: skip
             surface = k[0, N_STAGES]
             out[0, sample], out[1, sample] = friction, e
@@ -261,8 +231,8 @@ def _run_contact(
                 time = first * step + t
                 stick_time = time - stick_start if mode == 0 else stick_length
                 friction, e, holding, critical, caught, shaft = contact_rates(
-                    stage, t - i * step, i, time, stick_time, mode, bushing, law, functions,
-                    hooks, drive, rows,
+                    stage, t - i * step, i, time, stick_time, mode, bushing, hooks, drive,
+                    rows,
                 )  # fmt: skip
                 # How far it is from the end of stick or slip, or from the turn of the sliding.
                 if has_law:

@@ -33,6 +33,8 @@ from sim.contact import (
     TORQUE,
     TWIST,
     TWIST_RATE,
+    call_hook_at,
+    call_law_at,
     pointer,
 )
 from sim.solvers.contact_state import N_LAG, N_MOTION
@@ -47,21 +49,26 @@ _MOST_CREEP_PASSES = 30
 
 @njit(forceinline=True, **PART)
 def contact_rates(
-    stage, since, i, time, stick_time, mode, bushing, law, functions, hooks, drive, rows
+    stage, since, i, time, stick_time, mode, bushing, hooks, drive, rows
 ) -> tuple[float, float, float, float, float, float]:
     """Fill the rates of the state at a stage, `since` sample `i` of the drive [s].
 
     Returns friction torque, elastomer torque, what holds the surfaces together, what they can
     bear [Nm], the speed of the surface in stick, and that of the shaft [rad/s].
     """
-    s, has_law, contact, context = bushing.system, bushing.has_law, bushing.contact, bushing.context
+    s, has_law, contact, context = (
+        bushing.system,
+        bushing.law != 0,
+        bushing.contact,
+        bushing.context,
+    )
     j_e, k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[0], s[2], s[3], s[4], s[5], s[6], s[7]
     t_crit, t_kin = s[8], s[9]
     u, k = rows.state, rows.stages
     acceleration = drive.slope[i]
     shaft = drive.speed[i] + acceleration * since
     lag = u.size
-    if hooks is not None:  # known when it is compiled
+    if hooks.n > 0:
         lag -= N_LAG
         shaft -= u[lag + 1]
     sticks = mode == 0 and not has_law
@@ -70,7 +77,7 @@ def contact_rates(
     e = k_e * twist + c_e * (surface - u[3])
     critical, kinetic, creep = t_crit, t_kin, 0.0
     mobility, shaft_torque = 0.0, 0.0
-    if hooks is not None:
+    if hooks.n > 0:
         context[TIME], context[STICK_TIME] = time, stick_time
         turned = since * (drive.speed[i] + 0.5 * acceleration * since)
         context[SHAFT_ANGLE] = drive.angle[i] + turned
@@ -87,36 +94,11 @@ def contact_rates(
             contact[CREEP], contact[SHAFT_TORQUE] = 0.0, 0.0
             contact[SHAFT_INERTIA] = math.inf
             at, seen, where = contact.ctypes, context.ctypes, hooks.addresses
-            # One after the other by fixed indices: a loop over a tuple would cost as much again.
-            functions[0](seen, pointer(where[0, 0]), pointer(where[0, 1]), pointer(where[0, 2]), at)
-            if hooks.n > 1:
-                functions[1](
-                    seen, pointer(where[1, 0]), pointer(where[1, 1]), pointer(where[1, 2]), at
-                )
-            if hooks.n > 2:
-                functions[2](
-                    seen, pointer(where[2, 0]), pointer(where[2, 1]), pointer(where[2, 2]), at
-                )
-            if hooks.n > 3:
-                functions[3](
-                    seen, pointer(where[3, 0]), pointer(where[3, 1]), pointer(where[3, 2]), at
-                )
-            if hooks.n > 4:
-                functions[4](
-                    seen, pointer(where[4, 0]), pointer(where[4, 1]), pointer(where[4, 2]), at
-                )
-            if hooks.n > 5:
-                functions[5](
-                    seen, pointer(where[5, 0]), pointer(where[5, 1]), pointer(where[5, 2]), at
-                )
-            if hooks.n > 6:
-                functions[6](
-                    seen, pointer(where[6, 0]), pointer(where[6, 1]), pointer(where[6, 2]), at
-                )
-            if hooks.n > 7:
-                functions[7](
-                    seen, pointer(where[7, 0]), pointer(where[7, 1]), pointer(where[7, 2]), at
-                )
+            for a in range(hooks.n):
+                call_hook_at(
+                    where[a, 0], seen, pointer(where[a, 1]), pointer(where[a, 2]),
+                    pointer(where[a, 3]), at,
+                )  # fmt: skip
             creep = contact[CREEP]
             gap = creep - share
             if not sticks or gap == 0.0:
@@ -145,9 +127,9 @@ def contact_rates(
         holding = (e + j_e * shaft_torque * mobility) / (1.0 + j_e * mobility)
     if has_law:
         # Laws have the first of the inner states, effects those after.
-        friction = law(
-            shaft - surface, bushing.coefficients.ctypes, contact.ctypes, rows.inner.ctypes,
-            rows.inner_rates.ctypes,
+        friction = call_law_at(
+            bushing.law, shaft - surface, bushing.coefficients.ctypes, contact.ctypes,
+            rows.inner.ctypes, rows.inner_rates.ctypes,
         )  # fmt: skip
     elif mode == 0:
         friction = holding
@@ -159,7 +141,7 @@ def contact_rates(
     k[3, stage] = (e - k_b * u[2] - c_b * u[3]) * j_c_inverse
     for j in range(N_MOTION, lag):
         k[j, stage] = rows.rates[j]
-    if hooks is not None:  # the lag of the shaft's end behind its drive
+    if hooks.n > 0:  # the lag of the shaft's end behind its drive
         k[lag, stage] = u[lag + 1]
         turns = acceleration - (shaft_torque - friction) * mobility
         k[lag + 1, stage] = 0.0 if mobility == 0.0 else turns

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from models.errors import ParameterError
-from sim.contact import N_CONTACT, N_CONTEXT
+from sim.contact import N_CONTACT, N_CONTEXT, address_of
 from sim.solvers.contact_state import (
     ANGLE,
     DONE,
@@ -25,7 +25,6 @@ from sim.solvers.contact_state import (
     FAR,
     FRESH,
     MODE,
-    MOST_HOOKS,
     N_CARRIED,
     N_LAG,
     N_MOTION,
@@ -94,7 +93,7 @@ class ContactRun:
     coefficients, law_state : ndarray, shape (n,), optional
         As of the law; its state at the start.
     hooks : tuple of Hook
-        Effects that act on the contact, in this order; at most `MOST_HOOKS`.
+        Effects that act on the contact, in this order.
     name : str
         What errors call the friction.
     tolerance : float
@@ -132,26 +131,16 @@ class ContactRun:
         motion: NDArray[np.float64] | None = None,
     ) -> None:
         # What is not imported before it is needed is not compiled either.
-        from sim.contact import no_hook, no_law
-        from sim.solvers.contact_kernel import contact_loop
+        from sim.solvers.contact_kernel import run_contact
 
-        if len(hooks) > MOST_HOOKS:
-            raise ValueError(f"{len(hooks)} effects act on the contact; at most {MOST_HOOKS} can")
         law_state = np.zeros(0) if law_state is None else law_state
-        functions: list[Any] = [None] * MOST_HOOKS
-        if hooks:
-            functions = [*(hook.function for hook in hooks), *[no_hook] * MOST_HOOKS][:MOST_HOOKS]
         self._rows = empty_rows(n_variables(law_state, hooks))
-        self._hooks = hooks  # whose values the loop reads by their addresses
+        self._functions = law, hooks  # which the loop reads by their addresses
         self._constants = (
-            contact_record(
-                system, critical_torque, kinetic_torque, coefficients, has_law=law is not None
-            ),
-            law or no_law,
-            *functions,
+            contact_record(system, critical_torque, kinetic_torque, law, coefficients),
             hooks_record(hooks, self._rows, law_state.size),
         )
-        self._loop = contact_loop(with_effects=bool(hooks))
+        self._loop: Any = run_contact
         # The error of a step goes with the fifth power of its length.
         self._limits = Limits(LONGEST_STEP / refined, tolerance / refined**5)
         self._step, self._name = step, name
@@ -183,7 +172,7 @@ class ContactRun:
             Of the sliding, by its sign: +1 or -1, 0 in stick [-].
         """
         motion = self._rows.end[:N_MOTION].copy()
-        if not self._constants[0].has_law:
+        if not self._constants[0].law:
             return motion, float(self._carried[NEXT_MODE])
         return motion, math.copysign(1.0, shaft_speed - motion[1])
 
@@ -191,7 +180,7 @@ class ContactRun:
         """Start from a motion, as of `motion`, with the shaft at an angle [rad]."""
         self._rows.end[:N_MOTION] = motion
         self._carried[ANGLE] = angle
-        if not self._constants[0].has_law:
+        if not self._constants[0].law:
             self._carried[[MODE, NEXT_MODE]] = direction
 
     def go_on_from(self, before: ContactRun, shaft_speed: float) -> None:
@@ -283,24 +272,23 @@ def contact_record(
     system: NDArray[np.float64],
     critical_torque: float,
     kinetic_torque: float,
+    law: Any,
     coefficients: NDArray[np.float64] | None,
-    *,
-    has_law: bool,
 ) -> Bushing:
     """Return the lumped model and its friction as compiled code reads them; as of `ContactRun`."""
     j_e, j_c, _, k_b, _, _ = system
     mobilities = [1.0 / j_e, 0.0 if k_b < 0.0 else 1.0 / j_c]  # a fixed clamp does not move
     return Bushing(
         np.array([*system, *mobilities, critical_torque, kinetic_torque]),
-        has_law,
+        address_of(law),
         np.zeros(1) if coefficients is None else coefficients,
         np.zeros(N_CONTEXT),
         np.zeros(N_CONTACT),
     )
 
 
-def hooks_record(hooks: tuple[Hook, ...], rows: Rows, n_law: int) -> Hooks | None:
-    """Return what the effects' functions are called with, None without any.
+def hooks_record(hooks: tuple[Hook, ...], rows: Rows, n_law: int) -> Hooks:
+    """Return what the effects' functions are called with.
 
     Parameters
     ----------
@@ -310,12 +298,10 @@ def hooks_record(hooks: tuple[Hook, ...], rows: Rows, n_law: int) -> Hooks | Non
     n_law : int
         Inner states of the law. They and the hooks must outlive what is returned.
     """
-    if not hooks:
-        return None
-    addresses, first = np.zeros((MOST_HOOKS, 3), dtype=np.int64), N_MOTION + n_law
-    for row, hook in zip(addresses, hooks, strict=False):
+    addresses, first = np.zeros((len(hooks), 4), dtype=np.int64), N_MOTION + n_law
+    for row, hook in zip(addresses, hooks, strict=True):
         arrays = hook.values, rows.state[first:], rows.rates[first:]
-        row[:] = [array.ctypes.data for array in arrays]
+        row[:] = [address_of(hook.function), *(array.ctypes.data for array in arrays)]
         first += hook.n_states
     return Hooks(len(hooks), addresses)
 
@@ -352,7 +338,7 @@ def solve_contact(
     coefficients, law_state : ndarray, shape (n,), optional
         As of the law; its state at the start.
     hooks : tuple of Hook
-        Effects that act on the contact, in this order; at most `MOST_HOOKS`.
+        Effects that act on the contact, in this order.
     name : str
         What errors call the friction.
     tolerance : float

@@ -10,14 +10,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
-    "ANGLE", "DONE", "ERROR", "FAR", "FIRST", "FRESH", "MODE", "MOST_HOOKS", "NEXT_MODE",
+    "ANGLE", "DONE", "ERROR", "FAR", "FIRST", "FRESH", "MODE", "NEXT_MODE",
     "N_CARRIED", "N_LAG", "N_MOTION", "N_STAGES", "SHORTEST_STEP", "SLIDE", "STEP_END",
     "STEP_OF_SLIP", "STEP_OF_STICK", "STEP_START", "STICK_LENGTH", "STICK_START", "Bushing",
     "Drive", "Hooks", "Limits", "Rows", "empty_rows",
 ]  # fmt: skip
-
-MOST_HOOKS = 8
-"""Effects that can act on the contact at once."""
 
 SHORTEST_STEP = 1e-7
 """Average over a run, below which it is given up [s]."""
@@ -69,8 +66,8 @@ class Bushing(NamedTuple):
 
     system: NDArray[np.float64]
     """J_E, J_C, k_E, k_B, c_E, c_B, the inertias' reciprocals, T_crit, T_kin."""
-    has_law: bool
-    """Whether a law tells the friction; else the contact truly sticks."""
+    law: int
+    """Address of the friction law's compiled function; 0 where the contact truly sticks."""
     coefficients: NDArray[np.float64]
     """Of the law."""
     context: NDArray[np.float64]
@@ -85,7 +82,7 @@ class Hooks(NamedTuple):
     n: int
     """Of effects that act."""
     addresses: NDArray[np.int64]
-    """Of values, states and their rates of each effect, shape (n, 3); the latter two lie in `Rows`.
+    """Of function, values, states and their rates of each effect, shape (n, 4).
     Numbers instead of arrays, since each array would be seven arguments to compile and to pass."""
 
 

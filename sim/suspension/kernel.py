@@ -15,22 +15,21 @@ on.
 from __future__ import annotations
 
 import math
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numba import float64, njit, typeof, types
+from numba import float64, njit
 
 from models.compilation import COMPILED, PART
-from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, LAW_SIGNATURE
+from sim.contact import CRITICAL, KINETIC
 from sim.solvers.contact_rates import contact_rates
-from sim.solvers.contact_state import MOST_HOOKS, N_STAGES, SHORTEST_STEP
+from sim.solvers.contact_state import N_STAGES, SHORTEST_STEP
 from sim.solvers.tsitouras import ERROR, NODES, factor_of_step, fill_between, fill_stage
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Chain", "suspension_loop", "torque_gain"]
+__all__ = ["Chain", "run_suspension", "torque_gain"]
 
 _FIRST_STEP = 1e-6
 """[s]"""
@@ -107,7 +106,7 @@ def torque_gain(load) -> float:
 
 @njit(**PART)
 def _fill_rates(
-    stage, since, i, time, u, k, chain, bushings, law, functions, hooks, rows, drive, place, out
+    stage, since, i, time, u, k, chain, bushings, hooks, rows, drive, place, out
 ) -> None:
     """Fill the rates `k` of the state `u` at a stage; `out` gets friction, elastomer, load."""
     n = chain.mobility.size
@@ -144,7 +143,7 @@ def _fill_rates(
         bushing.contact[CRITICAL], bushing.contact[KINETIC] = bushing.system[8], bushing.system[9]
         place.speed[0], place.angle[0] = u[2 * node + 1], u[2 * node]
         friction, elastomer, _, _, _, _ = contact_rates(
-            stage, 0.0, 0, time, time, 0, bushing, law, functions, hooks[b], place, row
+            stage, 0.0, 0, time, time, 0, bushing, hooks[b], place, row
         )
         k[2 * node + 1, stage] -= friction
         out[b, 0], out[b, 1] = friction, elastomer
@@ -170,51 +169,18 @@ def _step_error(k, h, start, end, scale) -> float:
     return largest
 
 
-def suspension_loop(*arguments: Any) -> Any:
-    """Return the compiled loop for arguments of these types, of which law and hooks are functions.
-
-    Parameters
-    ----------
-    *arguments : object
-        As `_run_suspension` takes them.
-
-    Returns
-    -------
-    compiled function
-        `_run_suspension`.
-    """
-    law = types.FunctionType(LAW_SIGNATURE)
-    hook = types.FunctionType(HOOK_SIGNATURE)
-    kinds = [
-        typeof(argument) if isinstance(argument, (tuple, np.ndarray)) else None
-        for argument in arguments
-    ]
-    hooks = [types.none if each is None else hook for each in arguments[_HOOKS]]
-    return _compiled((*kinds[:_LAW], law, *hooks, *kinds[_HOOKS.stop :]))
-
-
-@lru_cache
-def _compiled(kinds: tuple[Any, ...]) -> Any:
-    return njit(types.void(*kinds), cache=True, nogil=True, **COMPILED)(_run_suspension)
-
-
-_LAW = 2
-_HOOKS = slice(3, 3 + MOST_HOOKS)
-"""Where the functions stand among the arguments."""
-
-
-def _run_suspension(
-    chain, bushings, law, h0, h1, h2, h3, h4, h5, h6, h7, hooks, rows, drive, place, limits, start,
-    scale, k, work, states, torques_now, torques,
+@njit(cache=True, nogil=True, **COMPILED)
+def run_suspension(
+    chain, bushings, hooks, rows, drive, place, limits, start, scale, k, work, states, torques_now,
+    torques,
 ) -> None:  # fmt: skip
     """Write states and torques at the samples of the drive; not a number where it is given up."""
-    functions = (h0, h1, h2, h3, h4, h5, h6, h7)
     d, n, step = start.size, states.shape[0], drive.step
     u, following = work[0], work[1]
     last = n - 2
     t, h, sample, n_done, error_before = 0.0, _FIRST_STEP, 0, 0.0, 0.0
     _fill_rates(
-        0, 0.0, 0, 0.0, start, k, chain, bushings, law, functions, hooks, rows, drive, place,
+        0, 0.0, 0, 0.0, start, k, chain, bushings, hooks, rows, drive, place,
         torques_now,
     )  # fmt: skip
     while sample < n:
@@ -227,7 +193,7 @@ def _run_suspension(
             time = t + NODES[stage] * h
             i = min(int(time / step), last)
             _fill_rates(
-                stage, time - i * step, i, time, u, k, chain, bushings, law, functions, hooks,
+                stage, time - i * step, i, time, u, k, chain, bushings, hooks,
                 rows, drive, place, torques_now,
             )  # fmt: skip
         error = _step_error(k, h, start, u, scale) / limits.tolerance
@@ -247,8 +213,8 @@ def _run_suspension(
                 states[sample, j] = u[j]
             i = min(sample, last)
             _fill_rates(
-                N_STAGES, (sample - i) * step, i, sample * step, u, k, chain, bushings, law,
-                functions, hooks, rows, drive, place, torques[sample],
+                N_STAGES, (sample - i) * step, i, sample * step, u, k, chain, bushings, hooks,
+                rows, drive, place, torques[sample],
             )  # fmt: skip
             sample += 1
         for j in range(d):

@@ -30,7 +30,6 @@ from sim.solvers.contact_solver import (
     n_variables,
 )
 from sim.solvers.contact_state import (
-    MOST_HOOKS,
     N_LAG,
     N_MOTION,
     N_STAGES,
@@ -186,8 +185,7 @@ def solve_chain(
     ParameterError
         The friction law is one of constant torques, or no steps follow the motion.
     """
-    from sim.contact import no_hook
-    from sim.suspension.kernel import Chain, suspension_loop
+    from sim.suspension.kernel import Chain, run_suspension
 
     law = friction_law(rig.friction.name)
     if law.torque is None:
@@ -205,7 +203,7 @@ def solve_chain(
     first, block = 2 * chain.inertia.size, n_variables(rest, hooks[0])
     rows = tuple(empty_rows(block) for _ in places)
     bushings = tuple(
-        contact_record(system.packed(), *torque_limits, law.coefficients(values), has_law=True)
+        contact_record(system.packed(), *torque_limits, law.torque, law.coefficients(values))
         for _ in places
     )
     n, start = speed.size, np.zeros(first + block * len(places))
@@ -223,8 +221,6 @@ def solve_chain(
         if hooks[b]:
             scale[begin + block - N_LAG : begin + block] = scales
     states, torques = np.empty((n, start.size)), np.empty((n, len(places), 3))
-    functions = [hook.function for hook in hooks[0]]
-    idle = no_hook if functions else None
     arguments = (
         Chain(
             1.0 / chain.inertia, chain.stiffness, chain.damping, chain.link_stiffness,
@@ -232,9 +228,6 @@ def solve_chain(
             np.full(len(places), preload), np.tile(torque_limits, (len(places), 1)),
         ),
         bushings,
-        law.torque,
-        *functions,
-        *[idle] * (MOST_HOOKS - len(functions)),
         tuple(hooks_record(own, row, rest.size) for own, row in zip(hooks, rows, strict=True)),
         rows,
         Drive(1.0 / rate, speed, _slope(speed, rate), _integral(speed, rate)),
@@ -243,7 +236,7 @@ def solve_chain(
         start, scale, np.zeros((start.size, N_STAGES + 1)), np.empty((2, start.size)), states,
         np.empty((len(places), 3)), torques,
     )  # fmt: skip
-    suspension_loop(*arguments)(*arguments)
+    run_suspension(*arguments)
     if not np.isfinite(states[-1]).all():
         raise ParameterError(
             "suspension: the motion cannot be followed; make links, bar or contact softer or "

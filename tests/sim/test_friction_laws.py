@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from numba import float64, njit, types
+from numba import float64, int64, njit
 from scipy.optimize import brentq
 
 from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
-from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE, N_CONTACT, call_law
+from sim.contact import CRITICAL, KINETIC, N_CONTACT, address_of, call_law, call_law_at
 from sim.friction import LAWS, friction_law
 from sim.friction.bond_population import LAW as BONDS
 from sim.friction.maxwell_slip import N_ELEMENTS
@@ -37,17 +37,22 @@ CONSTANT_AT_EQUAL_TORQUES = tuple(n for n in NAMES if n not in {"bond_population
 _VECTOR = float64[::1]
 
 
-@njit(_VECTOR(types.FunctionType(LAW_SIGNATURE), _VECTOR, _VECTOR, _VECTOR, _VECTOR, float64))
+@njit
+def _torque(law, v, coefficients, contact, state, rates):
+    return call_law_at(law, v, coefficients.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
+
+
+@njit(_VECTOR(int64, _VECTOR, _VECTOR, _VECTOR, _VECTOR, float64))
 def _followed(law, coefficients, contact, state, speed, step):
     """Torque at each time while the surface slides at `speed`; `state` becomes the last."""
     torque = np.empty(speed.size)
     rates = np.zeros((4, state.size))
     for i in range(speed.size):
         v = speed[i]
-        torque[i] = call_law(law, v, coefficients, contact, state, rates[0])
-        call_law(law, v, coefficients, contact, state + 0.5 * step * rates[0], rates[1])
-        call_law(law, v, coefficients, contact, state + 0.5 * step * rates[1], rates[2])
-        call_law(law, v, coefficients, contact, state + step * rates[2], rates[3])
+        torque[i] = _torque(law, v, coefficients, contact, state, rates[0])
+        _torque(law, v, coefficients, contact, state + 0.5 * step * rates[0], rates[1])
+        _torque(law, v, coefficients, contact, state + 0.5 * step * rates[1], rates[2])
+        _torque(law, v, coefficients, contact, state + step * rates[2], rates[3])
         state += step / 6.0 * (rates[0] + 2.0 * rates[1] + 2.0 * rates[2] + rates[3])
     return torque
 
@@ -60,7 +65,7 @@ def follow(name, speed, given=None, torques=(T_CRIT, T_KIN), step=STEP):
     contact[CRITICAL], contact[KINETIC] = torques
     state = law.state()
     speed = np.ascontiguousarray(speed, dtype=float)
-    return _followed(law.torque, coefficients, contact, state, speed, step), state
+    return _followed(address_of(law.torque), coefficients, contact, state, speed, step), state
 
 
 def steady(name, speed, given=None, torques=(T_CRIT, T_KIN), angle=0.05):

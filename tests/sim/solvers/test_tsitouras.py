@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from numba import njit
 
 from sim.solvers.contact_state import N_STAGES
 from sim.solvers.tsitouras import NODES, factor_of_step, fill_between, fill_stage, step_error
@@ -17,11 +18,16 @@ def pendulums(t, u):
     return np.array([u[1], -math.sin(u[0]) - pull + 0.4 * math.cos(1.3 * t), u[3], pull - u[2]])
 
 
+@njit
+def fill(u, start, k, stage, h):  # which compiled code alone can call
+    fill_stage(u, start, k, stage, h)
+
+
 def step(start, t, h):
     """End of a step, and the rates at its stages."""
     k, u = np.zeros((4, N_STAGES)), np.zeros(4)
     for stage in range(N_STAGES):
-        fill_stage.py_func(u, start, k, stage, h)
+        fill(u, start, k, stage, h)
         k[:, stage] = pendulums(t + NODES[stage] * h, u)
     return u, k
 
