@@ -15,9 +15,11 @@ import ctypes
 from functools import lru_cache
 from typing import Any
 
-from llvmlite import ir
+from llvmlite import ir  # type: ignore[import-untyped]
 from numba import float64, int64, njit, types
-from numba.extending import intrinsic
+from numba.extending import intrinsic as numba_intrinsic
+
+intrinsic: Any = numba_intrinsic  # its context is not among the arguments of a call
 
 # Context.
 TIME = 0
@@ -125,13 +127,17 @@ def address_of(function: Any) -> int:
     return 0 if function is None else _address_of(function)
 
 
-def call_hook(hook, context, values, state, state_rates, contact):
+def call_hook(
+    hook: Any, context: Any, values: Any, state: Any, state_rates: Any, contact: Any
+) -> None:
     """Call an effect's compiled function with arrays, by `HOOK_SIGNATURE`."""
     arrays = context, values, state, state_rates, contact
     _c_function(hook, None)(*(array.ctypes.data for array in arrays))
 
 
-def call_law(law, sliding_speed, coefficients, contact, state, state_rates):
+def call_law(
+    law: Any, sliding_speed: float, coefficients: Any, contact: Any, state: Any, state_rates: Any
+) -> float:
     """Call a law's compiled function with arrays, by `LAW_SIGNATURE`; returns its torque [Nm]."""
     arrays = coefficients, contact, state, state_rates
     function = _c_function(law, ctypes.c_double, ctypes.c_double)
