@@ -13,11 +13,10 @@ reading is the offset and the sensitivity times the value.
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise, zip_longest
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -185,17 +184,24 @@ def read_calibration(given: Any, kind: str, folder: Path, where: str) -> Calibra
     9.900990099009901
     """
     if isinstance(given, str):
-        return read_table(folder / given, kind, where)
+        from models.foreign_table import read_table
+
+        path = folder / given
+        where = f"{where}: {path}"
+        with reading(path, "CSV table", where=where, largest=LARGEST_TEXT):
+            table = read_table(path)
+        names = (
+            "_".join(filter(None, both)) for both in zip(table.names, table.units, strict=True)
+        )
+        columns = dict(zip(names, table.values.T.tolist(), strict=True))
+        return _curve(columns, kind, where, path.name)
     if not isinstance(given, Mapping):
         raise ParameterError(
             f'{where} = {given!r} must be the name of a table, "cell.csv", or a line, '
             "{ sensitivity = 12.19, offset = 0.4222 }"
         )
     if VALUE_COLUMNS[kind] in given:
-        columns = [given[name] if isinstance(given[name], list) else [] for name in given]
-        rows = zip_longest(*columns, fillvalue="")
-        lines = [(n, [str(cell) for cell in row]) for n, row in enumerate(rows, start=1)]
-        return _curve(list(given), lines, kind, where, "its table")
+        return _curve(given, kind, where, "its table")
     refuse_unknown(given, {"sensitivity", "offset", "reading"}, where)
     sensitivity = number(given, "sensitivity", where, low=-math.inf)
     offset = number({"offset": 0.0, **given}, "offset", where, low=-math.inf)
@@ -211,34 +217,8 @@ def read_calibration(given: Any, kind: str, folder: Path, where: str) -> Calibra
     return Calibration.line(sensitivity, offset, unit)
 
 
-def read_table(path: Path, kind: str, where: str) -> Calibration:
-    """Read a table of readings and values of a kind of channel.
-
-    Parameters
-    ----------
-    path : Path
-    kind : str
-    where : str
-        What messages call the entry.
-
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, or is no curve that can be turned round.
-    """
-    where = f"{where}: {path}"
-    with reading(path, "CSV table", where=where, largest=LARGEST_TEXT):
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = csv.reader(file)
-            lines = [(rows.line_num, [cell.strip() for cell in row]) for row in rows if any(row)]
-        columns = lines[0][1] if lines else []
-        return _curve(columns, lines[1:], kind, where, path.name)
-
-
-def _curve(
-    columns: list[str], lines: list[tuple[int, list[str]]], kind: str, where: str, source: str
-) -> Calibration:
-    """Make a curve of the lines of a table, each with its number."""
+def _curve(columns: Mapping[str, Any], kind: str, where: str, source: str) -> Calibration:
+    """Make a curve of the columns of a table."""
     value = VALUE_COLUMNS[kind]
     units = [name for name in columns if name in _READING_COLUMNS]
     if value not in columns or len(units) != 1:
@@ -248,8 +228,14 @@ def _curve(
             f"{where}: has the columns {', '.join(columns) or 'none'}, expected {value} and one of "
             f"{', '.join(_READING_COLUMNS)}{next(filter(None, hints), '')}"
         )
-    places = (columns.index(value), columns.index(units[0]))
-    points = sorted(_point(cells, places, f"{where}, line {n}") for n, cells in lines)
+    try:
+        points = sorted(zip(*(map(float, columns[x]) for x in (value, units[0])), strict=True))
+    except (TypeError, ValueError):
+        points = [(math.nan, math.nan)]
+    if not all(math.isfinite(x) for point in points for x in point):
+        raise ParameterError(
+            f"{where}: {value} and {units[0]} must be finite numbers, as many of each"
+        )
     if len(points) < _FEWEST:
         raise ParameterError(
             f"{where}: has {len(points)} rows, and a table {_FEWEST} or more; two readings are a "
@@ -259,17 +245,6 @@ def _curve(
     points.sort(key=lambda point: point[1])
     values, readings = zip(*points, strict=True)
     return Calibration(readings, values, _READING_COLUMNS[units[0]], source=source)
-
-
-def _point(cells: list[str], places: tuple[int, int], where: str) -> tuple[float, float]:
-    """Value and reading of a row."""
-    try:
-        value, reading = (float(cells[place]) for place in places)
-    except (ValueError, IndexError):
-        value = reading = math.nan
-    if not (math.isfinite(value) and math.isfinite(reading)):
-        raise ParameterError(f"{where} is {','.join(cells)!r}, expected two numbers")
-    return value, reading
 
 
 def _check_monotonic(points: list[tuple[float, float]], name: str, where: str) -> None:

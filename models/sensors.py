@@ -213,13 +213,13 @@ def _for_all(given: Any, name: str, ranged: list[str], where: str) -> dict[str, 
     """One number for all kinds of channel, or for those whose range is stated."""
     if name == "antialias":
         return dict.fromkeys(CHANNEL_UNITS, given)
-    if name == "bits":
-        if not ranged:
-            raise ParameterError(
-                f"{where}: bits without a range, of which a step is a share; add range = "
-                "{ torque = ... }"
-            )
+    if name == "bits" and ranged:
         return dict.fromkeys(ranged, given)
+    if name == "bits":
+        raise ParameterError(
+            f"{where}: bits without a range, of which a step is a share; add range = "
+            "{ torque = ... }"
+        )
     words = f'"{FROM_RECORDINGS}", or ' if name == "noise" else ""
     raise ParameterError(
         f"{where}: {_KEYS[name]} = {given!r} must be {words}a table by channel, such as "
@@ -229,21 +229,18 @@ def _for_all(given: Any, name: str, ranged: list[str], where: str) -> dict[str, 
 
 def _checked(sensors: Sensors, where: str) -> Sensors:
     """Refuse bits that are not whole, or without a range; return them as whole numbers."""
+    checked = {}
     for kind, sensor in sensors.by_kind.items():
-        if sensor.bits is not None and sensor.full_scale is None:
+        bits = None if sensor.bits is None else int(sensor.bits)
+        if bits is not None and sensor.full_scale is None:
             raise ParameterError(
                 f"{where}: bits of {kind} without a range, of which a step is a share; add range = "
                 f"{{ {kind} = ... }}"
             )
-        if sensor.bits is not None and sensor.bits != int(sensor.bits):
+        if bits != sensor.bits:
             raise ParameterError(f"{where}: bits = {sensor.bits!r} must be a whole number")
-    return replace(
-        sensors,
-        by_kind={
-            kind: sensor if sensor.bits is None else replace(sensor, bits=int(sensor.bits))
-            for kind, sensor in sensors.by_kind.items()
-        },
-    )
+        checked[kind] = replace(sensor, bits=bits)
+    return replace(sensors, by_kind=checked)
 
 
 def sensors_table(sensors: Sensors) -> dict[str, Any]:

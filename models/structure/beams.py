@@ -52,7 +52,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -175,21 +176,13 @@ _RIGID = 1e4
 stiffness; a larger number would cost the eigenvalues their digits."""
 
 
-@dataclass(frozen=True, eq=False)
-class HalfStructure:
-    """A beam on the coordinates theta, then deflection and slope of each inner node.
+class _Half(NamedTuple):
+    """One beam on the coordinates theta, then deflection and slope of each inner node.
 
-    Deflection and slope at the anchor follow where the anchor is not rigid.
-
-    Parameters
-    ----------
-    stiffness, mass : ndarray, shape (n, n)
-        Of this one beam with the springs of its anchor [SI units of the coordinates].
-    expansion : ndarray, shape (2 n_nodes, n)
-        To deflection [m] and slope of every node from the clamp to the anchor.
-    anchor_stiffness, anchor_mass : ndarray, shape (2, n)
-        Force [N] and moment [Nm] that the anchor must exert on the beam, by displacements and
-        accelerations.
+    `stiffness` and `mass`, shape (n, n), are with the springs of its anchor; `expansion`, shape
+    (2 n_nodes, n), leads to deflection and slope of every node from the clamp to the anchor, which
+    follow there where it is not rigid; `anchor_stiffness` and `anchor_mass`, shape (2, n), to force
+    and moment that the anchor must exert on the beam, by displacements and accelerations.
     """
 
     stiffness: NDArray[np.float64]
@@ -199,49 +192,16 @@ class HalfStructure:
     anchor_mass: NDArray[np.float64]
 
 
-def half_structure(
-    *,
-    bending_stiffness: float,
-    mass_per_length: float,
-    length: float,
-    lever: float,
-    anchor_translation: float = math.inf,
-    anchor_rotation: float = math.inf,
-) -> HalfStructure:
-    """Assemble the beam.
+def _half_structure(beams: Beams, support_stiffness: float) -> _Half:
+    """One beam on its anchor, at the level of stiffness and mass that meets k_B at rest.
 
-    Parameters
-    ----------
-    bending_stiffness : float
-        E I [N m2]
-    mass_per_length : float
-        [kg/m]
-    length, lever : float
-        Of the beam, and from the axis of rotation to its root [m].
-    anchor_translation, anchor_rotation : float, optional
-        Stiffness of the anchor against deflection [N/m] and slope [Nm/rad].
-
-    Returns
-    -------
-    HalfStructure
-
-    Notes
-    -----
-    M. Petyt, *Introduction to Finite Element Vibration Analysis*, chapter 3: the beam element
-    with deflection and slope at its nodes.
-
-    Examples
-    --------
-    Turning the clamp by 1 rad with the beam's other coordinates free takes half of (4.11):
-
-    >>> half = half_structure(
-    ...     bending_stiffness=13.549, mass_per_length=0.645, length=0.123, lever=0.0449
-    ... )
-    >>> round(2 / float(np.linalg.inv(half.stiffness)[0, 0]), 1)
-    2198.6
+    M. Petyt, *Introduction to Finite Element Vibration Analysis*, chapter 3: the beam element with
+    deflection and slope at its nodes.
     """
+    length = beam_length(beams, support_stiffness)
+    level = support_stiffness / torsional_stiffness(beams, length)
     h = length / N_ELEMENTS
-    element_stiffness = (bending_stiffness / h**3) * np.array(
+    element_stiffness = (level * bending_stiffness(beams) / h**3) * np.array(
         [
             [12, 6 * h, -12, 6 * h],
             [6 * h, 4 * h**2, -6 * h, 2 * h**2],
@@ -249,7 +209,7 @@ def half_structure(
             [6 * h, 2 * h**2, -6 * h, 4 * h**2],
         ]
     )
-    element_mass = (mass_per_length * h / 420) * np.array(
+    element_mass = (level * mass_per_length(beams) * h / 420) * np.array(
         [
             [156, 22 * h, 54, -13 * h],
             [22 * h, 4 * h**2, 13 * h, -3 * h**2],
@@ -263,15 +223,15 @@ def half_structure(
         nodes = slice(2 * element, 2 * element + 4)
         stiffness[nodes, nodes] += element_stiffness
         mass[nodes, nodes] += element_mass
-    springs = np.array([anchor_translation, anchor_rotation])
+    springs = level * np.array([beams.anchor_translation, beams.anchor_rotation])
     yielding = np.flatnonzero(springs < _RIGID * np.diag(element_stiffness)[2:])
     free = np.array([*range(2, size - 2), *(size - 2 + yielding)])
     expansion = np.zeros((size, 1 + free.size))
-    expansion[:2, 0] = lever, 1.0
+    expansion[:2, 0] = beams.lever, 1.0
     expansion[free, 1 + np.arange(free.size)] = 1.0
     held = stiffness.copy()
     held[size - 2 + yielding, size - 2 + yielding] += springs[yielding]
-    return HalfStructure(
+    return _Half(
         stiffness=expansion.T @ held @ expansion,
         mass=expansion.T @ mass @ expansion,
         expansion=expansion,
@@ -495,22 +455,8 @@ def beam_structure(
     )
 
 
-def _half_structure(beams: Beams, support_stiffness: float) -> HalfStructure:
-    """One beam on its anchor, at the level of stiffness and mass that meets k_B at rest."""
-    length = beam_length(beams, support_stiffness)
-    level = support_stiffness / torsional_stiffness(beams, length)
-    return half_structure(
-        bending_stiffness=level * bending_stiffness(beams),
-        mass_per_length=level * mass_per_length(beams),
-        length=length,
-        lever=beams.lever,
-        anchor_translation=level * beams.anchor_translation,
-        anchor_rotation=level * beams.anchor_rotation,
-    )
-
-
 def _deflection_rows(
-    half: HalfStructure, lever: float, length: float, distances: Sequence[float]
+    half: _Half, lever: float, length: float, distances: Sequence[float]
 ) -> NDArray[np.float64]:
     """Rows that take the coordinates to the deflection at distances from the axis."""
     turning = np.zeros(half.expansion.shape[1])
@@ -613,10 +559,7 @@ def beams_pressure(
             )
             taps = integral.taps(np.concatenate([moved, -moved]))
             heard = np.zeros_like(pressure)
-            add_ringing(
-                heard, model.frequencies, model.damping_ratios, model.inputs, taps, integral.delay,
-                rate,
-            )  # fmt: skip
+            add_ringing(heard, model, model.inputs, taps, integral.delay, rate)
             pressure += lfilter(zeros, poles, heard)
     return pressure
 

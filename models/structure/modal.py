@@ -19,6 +19,7 @@ to a sixth of the sampling rate such a mode differs by less than 0.5 dB, however
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -169,8 +170,7 @@ def displacement_section(
 
 def add_ringing(
     response: NDArray[np.float64],
-    frequencies: NDArray[np.float64],
-    damping_ratios: NDArray[np.float64],
+    modes: Any,
     inputs: NDArray[np.float64],
     taps: NDArray[np.float64],
     delay: int,
@@ -182,8 +182,8 @@ def add_ringing(
     ----------
     response : ndarray, shape (n_inputs, n_samples)
         What is heard after a unit sample of each input; it is added to [unit of what is heard].
-    frequencies, damping_ratios : ndarray, shape (n_modes,)
-        [Hz] and [-]
+    modes : object
+        With `frequencies` [Hz] and `damping_ratios` [-], ndarrays of shape (n_modes,).
     inputs : ndarray, shape (n_modes, n_inputs)
         Modal force for a unit of each input [1/sqrt(kg) for a force].
     taps : ndarray, shape (n_taps, n_modes)
@@ -196,12 +196,15 @@ def add_ringing(
     Examples
     --------
     >>> heard, one = np.zeros((1, 8)), np.ones((1, 1))
-    >>> add_ringing(heard, np.array([100.0]), np.array([0.01]), one, one, 3, 8e3)
+    >>> mode = ModalModel(np.array([100.0]), np.array([0.01]), one, one, one, 0 * one)
+    >>> add_ringing(heard, mode, one, one, 3, 8e3)
     >>> heard[0, :4].round(2)
     array([0., 0., 0., 1.])
     """
     n_samples = response.shape[1]
-    for r, (frequency, ratio) in enumerate(zip(frequencies, damping_ratios, strict=True)):
+    for r, (frequency, ratio) in enumerate(
+        zip(modes.frequencies, modes.damping_ratios, strict=True)
+    ):
         ringing = taps.shape[0] + ringing_samples(frequency, ratio, rate, n_samples)
         end = min(delay + ringing, n_samples)
         excitation = np.zeros(ringing)

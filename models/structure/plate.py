@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
@@ -37,47 +37,9 @@ SPARE_NODES = 24
 """Nodes beyond half the degree and the wavenumber, for transforms exact to rounding."""
 
 
-class Basis(Protocol):
-    """Functions along one side of the plate, even and odd ones in turn."""
-
-    def values(self, x: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
-        """Values at x [m] from the middle, or first derivatives [1/m], shape (..., n)."""
-
-    def transform(self, wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Integral of even ones times cos(k x), odd ones times sin(k x) [m]; shape (..., n)."""
-
-
-class Products(Protocol):
-    """How the products of two bases make up the mode shapes."""
-
-    def combine(
-        self, along: NDArray[np.float64], across: NDArray[np.float64], some: slice
-    ) -> NDArray[np.float64]:
-        """Values of some modes from those of the bases.
-
-        Parameters
-        ----------
-        along : ndarray, shape (n, n_along)
-            Values of the functions along the plate [-].
-        across : ndarray, shape (n or 1, m, n_across)
-            Values of those across it [-].
-            For each of the n positions along the plate m positions across it.
-        some : slice
-            Of the modes.
-
-        Returns
-        -------
-        ndarray, shape (n, m, n_some)
-            [-]
-        """
-
-    def weighted(self, amplitudes: NDArray[np.complex128]) -> NDArray[np.complex128]:
-        """Amplitude of each product, shape (n_along, n_across), from those of the modes."""
-
-
 @dataclass(frozen=True)
 class SineBasis:
-    """sin(m pi (x / length + 1/2)), m = 1 ... `count`.
+    """sin(m pi (x / length + 1/2)), m = 1 ... `count`: even and odd ones in turn.
 
     Examples
     --------
@@ -158,7 +120,11 @@ class SingleProducts:
     def combine(
         self, along: NDArray[np.float64], across: NDArray[np.float64], some: slice
     ) -> NDArray[np.float64]:
-        """Values of some modes [-], shape (n, m, n_some)."""
+        """Values of some modes [-], shape (n, m, n_some).
+
+        From those of the functions along the plate, shape (n, n_along), and for each of the n
+        positions m positions across it, shape (n or 1, m, n_across).
+        """
         return along[:, None, self.along[some]] * across[..., self.across[some]]
 
     def weighted(self, amplitudes: NDArray[np.complex128]) -> NDArray[np.complex128]:
@@ -184,6 +150,10 @@ class SumsOfProducts:
     def weighted(self, amplitudes: NDArray[np.complex128]) -> NDArray[np.complex128]:
         """Amplitude of each product."""
         return np.asarray(np.tensordot(amplitudes, self.coefficients, axes=1))
+
+
+Basis = SineBasis | LegendreBasis
+Products = SingleProducts | SumsOfProducts
 
 
 def supported_modes(
@@ -434,10 +404,7 @@ def pressure_response(
     for position, weight in microphone.images(modes.plate):
         taps, delay = _mode_taps(modes, position, rate)
         if delay < n_samples:
-            add_ringing(
-                response, modes.frequencies, modes.damping_ratios, drives,
-                weight * taps / modes.mass, delay, rate,
-            )  # fmt: skip
+            add_ringing(response, modes, drives, weight * taps / modes.mass, delay, rate)
     return response
 
 

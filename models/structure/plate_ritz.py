@@ -17,8 +17,7 @@ import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
 from numpy.typing import NDArray
 from scipy.linalg import cholesky, eigh, null_space, solve_triangular
-
-from models.single_thread import single_thread
+from threadpoolctl import threadpool_limits
 
 RESTRAINED = {"free": 0, "simply_supported": 1, "clamped": 2}
 """How many of deflection and slope each edge holds."""
@@ -104,7 +103,8 @@ def ritz_modes(
     )
     typical = stiffness_per_mass / (sides[0] * sides[1]) ** 2
     highest = 2 * np.pi * highest_frequency
-    with single_thread():
+    # Some hundred rows: threads that wait for each other take ten times as long as one.
+    with threadpool_limits(limits=1, user_api="blas"):
         solved = [
             _block(x, y, sides, poisson_ratio, stiffness_per_mass, typical, highest)
             for x in along
