@@ -14,7 +14,7 @@ import csv
 import warnings
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +28,8 @@ from models.transfer_functions.uff import (
     FREQUENCY_RESPONSE,
     UFF_ENDINGS,
     UffFunction,
-    check_uff_library,
     read_uff_functions,
+    uff_library,
     write_uff_functions,
 )
 from models.units import quantity_of_unit, split_ratio
@@ -64,49 +64,44 @@ def check_transfer_function(transfer: TransferFunction) -> TransferFunction:
     Traceback (most recent call last):
     models.errors.ParameterError: hit.csv: frequency_hz falls from 8 to 7 Hz at line 2; it must rise
     """
-    f, n = transfer.frequencies, transfer.frequencies.size
-    if transfer.frequencies.ndim != 1 or n < FEWEST_LINES:
+    f, name = transfer.frequencies, transfer.name
+    if f.ndim != 1 or f.size < FEWEST_LINES:
         raise ParameterError(
-            f"{transfer.name}: frequency_hz has shape {f.shape}; it must be at least "
-            f"{FEWEST_LINES} frequencies in a row"
+            f"{name}: frequency_hz has shape {f.shape}; it must be at least {FEWEST_LINES} "
+            "frequencies in a row"
         )
-    columns = {"frequency_hz": f, "response": transfer.response}
-    if transfer.coherence is not None:
-        columns["coherence"] = transfer.coherence
+    coherence = np.ones(f.size) if transfer.coherence is None else transfer.coherence
+    columns = {"frequency_hz": f, "response": transfer.response, "coherence": coherence}
     for key, values in columns.items():
-        if values.shape != (n,):
+        if values.shape != f.shape:
             raise ParameterError(
-                f"{transfer.name}: {key} has shape {values.shape}, frequency_hz {f.shape}; "
-                "they must be alike"
+                f"{name}: {key} has shape {values.shape}, frequency_hz {f.shape}; they must be "
+                "alike"
             )
         possible = np.abs(values) < _LARGEST  # no NaN is
         if not possible.all():
             first = int(np.argmin(possible))
             raise ParameterError(
-                f"{transfer.name}: {key} is {values[first]} at line {first + 1}; it must be "
-                f"finite, and below {_LARGEST:g}"
+                f"{name}: {key} is {values[first]} at line {first + 1}; it must be finite, and "
+                f"below {_LARGEST:g}"
             )
     if f[0] < 0.0:
-        raise ParameterError(
-            f"{transfer.name}: frequency_hz starts at {f[0]:g} Hz; it must be 0 or more"
-        )
+        raise ParameterError(f"{name}: frequency_hz starts at {f[0]:g} Hz; it must be 0 or more")
     steps = np.diff(f)
     rising = steps > _LEAST_STEP * f[-1]
     if not rising.all():
         first = int(np.argmin(rising))
         verb = "stays at" if steps[first] >= 0 else f"falls from {f[first]:g} to"
         raise ParameterError(
-            f"{transfer.name}: frequency_hz {verb} {f[first + 1]:g} Hz at line {first + 2}; "
-            "it must rise"
+            f"{name}: frequency_hz {verb} {f[first + 1]:g} Hz at line {first + 2}; it must rise"
         )
-    coherence = transfer.coherence
-    if coherence is not None and not (coherence.min() >= 0.0 and coherence.max() <= 1 + 1e-9):
+    if not (coherence.min() >= 0.0 and coherence.max() <= 1 + 1e-9):
         raise ParameterError(
-            f"{transfer.name}: coherence goes from {coherence.min():g} to {coherence.max():g}; "
-            "it must lie between 0 and 1"
+            f"{name}: coherence goes from {coherence.min():g} to {coherence.max():g}; it must lie "
+            "between 0 and 1"
         )
     if not transfer.response.any():
-        raise ParameterError(f"{transfer.name}: response is zero throughout")
+        raise ParameterError(f"{name}: response is zero throughout")
     return transfer
 
 
@@ -166,8 +161,6 @@ ENDINGS = (".npz", ".csv", *UFF_ENDINGS)
 _WHATS = {".npz": "NPZ file", ".csv": "CSV table", **dict.fromkeys(UFF_ENDINGS, "universal file")}
 """What messages call a file by its ending."""
 
-_COLUMNS = ("frequency_hz", "real", "imag")
-
 
 def check_transfer_function_path(path: Path) -> None:
     """Refuse a path of no known format, or one whose library is not installed.
@@ -187,7 +180,7 @@ def check_transfer_function_path(path: Path) -> None:
     if ending not in ENDINGS:
         raise ParameterError(f"{path}: responses end in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
     if ending in UFF_ENDINGS:
-        check_uff_library(path)
+        uff_library(path)
 
 
 def read_transfer_function(path: Path, *, input_unit: str, output_unit: str) -> TransferFunction:
@@ -258,36 +251,22 @@ def write_transfer_function(path: Path, transfer: TransferFunction) -> None:
     1.0
     """
     check_transfer_function_path(path)
+    f, coherence = transfer.frequencies, transfer.coherence
     ending = path.suffix.lower()
     if ending == ".npz":
-        arrays: dict[str, Any] = {
-            "frequency_hz": transfer.frequencies,
-            "response": transfer.response,
-            "input_unit": np.array(transfer.input_unit),
-            "output_unit": np.array(transfer.output_unit),
-        }
-        if transfer.coherence is not None:
-            arrays["coherence"] = transfer.coherence
-        np.savez(path, **arrays)
+        units = {"input_unit": transfer.input_unit, "output_unit": transfer.output_unit}
+        arrays = {"frequency_hz": f, "response": transfer.response, "coherence": coherence, **units}
+        np.savez(path, **{key: array for key, array in arrays.items() if array is not None})
     elif ending == ".csv":
         with path.open("w", encoding="utf-8", newline="") as file:
             write_transfer_function_csv(file, transfer)
     else:
-        function = UffFunction(
-            FREQUENCY_RESPONSE,
-            transfer.frequencies,
-            transfer.response,
-            transfer.output_unit,
-            transfer.input_unit,
-            "frequency response",
-        )
-        functions = [function]
-        if transfer.coherence is not None:
-            functions.append(
-                UffFunction(
-                    COHERENCE, transfer.frequencies, transfer.coherence, "", "", "coherence"
-                )
-            )
+        units = (transfer.output_unit, transfer.input_unit)
+        functions = [
+            UffFunction(FREQUENCY_RESPONSE, f, transfer.response, *units, "frequency response")
+        ]
+        if coherence is not None:
+            functions.append(UffFunction(COHERENCE, f, coherence, "", "", "coherence"))
         write_uff_functions(path, functions)
 
 
@@ -303,45 +282,42 @@ def write_transfer_function_csv(file: TextIO, transfer: TransferFunction) -> Non
     1.0,0.0,1.0,
     2.0,0.0,2.0,
     """
-    coherence = (
-        [""] * transfer.frequencies.size
-        if transfer.coherence is None
-        else transfer.coherence.tolist()
-    )
-    real, imag = transfer.response.real.tolist(), transfer.response.imag.tolist()
+    columns = transfer.columns
+    columns.setdefault("coherence", [""] * transfer.frequencies.size)
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow([*_COLUMNS, "coherence"])
-    writer.writerows(zip(transfer.frequencies.tolist(), real, imag, coherence, strict=True))
+    writer.writerow(columns)
+    writer.writerows(zip(*columns.values(), strict=True))
+
+
+_KEYS = {
+    "frequency_hz": ("iuf", "numbers"),
+    "response": ("c", "complex"),
+    "coherence": ("iuf", "numbers"),
+    "input_unit": ("US", "a text"),
+    "output_unit": ("US", "a text"),
+}
+"""Of an NPZ file: kinds of array, and what messages call them."""
 
 
 def _read_npz(path: Path) -> TransferFunction:
     held = read_arrays(path)
-    for key in ("frequency_hz", "response", "input_unit", "output_unit"):
-        if key not in held:
+    for key, (kinds, words) in _KEYS.items():
+        if key not in held and key != "coherence":
             raise ParameterError(f"{path}: has no {key}; it holds {', '.join(held) or 'nothing'}")
-    for key in ("frequency_hz", "response", "coherence"):
-        if key in held and held[key].dtype.kind not in ("iufc" if key == "response" else "iuf"):
-            raise ParameterError(f"{path}: {key} has type {held[key].dtype}; it must be numbers")
-    if held["response"].dtype.kind != "c":
-        raise ParameterError(
-            f"{path}: response has type {held['response'].dtype}; it must be complex"
-        )
+        array = held.get(key)
+        if array is not None and (
+            array.dtype.kind not in kinds or ("US" in kinds and array.size > 1)
+        ):
+            raise ParameterError(f"{path}: {key} has type {array.dtype}; it must be {words}")
     coherence = held.get("coherence")
+    units = (held[key].reshape(()).item() for key in ("input_unit", "output_unit"))
     return TransferFunction(
         held["frequency_hz"].astype(np.float64),
         held["response"].astype(np.complex128),
         None if coherence is None else coherence.astype(np.float64),
-        _unit(held["input_unit"], "input_unit", path),
-        _unit(held["output_unit"], "output_unit", path),
-        str(path),
+        *(unit.decode("utf-8", "replace") if isinstance(unit, bytes) else unit for unit in units),
+        name=str(path),
     )
-
-
-def _unit(value: NDArray[np.generic], key: str, path: Path) -> str:
-    if value.size != 1 or value.dtype.kind not in "US":
-        raise ParameterError(f"{path}: {key} is {value!r}; it must be a text")
-    text = value.reshape(()).item()
-    return text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
 
 
 def _read_csv(path: Path, input_unit: str, output_unit: str) -> TransferFunction:
@@ -355,7 +331,7 @@ def _read_csv(path: Path, input_unit: str, output_unit: str) -> TransferFunction
             columns[name], units[name] = table.values[:, number], table.units[number]
         elif name != "coherence":
             raise ParameterError(
-                f"{path}: has no column {name}; expected {', '.join(_COLUMNS)}, coherence"
+                f"{path}: has no column {name}; expected frequency_hz, real, imag, coherence"
             )
     quantity, in_hz = quantity_of_unit(units["frequency"] or "Hz") or ("", 1.0)
     if quantity != "frequency" or units["real"] != units["imag"]:
@@ -381,9 +357,7 @@ def _read_uff(path: Path, input_unit: str, output_unit: str) -> TransferFunction
     responses = [function for function in functions if function.kind == FREQUENCY_RESPONSE]
     if len(responses) > 1:
         wanted = quantity_of_unit(output_unit)
-        responses = [
-            function for function in responses if quantity_of_unit(function.unit) == wanted
-        ]
+        responses = [each for each in responses if quantity_of_unit(each.unit) == wanted]
     if len(responses) != 1:
         raise ParameterError(
             f"{path}: holds {len(responses)} frequency response functions in {output_unit}; "

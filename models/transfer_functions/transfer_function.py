@@ -8,7 +8,7 @@ one can be trusted as far as its coherence goes.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,6 +108,18 @@ class TransferFunction:
             found = found * np.minimum(frequencies / max(first, 1e-9), 1.0) ** 2
         return np.asarray(found)
 
+    @property
+    def columns(self) -> dict[str, list[Any]]:
+        """Columns of its CSV file: frequency [Hz], real and imaginary part, coherence if known."""
+        columns = {
+            "frequency_hz": self.frequencies,
+            "real": self.response.real,
+            "imag": self.response.imag,
+        }
+        if self.coherence is not None:
+            columns["coherence"] = self.coherence
+        return {key: values.tolist() for key, values in columns.items()}
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the magnitude over frequency; lines of a coherence below a half are pale.
 
@@ -167,14 +179,8 @@ class TransferFunction:
         """
         from models.show import data_frame
 
-        columns = {
-            "frequency_hz": self.frequencies,
-            "real": self.response.real,
-            "imag": self.response.imag,
-        }
-        if self.coherence is not None:
-            columns["coherence"] = self.coherence
-        lines = zip(*(values.tolist() for values in columns.values()), strict=True)
+        columns = self.columns
+        lines = zip(*columns.values(), strict=True)
         return data_frame([*columns], [dict(zip(columns, line, strict=True)) for line in lines])
 
 

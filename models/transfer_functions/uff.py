@@ -100,17 +100,6 @@ class UffFunction:
     unclear: str = ""
 
 
-def check_uff_library(path: Path) -> None:
-    """Refuse to begin what could not be read or written for want of the library.
-
-    Raises
-    ------
-    ParameterError
-        pyuff is not installed.
-    """
-    _pyuff(path)
-
-
 def read_uff_functions(path: Path, *kinds: int) -> list[UffFunction]:
     """Read functions (dataset 58, text or binary) of a universal file.
 
@@ -131,7 +120,7 @@ def read_uff_functions(path: Path, *kinds: int) -> list[UffFunction]:
         pyuff is not installed, the file is damaged or holds no function at all, or what is read
         goes over something else than time, or for a spectrum frequency.
     """
-    pyuff = _pyuff(path)
+    pyuff = uff_library(path)
     with reading(path, "universal file", largest=LARGEST_TEXT):
         file = pyuff.UFF(str(path))
         types = [int(kind) for kind in file.get_set_types()]
@@ -166,12 +155,19 @@ def write_uff_functions(path: Path, functions: Iterable[UffFunction]) -> None:
     ParameterError
         pyuff is not installed.
     """
-    file = _pyuff(path).UFF(str(path))
+    file = uff_library(path).UFF(str(path))
     for function in functions:
         file.write_sets(_dataset(function), mode="add", force_double=True)
 
 
-def _pyuff(path: Path) -> Any:
+def uff_library(path: Path) -> Any:
+    """Return pyuff, or refuse to begin what could not be read or written without it.
+
+    Raises
+    ------
+    ParameterError
+        pyuff is not installed.
+    """
     try:
         import pyuff
     except ImportError:
