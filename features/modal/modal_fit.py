@@ -20,6 +20,7 @@ implementation of the least-squares complex frequency-domain estimator, Proc. IM
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +29,7 @@ from threadpoolctl import threadpool_limits
 from features.modal.modes import (
     Modes,
     Pole,
+    Responses,
     least_squares,
     modal_basis,
     modes_of_poles,
@@ -55,19 +57,13 @@ LARGEST_DAMPING = 0.2
 _TINY = 1e-12  # of the largest response, which keeps weights finite
 
 
-def lasting_poles(
-    f: NDArray[np.float64], h: NDArray[np.complex128], weight: NDArray[np.float64]
-) -> list[Pole]:
+def lasting_poles(measured: Responses) -> list[Pole]:
     """Poles of response functions that stay through several orders.
 
     Parameters
     ----------
-    f : ndarray, shape (n,)
-        [Hz], rising, above 0.
-    h : ndarray, shape (n_responses, n), complex
-        In any [unit].
-    weight : ndarray, shape (n_responses, n)
-        Trust in each line, from 0 to 1 [-].
+    measured : Responses
+        Weighted by the trust in each line, from 0 to 1 [-].
 
     Returns
     -------
@@ -79,40 +75,19 @@ def lasting_poles(
     >>> f = np.arange(1.0, 301.0)
     >>> H = 1 / (100.0**2 - f**2 + 2j * 0.02 * 100.0 * f)
     >>> [(round(pole.frequency, 2), round(pole.damping_ratio, 4))
-    ...  for pole in lasting_poles(f, H[None], np.ones((1, 300)))]
+    ...  for pole in lasting_poles(Responses(f, H[None], np.ones((1, 300))))]
     [(100.0, 0.02)]
     """
     found: list[Pole] = []
     for size in LINES:
         new: list[Pole] = []
-        for lines, least, most in _bands(f, size):
-            poles_by_order = _lscf(f[lines], h[:, lines], weight[:, lines])
+        for lines, least, most in _bands(measured.f, size):
+            poles_by_order = _lscf(measured.at(lines))
             new += [pole for pole in _lasting(poles_by_order) if least <= pole.frequency < most]
         found = _merged(found, new)
-        if f.size <= size:
+        if measured.f.size <= size:
             break
     return sorted(found)
-
-
-def without_doubles(poles: list[Pole]) -> list[Pole]:
-    """Of poles within half a mode's width of each other the one that stayed longest.
-
-    Parameters
-    ----------
-    poles : list of Pole
-
-    Returns
-    -------
-    list of Pole
-        By rising frequency.
-
-    Examples
-    --------
-    >>> pair = [Pole(100.0, 0.01, 4), Pole(100.3, 0.01, 9), Pole(101.0, 0.01, 5)]
-    >>> [pole.frequency for pole in without_doubles(pair)]
-    [100.3, 101.0]
-    """
-    return sorted(_merged([], poles))
 
 
 def line_weights(h: NDArray[np.complex128], weight: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -154,10 +129,9 @@ def _bands(f: NDArray[np.float64], size: int) -> list[tuple[slice, float, float]
     ]
 
 
-def _lscf(
-    f: NDArray[np.float64], h: NDArray[np.complex128], weight: NDArray[np.float64]
-) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+def _lscf(measured: Responses) -> list[list[tuple[float, float]]]:
     """Frequencies and damping ratios of the poles of each order."""
+    f, h, weight = measured
     duration = 0.5 / (f[-1] - f[0])
     largest = min(ORDERS[-1], f.size // 2)
     z = np.exp(-2j * np.pi * np.outer(f - f[0], duration * np.arange(largest + 1)))
@@ -184,20 +158,20 @@ def _lscf(
         ratio = -s.real / natural
         keep = (ratio > 0.0) & (ratio < LARGEST_DAMPING)
         keep &= (s.imag > 2 * np.pi * f[0]) & (s.imag < 2 * np.pi * f[-1])
-        result.append((natural[keep] / (2 * np.pi), ratio[keep]))
+        result.append(
+            [*zip((natural[keep] / (2 * np.pi)).tolist(), ratio[keep].tolist(), strict=True)]
+        )
     return result
 
 
-def _lasting(
-    by_order: list[tuple[NDArray[np.float64], NDArray[np.float64]]],
-) -> list[Pole]:
+def _lasting(by_order: list[list[tuple[float, float]]]) -> list[Pole]:
     """Poles that stay through several orders: frequency, damping ratio, number of orders."""
     chains: list[list[tuple[float, float]]] = []
     alive: list[list[tuple[float, float]]] = []
-    for frequencies, ratios in by_order:
+    for poles in by_order:
         going: list[list[tuple[float, float]]] = []
         taken: set[int] = set()
-        for frequency, ratio in zip(frequencies.tolist(), ratios.tolist(), strict=True):
+        for frequency, ratio in poles:
             near = [
                 (abs(chain[-1][0] / frequency - 1.0), i)
                 for i, chain in enumerate(alive)
@@ -214,14 +188,10 @@ def _lasting(
                 chains.append([(frequency, ratio)])
                 going.append(chains[-1])
         alive = going
-    lasting = [chain for chain in chains if len(chain) >= LASTING]
     return [
-        Pole(
-            float(np.median([f for f, _ in chain[len(chain) // 2 :]])),
-            float(np.median([z for _, z in chain[len(chain) // 2 :]])),
-            len(chain),
-        )
-        for chain in lasting
+        Pole(*np.median(chain[len(chain) // 2 :], axis=0).tolist(), len(chain))
+        for chain in chains
+        if len(chain) >= LASTING
     ]
 
 
@@ -310,27 +280,22 @@ def fit_modes(
     with threadpool_limits(limits=1, user_api="blas"):
         edge = EDGE * float(f[1] - f[0])
         first, last = float(f[0]) + edge, float(f[-1]) - edge
-        scale = line_weights(h, weight)
-        poles = lasting_poles(f, h, weight)
+        measured = Responses(f, h, line_weights(h, weight))
+        poles = lasting_poles(Responses(f, h, weight))
         for sweep in range(SWEEPS + 1):
-            within = without_doubles([pole for pole in poles if first < pole.frequency < last])
-            modes = _pruned(within, f, h, scale)
+            within = [pole for pole in poles if first < pole.frequency < last]
+            modes = _pruned(_merged([], within), measured)  # of doubles, which stayed longest
             if sweep < SWEEPS:
-                poles = _refined(modes, f, h, scale)
+                poles = _refined(modes, measured)
         return modes
 
 
-def _pruned(
-    poles: list[Pole],
-    f: NDArray[np.float64],
-    h: NDArray[np.complex128],
-    scale: NDArray[np.float64],
-) -> Modes:
+def _pruned(poles: list[Pole], measured: Responses) -> Modes:
     """Modes of those poles that show in a response."""
     poles = sorted(poles)
     while True:
-        modes = modes_of_poles(poles, f, h, scale)
-        share = _share(modes, f, h)
+        modes = modes_of_poles(poles, measured)
+        share = _share(modes, measured)
         if share.size == 0 or share.min() >= NEGLIGIBLE:
             return modes
         # The weakest go together; one that is just below may show once they are gone.
@@ -338,24 +303,21 @@ def _pruned(
         poles = [pole for pole, its in zip(poles, share, strict=True) if its > limit]
 
 
-def _refined(
-    modes: Modes,
-    f: NDArray[np.float64],
-    h: NDArray[np.complex128],
-    scale: NDArray[np.float64],
-) -> list[Pole]:
+def _refined(modes: Modes, measured: Responses) -> list[Pole]:
     """Poles after Gauss-Newton steps, a few neighbours at a time with all others as they are."""
-    poles = _poles_of(modes)
+    f, poles = measured.f, _poles_of(modes)
     refined: list[Pole] = []
     for group in _groups(modes.frequency):
-        first, last = modes.frequency[group][[0, -1]]
-        width = MARGIN * float(np.max(modes.frequency[group] * modes.damping_ratio[group]))
+        some = modes.only(group)
+        first, last = some.frequency[[0, -1]]
+        width = MARGIN * float(np.max(some.frequency * some.damping_ratio))
         lines = (f >= first - width) & (f <= last + width)
         if np.count_nonzero(lines) < FEWEST_LINES:
             lines = np.abs(f - 0.5 * (first + last)) <= 0.5 * FEWEST_LINES * (f[1] - f[0])
-        alone = _with_only(modes, group).response(f[lines])
-        target = h[:, lines] - modes.response(f[lines]) + alone
-        refined += _moved(poles[group], f[lines], target, scale[:, lines])
+        near = measured.at(lines)
+        alone = replace(some, residuals=np.zeros_like(modes.residuals)).response(near.f)
+        target = near.h - modes.response(near.f) + alone
+        refined += _moved(poles[group], near._replace(h=target))
     return refined
 
 
@@ -370,18 +332,13 @@ def _groups(frequency: NDArray[np.float64]) -> list[slice]:
     return [slice(a, b) for a, b in itertools.pairwise(limits) if b > a]
 
 
-def _moved(
-    poles: list[Pole],
-    f: NDArray[np.float64],
-    h: NDArray[np.complex128],
-    scale: NDArray[np.float64],
-) -> list[Pole]:
+def _moved(poles: list[Pole], measured: Responses) -> list[Pole]:
     """Poles after as many steps as bring the model nearer."""
-    modes = modes_of_poles(poles, f, h, scale)
-    error = _misfit(modes, f, h, scale)
+    modes = modes_of_poles(poles, measured)
+    error = _misfit(modes, measured)
     for _ in range(MOST_STEPS):
-        new = modes_of_poles(_stepped(modes, f, h, scale), f, h, scale)
-        new_error = _misfit(new, f, h, scale)
+        new = modes_of_poles(_stepped(modes, measured), measured)
+        new_error = _misfit(new, measured)
         if new_error >= error:
             break
         modes, gain, error = new, error - new_error, new_error
@@ -390,43 +347,22 @@ def _moved(
     return _poles_of(modes)
 
 
-def _with_only(modes: Modes, group: slice) -> Modes:
-    """Leave some of the modes, without residuals."""
-    return Modes(
-        modes.frequency[group],
-        modes.damping_ratio[group],
-        modes.residues[:, group],
-        np.zeros_like(modes.residuals),
-        modes.orders[group],
-        modes.highest,
-    )
-
-
 def _poles_of(modes: Modes) -> list[Pole]:
-    return [
-        Pole(float(frequency), float(ratio), int(orders))
-        for frequency, ratio, orders in zip(
-            modes.frequency, modes.damping_ratio, modes.orders, strict=True
-        )
-    ]
+    values = (modes.frequency, modes.damping_ratio, modes.orders)
+    return [Pole(*of) for of in zip(*(each.tolist() for each in values), strict=True)]
 
 
-def _stepped(
-    modes: Modes,
-    f: NDArray[np.float64],
-    h: NDArray[np.complex128],
-    scale: NDArray[np.float64],
-) -> list[Pole]:
+def _stepped(modes: Modes, measured: Responses) -> list[Pole]:
     """Poles moved by one step, each by no more than its width."""
-    n, s = modes.frequency.size, 2j * np.pi * f
+    n, s = modes.frequency.size, 2j * np.pi * measured.f
     poles = modes.poles
     here = 1 / (s - poles[:, None]) ** 2
     there = 1 / (s - poles.conj()[:, None]) ** 2
-    basis = modal_basis(poles, f, modes.highest)
-    model = modes.response(f)
+    basis = modal_basis(poles, measured.f, modes.highest)
+    model = modes.response(measured.f)
     size = 2 * n
     matrix, right = np.zeros((size, size)), np.zeros(size)
-    for row, (one, w) in enumerate(zip(h, scale, strict=True)):
+    for row, (one, w) in enumerate(zip(measured.h, measured.weight, strict=True)):
         turned = modes.residues[row][:, None]
         a, b = turned * here, turned.conj() * there
         moves = np.vstack([a + b, 1j * (a - b)]) * w
@@ -446,23 +382,17 @@ def _stepped(
     moved = poles + move
     natural = np.abs(moved)
     ratio = np.clip(-moved.real / natural, 1e-6, LARGEST_DAMPING)
-    return [
-        Pole(float(omega / (2 * np.pi)), float(zeta), int(orders))
-        for omega, zeta, orders in zip(natural, ratio, modes.orders, strict=True)
-    ]
+    return _poles_of(replace(modes, frequency=natural / (2 * np.pi), damping_ratio=ratio))
 
 
-def _misfit(
-    modes: Modes,
-    f: NDArray[np.float64],
-    h: NDArray[np.complex128],
-    scale: NDArray[np.float64],
-) -> float:
-    return float(np.sum((scale * np.abs(h - modes.response(f))) ** 2))
+def _misfit(modes: Modes, measured: Responses) -> float:
+    off = np.abs(measured.h - modes.response(measured.f))
+    return float(np.sum((measured.weight * off) ** 2))
 
 
-def _share(modes: Modes, f: NDArray[np.float64], h: NDArray[np.complex128]) -> NDArray[np.float64]:
+def _share(modes: Modes, measured: Responses) -> NDArray[np.float64]:
     """Peak of each mode relative to the responses within its width, at best."""
+    f, h, _ = measured
     shares = np.empty(modes.frequency.size)
     for r, (frequency, ratio) in enumerate(zip(modes.frequency, modes.damping_ratio, strict=True)):
         peak = np.abs(modes.residues[:, r]) / (2 * np.pi * frequency * ratio)

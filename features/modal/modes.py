@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -37,6 +37,28 @@ class Pole(NamedTuple):
     frequency: float
     damping_ratio: float
     orders: int
+
+
+class Responses(NamedTuple):
+    """Measured response functions.
+
+    Parameters
+    ----------
+    f : ndarray, shape (n,)
+        [Hz], rising, above 0.
+    h : ndarray, shape (n_responses, n), complex
+        In any [unit].
+    weight : ndarray, shape (n_responses, n)
+        Of each line.
+    """
+
+    f: NDArray[np.float64]
+    h: NDArray[np.complex128]
+    weight: NDArray[np.float64]
+
+    def at(self, lines: slice | NDArray[np.bool_]) -> Responses:
+        """Return some lines of them."""
+        return Responses(self.f[lines], self.h[:, lines], self.weight[:, lines])
 
 
 @short_repr
@@ -124,13 +146,20 @@ class Modes:
         poles = self.poles + rate
         decay = poles.real < 0.0
         natural = np.abs(poles[decay])
-        return Modes(
-            natural / (2 * np.pi),
-            -poles.real[decay] / natural,
-            self.residues[:, decay],
-            self.residuals,
-            self.orders[decay],
-            self.highest,
+        return replace(
+            self.only(decay),
+            frequency=natural / (2 * np.pi),
+            damping_ratio=-poles.real[decay] / natural,
+        )
+
+    def only(self, some: slice | NDArray[np.bool_]) -> Modes:
+        """Return some of the modes."""
+        return replace(
+            self,
+            frequency=self.frequency[some],
+            damping_ratio=self.damping_ratio[some],
+            residues=self.residues[:, some],
+            orders=self.orders[some],
         )
 
     def to_pandas(self) -> DataFrame:
@@ -204,22 +233,13 @@ class Modes:
         return axes
 
 
-def modes_of_poles(
-    poles: list[Pole],
-    f: NDArray[np.float64],
-    h: NDArray[np.complex128],
-    scale: NDArray[np.float64],
-) -> Modes:
+def modes_of_poles(poles: list[Pole], measured: Responses) -> Modes:
     """Modes with given poles: residues and residuals by linear least squares.
 
     Parameters
     ----------
     poles : list of Pole
-    f : ndarray, shape (n,)
-        [Hz]
-    h : ndarray, shape (n_responses, n), complex
-    scale : ndarray, shape (n_responses, n)
-        Weights of the lines.
+    measured : Responses
 
     Returns
     -------
@@ -229,25 +249,17 @@ def modes_of_poles(
     --------
     >>> f = np.arange(50.0, 151.0)
     >>> H = 1 / (100.0**2 - f**2 + 2j * 0.02 * 100.0 * f) / (2 * np.pi) ** 2
-    >>> modes = modes_of_poles([Pole(100.0, 0.02, 1)], f, H[None], np.ones((1, 101)))
+    >>> modes = modes_of_poles([Pole(100.0, 0.02, 1)], Responses(f, H[None], np.ones((1, 101))))
     >>> bool(np.allclose(modes.response(f), H))
     True
     """
-    frequency = np.array([pole.frequency for pole in poles])
-    ratio = np.array([pole.damping_ratio for pole in poles])
-    basis = modal_basis(_poles(frequency, ratio), f, float(f[-1]))
-    n = frequency.size
-    coefficients = np.array(
-        [least_squares(basis * w, one * w) for one, w in zip(h, scale, strict=True)]
-    )
-    return Modes(
-        frequency,
-        ratio,
-        coefficients[:, :n] + 1j * coefficients[:, n : 2 * n],
-        coefficients[:, 2 * n :],
-        np.array([pole.orders for pole in poles], dtype=np.intp),
-        float(f[-1]),
-    )
+    frequency, ratio, orders = np.array(poles).reshape(-1, 3).T
+    highest, n = float(measured.f[-1]), frequency.size
+    basis = modal_basis(_poles(frequency, ratio), measured.f, highest)
+    lines = zip(measured.h, measured.weight, strict=True)
+    factors = np.array([least_squares(basis * w, one * w) for one, w in lines])
+    residues = factors[:, :n] + 1j * factors[:, n : 2 * n]
+    return Modes(frequency, ratio, residues, factors[:, 2 * n :], orders.astype(np.intp), highest)
 
 
 def modal_basis(
