@@ -183,15 +183,20 @@ def thesis_pictures() -> Iterator[tuple[str, Figure]]:
 
 
 def _simulated(shown: Runs, case: Case) -> Run:
-    rig = load_material_rig(shown.material)
-    at = {"interference": case.interference, "support_stiffness": case.support_stiffness}
-    if case.damping is not None:
-        damping = case.damping
-        if math.isnan(damping):
-            damping = critical_damping(rig, case.speed, **at, highest=0.1)
-        rig = with_damping(rig, damping)
-    settling = 0.0 if shown.from_rest else None
-    return simulate(rig, case.speed, **at, seconds=shown.seconds, settling=settling)
+    rig, fit, support = load_material_rig(shown.material), case.interference, case.support_stiffness
+    damping = case.damping
+    if damping is not None and math.isnan(damping):
+        damping = critical_damping(
+            rig, case.speed, interference=fit, support_stiffness=support, highest=0.1
+        )
+    return simulate(
+        rig if damping is None else with_damping(rig, damping),
+        case.speed,
+        interference=fit,
+        support_stiffness=support,
+        seconds=shown.seconds,
+        settling=0.0 if shown.from_rest else None,
+    )
 
 
 def torque_spectra(number: str, shown: Runs) -> Figure:
