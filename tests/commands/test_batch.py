@@ -1,9 +1,13 @@
-from __future__ import annotations
+"""``label``, ``features``, ``train``: many recordings into one table, and what stands beside it."""
 
 import csv
+import os
+import pty
+import re
+import subprocess
+import sys
 from argparse import Namespace
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -13,10 +17,9 @@ from features import recording_feature_names
 from models.blocks import RecordingBlocks
 from models.condition import Condition
 from models.recording import Channel, Recording
-from noise.classifier import LABELS, load_classifier
+from noise.classifier import load_classifier
 from noise.cli import main
-from noise.labels.segments import Segment
-from noise.labels.table import COLUMNS, LabelTable, read_label_table
+from noise.labels.table import COLUMNS, LabelTable, read_label_table, result_lines
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import read_recording, write_recording
 
@@ -33,99 +36,68 @@ def runs(tmp_path, monkeypatch):
     return tmp_path / "runs"
 
 
-@pytest.fixture
-def labelled(monkeypatch):
-    """A classifier that calls everything a squeal, and what it was asked."""
-    asked = Namespace(classifiers=[], recordings=[], sensitivities=[])
-
-    class Stand:
-        card: ClassVar = {
-            "real_sources_left_out": {
-                "false_names_an_hour": {"1": 8.0, "2": 20.0},
-                "background_hours": 0.25,
-            }
-        }
-
-        def sensitive(self, sensitivity):
-            asked.sensitivities.append(sensitivity)
-            return self
-
-    def load_classifier(path=None):
-        asked.classifiers.append(path)
-        return Stand()
-
-    def label_recording(recording, classifier, *, per_track=False):
-        assert isinstance(classifier, Stand)
-        asked.recordings.append((recording, per_track))
-        certain = {label: float(label == "squeal") for label in LABELS}
-        end = recording.n_samples / recording.rate
-        return [Segment("all", 0.0, end, "squeal", certain, 1046.0, None, -20.0)]
-
-    monkeypatch.setattr("noise.labels.labelling.load_classifier", load_classifier)
-    monkeypatch.setattr("noise.labels.labelling.label_recording", label_recording)
-    return asked
-
-
 def read_table(path):
     with Path(path).open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def test_features_name_the_bad_file_in_the_table_and_go_on(runs, capsys):
-    assert main(["features", "runs", "--out", "new/features.csv"]) == 1
+    assert main(["features", "runs", "./runs/a.wav", "--out", "new/f.csv", "--plot", "plots"]) == 1
     out, err = capsys.readouterr()
-    assert out == f"{Path('new/features.csv')}\n"
+    plots = [f"{Path('plots') / name}.png" for name in "ac"]
+    assert out.splitlines() == [f"{Path('new/f.csv')}", *plots]
+    assert all(Path(plot).read_bytes().startswith(b"\x89PNG") for plot in plots)
     assert f"refused: {Path('runs/b.wav')}: is damaged or no sound file" in err
     assert "3 recordings, 1 refused" in err
-    rows = read_table("new/features.csv")
+    rows = read_table("new/f.csv")
     assert [row["file"] for row in rows] == ["a.wav", "b.wav", "c.wav"]
     assert list(rows[0]) == ["file", *recording_feature_names(), "error"]
     assert [bool(row["error"]) for row in rows] == [False, True, False]
     assert [bool(row["pressure_level"]) for row in rows] == [True, False, True]
 
 
-def test_windows_are_listed_as_the_classifier_is_given_them(runs):
+def test_windows_are_listed_as_the_classifier_is_given_them(runs, capsys):
+    two = 0.1 * np.random.default_rng(0).normal(size=(48_000, 2))
+    soundfile.write("runs/two.wav", two, 48_000, subtype="FLOAT")
+    write_recording(Path("runs/turning"), Recording(np.zeros((1, 4800)), 48e3, (Channel("angle"),)))
     assert main(["features", "runs", "--windows", "--out", "windows.csv"]) == 1
-    rows = read_table("windows.csv")
-    assert list(rows[0]) == ["file", "channel", "start_s", "end_s", *FEATURE_NAMES, "error"]
-    assert [row["file"] for row in rows] == ["a.wav", "b.wav", "c.wav"]
-    assert "damaged" in rows[1]["error"]
-    assert [rows[0][name] for name in ("channel", "start_s", "end_s")] == ["all", "0.0", "0.1"]
+    first, damaged, _, silent, *tracks = read_table("windows.csv")
+    assert list(first) == ["file", "channel", "start_s", "end_s", *FEATURE_NAMES, "error"]
+    assert "damaged" in damaged["error"]
+    assert "has no channel of pressure, acceleration or torque" in silent["error"]
+    assert [first[name] for name in ("channel", "start_s", "end_s")] == ["all", "0.0", "0.1"]
     given = load_classifier().feature_names
     recording = RecordingBlocks.of(read_recording(Path("runs/a.wav")))
     values = describe(recording).features[:, [FEATURE_NAMES.index(name) for name in given]]
-    listed = np.array([float(rows[0][name] or "nan") for name in given], dtype=np.float32)
+    listed = np.array([float(first[name] or "nan") for name in given], dtype=np.float32)
     assert listed.tobytes() == values[0].tobytes()
     assert np.isfinite(listed).any()
+    assert [row["channel"] for row in tracks] == ["1", "1", "1", "2", "2", "2"]
+    assert [row["start_s"] for row in tracks] == ["0.0", "0.25", "0.5"] * 2
+    assert all(row["pressure_flatness"] and not row["torque_mean"] for row in tracks)
 
 
-def test_each_track_of_a_plain_sound_file_has_its_windows(runs):
-    hiss = np.random.default_rng(0).normal(size=(48_000, 2))
-    soundfile.write("two.wav", 0.1 * hiss, 48_000, subtype="FLOAT")
-    assert main(["features", "two.wav", "--windows", "--out", "windows.csv"]) == 0
-    rows = read_table("windows.csv")
-    assert [row["channel"] for row in rows] == ["1", "1", "1", "2", "2", "2"]
-    assert [row["start_s"] for row in rows] == ["0.0", "0.25", "0.5"] * 2
-    assert rows[2]["end_s"] == "1.0"
-    assert all(row["pressure_flatness"] and not row["torque_mean"] for row in rows)
-
-
-def test_a_recording_without_windows_says_so(runs, capsys):
-    turning = Recording(np.zeros((1, 4800)), 48e3, (Channel("angle"),))
-    write_recording(Path("turning"), turning)
-    assert main(["features", "turning.wav", "--windows"]) == 1
-    assert "has no channel of pressure, acceleration or torque" in capsys.readouterr().out
-
-
-def test_a_recording_named_twice_is_a_row_once(runs, labelled):
-    assert main(["label", "runs/a.wav", "./runs/a.wav", "--out", "t.csv"]) == 0
-    assert [row["file"] for row in read_table("t.csv")] == ["a.wav"]
+def test_labels_are_linked_to_conditions_with_a_map_and_label_tracks(runs, capsys):
+    given = ["--map", "map.svg", "--audacity", "tracks", "--sensitivity", "2"]
+    assert main(["label", "runs", "--out", "t.csv", *given]) == 1
+    out, err = capsys.readouterr()
+    paths = [line for line in out.splitlines() if "  " not in line]
+    assert paths == ["t.csv", "tracks", "map.svg", "map.csv"]
+    assert re.search(r"at a sensitivity of 2 .* \d+ false names an hour", err)
+    rows = read_table("t.csv")
+    assert list(rows[0]) == list(COLUMNS)
+    assert [(row["file"], row["speed_rad_s"]) for row in rows] == [
+        ("a.wav", "5.0"), ("b.wav", ""), ("c.wav", "5.0"),
+    ]  # fmt: skip
+    reason = "is damaged or no sound file (Format not recognised)"
+    assert rows[1]["error"] == f"{Path('runs/b.wav')}: {reason}"
+    assert Path("tracks/a.txt").read_text() == f"0.000000\t0.100000\t{rows[0]['label']}\n"
+    (place,) = read_table("map.csv")
+    assert (place["speed_rad_s_from"], place["recordings"]) == ("4.9", "2")
 
 
 @pytest.mark.parametrize(("ending", "again"), [(".csv", []), (".parquet", ["--fresh"])])
-def test_what_somebody_corrected_stays_when_recordings_are_labelled_again(
-    runs, labelled, ending, again
-):
+def test_what_somebody_corrected_stays_when_recordings_are_labelled_again(runs, ending, again):
     out = f"labels{ending}"
     assert main(["label", "runs", "--out", out]) == 1
     first, refused, last = read_label_table(Path(out))
@@ -141,35 +113,42 @@ def test_what_somebody_corrected_stays_when_recordings_are_labelled_again(
     assert read_label_table(Path(out)) == [last, *corrected]
 
 
-def test_the_same_call_again_repeats_nothing_but_what_was_refused(runs, labelled, capsys):
-    for _ in range(2):
-        assert main(["label", "runs", "--out", "labels.csv"]) == 1
-        assert "refused: runs" in capsys.readouterr().err.replace("\\", "/")
-        assert [row["file"] for row in read_table("labels.csv")] == ["a.wav", "b.wav", "c.wav"]
-    assert len(labelled.recordings) == 2
-    assert main(["label", "runs", "--out", "labels.csv", "--fresh"]) == 1
-    assert len(labelled.recordings) == 4
-
-
-def test_labels_come_with_a_map_and_label_tracks(runs, labelled, capsys):
-    given = ["--map", "map.svg", "--audacity", "tracks"]
-    assert main(["label", "runs", *given]) == 1
-    out, err = capsys.readouterr()
-    assert out.startswith("file,channel,")  # standard output is the table alone
-    assert "map.svg" in err
-    assert Path("tracks/a.txt").read_text() == "0.000000\t0.100000\tsqueal\n"
-    (place,) = read_table("map.csv")
-    assert (place["speed_rad_s_from"], place["label"], place["recordings"]) == (
-        "4.9",
-        "squeal",
-        "2",
+def test_tracks_of_a_plain_sound_file_stand_for_themselves(runs, capsys):
+    noise = np.random.default_rng(0).uniform(-0.1, 0.1, (4800, 2))
+    soundfile.write("runs/d.wav", noise, 48000)
+    given = ["runs/a.wav", "runs/d.wav", "--out", "t.csv"]
+    assert main(["label", *given]) == 0
+    assert [row["channel"] for row in read_table("t.csv")] == ["all", "1", "2"]
+    assert "1 recording without calibration" in capsys.readouterr().err
+    assert main(["label", *given, "--full-scale", "2"]) == 0
+    assert "without calibration" not in capsys.readouterr().err
+    assert float(read_table("t.csv")[1]["level_db"]) == pytest.approx(
+        20 * np.log10(2 * noise[:, 0].std() / 2e-5), abs=0.01
     )
 
 
+def test_a_calibrator_makes_levels_in_decibels(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for name, frequency, pascal in (("tone", 1000.0, 1.0024), ("sound", 700.0, 0.2)):
+        time = np.arange(96_000) / 48e3
+        sine = 0.05 * pascal * np.sqrt(2.0) * np.sin(2 * np.pi * frequency * time)
+        soundfile.write(f"{name}.wav", sine, 48_000)
+    by_tone = ["sound.wav", "--calibrator", "tone.wav", "--level", "94", "--out"]
+    for command, out, column in (
+        ("features", "f.csv", "pressure_level"), ("label", "l.csv", "level_db"),
+        ("render", "set/", "level_db"),
+    ):  # fmt: skip
+        Path("set").mkdir(exist_ok=True)
+        assert main([command, *by_tone, out]) == 0
+        assert "tone.wav: 94 dB at 1000 Hz make full scale 20" in capsys.readouterr().err
+        (row,) = read_table("set/levels.csv" if command == "render" else out)
+        assert float(row[column]) == pytest.approx(80.0, abs=0.1)
+    assert main(["review", *by_tone, "page.html", "--no-labelling"]) == 0
+    assert "Calibrated sounds" in Path("page.html").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize("command", ["features", "label"])
-def test_what_was_done_before_an_interrupt_is_in_the_table(
-    runs, labelled, monkeypatch, capsys, command
-):
+def test_what_was_done_before_an_interrupt_is_in_the_table(runs, monkeypatch, capsys, command):
     from noise.recordings import files
 
     def interrupted(path, **about):
@@ -185,22 +164,6 @@ def test_what_was_done_before_an_interrupt_is_in_the_table(
     assert "interrupted: 2 of 3 recordings" in capsys.readouterr().err
 
 
-def test_an_interrupt_while_the_table_is_written_does_not_lose_it(runs, monkeypatch):
-    from noise.base.tables import write_table
-
-    calls = []
-
-    def interrupted_once(*given):
-        calls.append(given)
-        if len(calls) == 1:
-            raise KeyboardInterrupt
-        write_table(*given)
-
-    monkeypatch.setattr("noise.commands.batch.write_table", interrupted_once)
-    assert main(["features", "runs", "--out", "t.csv"]) == 130
-    assert len(read_table("t.csv")) == 3
-
-
 def test_a_defect_in_one_file_does_not_end_the_batch(runs, monkeypatch, capsys):
     def recording_features(recording):
         return {} if recording.name == "c.wav" else 1 / 0
@@ -210,70 +173,6 @@ def test_a_defect_in_one_file_does_not_end_the_batch(runs, monkeypatch, capsys):
     errors = [row["error"] for row in read_table("t.csv")]
     assert errors[0] == "unexpected, please report: ZeroDivisionError: division by zero"
     assert errors[2] == ""
-
-
-@pytest.mark.parametrize("command", ["features", "label"])
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        (["nowhere"], "nowhere: there is no such file"),
-        (["empty"], "empty: there are no recordings"),
-        (["runs", "--out", "t.txt"], "t.txt: tables end in .csv, .xlsx, .jsonl or .parquet"),
-        (["runs", "--out", "runs/a.wav/t.csv"], "is a file, not a folder"),
-        (["runs", "--full-scale", "0"], "--full-scale"),
-        (["runs", "--workers", "0"], "--workers is '0', expected a whole number"),
-        (["runs", "--workers", "2", "--scheduler", "x"], "not allowed with"),
-        ([], "PATH"),
-    ],
-)
-def test_calls_that_cannot_be_used_are_refused(runs, labelled, capsys, command, given, said):
-    Path("empty").mkdir()
-    assert main([command, *given]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert said in err
-    assert err.count("\n") == 1
-
-
-def test_labels_are_linked_to_conditions_and_bad_files_to_reasons(runs, labelled, capsys):
-    assert main(["label", "runs", "--out", "labels.csv"]) == 1
-    rows = read_table("labels.csv")
-    assert list(rows[0]) == list(COLUMNS)
-    assert [row["label"] for row in rows] == ["squeal", "", "squeal"]
-    assert rows[0]["speed_rad_s"] == "5.0"
-    reason = "is damaged or no sound file (Format not recognised)"
-    assert rows[1]["error"] == f"{Path('runs/b.wav')}: {reason}"
-    assert labelled.classifiers == [None]
-
-
-def test_a_classifier_of_ones_own_is_used(runs, labelled):
-    Path("mine.npz").write_bytes(b"trained")
-    assert main(["label", "runs/a.wav", "--out", "t.csv", "--classifier", "mine.npz"]) == 0
-    assert labelled.classifiers == [Path("mine.npz")]
-
-
-def test_tracks_of_a_plain_sound_file_stand_for_themselves(runs, labelled, capsys):
-    soundfile.write("runs/d.wav", np.random.default_rng(0).uniform(-0.1, 0.1, (4800, 2)), 48000)
-    given = ["runs/a.wav", "runs/d.wav", "--out", "t.csv"]
-    assert main(["label", *given]) == 0
-    assert [per_track for _, per_track in labelled.recordings] == [False, True]
-    assert "1 recording without calibration" in capsys.readouterr().err
-    assert main(["label", *given, "--full-scale", "2"]) == 0
-    assert [recording.calibrated for recording, _ in labelled.recordings] == [
-        True,
-        False,
-        True,
-        True,
-    ]
-    assert "without calibration" not in capsys.readouterr().err
-
-
-def test_another_sensitivity_is_taken_and_its_false_names_are_told(runs, labelled, capsys):
-    assert main(["label", "runs/a.wav", "--out", "t.csv", "--sensitivity", "2"]) == 0
-    assert labelled.sensitivities == [2.0]
-    said = capsys.readouterr().err
-    assert "20 false names an hour" in said
-    assert "in 0.25 h: 5 names (2)" in said
 
 
 def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
@@ -293,24 +192,46 @@ def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
     assert printed == f"{out}\n"
     assert out.read_bytes() == b"trained"
     assert asked == [(3, [1, 2])]
-    assert "growing trees 6 fits" in err
     assert "pressure: n 600, macro f1 0.9" in err
 
 
-@pytest.mark.parametrize("given", [[], ["--out", "mine.pkl"], ["--out", "file.txt/mine.npz"]])
-def test_train_refuses_a_target_before_the_work(tmp_path, monkeypatch, capsys, given):
-    monkeypatch.chdir(tmp_path)
-    Path("file.txt").touch()
-    assert main(["train", *given]) == 2
-    assert "--out" in capsys.readouterr().err
+SQUEAL = {
+    "file": "run07.wav", "channel": "all", "label": "squeal", "start_s": 1.99, "end_s": 6.01,
+    "frequency_hz": 974.2, "level_dba": 59.9, "level_dbfs": -34.0, "p_squeal": 0.93,
+    "label_source": "classifier", "error": None,
+}  # fmt: skip
+CREAK = SQUEAL | {
+    "label": "creak", "start_s": 6.01, "end_s": 7.0, "frequency_hz": 83.0, "level_dba": 51.0,
+    "p_creak": 0.7,
+}  # fmt: skip
+NONE = SQUEAL | {"label": "none", "start_s": 0.0, "end_s": 1.99, "p_none": 0.99}
+UNKNOWN = SQUEAL | {"label": "unknown", "p_unknown": 0.3, "p_squeal": 0.65}
 
 
-def test_demo_names_its_report(tmp_path, monkeypatch, capsys):
-    asked = []
-    monkeypatch.setattr("noise.demo.run_demo", lambda out, *, seed: asked.append((out, seed)))
-    monkeypatch.chdir(tmp_path)
-    assert main(["demo"]) == 0
-    assert main(["demo", "--out", "there", "--seed", "2"]) == 0
-    assert asked == [(Path("bushing-noise-demo"), 0), (Path("there"), 2)]
-    reports = [str(folder / "report.html") for folder, _ in asked]
-    assert capsys.readouterr().out.splitlines() == reports
+@pytest.mark.parametrize(
+    ("rows", "line"),
+    [
+        (
+            [NONE, SQUEAL, CREAK],
+            "run07.wav  squeal 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.93"
+            "  also creak 83 Hz  51.0 dB(A)  6.01-7.00 s  p 0.70",
+        ),
+        ([UNKNOWN], "run07.wav  unknown 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.30 (squeal 0.65)"),
+        (
+            [SQUEAL | {"level_dba": None, "frequency_hz": None, "label_source": "human"}],
+            "run07.wav  squeal  -34.0 dBFS  1.99-6.01 s  by hand",
+        ),
+    ],
+)
+def test_a_recording_is_told_in_one_line(rows, line):
+    assert list(result_lines(rows)) == [line]
+
+
+def test_a_terminal_gets_lines_in_place_of_the_table(runs):
+    call = [sys.executable, "-m", "noise", "label", "runs/a.wav"]
+    ours, theirs = pty.openpty()
+    done = subprocess.run(call, stdout=theirs, stderr=subprocess.PIPE, text=True, check=True)
+    os.close(theirs)
+    assert os.read(ours, 65536).decode().startswith("a.wav  ")
+    os.close(ours)
+    assert "takes the whole table" in done.stderr

@@ -206,16 +206,6 @@ def test_one_of_two_workers_is_killed_and_the_table_is_the_same(tmp_path):
     assert (tmp_path / "two.csv").read_bytes() == said
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="tells no process that another one is gone")
-def test_the_processes_of_a_killed_command_end_as_well(tmp_path):
-    make_recordings(tmp_path / "runs", 40, 4, 0.2)
-    process = start(["label", *RUNS, "--workers", "2"], tmp_path)
-    wait_for(process, journal_path(tmp_path / "t.csv"), 2)
-    assert len(workers_of(process)) == 2
-    process.kill()
-    process.communicate(timeout=20)  # their standard error is ours
-
-
 def test_later_calls_do_only_what_is_new_or_changed(tmp_path, capsys):
     make_recordings(tmp_path / "runs", 8, 2, 0.2)
     table = tmp_path / "t.csv"

@@ -3,7 +3,6 @@
 import csv
 import html
 import json
-import math
 import re
 
 import numpy as np
@@ -11,14 +10,12 @@ import pytest
 
 from features.table import recording_features
 from models.recording import Channel, Recording
-from models.rig_file import load_material_rig
 from noise.app.opened import open_paths
 from noise.app.sounds import SoundCache, bands, level_course
 from noise.cli import main
 from noise.diagnosis.fit.fits import labels_and_levels
 from noise.labels.labelling import label
 from noise.recordings import read_recording, write_recording
-from noise.screening.map import point
 
 LEVELS = ("level_db", "level_dba", "l_afmax_dba")
 MOST_ON_A_PAGE = re.compile(r"</sub> at most ([^<]*) dB\(A\)<")
@@ -106,40 +103,6 @@ def test_a_diagnosis_tells_the_levels_of_the_label_table(recorded, labelled):
     assert round(found.level_measured, 2) == labelled["level_dba"]
 
 
-@pytest.mark.slow
-def test_the_demo_page_tells_the_levels_of_its_table(tmp_path):
-    assert main(["demo", "--out", str(tmp_path)]) == 0
-    with (tmp_path / "labels.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    text = html.unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
-    assert MOST_ON_A_PAGE.findall(text) == [f"{float(row['l_afmax_dba']):.1f}" for row in rows]
-    for row in rows:
-        assert f"{float(row['level_db']):.1f} dB" in text
-
-
-@pytest.mark.parametrize("shaft", [10.0, point.shaft_motion(10.0, 2.0)], ids=["steady", "swinging"])
-def test_a_screen_tells_the_levels_of_the_label_table(shaft, tmp_path, monkeypatch):
-    heard = []
-    measure = point._levels
-    monkeypatch.setattr(point, "_levels", lambda sound: heard.append(sound) or measure(sound))
-    found = point.evaluate_point(
-        load_material_rig("fluorocarbon"), shaft, interference=0.279e-3, support_stiffness=3745.0
-    )
-    (sound,) = heard
-    path = written(tmp_path, "point.wav", sound.pressure, sound.motion.rate)
-    rows = label(path)
-    whole = rows[0] if len(rows) == 1 else _of_the_whole(path, tmp_path)
-    # What is written has 24 bits of every sample.
-    assert found.level == pytest.approx(whole["level_dba"], abs=0.006)
-    assert found.level_max == pytest.approx(whole["l_afmax_dba"], abs=0.006)
-
-
-def _of_the_whole(path, folder):
-    assert main(["render", str(path), "--out", str(folder / "whole.wav")]) == 0
-    (part,) = json.loads((folder / "whole.json").read_text())["parts"]
-    return part
-
-
 def test_segments_have_the_levels_of_what_they_hold(tmp_path):
     loud = 0.3 * np.sin(2.0 * np.pi * 2310.0 * np.arange(2 * 48_000) / 48_000)
     path = written(tmp_path, "run.wav", np.concatenate([hiss(3.0, 1e-3), loud, hiss(3.0, 1e-3)]))
@@ -151,14 +114,3 @@ def test_segments_have_the_levels_of_what_they_hold(tmp_path):
         assert [found[name] for name in ("level", "level_a", "level_af_max")] == [
             row[name] for name in LEVELS
         ]
-
-
-@pytest.mark.slow
-def test_loudness_has_one_number_in_tables_of_labels_and_of_sounds(squeal, tmp_path):
-    pytest.importorskip("mosqito")
-    (row,) = label(squeal, loudness=True)
-    heard = ["render", str(squeal), "--sound-quality", "--out", str(tmp_path / "heard.wav")]
-    assert main(heard) == 0
-    (part,) = json.loads((tmp_path / "heard.json").read_text())["parts"]
-    assert math.isfinite(part["loudness_n5_sone"])
-    assert part["loudness_n5_sone"] == row["loudness_n5_sone"]

@@ -1,0 +1,156 @@
+"""What results are in a notebook: a short print, a data frame of pandas, a picture on axes."""
+
+import io
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import noise
+from features.modal.modes import Modes
+from models.errors import ParameterError
+from models.recording import Channel, Recording
+from models.transfer_functions.files import write_transfer_function_csv
+from models.transfer_functions.transfer_function import TransferFunction
+from noise.identification.outcome import Identification, Number
+from noise.labels.segments import Segment
+from noise.labels.table import COLUMNS
+from tests.helpers.made_diagnoses import one_effect
+
+LONGEST = 500
+FREQUENCY = np.linspace(0.0, 200.0, 401)
+CHANNELS = (Channel("torque"), Channel("pressure"))
+
+
+def run():
+    return noise.simulate(noise.load_material_rig("fluorocarbon-thesis"), 1.0, seconds=0.2)
+
+
+def recording(**others):
+    time = np.arange(4800) / 48e3
+    samples = np.stack([np.sin(300 * time), 2 * np.cos(500 * time)])
+    return Recording(samples, 48e3, CHANNELS, **others)
+
+
+def segments():
+    one = Segment("all", 0.0, 1.25, "creak", {"creak": 0.9, "none": 0.1}, 152.0, 78.0, -20.0)
+    return noise.Segments([one] * 30)
+
+
+def label_table():
+    row = {"file": "a.wav", "channel": "all", "start_s": 0.0, "end_s": 2.0, "label": "creak"}
+    return noise.LabelTable([row | {"level_db": 70.0}] * 30)
+
+
+def response():
+    values = 1.0 / (100.0**2 - FREQUENCY**2 + 4j * FREQUENCY)
+    coherence = np.where(FREQUENCY < 20.0, 0.2, 0.99)
+    return TransferFunction(FREQUENCY, values, coherence, "N m", "m/s^2", "hits")
+
+
+def modes():
+    one = np.array([100.0, 150.0]), np.array([0.02, 0.01]), np.array([[-1j, -2j]])
+    return Modes(*one, np.zeros((1, 4)), np.array([9, 8]), 200.0)
+
+
+def identification():
+    number = Number("elastomer_stiffness", "Nm/rad", 665.0, 655.0, 675.0, 6, 0.279e-3)
+    return Identification("", (number,), (), "constant", ())
+
+
+def sweep():
+    rig = noise.load_material_rig("PDMS")
+    return noise.sweep(rig, [1.0, 5.0], support_stiffness=[[2214.0], [noise.FIXED]], seconds=0.01)
+
+
+DRAWN = (recording, run, segments, label_table, one_effect, response, modes, sweep)
+ROWS = {segments: 30, label_table: 30, one_effect: None, response: 401, modes: 2, sweep: 4,
+        identification: 1}  # fmt: skip
+
+
+@pytest.mark.parametrize("made", [*DRAWN, identification, noise.load_classifier])
+def test_a_result_prints_short(made):
+    printed = repr(made())
+    assert len(printed) < LONGEST
+    assert printed.startswith(type(made()).__name__)
+
+
+@pytest.mark.parametrize("made", DRAWN)
+def test_an_object_draws_on_the_axes_it_is_given_and_names_them(made):
+    axes = Figure().subplots()
+    assert made().plot(ax=axes) is axes
+    assert axes.has_data()
+    assert axes.get_xlabel()
+
+
+@pytest.mark.parametrize("made", ROWS)
+def test_a_table_is_a_frame_of_as_many_rows(made):
+    pytest.importorskip("pandas")
+    frame = made().to_pandas()
+    assert ROWS[made] in (None, len(frame))
+    assert len(set(frame.columns)) == len(frame.columns)
+
+
+def test_frames_have_the_columns_of_the_files():
+    pytest.importorskip("pandas")
+    frame = label_table().to_pandas()
+    assert tuple(frame.columns) == COLUMNS
+    assert frame["level_db"].mean() == 70.0
+    assert set(segments().to_pandas().columns) < set(COLUMNS)
+    file = io.StringIO()
+    write_transfer_function_csv(file, response())
+    assert file.getvalue().splitlines()[0].split(",") == [*response().to_pandas().columns]
+    frame = sweep().to_pandas()
+    assert frame["speed_rad_s"].tolist() == [1.0, 5.0, 1.0, 5.0]
+    assert frame["support_stiffness_Nm_rad"].tolist() == [2214.0, 2214.0, "fixed", "fixed"]
+
+
+def test_missing_pandas_is_told_with_the_command_that_installs_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ParameterError, match=r'pip install "bushing-noise\[pandas\]"'):
+        label_table().to_pandas()
+
+
+def test_a_run_draws_the_stretch_asked_for():
+    axes = run().plot(Figure().subplots(), start=0.05, end=0.1)
+    for line in axes.lines:
+        time = line.get_xdata()
+        assert (time[0], time[-1]) == pytest.approx((0.05, 0.1), abs=1e-4)
+    with pytest.raises(ParameterError, match=r"hold nothing of a run of 0\.2 s"):
+        run().plot(Figure().subplots(), start=0.3, end=0.4)
+
+
+def test_a_recording_draws_its_sound_pressure_unless_another_channel_is_named():
+    drawn = recording().plot(ax=Figure().subplots())
+    assert drawn.get_ylabel() == "Sound pressure [Pa]"
+    assert np.ptp(drawn.lines[0].get_ydata()) > 3.9
+    assert recording().plot("torque", Figure().subplots()).get_ylabel() == "Torque [Nm]"
+    uncalibrated = recording(calibrated=False).plot(ax=Figure().subplots())
+    assert uncalibrated.get_ylabel() == "Sound pressure [full scale]"
+    with pytest.raises(ParameterError, match="no channel 'force'"):
+        recording().plot("force", Figure().subplots())
+
+
+def test_without_axes_a_new_figure_of_pyplot_is_drawn_on_and_settings_stay():
+    code = (
+        "import sys, numpy as np, noise\n"
+        "tone = noise.Recording(np.zeros((1, 480)), 48e3, (noise.Channel('pressure'),))\n"
+        "repr(tone)\n"
+        "assert 'matplotlib' not in sys.modules\n"
+        "import matplotlib as mpl\n"
+        "before = dict(mpl.rcParams)\n"
+        "axes = tone.plot()\n"
+        "import matplotlib.pyplot as plt\n"
+        "assert plt.get_fignums() == [axes.figure.number]\n"
+        "assert {k: v for k, v in mpl.rcParams.items() if k != 'backend'} == "
+        "{k: v for k, v in before.items() if k != 'backend'}\n"
+    )
+    environment = os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(Path(__file__).parents[2])}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
