@@ -1,12 +1,22 @@
 """The README, as somebody follows it who pastes one block after the other into an empty folder."""
 
+import csv
+import html
+import re
+
 import numpy as np
 import pytest
 import soundfile
 
+from features.modal.hammer import estimate_transfer_function
+from models.radiation.rig_response import impulse_responses
+from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.commands import COMMANDS
+from noise.demo import CASES
+from noise.demo_hits import ARM, N_HITS
 from noise.recordings import read_recording
+from noise.recordings.hits import find_hits, read_hit
 from tests.helpers.readme_blocks import SERVING, blocks, paths, quoted, readme, walk
 
 BLOCKS = blocks(readme())
@@ -16,9 +26,7 @@ DEAR = ("diagnose", "identify", "screen", "thesis", "train")
 """Commands that take a minute or more."""
 
 
-@pytest.fixture(autouse=True)
-def _no_window(monkeypatch):
-    monkeypatch.setenv("MPLBACKEND", "Agg")
+NAMES = [case.name for case in CASES]
 
 
 def refused(said):
@@ -40,18 +48,99 @@ def test_every_command_is_shown():
     assert {line[0] for line in COMMAND_LINES} == set(COMMANDS)
 
 
-@pytest.mark.parametrize("line", COMMAND_LINES, ids=" ".join)
-def test_every_option_is_one_of_its_command(line, capsys):
-    assert main([line[0], "--help"]) == 0
-    told = capsys.readouterr().out
-    assert [word for word in line if word.startswith("--") and word.split()[0] not in told] == []
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_option_is_one_of_its_command(command, capsys):
+    assert main([command, "--help"]) == 0
+    explained = capsys.readouterr().out
+    given = [word for line in COMMAND_LINES if line[0] == command for word in line]
+    assert [w for w in given if w.startswith("--") and w.split()[0] not in explained] == []
 
 
-def test_blocks_run_in_order_from_an_empty_folder(tmp_path):
-    said = walk(tmp_path, dear=DEAR)
+@pytest.fixture(scope="module")
+def walked(tmp_path_factory):
+    """The folder, and what the blocks said that were done in it, but for the dear commands."""
+    folder = tmp_path_factory.mktemp("readme")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MPLBACKEND", "Agg")  # no window
+        return folder, walk(folder, dear=DEAR)
+
+
+def test_blocks_run_in_order_from_an_empty_folder(walked):
+    folder, said = walked
     assert refused(said) == []
-    assert missing(tmp_path, said) == []
+    assert missing(folder, said) == []
     assert len(said) > len(COMMAND_LINES) / 2
+
+
+@pytest.fixture
+def demo(walked):
+    return walked[0] / "bushing-noise-demo"
+
+
+def table(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_folder_holds_what_the_readme_says(demo):
+    expected = {"report.html", "labels.csv", "features.csv", "recordings", "audio", "hits"}
+    assert {path.name for path in demo.iterdir()} == expected
+    for part in ("recordings", "audio"):
+        found = {path.name for path in (demo / part).iterdir()}
+        assert found == {f"{name}.{ending}" for name in NAMES for ending in ("wav", "json")}
+
+
+def test_the_page_tells_the_levels_of_the_label_table(demo):
+    text = html.unescape((demo / "report.html").read_text(encoding="utf-8"))
+    rows = table(demo / "labels.csv")
+    most = re.findall(r"</sub> at most ([^<]*) dB\(A\)<", text)
+    assert most == [f"{float(row['l_afmax_dba']):.1f}" for row in rows]
+    assert all(f"{float(row['level_dba']):.1f} dB(A) re 20 µPa" in text for row in rows)
+
+
+def test_every_recording_carries_its_label_linked_to_its_condition(demo):
+    rows = table(demo / "labels.csv")
+    assert [row["file"] for row in rows] == [f"{name}.wav" for name in NAMES]
+    assert [row["label"] for row in rows] == NAMES
+    for row, case in zip(rows, CASES, strict=True):
+        assert float(row["speed_rad_s"]) == pytest.approx(case.speed, rel=0.01)
+        assert float(row["interference_mm"]) == pytest.approx(1e3 * case.interference)
+        assert float(row["support_stiffness_Nm_rad"]) == case.support_stiffness
+        assert row["material"] == case.material
+        assert row["calibrated"] == "true"
+
+
+def test_features_have_one_row_a_recording(demo):
+    rows = table(demo / "features.csv")
+    assert [row["file"] for row in rows] == [f"{name}.wav" for name in NAMES]
+    assert all(row["pressure_level"] for row in rows)
+
+
+def test_sounds_never_clip_and_silence_stays_quiet(demo):
+    peaks = {name: abs(read_recording(demo / "audio" / f"{name}.wav").samples) for name in NAMES}
+    scales = {
+        name: read_recording(demo / "audio" / f"{name}.wav").channels[0].full_scale
+        for name in NAMES
+    }
+    assert all(peaks[name].max() < scales[name] for name in NAMES)
+    assert peaks["none"].max() < 0.2 * scales["none"]
+
+
+def test_its_hits_give_the_response_of_the_modelled_structure(demo):
+    hits = [read_hit(path, arm=ARM)[0] for path in find_hits([demo / "hits"])]
+    assert len(hits) == N_HITS
+    found = estimate_transfer_function(hits, input_unit="N m", output_unit="m/s^2")
+    paths = impulse_responses(load_material_rig("fluorocarbon"), 0.279e-3, 2214.0, 90e3)
+    band = (found.frequencies >= 100.0) & (found.frequencies <= 5000.0)
+    n = 1 << 17
+    exact = np.interp(
+        found.frequencies[band],
+        np.fft.rfftfreq(n, 1.0 / paths.rate),
+        np.abs(np.fft.rfft(paths.torque_to_acceleration, n)),
+    )
+    off = 20.0 * np.log10(np.abs(found.response[band]) / exact)
+    assert np.median(np.abs(off)) < 0.2
+    assert np.median(found.coherence[band]) > 0.98
 
 
 def test_the_sidecar_makes_a_recording_of_plain_samples(tmp_path):
@@ -66,7 +155,8 @@ def test_the_sidecar_makes_a_recording_of_plain_samples(tmp_path):
 
 
 @pytest.mark.slow
-def test_all_blocks_run_and_do_what_the_text_says(tmp_path):
+def test_all_blocks_run_and_do_what_the_text_says(tmp_path, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "Agg")
     said = walk(tmp_path)
     assert refused(said) == []
     assert missing(tmp_path, said) == []
