@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from models.condition import FIXED, Condition
-from models.errors import ParameterError, RecordingError
+from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.audio.gain import common_full_scale, least_full_scale
 from noise.audio.render import write_audio
@@ -40,15 +40,11 @@ def test_a_tone_keeps_pitch_loudness_and_length(rate, new_rate):
     assert sound.size / new_rate == pytest.approx(0.5, abs=2 / min(rate, new_rate))
 
 
-def test_the_rigs_rate_adds_no_image_of_a_creak():
+def test_nothing_folds_back_or_is_mirrored():
     sound = audible(tone(14e3, 30e3), 48000)
     assert amplitude_at(sound, 14e3, 48000) == pytest.approx(1.0, abs=1e-3)
     assert amplitude_at(sound, 16e3, 48000) < 1e-4
-
-
-def test_what_a_lower_rate_cannot_hold_does_not_fold_back():
-    sound = audible(tone(30e3, 96e3), 48000)
-    assert np.abs(sound[1000:-1000]).max() < 1e-4
+    assert np.abs(audible(tone(30e3, 96e3), 48000)[1000:-1000]).max() < 1e-4
 
 
 def test_an_offset_is_not_heard():
@@ -67,26 +63,6 @@ def test_sound_fades_in_and_out():
         assert edge[10] > 0.9
 
 
-@pytest.mark.parametrize("n", [16, 17, 480])
-def test_the_shortest_recordings_can_be_heard(n):
-    click = np.zeros((1, n))
-    click[0, n // 2] = 1.0
-    assert np.abs(audible(Recording(click, 48e3, (Channel("pressure"),)))).max() > 0.5
-
-
-def test_a_recording_without_sound_is_refused():
-    torque = Recording(np.ones((1, 480)), 48e3, (Channel("torque"),), name="run07.wav")
-    with pytest.raises(RecordingError, match=r"run07\.wav.*no pressure channel.*torque"):
-        audible(torque)
-
-
-def test_the_first_pressure_channel_is_heard():
-    samples = np.zeros((3, 4800))
-    samples[1, 2400] = 1.0
-    channels = (Channel("torque"), Channel("pressure_2"), Channel("pressure"))
-    assert np.abs(audible(Recording(samples, 48e3, channels))).max() > 0.9
-
-
 amplitudes = st.floats(1e-6, 1e4)
 
 
@@ -95,11 +71,6 @@ def test_one_gain_for_a_set_puts_its_loudest_peak_at_the_headroom(peaks, headroo
     signals = [np.array([0.0, -peak]) for peak in peaks]
     full_scale = common_full_scale(signals, headroom)
     assert max(peaks) / full_scale == pytest.approx(10 ** (-headroom / 20))
-
-
-def test_silence_has_a_full_scale():
-    assert common_full_scale([np.zeros(4)]) == 1.0
-    assert common_full_scale([]) == 1.0
 
 
 @given(amplitudes, st.sampled_from(BITS))
@@ -118,27 +89,18 @@ def test_written_sound_reads_back_calibrated(tmp_path_factory, peak, headroom, b
     full_scale = common_full_scale([samples], headroom + 0.001)
     path = tmp_path_factory.mktemp("audio") / "sound"
     recording = tone(500.0, 48e3)
-    read = read_recording(
-        write_audio(path, samples, 48000, full_scale=full_scale, bits=bits, recording=recording)
-    )
+    file = write_audio(path, samples, 48000, full_scale=full_scale, bits=bits, recording=recording)
+    read = read_recording(file)
     resolution = full_scale * 2.0 ** -min(bits, 22)
     assert read.calibrated
     assert read.rate == 48000
     assert read.condition == SQUEAL
     assert read.channel_names == ("pressure",)
     assert np.abs(read["pressure"] - samples).max() <= resolution
-
-
-@pytest.mark.parametrize("bits", BITS)
-def test_sound_stays_calibrated_when_its_sidecar_is_lost(tmp_path, bits):
-    recording = tone(500.0, 48e3)
-    path = write_audio(
-        tmp_path / "s", recording["pressure"], 48000, full_scale=3.7, bits=bits, recording=recording
-    )
-    path.with_suffix(".json").unlink()
-    read = read_recording(path)
-    assert read.calibrated
-    assert np.abs(read["pressure"]).max() == pytest.approx(1.0, rel=1e-3)
+    file.with_suffix(".json").unlink()  # the file itself tells what full scale is worth
+    alone = read_recording(file)
+    assert alone.calibrated
+    assert alone["pressure"] == pytest.approx(read["pressure"], rel=1e-6)
 
 
 @pytest.mark.parametrize("bits", BITS)
@@ -163,12 +125,3 @@ def test_what_would_clip_is_not_written(tmp_path, bits):
                 full_scale=full_scale, bits=bits, recording=recording,
             )  # fmt: skip
     assert list(tmp_path.iterdir()) == []
-
-
-def test_the_same_sound_gives_the_same_bytes(tmp_path):
-    recording = tone(500.0, 30e3)
-    one, other = (
-        write_audio(tmp_path / name, audible(recording), 48000, full_scale=2, recording=recording)
-        for name in ("one", "other")
-    )
-    assert one.read_bytes() == other.read_bytes()

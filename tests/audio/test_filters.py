@@ -1,6 +1,5 @@
 """Bands to listen to: what they keep, what they take out, and that they shift nothing."""
 
-import csv
 import json
 from pathlib import Path
 
@@ -71,18 +70,6 @@ def test_render_tells_what_the_filter_takes_away_and_levels_of_what_is_left(run,
     (part,) = told["parts"]
     assert part["level_db"] == pytest.approx(93.98, abs=0.05)
     assert part["notes"] == [f"filtered: {words}"]
-
-
-def test_filters_of_a_set_stand_in_its_table(run):
-    squeal = Recording(tone(974.0)[None], float(RATE), (Channel("pressure"),))
-    write_recording(run / "other", squeal)
-    assert main(["render", "run.wav", "other.wav", "--band", "500..2000", "--out", "set"]) == 0
-    with (run / "set" / "levels.csv").open() as file:
-        rows = list(csv.DictReader(file))
-    assert [row["filter"] for row in rows] == [
-        "500 to 2000 Hz, zero-phase; 3.0 dB below the whole sound",
-        "500 to 2000 Hz, zero-phase; 0.0 dB below the whole sound",
-    ]
 
 
 @pytest.mark.parametrize("band", ["2000..200", "0..200", "200", "a..b"])

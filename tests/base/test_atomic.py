@@ -22,15 +22,6 @@ def write_half_and_raise(target: Path, error: BaseException) -> None:
         raise error
 
 
-def test_the_file_appears_when_the_block_ends(tmp_path):
-    target = tmp_path / "table.csv"
-    with atomic(target) as path:
-        path.write_text("whole")
-        assert not target.exists()
-    assert target.read_text() == "whole"
-    assert list(tmp_path.iterdir()) == [target]
-
-
 @pytest.mark.parametrize("interruption", [RuntimeError, KeyboardInterrupt])
 def test_an_interrupted_write_leaves_the_old_file(tmp_path, interruption):
     target = tmp_path / "table.csv"
@@ -71,15 +62,6 @@ def test_what_a_killed_program_left_behind_goes_with_the_next_and_what_another_w
         assert len(list(tmp_path.iterdir())) == 2
         other.communicate()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["another.csv", "table.csv"]
-
-
-def test_two_writers_of_one_file_do_not_meet(tmp_path):
-    target = tmp_path / "table.csv"
-    with atomic(target) as one, atomic(target) as other:
-        assert one != other
-        one.write_text("one")
-        other.write_text("other")
-    assert target.read_text() == "one"
 
 
 def test_a_full_disk_is_an_error_in_one_line(tmp_path):

@@ -107,8 +107,3 @@ def test_a_file_gets_the_lines_alone(monkeypatch):
     assert stream.getvalue().splitlines() == [
         line for text in ("preparing", "mapping", "grading") for line in (text, f"{text} goes well")
     ]
-
-
-def test_a_closed_standard_error_is_no_reason_to_stop(monkeypatch):
-    monkeypatch.setattr(sys, "stderr", None)
-    work()

@@ -72,9 +72,3 @@ def test_recordings_of_odd_names_are_labelled_once_and_corrections_stay_theirs(
     capsys.readouterr()
     assert main(["label", str(odd), "--out", str(table)]) == 0
     assert "3 of 3 recordings are done already" in capsys.readouterr().err
-
-
-def test_the_levels_of_a_set_name_its_parts_as_its_files(odd, tmp_path):
-    assert main(["render", str(odd), "--out", str(tmp_path / "set")]) == 0
-    _, rows = read_table(tmp_path / "set" / "levels.csv")
-    assert [row["part"] for row in rows] == [r"\x1b[2J.wav", "=1+1.wav", r"caf\xe9.wav"]

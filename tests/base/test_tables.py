@@ -36,18 +36,6 @@ def test_no_text_controls_what_it_is_shown_on(tmp_path, ending):
     assert [row["file"] for row in found] == [r"\x1b[2J\x07.wav", r"\xff\x0a.wav"]
 
 
-def test_all_columns_are_in_every_row_of_a_csv(tmp_path):
-    write_table(tmp_path / "t.csv", COLUMNS, ROWS)
-    first, second = read_csv(tmp_path / "t.csv")
-    assert first == dict(zip(COLUMNS, ("a, b.wav", "81.25", "3", "true", ""), strict=True))
-    assert second == dict(zip(COLUMNS, ("bad.wav", "", "", "false", "is empty"), strict=True))
-
-
-def test_a_table_without_a_path_goes_to_standard_output(capsys):
-    write_table(None, ["a", "b"], [{"a": 1.5, "c": "left out"}])
-    assert capsys.readouterr().out == "a,b\n1.5,\n"
-
-
 @given(st.floats())
 def test_finite_numbers_come_back_as_they_were_and_others_are_none(tmp_path_factory, value):
     folder = tmp_path_factory.mktemp("tables")
@@ -59,12 +47,6 @@ def test_finite_numbers_come_back_as_they_were_and_others_are_none(tmp_path_fact
         assert float(text) == of_json == value
     else:
         assert (text, of_json) == ("", None)
-
-
-def test_the_ending_decides_in_either_case_and_folders_are_made(tmp_path):
-    target = tmp_path / "new" / "T.JSONL"
-    write_table(target, ["a"], [{"a": 1}])
-    assert read_json_lines(target) == [{"a": 1}]
 
 
 @pytest.mark.parametrize("name", ["t.ods", "t", "t.json", "."])

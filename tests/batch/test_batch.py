@@ -15,7 +15,6 @@ from models.errors import ParameterError
 from noise.batch import (
     DIED,
     Done,
-    Job,
     Journal,
     JournalReader,
     file_identity,
@@ -130,36 +129,10 @@ def test_a_changed_recording_or_sidecar_is_done_again(work, jobs, tmp_path):
     assert [done is None for done in keep(table, work, jobs)] == [False, True, *[False] * 4]
 
 
-def test_other_options_and_fresh_begin_again(work, jobs, tmp_path):
-    table = tmp_path / "t.csv"
-    keep(table, work, jobs)
-    assert keep(table, Counting(work.log, factor=2.0), jobs) == [None] * 6
-    assert keep(table, Counting(work.log, factor=2.0), jobs, fresh=True) == [None] * 6
-
-
-def test_two_at_one_table_are_kept_apart(work, tmp_path):
-    with (
-        open_journal(tmp_path / "t.csv", work),
-        pytest.raises(ParameterError, match="another process"),
-        open_journal(tmp_path / "t.csv", work),
-    ):
-        pass
-
-
 def test_a_journal_that_cannot_be_written_is_refused(work, tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(ParameterError, match="cannot be written"):
         open_journal(tmp_path / "file" / "t.csv", work).__enter__()
-
-
-def test_names_that_are_no_text_are_kept(work, tmp_path):
-    job = Job(0, tmp_path / "a.wav", "\udcff.wav")
-    job.path.touch()
-    done = Done([["\udcff.wav", float("inf"), None]], calibrated=True)
-    with open_journal(tmp_path / "t.csv", work) as journal:
-        journal.keep(job, file_identity(job.path), done)
-    with open_journal(tmp_path / "t.csv", work) as journal:
-        assert journal.find(job) == done
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has no limits on files")

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
-import time
 from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from models.errors import ParameterError
-from noise.batch import Journal, journal_path, perform_all
+from noise.batch import Journal, perform_all
 from noise.cli import main
 from tests.helpers.batch_work import Counting, in_order, make_jobs, make_recordings
-from tests.helpers.kept import results_in
-
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
 
 
 def performed(work, jobs, **how):
@@ -82,39 +76,3 @@ def test_deaths_on_a_cluster_cost_no_more_than_the_recording_at_fault(tmp_path, 
     found = performed(Counting(tmp_path / "log"), jobs, scheduler=address)
     refused = {job.name for job, done in zip(jobs, found, strict=True) if done.error}
     assert refused == {"bad.wav", "deadly.wav"}
-
-
-@pytest.mark.slow
-def test_a_scheduler_goes_away_and_the_same_call_goes_on_with_another(
-    tmp_path, monkeypatch, capsys
-):
-    distributed = pytest.importorskip("distributed")
-    monkeypatch.chdir(tmp_path)
-    make_recordings(tmp_path / "runs", 60, 6, 1.0)
-    call = [sys.executable, "-m", "noise", "label", "runs", "--out", "cluster.csv", "--scheduler"]
-    journal, n_before = journal_path(tmp_path / "cluster.csv"), 5
-    for again in (False, True):
-        with distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, dashboard_address=None, worker_dashboard_address=None
-        ) as cluster:
-            command = subprocess.Popen(
-                [*call, cluster.scheduler_address],
-                env=ENVIRONMENT,
-                stderr=subprocess.PIPE,
-                text=True,
-            )
-            while not again and len(results_in(journal)) < n_before:
-                assert command.poll() is None, command.communicate()
-                time.sleep(0.05)
-            if again:
-                _, told = command.communicate(timeout=120)
-        if not again:
-            _, told = command.communicate(timeout=120)
-            assert command.returncode == 2
-            assert "went away during the work" in told
-            assert "Traceback" not in told
-            before = results_in(journal)
-    assert command.returncode == 1, told
-    assert results_in(journal)[: len(before)] == before
-    assert main(["label", "runs", "--out", "one.csv"]) == 1
-    assert Path("cluster.csv").read_bytes() == Path("one.csv").read_bytes()
