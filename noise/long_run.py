@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from models.recording import Recording
 from noise.base.remarks import NEVER_SLIPS
-from noise.recordings.writing import write_blocks
+from noise.recordings.wav import write_blocks
 
 if TYPE_CHECKING:
     import os
@@ -50,13 +53,13 @@ def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...
     ...     read_recording(write_run(Path(folder) / "run07", run)).duration
     0.2
     """
+    about = Recording(
+        np.zeros((len(run.channels), 0)), run.rate, run.channels, run.condition, notes=notes
+    )
     return write_blocks(
         path,
         run.blocks,
-        n_samples=run.n_samples,
-        rate=run.rate,
-        channels=run.channels,
-        condition=run.condition,
-        notes=notes,
-        found=lambda: (NEVER_SLIPS,) if run.watch.never_slips else (),
+        run.n_samples,
+        about,
+        lambda: (NEVER_SLIPS,) if run.watch.never_slips else (),
     )

@@ -2,6 +2,6 @@
 
 from noise.recordings.files import read_recording
 from noise.recordings.folders import find_recordings
-from noise.recordings.writing import write_recording
+from noise.recordings.wav import write_recording
 
 __all__ = ["find_recordings", "read_recording", "write_recording"]

@@ -1,24 +1,175 @@
-"""A WAV file, byte by byte: the same samples give the same bytes.
+"""WAV files, written byte by byte: recordings with their sidecar, and sounds.
 
-The sound library pads the header or adds the time of day to it, and writes neither dither nor a
-description with the value of full scale; scipy wants all samples at once.
+The same samples give the same bytes. The sound library pads the header or adds the time of day to
+it, and writes neither dither nor a description with the value of full scale; scipy wants all
+samples at once. A run too long for memory comes block by block: the header says at once how long
+the file will be, so what arrives must be just as much; until it has, nothing stands under the
+file's own name.
 """
 
 from __future__ import annotations
 
 import math
+import os
 import struct
+import zlib
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import ParameterError
-from models.recording import REFERENCE_PRESSURE
+from models.recording import REFERENCE_PRESSURE, Recording
+from noise.base.files import atomic
+from noise.recordings.files import MIN_SAMPLES
+from noise.recordings.formats import formats
+from noise.recordings.sidecar import sidecar_text
 
 BITS = (16, 24, 32)
 """Sizes of a sample: integer, integer, floating point."""
 
 _DESCRIPTION_CHUNK = 602  # byte (EBU Tech 3285); the first 256 are the description
+_BLOCK = 1 << 16  # samples a channel
+
+
+def write_recording(path: str | os.PathLike[str], recording: Recording) -> Path:
+    """Write a recording as 32-bit float WAV with its sidecar, both whole or not at all.
+
+    Parameters
+    ----------
+    path : path-like
+        ``run07`` and ``run07.wav`` are the same; parent folders are made.
+    recording : Recording
+        Its samples are written as they are, so full scale of the file written is one unit.
+
+    Returns
+    -------
+    Path
+        The WAV file.
+
+    Raises
+    ------
+    ParameterError
+        The recording cannot be written there, or could not be read back.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from models.recording import Channel, Recording
+    >>> silence = Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = write_recording(Path(folder) / "runs" / "none", silence)
+    ...     sorted(file.name for file in Path(folder).glob("runs/*"))
+    ['none.json', 'none.wav']
+    """
+    samples, n = recording.samples, recording.samples.shape[1]
+    blocks = (samples[:, at : at + _BLOCK] for at in range(0, n, _BLOCK))
+    return write_blocks(path, blocks, n, recording)
+
+
+def write_blocks(
+    path: str | os.PathLike[str],
+    blocks: Iterable[NDArray[np.float64]],
+    n_samples: int,
+    about: Recording,
+    found: Callable[[], tuple[str, ...]] = tuple,
+) -> Path:
+    """Write blocks as one 32-bit float WAV with its sidecar, both whole or not at all.
+
+    Parameters
+    ----------
+    path : path-like
+        As of `write_recording`.
+    blocks : iterable of ndarray, shape (n_channels, n)
+        [units of the channels]
+    n_samples : int
+        Of all blocks together.
+    about : Recording
+        Rate, a whole number of hertz, channels, condition and notes; its samples do not count.
+    found : callable, optional
+        Gives further notes, when all blocks have been written.
+
+    Returns
+    -------
+    Path
+        The WAV file.
+
+    Raises
+    ------
+    ParameterError
+        The recording cannot be written there or could not be read back, or the blocks hold
+        another number of samples.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from models.recording import Channel, Recording
+    >>> from noise.recordings import read_recording
+    >>> halves = (np.full((1, 400), value) for value in (20.0, 30.0))
+    >>> about = Recording(np.zeros((1, 0)), 30e3, (Channel("torque"),))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_blocks(Path(folder) / "run07", halves, 800, about)
+    ...     float(read_recording(path)["torque"].mean())
+    25.0
+    """
+    target, rate = _wav_path(Path(path)), about.rate
+    if n_samples < MIN_SAMPLES:
+        raise ParameterError(f"{target}: {n_samples} samples, expected at least {MIN_SAMPLES}")
+    if not (1 <= rate < 1 << 31 and float(rate).is_integer()):
+        raise ParameterError(
+            f"{target}: the sampling rate is {rate!r} Hz, but WAV holds whole hertz only"
+        )
+    sidecar_text(about)  # refuses what could not be read back
+    try:
+        header = _header(n_samples, int(rate), 32, n_channels=len(about.channels))
+    except ParameterError as error:
+        raise ParameterError(f"{target}: {error}") from error
+    # The sidecar is moved into place first: samples are never seen without what they mean. Its
+    # checksum tells that it belongs to others, should the call end between the two.
+    with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
+        with wav.open("wb") as file:
+            file.write(header)
+            checksum, written = zlib.crc32(header), 0
+            for block in blocks:
+                data = _frames(target, block, about).tobytes()
+                file.write(data)
+                checksum = zlib.crc32(data, checksum)
+                written += block.shape[1]
+        if written != n_samples:
+            raise ParameterError(f"{target}: {written} samples arrived, expected {n_samples}")
+        about = replace(about, notes=(*about.notes, *found()))
+        sidecar.write_text(sidecar_text(about, f"{checksum:08x}"), encoding="utf-8")
+    return target
+
+
+def _frames(target: Path, block: NDArray[np.float64], about: Recording) -> NDArray[np.float32]:
+    channels = about.channels
+    if block.ndim != 2 or block.shape[0] != len(channels):
+        raise ParameterError(
+            f"{target}: a block has shape {block.shape}, expected ({len(channels)}, n_samples)"
+        )
+    with np.errstate(over="ignore"):
+        frames = block.T.astype("<f4")
+    finite = np.isfinite(frames).all(axis=0)
+    if not finite.all():
+        name = channels[int(np.argmin(finite))].name
+        raise ParameterError(
+            f"{target}: channel {name!r} holds samples that are not finite in 32 bits"
+        )
+    return frames
+
+
+def _wav_path(path: Path) -> Path:
+    ending = path.suffix.lower()
+    if not path.name:
+        raise ParameterError(f"{str(path)!r} names no file to write a recording to")
+    if ending == ".wav":
+        return path
+    if ending in formats() or ending == ".json":
+        raise ParameterError(f"{path}: recordings are written as WAV; end the name in .wav")
+    return path.with_name(path.name + ".wav")
 
 
 def largest_sample(bits: int) -> float:
@@ -79,45 +230,17 @@ def wav_bytes(
     >>> wav_bytes(np.zeros(8), 48000, 16)[:4], len(wav_bytes(np.zeros(8), 48000, 16))
     (b'RIFF', 60)
     """
-    size = fractions.size
+    header = _header(fractions.size, rate, bits, description=description)
     if bits == 32:
-        return wav_header(size, rate, bits, description=description) + (
-            fractions.astype("<f4").tobytes()
-        )
+        return header + fractions.astype("<f4").tobytes()
     samples = integers(fractions, bits, dither)
-    padding = bytes(len(samples) % 2)
-    return wav_header(size, rate, bits, description=description) + samples + padding
+    return header + samples + bytes(len(samples) % 2)
 
 
-def wav_header(
+def _header(
     n_samples: int, rate: int, bits: int, *, n_channels: int = 1, description: str = ""
 ) -> bytes:
-    """Return what stands before the samples of a WAV file.
-
-    Parameters
-    ----------
-    n_samples : int
-        Of each channel.
-    rate : int
-        Sampling rate [Hz].
-    bits, description
-        As in `wav_bytes`.
-    n_channels : int
-
-    Raises
-    ------
-    ParameterError
-        The samples are more than a WAV file can hold, or the header's numbers do not fit.
-
-    Notes
-    -----
-    EBU Tech 3285 (Broadcast Wave Format).
-
-    Examples
-    --------
-    >>> len(wav_header(3600 * 30000, 30000, 32, n_channels=4)), len(wav_header(8, 48000, 16))
-    (58, 44)
-    """
+    """Return what stands before the samples of a WAV file (EBU Tech 3285)."""
     frame = n_channels * bits // 8
     size, floating = n_samples * frame, bits == 32
     kind = (3 if floating else 1, n_channels, rate, rate * frame, frame, bits)

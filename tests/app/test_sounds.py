@@ -24,7 +24,7 @@ from noise.app.sounds import (
     spectrogram,
     wav,
 )
-from noise.recordings.writing import write_recording
+from noise.recordings.wav import write_recording
 
 RATE = 48000
 

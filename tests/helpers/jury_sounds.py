@@ -7,7 +7,7 @@ import numpy as np
 from models.recording import Channel, Recording
 from noise.base.tables import write_table
 from noise.labels.table import COLUMNS
-from noise.recordings.writing import write_recording
+from noise.recordings.wav import write_recording
 from tests.helpers.labelled_folder import made_row
 
 RATE = 48000

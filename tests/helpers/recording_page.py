@@ -9,7 +9,7 @@ import numpy as np
 from models.recording import Channel, Recording
 from noise.base.tables import write_table
 from noise.labels.table import COLUMNS, read_label_table
-from noise.recordings.writing import write_recording
+from noise.recordings.wav import write_recording
 from tests.helpers.browser import new_page, until
 from tests.helpers.labelled_folder import made_row
 

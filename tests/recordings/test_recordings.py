@@ -19,7 +19,7 @@ from models.recording import Channel, Recording
 from models.units import CHANNEL_UNITS
 from noise.recordings import read_recording, write_recording
 from noise.recordings.formats import formats
-from noise.recordings.writing import write_blocks
+from noise.recordings.wav import write_blocks
 
 RATE = 48_000
 HALF = np.full(480, 0.5)
@@ -126,14 +126,8 @@ def test_the_bytes_are_those_that_scipy_writes_however_they_arrive(tmp_path, n_c
     channels = tuple(Channel(f"pressure_{i + 2}") for i in range(n_channels))
     run = Recording(samples, 48e3, channels)
     whole = write_recording(tmp_path / "whole", run)
-    blocks = write_blocks(
-        tmp_path / "blocks",
-        np.split(samples, [1, 300], axis=1),
-        n_samples=samples.shape[1],
-        rate=run.rate,
-        channels=run.channels,
-        condition=Condition(),
-    )
+    parts = np.split(samples, [1, 300], axis=1)
+    blocks = write_blocks(tmp_path / "blocks", parts, samples.shape[1], run)
     wavfile.write(tmp_path / "scipy.wav", 48_000, np.squeeze(samples.T.astype("<f4")))
     assert whole.read_bytes() == blocks.read_bytes() == (tmp_path / "scipy.wav").read_bytes()
     assert whole.with_suffix(".json").read_bytes() == blocks.with_suffix(".json").read_bytes()

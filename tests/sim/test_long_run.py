@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from scipy.signal import resample_poly
 
-from models.condition import FIXED, Condition
+from models.condition import FIXED
 from models.errors import ParameterError
-from models.recording import Channel
+from models.recording import Channel, Recording
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from models.transfer_functions.filtering import convolve
 from noise.long_run import write_run
 from noise.recordings import read_recording
-from noise.recordings.writing import write_blocks
+from noise.recordings.wav import write_blocks
 from sim.acquisition import Acquisition
 from sim.long_run import simulate_blocks
 from sim.motion import motion_blocks, simulate_motion
@@ -148,13 +148,13 @@ def test_a_run_that_fails_on_its_way_leaves_no_file(tmp_path):
         yield np.zeros((1, 100))
         raise ParameterError("the motion grows without bound")
 
-    how = {"rate": 30e3, "channels": (Channel("torque"),), "condition": Condition()}
+    about = Recording(np.zeros((1, 0)), 30e3, (Channel("torque"),))
     with pytest.raises(ParameterError, match="without bound"):
-        write_blocks(tmp_path / "run", failing(), n_samples=200, **how)
+        write_blocks(tmp_path / "run", failing(), 200, about)
     with pytest.raises(ParameterError, match="100 samples arrived, expected 200"):
-        write_blocks(tmp_path / "run", iter([np.zeros((1, 100))]), n_samples=200, **how)
+        write_blocks(tmp_path / "run", iter([np.zeros((1, 100))]), 200, about)
     with pytest.raises(ParameterError, match="'torque' holds samples that are not finite"):
-        write_blocks(tmp_path / "run", iter([np.full((1, 100), np.nan)]), n_samples=100, **how)
+        write_blocks(tmp_path / "run", iter([np.full((1, 100), np.nan)]), 100, about)
     assert list(tmp_path.iterdir()) == []
 
 

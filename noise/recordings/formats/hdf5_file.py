@@ -30,8 +30,8 @@ from noise.recordings.formats.logged import (
     Axis,
     LoggedChannel,
     Read,
+    factor_and_offset,
     is_time,
-    packing,
 )  # fmt: skip
 
 _RATES = ("rate_Hz", "rate", "fs", "sampling_rate", "sample_rate", "sampling_frequency")
@@ -41,7 +41,6 @@ _AXIS_UNITS = ("x_unit", "xunit", "x_units", "axis_unit")
 _UNITS = ("unit", "units", "unit_str")
 _DENSEST = 1032  # bytes a byte: what deflate reaches at best
 _LONGEST = 1 << 16  # of the text of an attribute [byte]
-_ALLOWANCE = 1 << 20  # of a chunk that is larger than its data [byte]
 
 
 @contextmanager
@@ -76,19 +75,15 @@ FORMAT = Format("HDF5", (".h5", ".hdf5"), channels=open_hdf5, library="h5py", ex
 
 def _channel(path: Path, dataset: Any) -> LoggedChannel:
     _check_size(path, dataset)
-    factor, offset, problem, remark = packing(
-        _attributes(path, dataset, PACKING), dataset.dtype.kind in "iu"
-    )
     return LoggedChannel(
         name=_last(dataset),
         n_samples=int(dataset.size),
         read=_reading(dataset),
         axes=_axes(path, dataset),
-        factor=factor,
-        offset=offset,
+        packing=_attributes(path, dataset, PACKING),
+        integers=dataset.dtype.kind in "iu",
         unit=_text(path, dataset, _UNITS),
-        problem=problem,
-        remark=remark,
+        problem=NOT_STATED,
     )
 
 
@@ -138,8 +133,7 @@ def _time_beside(path: Path, group: Any, dataset: Any) -> Iterator[Axis]:
             if not is_time(name, unit):
                 continue
             _check_size(path, times)
-            factor, offset, _, _ = packing(_attributes(path, times, PACKING), integers=False)
-            read = _reading(times, 1.0 if factor is None else factor, offset or 0.0)
+            read = _reading(times, *factor_and_offset(_attributes(path, times, PACKING)))
             yield Axis(start=NOT_STATED, step=NOT_STATED, times=read, unit=unit, quantity="time")
 
 
@@ -153,17 +147,12 @@ def _reading(dataset: Any, factor: float = 1.0, offset: float = 0.0) -> Read:
 
 def _check_size(path: Path, dataset: Any) -> None:
     """Refuse a dataset whose numbers are not in this file, or cannot all be."""
-    where = f"{path}: channel {_last(dataset)!r}"
-    if dataset.is_virtual or dataset.external:
-        raise RecordingError(f"{where} is kept in another file; copy it into this one")
     stored = int(dataset.id.get_storage_size())
     if int(dataset.nbytes) > _DENSEST * stored or stored > path.stat().st_size:
         raise RecordingError(
-            f"{where} announces {dataset.size} samples, of which {stored} bytes are stored"
+            f"{path}: channel {_last(dataset)!r} announces {dataset.size} samples, of which "
+            f"{stored} bytes are stored in this file"
         )
-    chunk = int(np.prod(dataset.chunks or (0,), dtype=np.float64)) * dataset.dtype.itemsize
-    if chunk > int(dataset.nbytes) + _ALLOWANCE:
-        raise RecordingError(f"{where} is stored in chunks of {chunk} bytes, more than it holds")
 
 
 def _attributes(path: Path, item: Any, keys: tuple[str, ...]) -> dict[str, object]:

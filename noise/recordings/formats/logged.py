@@ -61,7 +61,7 @@ _UNCLEAR = {
 """Attributes that may have been applied or not, and the value at which that does not matter."""
 
 PACKING = ("scale_factor", "add_offset", *_UNCLEAR)
-"""Attributes that `packing` takes."""
+"""Attributes by which numbers are packed, or may be."""
 
 _BLOCK = 1 << 16  # samples a channel
 _OURS = re.compile(rf"({'|'.join(CHANNEL_UNITS)})(_([2-9]|[1-9]\d{{1,3}}))?")
@@ -101,22 +101,23 @@ class LoggedChannel:
         Reads samples as stored.
     axes : sequence of Axis
         Empty where nothing is stated; the last one that states a start has the last word on it.
-    factor, offset : float or None
-        A value is ``factor * stored + offset`` [unit].
+    packing : mapping of str to object, or None
+        Attributes among which there may be those of `PACKING`, of integers and of other numbers.
+    integers : bool
+        Whether it is stored in whole numbers.
     unit : str or None
-    problem, remark : str or None
-        Why the file's own words do not allow to read it, and what should be known of it.
+    problem : str or None
+        Why it cannot be read.
     """
 
     name: str
     n_samples: int
     read: Read
     axes: Sequence[Axis]
-    factor: float | None
-    offset: float | None
+    packing: Mapping[str, object] | None
+    integers: bool
     unit: str | None
     problem: str | None
-    remark: str | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,10 +155,10 @@ class Row:
                 f"channel {self.logged.name!r} is truncated; {self.logged.n_samples} samples are "
                 f"announced, {begin + len(block)} can be read"
             )
-        factor, offset = self.logged.factor, self.logged.offset
+        factor, offset = factor_and_offset(self.logged.packing)
         with np.errstate(over="ignore", invalid="ignore"):  # refused where it is not finite
-            block *= self.value * (1.0 if factor is NOT_STATED else factor)
-            block += self.value * (0.0 if offset is NOT_STATED else offset)
+            block *= self.value * factor
+            block += self.value * offset
         return block
 
 
@@ -191,8 +192,7 @@ def describe_channels(
     >>> clock = Axis(start=0.0, step=0.02, times=NOT_STATED, unit="ms", quantity=NOT_STATED)
     >>> arm = LoggedChannel(
     ...     name="Arm 1", n_samples=400, read=lambda a, b: x[a:b], axes=[clock],
-    ...     factor=NOT_STATED, offset=NOT_STATED, unit="N mm",
-    ...     problem=NOT_STATED, remark=NOT_STATED,
+    ...     packing=NOT_STATED, integers=False, unit="N mm", problem=NOT_STATED,
     ... )
     >>> raw = describe_channels(Path("run.h5"), [arm], {"speed_rad_s": 5.0})
     >>> raw.channels[0].name, raw.rate, float(raw.whole().max()), raw.condition.speed
@@ -237,7 +237,12 @@ def describe_channels(
         channels = sidecar.channels
     else:
         channels = _names(rows)
-    notes += [f"channel {r.logged.name!r} {r.logged.remark}" for r in rows if r.logged.remark]
+    notes += [
+        f"channel {row.logged.name!r} {unclear}, which is not applied: its samples are taken to be "
+        "in its unit already"
+        for row in rows
+        if (unclear := _unclear(row.logged))
+    ]
     rows, n_samples = _together(path, rows, notes)
 
     def read(first: int, last: int) -> NDArray[np.float64]:
@@ -420,8 +425,13 @@ def _kind(channel: LoggedChannel) -> tuple[str, float]:
     """Kind of a channel, empty for what is none of ours, and its unit in SI."""
     if channel.problem:
         raise RecordingError(channel.problem)
-    if not all(map(math.isfinite, (channel.factor or 0.0, channel.offset or 0.0))):
-        raise RecordingError(f"has factor {channel.factor} and offset {channel.offset}")
+    factor, offset = factor_and_offset(channel.packing)
+    if not (math.isfinite(factor) and math.isfinite(offset)):
+        raise RecordingError(f"has factor {factor} and offset {offset}")
+    if channel.integers and (unclear := _unclear(channel)):
+        raise RecordingError(
+            f"{unclear}, and does not state how to apply it; state scale_factor and add_offset"
+        )
     unit, named = _unit(channel), _own_name(channel.name).partition("_")[0]
     found = kind_of_unit(unit)
     if not unit:
@@ -448,35 +458,34 @@ def _unit_problem(channel: LoggedChannel) -> str:
     return f"has unit {unit!r}{expected}" if unit else "states no unit"
 
 
-def packing(
-    attributes: Mapping[str, object], integers: bool
-) -> tuple[float | None, float | None, str | None, str | None]:
-    """Return factor, offset, problem and remark of a channel from its attributes.
-
-    ``scale_factor`` and ``add_offset`` mean one thing (value = factor * stored + offset). A gain or
-    a sensitivity may be what was applied or what is to be applied: whole numbers are not yet in
-    their unit, other numbers are taken to be.
+def factor_and_offset(packing: Mapping[str, object] | None) -> tuple[float, float]:
+    """Return what packed numbers are multiplied with, and what is then added [unit].
 
     Examples
     --------
-    >>> packing({"scale_factor": 0.5}, integers=True)
-    (0.5, None, None, None)
-    >>> packing({"gain": 20.0}, integers=False)[3]
-    'has gain 20, which is not applied: its samples are taken to be in its unit already'
+    >>> factor_and_offset({"scale_factor": 0.5}), factor_and_offset(NOT_STATED)
+    ((0.5, 0.0), (1.0, 0.0))
     """
-    numbers = {
+    stated = _numbers(packing)
+    return stated.get("scale_factor", 1.0), stated.get("add_offset", 0.0)
+
+
+def _unclear(channel: LoggedChannel) -> str:
+    """Name what may be what was applied or what is to be applied, such as a gain.
+
+    Whole numbers are then not known to be in their unit; other numbers are taken to be.
+    """
+    stated = _numbers(channel.packing)
+    unclear = [f"{k} {stated[k]:g}" for k, no in _UNCLEAR.items() if stated.get(k, no) != no]
+    return f"has {' and '.join(unclear)}" if unclear else ""
+
+
+def _numbers(packing: Mapping[str, object] | None) -> dict[str, float]:
+    return {
         key.lower(): float(value)
-        for key, value in attributes.items()
+        for key, value in (packing or {}).items()
         if isinstance(value, int | float | np.number)
     }
-    unclear = [
-        f"{k} {numbers[k]:g}" for k in _UNCLEAR if numbers.get(k, _UNCLEAR[k]) != _UNCLEAR[k]
-    ]
-    listed = f"has {' and '.join(unclear)}, " if unclear else ""
-    problem = f"{listed}and does not state how to apply it; state scale_factor and add_offset"
-    remark = f"{listed}which is not applied: its samples are taken to be in its unit already"
-    stated = numbers.get("scale_factor"), numbers.get("add_offset")
-    return *stated, problem if unclear and integers else None, remark if unclear else None
 
 
 def _named_by(sidecar: Sidecar, on_time: list[Row]) -> list[Row]:

@@ -130,11 +130,10 @@ def _channel(file: Any, group: int, index: int, axes: list[Axis]) -> LoggedChann
         n_samples=int(block.channel_group.cycles_nr),
         read=read,
         axes=axes,
-        factor=NOT_STATED,  # the library applies the conversion
-        offset=NOT_STATED,
+        packing=NOT_STATED,  # the library applies the conversion
+        integers=False,
         unit=_unit(channel),
         problem="has a conversion that makes texts of its values" if to_text else NOT_STATED,
-        remark=NOT_STATED,
     )
 
 

@@ -22,14 +22,7 @@ from numpy.typing import NDArray
 from models.errors import RecordingError
 from models.units import split_unit
 from noise.recordings.formats import Format
-from noise.recordings.formats.logged import (
-    NOT_STATED,
-    Axis,
-    LoggedChannel,
-    Read,
-    is_time,
-    packing,
-)  # fmt: skip
+from noise.recordings.formats.logged import NOT_STATED, Axis, LoggedChannel, Read, is_time
 
 _BIG_ENDIAN = 1 << 6  # in the table of contents, which itself is little-endian
 _VERSIONS = (4712, 4713)
@@ -106,19 +99,15 @@ def _holds(path: Path, channel: Any, kinds: str) -> bool:
 
 
 def _channel(channel: Any, clocks: list[Any], begins: set[Any]) -> LoggedChannel:
-    factor, offset, problem, remark = packing(
-        channel.properties, np.dtype(channel.dtype).kind in "iu"
-    )
     return LoggedChannel(
         name=channel.name,
         n_samples=len(channel),
         read=_in_order(channel),
         axes=[_waveform(channel, begins), *map(_clock, clocks)],
-        factor=factor,
-        offset=offset,
+        packing=channel.properties,
+        integers=np.dtype(channel.dtype).kind in "iu",
         unit=_stated_unit(channel),
-        problem=problem,
-        remark=remark,
+        problem=NOT_STATED,
     )
 
 
@@ -168,32 +157,20 @@ def _in_order(channel: Any) -> Read:
     Whoever goes back begins with the first chunk again.
     """
     chunks: Iterator[NDArray[np.generic]] = iter(())
-    rest: NDArray[np.generic] = np.empty(0)
-    position = math.inf
+    buffer: NDArray[np.generic] = np.empty(0)
+    first = math.inf  # of the buffer
 
     def read(start: int, stop: int) -> NDArray[np.generic]:
-        nonlocal chunks, rest, position
-        if start < position:
+        nonlocal chunks, buffer, first
+        if start < first:
             chunks = (np.asarray(chunk[:]) for chunk in channel.data_chunks())
-            rest, position = np.empty(0), 0
-        while position + rest.size < start:
-            position += rest.size
-            following = next(chunks, None)
+            buffer, first = np.empty(0), 0
+        while True:
+            passed = min(start - int(first), buffer.size)
+            buffer, first = buffer[passed:], first + passed
+            following = None if first + buffer.size >= stop else next(chunks, None)
             if following is None:
-                return np.empty(0)
-            rest = following
-        rest = rest[start - int(position) :]
-        position = stop
-        parts, missing = [], stop - start
-        while missing > 0:
-            if rest.size == 0:
-                following = next(chunks, None)
-                if following is None:
-                    break
-                rest = following
-            parts.append(rest[:missing])
-            missing -= parts[-1].size
-            rest = rest[parts[-1].size :]
-        return np.concatenate(parts) if parts else rest
+                return buffer[: stop - int(first)]
+            buffer = np.concatenate([buffer, following]) if buffer.size else following
 
     return read

@@ -54,9 +54,8 @@ def _channel(number: int, function: UffFunction) -> LoggedChannel:
                 quantity="time",
             )
         ],
-        factor=NOT_STATED,  # values are in SI already where their unit is known
-        offset=NOT_STATED,
+        packing=NOT_STATED,  # values are in SI already where their unit is known
+        integers=False,
         unit=function.unclear or function.unit,
         problem="is complex, expected real samples" if np.iscomplexobj(function.y) else NOT_STATED,
-        remark=NOT_STATED,
     )

@@ -10,7 +10,7 @@ import soundfile
 
 from models.recording import Channel, Recording
 from noise.base.tables import read_table
-from noise.recordings.writing import write_recording
+from noise.recordings.wav import write_recording
 from tests.helpers.jury_sounds import NAMES, RATE, tone, write_tones
 from tests.helpers.opened_app import opened_app
 
