@@ -1,4 +1,4 @@
-"""Containers of sound: chunks of RIFF, pages of Ogg, streams of FLAC and frames of MPEG audio.
+"""Containers of sound: chunks of RIFF, pages of Ogg and streams of FLAC, cut into pieces.
 
 The sound library reads the first sound of a file and takes its length from the header; where that
 has none, it estimates it from the size of the file (MP3), gives up (FLAC) or finds no samples (a
@@ -12,15 +12,14 @@ from __future__ import annotations
 
 import io
 import os
-import re
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import BinaryIO
 
 from models.errors import RecordingError
+from noise.recordings.formats.mpeg import id3_bytes, mpeg_sounds
 
 _RIFF = (b"RIFF", b"RF64", b"BW64")
 _SAMPLE_CHUNKS = (b"data", b"SSND")  # RIFF, AIFF
@@ -31,10 +30,6 @@ _UNFINISHED = (0, _NO_SIZE, 0x7FFFFFFF, 0x80000000, 0x7FFFF000)
 
 _DESCRIPTION_BYTES = 256  # EBU Tech 3285, first field of the chunk
 _FLAC = b"fLaC\x00\x00\x00\x22"  # with the head of the block that always comes first
-_SYNC = re.compile(rb"\xff[\xe2-\xff][\x10-\xef]")  # how a frame may begin
-_MOST_TRIES = 200_000  # at places where none does: what holds as many is no sound
-_MOST_RUN = 3
-"""Frames of MPEG audio that must follow one another where nothing else says that one begins."""
 
 
 @dataclass(frozen=True)
@@ -72,9 +67,7 @@ class PieceFile(io.RawIOBase):
         """Say yes."""
         return True
 
-    def seekable(self) -> bool:
-        """Say yes."""
-        return True
+    seekable = readable
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
         """Go to a byte."""
@@ -126,7 +119,7 @@ def pieces_of(path: Path) -> tuple[list[Piece], list[str]]:
     """
     with path.open("rb") as file:
         size = os.fstat(file.fileno()).st_size
-        start = _id3_bytes(file.read(10))
+        start = id3_bytes(file.read(10))
         file.seek(start)
         magic = file.read(4)
         file.seek(0)
@@ -137,7 +130,8 @@ def pieces_of(path: Path) -> tuple[list[Piece], list[str]]:
         elif magic == b"fLaC":
             starts = _places(file, _FLAC) or [0]
         else:
-            return _mpeg_pieces(path, file.read())
+            pieces = [Piece(*sound) for sound in mpeg_sounds(path, file.read())]
+            return pieces, _joined_note(len(pieces))
     ends = [*starts[1:], size]
     pieces = [Piece(first, last) for first, last in zip(starts, ends, strict=True)]
     return pieces, _joined_note(len(pieces))
@@ -184,12 +178,14 @@ def chunks(file: BinaryIO) -> Iterator[Chunk]:
     [Chunk(name=b'fmt ', start=20, size=2)]
     """
     head = file.read(12)
-    if head[:4] not in (*_RIFF, b"RIFX", b"FORM"):
-        return
+    if head[:4] in (*_RIFF, b"RIFX", b"FORM"):
+        yield from _walk(file, len(head), "big" if head[:4] in (b"RIFX", b"FORM") else "little")
+
+
+def _walk(file: BinaryIO, position: int, order: str) -> Iterator[Chunk]:
+    """Go from chunk to chunk up to where none begins."""
     end = file.seek(0, os.SEEK_END)
-    order = "big" if head[:4] in (b"RIFX", b"FORM") else "little"
     long_data: int | None = None
-    position = len(head)
     for _ in range(_MOST_CHUNKS):
         file.seek(position)
         name, size = _chunk_head(file.read(8), order)
@@ -215,7 +211,7 @@ def _chunk_head(field: bytes, order: str) -> tuple[bytes, int]:
     name = field[:4]
     if len(field) < 8 or not all(0x20 <= byte < 0x7F for byte in name):
         return b"", 0
-    return name, int.from_bytes(field[4:8], "little" if order == "little" else "big")
+    return name, int.from_bytes(field[4:8], order)  # type: ignore[arg-type]
 
 
 def bext_description(path: Path) -> str:
@@ -277,18 +273,13 @@ def _riff_pieces(path: Path, file: BinaryIO, end: int) -> tuple[list[Piece], lis
 
 def _is_unfinished(file: BinaryIO, data: Chunk, end: int) -> bool:
     """Whether a size of samples was never filled in: no chunks lead from there to the end."""
-    if data.size not in _UNFINISHED or (data.size and data.start + data.size <= end):
+    if data.size not in _UNFINISHED or data.start >= end:
         return False
-    if data.size or data.start >= end:
-        return data.start < end
-    position = data.start
-    while position < end:
-        file.seek(position)
-        name, size = _chunk_head(file.read(8), "little")
-        if not name or position + 8 + size > end:
-            return True
-        position += 8 + size + size % 2
-    return False
+    if data.size:
+        return data.start + data.size > end
+    *_, last = (data, *_walk(file, data.start, "little"))
+    stop = last.start + last.size
+    return last is data or stop > end or stop + last.size % 2 < end
 
 
 def _head(file: BinaryIO, before: list[Chunk], n: int) -> bytes:
@@ -342,167 +333,3 @@ def with_flac_length(path: Path, piece: Piece, n_samples: int) -> Piece:
     head[21] |= n_samples >> 32
     head[22:26] = (n_samples & 0xFFFFFFFF).to_bytes(4, "big")
     return Piece(piece.start + len(head), piece.end, bytes(head))
-
-
-# MPEG audio (ISO 11172-3, 13818-3)
-
-_RATES = (44100, 48000, 32000)  # [Hz], halved and quartered in versions 2 and 2.5
-_LAYER_3 = (0, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192, 224, 256, 320)
-_LOW = (0, 8, 16, 24, 32, 40, 48, 56, 64, 80, 96, 112, 128, 144, 160)
-_BIT_RATES = {
-    (1, 1): tuple(range(0, 449, 32)),
-    (1, 2): (0, 32, 48, 56, 64, 80, 96, 112, 128, 160, 192, 224, 256, 320, 384),
-    (1, 3): _LAYER_3,
-    (2, 1): (0, 32, 48, 56, 64, 80, 96, 112, 128, 144, 160, 176, 192, 224, 256),
-    (2, 2): _LOW,
-    (2, 3): _LOW,
-}
-"""[kbit/s], by version and layer."""
-
-
-class _Frame(NamedTuple):
-    """A frame of MPEG audio: what all of a sound share, its bytes, and its header for players."""
-
-    kind: tuple[int, int, int, bool]
-    size: int
-    info: int
-
-
-@lru_cache(maxsize=1 << 12)
-def _frame(head: bytes) -> _Frame | None:
-    """Read the four bytes that a frame begins with."""
-    bits = int.from_bytes(head, "big")
-    version, layer = bits >> 19 & 3, 4 - (bits >> 17 & 3)
-    bit_rate, rate = bits >> 12 & 15, bits >> 10 & 3
-    if bits >> 21 != 0x7FF or version == 1 or layer == 4 or bit_rate in (0, 15) or rate == 3:
-        return None
-    hertz = _RATES[rate] >> {3: 0, 2: 1, 0: 2}[version]
-    bits_s = 1000 * _BIT_RATES[1 if version == 3 else 2, layer][bit_rate]
-    padding, mono = bits >> 9 & 1, bits >> 6 & 3 == 3
-    if layer == 1:
-        size = 4 * (12 * bits_s // hertz + padding)
-    else:
-        size = (72 if layer == 3 and version != 3 else 144) * bits_s // hertz + padding
-    info = 4 + ((17 if mono else 32) if version == 3 else (9 if mono else 17))
-    return _Frame((version, layer, rate, mono), size, info)
-
-
-class _Stream:
-    """Frames that follow one another, with what a header for players announces of them."""
-
-    def __init__(self, at: int, info: bytes = b"", announced: int | None = None) -> None:
-        self.start = self.end = at
-        self.info, self.announced = info, announced
-        self.n_frames = 0
-
-    @property
-    def is_full(self) -> bool:
-        return self.announced is not None and self.n_frames >= self.announced
-
-
-def _mpeg_pieces(path: Path, data: bytes) -> tuple[list[Piece], list[str]]:
-    streams: list[_Stream] = []
-    at, kind = 0, None
-    tries, lost = 0, False
-    begins = True  # a stream: at first, after a tag, and where the kind of frames changes
-    while 0 <= at <= len(data) - 4:
-        if tag := _tag_bytes(data, at):
-            at, begins = at + tag, True
-            continue
-        frame = _frame(data[at : at + 4])
-        if frame is None or ((lost or frame.kind != kind) and not _run(data, at, frame)):
-            lost = True
-            found = _SYNC.search(data, at + 1)
-            tries += 1
-            if found is None or tries > _MOST_TRIES:
-                break
-            at = found.start()
-            continue
-        if at + frame.size > len(data):
-            break
-        begins |= frame.kind != kind
-        kind, lost = frame.kind, False
-        info = _info(data[at : at + frame.size], frame)
-        if info is not None:
-            streams.append(_Stream(at + frame.size, *info))
-            begins = False
-        else:
-            if begins or streams[-1].is_full:
-                streams.append(_Stream(at))
-            begins = False
-            streams[-1].n_frames += 1
-            streams[-1].end = at + frame.size
-        at += frame.size
-    streams = [one for one in streams if one.n_frames or one.announced]
-    if not streams or tries > _MOST_TRIES:
-        raise RecordingError(f"{path}: is damaged or no sound file (Format not recognised)")
-    for one in streams:
-        if one.announced is not None and one.announced > one.n_frames + 1:  # some count the header
-            raise RecordingError(
-                f"{path}: is truncated; its header announces {one.announced} frames, "
-                f"{one.n_frames} can be read"
-            )
-    pieces = [Piece(one.start, one.end, _mpeg_head(one, data)) for one in streams]
-    return pieces, _joined_note(len(pieces))
-
-
-def _run(data: bytes, at: int, frame: _Frame) -> bool:
-    """Whether further frames of its kind follow, up to the end of the data or a tag."""
-    for _ in range(_MOST_RUN):
-        at += frame.size
-        if at >= len(data) or _tag_bytes(data, at):
-            return True
-        following = _frame(data[at : at + 4])
-        if following is None or following.kind != frame.kind:
-            return False
-        frame = following
-    return True
-
-
-def _id3_bytes(head: bytes) -> int:
-    """Size of an ID3v2 tag with this head, 0 where it is none."""
-    if head[:3] != b"ID3" or len(head) < 10 or any(byte > 0x7F for byte in head[6:10]):
-        return 0
-    size = head[6] << 21 | head[7] << 14 | head[8] << 7 | head[9]
-    return 10 + size + 10 * bool(head[5] & 0x10)
-
-
-def _tag_bytes(data: bytes, at: int) -> int:
-    """Size of a tag (ID3, APE) at a place, 0 where there is none."""
-    head = data[at : at + 3]
-    if head == b"ID3":
-        return _id3_bytes(data[at : at + 10])
-    if head == b"TAG":
-        return 128
-    if head == b"APE" and data[at : at + 8] == b"APETAGEX":
-        return 32 + int.from_bytes(data[at + 12 : at + 16], "little")
-    return 0
-
-
-def _info(data: bytes, frame: _Frame) -> tuple[bytes, int | None] | None:
-    """Read a header for players (Xing, Info, VBRI) and the frames it announces; None for sound."""
-    if frame.kind[1] == 3 and data[frame.info : frame.info + 4] in (b"Xing", b"Info"):
-        flags, n = struct.unpack(">II", data[frame.info + 4 : frame.info + 12].ljust(8, b"\0"))
-        return (data, n) if flags & 1 else (b"", None)
-    if data[36:40] == b"VBRI":
-        return b"", int.from_bytes(data[50:54], "big")
-    return None
-
-
-def _mpeg_head(stream: _Stream, data: bytes) -> bytes:
-    """Header for players with the number of frames counted; a plain one where there was none."""
-    head = bytearray(stream.info)
-    if not head:
-        bits = int.from_bytes(data[stream.start : stream.start + 4], "big")
-        bits = bits & 0xFFFF0DFF | 0x00019000  # without checksum and padding, of a middle bit rate
-        head[:] = bits.to_bytes(4, "big")
-        frame = _frame(bytes(head))
-        if frame is None or frame.kind[1] != 3:
-            return b""  # in layers 1 and 2, which do not vary, there are none
-        head += bytes(frame.size - 4)
-        head[frame.info : frame.info + 8] = struct.pack(">4sI", b"Info", 1)
-    else:
-        frame = _frame(bytes(head[:4]))
-    if frame is not None:
-        head[frame.info + 8 : frame.info + 12] = stream.n_frames.to_bytes(4, "big")
-    return bytes(head)
