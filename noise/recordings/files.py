@@ -20,7 +20,7 @@ from models.blocks import RecordingBlocks, decimated
 from models.calibration import Calibration
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import reading, refusing
-from models.recording import Channel, Recording
+from models.recording import Recording
 from noise.base.progress import note
 from noise.recordings.folders import OTHERS, what_to_do
 from noise.recordings.formats import RawRecording, check_rate, formats
@@ -119,6 +119,7 @@ def open_blocks(
     Examples
     --------
     >>> import tempfile
+    >>> from models.recording import Channel, Recording
     >>> from noise.recordings import write_recording
     >>> torque = Recording(np.full((1, 480), 30.0), 48e3, (Channel("torque"),))
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -170,17 +171,12 @@ def open_raw(path: Path) -> Iterator[RawRecording]:
 
 def _whole(path: Path, raw: RawRecording, meaning: Meaning) -> Recording:
     samples, channels = raw.whole(), meaning.channels
-    with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
-        beyond = [
-            _to_units(path, channel, curve, row)
-            for channel, curve, row in zip(channels, meaning.curves, samples, strict=True)
-        ]
-    check_finite(path, samples, raw.rate, channels)
+    beyond = _to_units(path, raw, meaning, samples)
     unwrapping = find_turns(
         channels, lambda a, b: samples[:, a:b], raw.n_samples, meaning.calibrated
     )
     unwrapping.add(samples, 0)
-    notes = (*meaning.notes, *filter(None, beyond), *unwrapping.notes)
+    notes = (*meaning.notes, *beyond, *unwrapping.notes)
     _say_once(path, notes)
     return Recording(
         samples, raw.rate, channels, meaning.condition, meaning.calibrated, path.name, notes
@@ -196,9 +192,7 @@ def _in_chunks(path: Path, raw: RawRecording, meaning: Meaning) -> RecordingBloc
     def chunk(number: int) -> NDArray[np.float64]:
         start = number * length
         samples = raw.read(start, min(start + length, raw.n_samples))
-        with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
-            samples *= np.array([[channel.full_scale] for channel in channels])
-        check_finite(path, samples, raw.rate, channels, start)
+        _to_units(path, raw, meaning, samples, start)
         return samples
 
     def read(first: int, last: int) -> NDArray[np.float64]:
@@ -224,20 +218,26 @@ def _in_chunks(path: Path, raw: RawRecording, meaning: Meaning) -> RecordingBloc
 
 
 def _to_units(
-    path: Path, channel: Channel, curve: Calibration | None, row: NDArray[np.float64]
-) -> str:
-    """Bring the samples of a channel to its unit, in place; return what should be known of it."""
-    if curve is None:
-        row *= channel.full_scale
-        return ""
-    try:
-        out = curve.beyond(row)
-        row[:] = curve.of(row)
-    except ParameterError as error:
-        raise RecordingError(f"{path}: channel {channel.name!r} {error}") from None
-    if not out:
-        return ""
-    return f"{channel.name} was read up to {out:.1%} of its span outside of {curve.source}"
+    path: Path, raw: RawRecording, meaning: Meaning, samples: NDArray[np.float64], start: int = 0
+) -> list[str]:
+    """Bring samples from number `start` on to their units, in place; return what to note of it."""
+    notes = []
+    with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
+        for channel, curve, row in zip(meaning.channels, meaning.curves, samples, strict=True):
+            if curve is None:
+                row *= channel.full_scale
+                continue
+            try:
+                out = curve.beyond(row)
+                row[:] = curve.of(row)
+            except ParameterError as error:
+                raise RecordingError(f"{path}: channel {channel.name!r} {error}") from None
+            if out:
+                notes.append(
+                    f"{channel.name} was read up to {out:.1%} of its span outside of {curve.source}"
+                )
+    check_finite(path, samples, raw.rate, meaning.channels, start)
+    return notes
 
 
 def names_channels(path: Path) -> bool:

@@ -29,9 +29,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,11 +40,8 @@ from models.calibration import READING_UNITS, Calibration
 from models.condition import Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import REFERENCE_PRESSURE, Channel
+from noise.recordings.formats import RawRecording
 from noise.recordings.sidecar import Sidecar, find_sidecar, sidecar_of
-
-if TYPE_CHECKING:
-    from noise.recordings.formats import RawRecording
-
 
 PascalPerFullScale = float | tuple[float, ...]
 """Pressure of a full-scale sample [Pa], of all tracks or of each."""
@@ -134,9 +131,10 @@ def describe(
         )
     notes = [*raw.notes, *filter(None, [sidecar.note])]
     channels, curves = _interpret(path, raw, sidecar, options, calibrations or {}, notes)
-    condition = _united(raw.condition, sidecar.condition)
-    curves_or_none = curves or (None,) * n_channels
-    return Meaning(channels, condition, bool(curves), curves_or_none, tuple(notes))
+    # The sidecar's word for the conditions, and the file's own where it has none.
+    stated = {key: value for key, value in vars(sidecar.condition).items() if value is not None}
+    condition = replace(raw.condition, **stated)
+    return Meaning(channels, condition, bool(curves), curves or (None,) * n_channels, tuple(notes))
 
 
 def _by_track(
@@ -190,12 +188,6 @@ def check_finite(
             )
 
 
-def _united(stated: Condition, sidecar: Condition) -> Condition:
-    """Take the sidecar's word for the conditions, and the file's own where it has none."""
-    said = {field.name: getattr(sidecar, field.name) for field in fields(sidecar)}
-    return replace(stated, **{name: value for name, value in said.items() if value is not None})
-
-
 def _interpret(
     path: Path,
     raw: RawRecording,
@@ -218,19 +210,19 @@ def _interpret(
     readings = sidecar.readings or ("",) * len(channels)
     pairs: list[tuple[Channel, Calibration | None]] = []
     for channel, scale, reading, option in zip(channels, scales, readings, options, strict=True):
-        in_unit = in_units and sidecar.calibrated is not False and not reading
-        if in_unit and option is not None and channel.kind == "pressure":
+        told = sidecar.calibrated is not False and not reading
+        if channel.kind == "pressure" and option is not None:
+            if not (in_units and told):
+                pairs.append((replace(channel, full_scale=option), None))
+                continue
             notes.append(
                 f"{channel.name} is in {channel.unit} already; what full scale is worth "
                 "(--full-scale, --calibrator) is not used"
             )
-        opinions = [option if channel.kind == "pressure" and not in_unit else None]
-        if sidecar.calibrated is not False and not reading:
-            opinions += [scale, 1.0 if in_units else None]
-            opinions += [stated.value if stated and stated.kind == channel.kind else None]
-        values = [value for value in opinions if value is not None]
-        if values:
-            pairs.append((replace(channel, full_scale=values[0]), None))
+        metered = stated.value if stated and stated.kind == channel.kind else None
+        value = scale or (1.0 if in_units else metered) if told else None
+        if value is not None:
+            pairs.append((replace(channel, full_scale=value), None))
         elif channel.kind in calibrations:
             where = f"{path}: channel {channel.name!r}"
             curve = _curve(calibrations[channel.kind], reading, scale, raw.fractional, where)
@@ -267,8 +259,7 @@ def _curve(
     return calibration.in_units_of(size)
 
 
-@dataclass(frozen=True)
-class FullScale:
+class FullScale(NamedTuple):
     """The value of a full-scale sample.
 
     Parameters
