@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.errors import ParameterError
 from models.rig import Rig
+from noise.app.requests import number
 from noise.base.labels import NAMED
 from noise.screening.design.design import Design as Screened, Use
 from noise.screening.map.batches import batch_evaluator
@@ -82,13 +82,8 @@ class SuggestionRequest:
         ParameterError
             That is no speed.
         """
-        stated = asked.get("speed")
-        if stated is None:
-            speed = float(np.abs(setting.shaft.speed(np.zeros(1)))[0])
-        elif isinstance(stated, int | float) and abs(stated) <= _MOST:
-            speed = abs(float(stated))
-        else:
-            raise ParameterError(f"speed {str(stated)[:20]}: must be a number up to {_MOST:g}")
+        at_first = float(setting.shaft.speed(np.zeros(1))[0])
+        speed = abs(number(asked, "speed", -_MOST, _MOST, at_first))
         return cls(ChartRequest.of(setting), setting.interference, max(speed, _LEAST))
 
 

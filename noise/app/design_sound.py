@@ -23,6 +23,7 @@ from models.errors import ParameterError
 from noise.app.design import Design, design_of
 from noise.app.design_controls import Base
 from noise.app.design_player import BLOCK, HEADER, RATE, REFUSED, play
+from noise.app.requests import number
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -147,14 +148,10 @@ class LiveSounds:
         ParameterError
             Something of it cannot be.
         """
-        number = _whole(asked, "run")
-        seconds = asked.get("sooner")
-        if isinstance(seconds, bool) or not isinstance(seconds, int | float):
-            raise ParameterError("sound: sooner must be a number")
-        if not abs(seconds) <= _SOONEST:
-            raise ParameterError(f"sound: sooner must be up to {_SOONEST:g} s")
-        self._known(number)
-        self._tell("sooner", number, float(seconds))
+        run = _whole(asked, "run")
+        seconds = number(asked, "sooner", -_SOONEST, _SOONEST)
+        self._known(run)
+        self._tell("sooner", run, float(seconds))
 
     def levels(self, number: int) -> dict[str, float | None]:
         """Return levels of the last second of a run, as the tables have them [dB re 20 uPa]."""
@@ -195,7 +192,4 @@ class LiveSounds:
 
 
 def _whole(asked: dict[str, Any], key: str) -> int:
-    value = asked.get(key)
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < 1 << 32:
-        raise ParameterError(f"sound: {key} must be a whole number from 0 on")
-    return value
+    return int(number(asked, key, 0, (1 << 32) - 1, whole=True))

@@ -23,6 +23,7 @@ from models.recording import REFERENCE_PRESSURE
 from noise.app.gate import body
 from noise.app.jury import VOTES, Jury, Votes, scale, scale_csv
 from noise.app.opened import Opened
+from noise.app.requests import choice, number, text
 from noise.app.sounds import SoundCache
 from noise.audio.gain import (
     LOUDNESS_BLOCK,
@@ -90,12 +91,10 @@ def routes(opened: Opened) -> list[BaseRoute]:
         chosen = sorted(set(sounds))
         if not 2 <= len(chosen) <= MOST:
             raise ParameterError(f"{len(chosen)} sounds: 2 to {MOST} can be compared")
-        question, listener = (_text(setup, key) for key in ("question", "listener"))
+        question, listener = (text(setup, key, _LONGEST_TEXT) for key in ("question", "listener"))
         if not question:
             raise ParameterError("question: must say what is asked of two sounds")
-        played = str(setup.get("played", ONE_GAIN))
-        if played not in GAINS:
-            raise ParameterError(f"played: must be one of {', '.join(GAINS)}")
+        played = choice(setup, "played", GAINS, ONE_GAIN)
         names = [opened.job(index).name for index in chosen]
         playing.gain(indices(names), played)  # or nobody could begin
         jury = votes.begin(
@@ -118,19 +117,14 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return Response(sound, media_type="audio/wav")
 
     def voted(request: Request, vote: dict[str, Any]) -> Response:
-        place, which, seconds = (vote.get(key) for key in ("place", "vote", "seconds"))
-        if type(place) is not int or which not in VOTES:
-            raise ParameterError(f"a vote has place and vote, one of {', '.join(VOTES)}")
-        if not isinstance(seconds, int | float) or not 0.0 <= seconds <= _LONGEST_WAIT:
-            raise ParameterError("seconds: must be how long was listened")
-        number = request.path_params["jury"]
-        return JSONResponse(state(votes.vote(number, place, str(which), float(seconds))))
+        seconds = number(vote, "seconds", 0.0, _LONGEST_WAIT)
+        changed = votes.vote(
+            request.path_params["jury"], _place(vote), choice(vote, "vote", VOTES), seconds
+        )
+        return JSONResponse(state(changed))
 
     def undone(request: Request, vote: dict[str, Any]) -> Response:
-        place = vote.get("place")
-        if type(place) is not int:
-            raise ParameterError("an undo has the place of the vote that it takes back")
-        return JSONResponse(state(votes.undo(request.path_params["jury"], place)))
+        return JSONResponse(state(votes.undo(request.path_params["jury"], _place(vote))))
 
     def result(request: Request) -> Response:
         jury = asked(request)
@@ -276,8 +270,5 @@ class JuryPlaying:
         return playable(track.read(0, last), track.rate, _RATE)
 
 
-def _text(setup: dict[str, Any], key: str) -> str:
-    value = setup.get(key, "")
-    if not isinstance(value, str) or len(value) > _LONGEST_TEXT:
-        raise ParameterError(f"{key}: must be a text of at most {_LONGEST_TEXT} characters")
-    return " ".join(value.split())
+def _place(vote: dict[str, Any]) -> int:
+    return int(number(vote, "place", 0, 1 << 31, whole=True))

@@ -19,6 +19,7 @@ from noise.app.commands import Command
 from noise.app.gate import body
 from noise.app.labels import Labels, read_corrections
 from noise.app.opened import Opened
+from noise.app.requests import choice, number
 from noise.base.labels import LABELS
 from noise.base.tables import plain_cell, write_table
 from noise.labels.corrections import version
@@ -61,7 +62,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         query, shown = request.query_params, labels.summaries()
         answer = list_answer(query, shown)
         if query.get("open"):
-            seen = _whole(query, "open", 0, len(opened.jobs) - 1)
+            seen = _whole(query, "open", len(opened.jobs) - 1)
             answer["open"] = {"id": seen, "version": version(labels.rows(seen))}
         done = sum(bool(one["labels"] or one["error"]) for one in shown)
         return JSONResponse({**answer, "state": {"done": done, **run.state()}})
@@ -220,18 +221,11 @@ def list_answer(query: Mapping[str, str], shown: Sequence[Row]) -> dict[str, obj
     >>> found["total"], found["counts"]["squeal"], found["rows"][0]["name"]
     (1, 1, 'run07.wav')
     """
-    label, sort, order = query.get("label", ""), query.get("sort", ""), query.get("order", "asc")
     kinds = (*LABELS, UNLABELLED, CORRECTED, REFUSED)
-    for name, value, known in (
-        ("label", label, ("", *kinds)),
-        ("sort", sort, ("", *_ORDERS)),
-        ("order", order, ("asc", "desc")),
-    ):
-        if value not in known:
-            words = ", ".join(filter(None, known))
-            raise ParameterError(f"{name} {value!r}: must be one of {words}")
-    first, count = _whole(query, "first", 0, 1 << 31), _whole(query, "count", 200, _MOST)
-    place = _whole(query, "place", 0, 1 << 31) if query.get("place") else None
+    label, sort = choice(query, "label", kinds), choice(query, "sort", _ORDERS)
+    order = choice(query, "order", ("asc", "desc"), "asc")
+    first, count = _whole(query, "first", 1 << 31, 0), _whole(query, "count", _MOST, 200)
+    place = _whole(query, "place", 1 << 31) if query.get("place") else None
     text = query.get("text", "").casefold()
     named = [one for one in shown if text in str(one["name"]).casefold()]
     counts = Counter(kind for one in named for kind in _kinds(one))
@@ -291,11 +285,8 @@ def _plain(name: str, value: object) -> object:
     return plain_cell(value)  # a date of a column of one's own is text
 
 
-def _whole(query: Mapping[str, str], key: str, missing: int, most: int) -> int:
-    text = query.get(key, str(missing))
-    if not (text.isascii() and text.isdecimal()) or len(text) > len(str(most)) or int(text) > most:
-        raise ParameterError(f"{key} {text!r}: must be a whole number from 0 to {most}")
-    return int(text)
+def _whole(query: Mapping[str, str], key: str, most: int, missing: int | None = None) -> int:
+    return int(number(query, key, 0, most, missing, whole=True))
 
 
 def _page(content: dict[str, Any]) -> str:

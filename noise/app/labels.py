@@ -17,6 +17,7 @@ from threading import RLock
 
 from models.errors import BushingNoiseError, ParameterError
 from models.recording import REFERENCE_PRESSURE
+from noise.app.requests import number
 from noise.base.files import locked
 from noise.base.labels import LABELS
 from noise.batch import Done, Job, JournalReader
@@ -102,7 +103,9 @@ def read_corrections(rows: object) -> list[Correction]:
 def _one(row: object) -> Correction:
     if not isinstance(row, dict):
         raise ParameterError("rows: a segment is an object of start_s, end_s, label, channel")
-    start, end = (_seconds(row, key) for key in ("start_s", "end_s"))
+    start, end = (
+        round(float(number(row, key, -_LONGEST, _LONGEST)), 6) for key in ("start_s", "end_s")
+    )
     if not 0.0 <= start < end:
         raise ParameterError(f"a segment from {start:g} to {end:g} s: must end after it starts")
     label, channel = row.get("label"), str(row.get("channel") or "all")
@@ -111,13 +114,6 @@ def _one(row: object) -> Correction:
     if channel != "all" and not (channel.isascii() and channel.isdecimal() and int(channel) > 0):
         raise ParameterError(f"channel {channel!r}: must be all, or a track counted from 1")
     return Correction(start, end, str(label), channel, row.get("label_source") == HUMAN)
-
-
-def _seconds(row: dict[object, object], key: str) -> float:
-    value = row.get(key)
-    if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LONGEST:
-        return round(float(value), 6)
-    raise ParameterError(f"{key} {str(value)[:40]}: must be a number of seconds")
 
 
 def news(segments: Sequence[Correction], before: Sequence[Row]) -> list[Correction]:

@@ -26,6 +26,7 @@ from features.kernels.levels import REFERENCES, a_weighted, fast_levels, sound_l
 from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel
+from noise.app.requests import number
 from noise.audio.gain import LOUDNESS_BLOCK, loudness
 from noise.audio.sound import playable
 from noise.audio.spectrogram import (
@@ -181,73 +182,7 @@ class SoundCache:
         return reading
 
 
-@dataclass(frozen=True)
-class Stretch:
-    """Part of a recording.
-
-    Parameters
-    ----------
-    first, last : int
-        Samples.
-    rate : float
-        Sampling rate [Hz].
-    """
-
-    first: int
-    last: int
-    rate: float
-
-    @property
-    def n(self) -> int:
-        """Samples in it."""
-        return self.last - self.first
-
-    @property
-    def start(self) -> float:
-        """Where it begins [s]."""
-        return self.first / self.rate
-
-    @property
-    def end(self) -> float:
-        """Where it ends [s]."""
-        return self.last / self.rate
-
-
-def number(query: Mapping[str, str], key: str, missing: float, low: float, high: float) -> float:
-    """Read a number of a request.
-
-    Parameters
-    ----------
-    query : mapping of str to str
-    key : str
-    missing : float
-        Its value where none is asked for [unit of the key].
-    low, high : float
-        Between which it has to be [unit of the key].
-
-    Raises
-    ------
-    ParameterError
-        It is none, or out of bounds.
-
-    Examples
-    --------
-    >>> number({"low": "50"}, "low", 20.0, 1.0, 100.0), number({}, "low", 20.0, 1.0, 100.0)
-    (50.0, 20.0)
-    """
-    text = query.get(key)
-    if not text:
-        return missing
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not low <= value <= high:
-        raise ParameterError(f"{key} {text[:40]!r}: must be a number from {low:g} to {high:g}")
-    return value
-
-
-def read_stretch(query: Mapping[str, str], track: Track, longest: float = math.inf) -> Stretch:
+def read_stretch(query: Query, track: Track, longest: float = math.inf) -> tuple[int, int]:
     """Read which stretch is asked for, `start` to `end`; by default the whole.
 
     Parameters
@@ -257,20 +192,25 @@ def read_stretch(query: Mapping[str, str], track: Track, longest: float = math.i
     longest : float
         What is longer is cut there [s].
 
+    Returns
+    -------
+    first, last : int
+        Samples.
+
     Raises
     ------
     ParameterError
         It is none.
     """
-    start = number(query, "start", 0.0, 0.0, math.inf)
-    end = number(query, "end", track.duration, 0.0, math.inf)
+    start = number(query, "start", 0.0, math.inf, 0.0)
+    end = number(query, "end", 0.0, math.inf, track.duration)
     first = round(min(start * track.rate, track.n))
     last = round(min(end * track.rate, track.n, (start + longest) * track.rate))
     if first >= last:
         raise ParameterError(
             f"{start:g} to {end:g} s: must be a stretch of the {track.duration:g} s that there are"
         )
-    return Stretch(first, last, track.rate)
+    return first, last
 
 
 _RATE = 48000
@@ -295,9 +235,9 @@ _LONGEST_BANDS = 120.0
 
 def wav(track: Track, query: Query) -> bytes:
     """Return a stretch as a WAV file of floats: pascals, or the channel's own unit."""
-    stretch = read_stretch(query, track, _LONGEST_PLAYED)
-    full_scale = number(query, "full_scale", 1.0, 1e-12, 1e12)
-    sound = playable(track.read(stretch.first, stretch.last), track.rate, _RATE)
+    first, last = read_stretch(query, track, _LONGEST_PLAYED)
+    full_scale = number(query, "full_scale", 1e-12, 1e12, 1.0)
+    sound = playable(track.read(first, last), track.rate, _RATE)
     return wav_bytes(sound / full_scale, _RATE, 32)
 
 
@@ -325,12 +265,12 @@ def level_course(track: Track) -> dict[str, object]:
 
 def bands(track: Track, query: Query) -> dict[str, object]:
     """Return levels and third octaves of a stretch, as the tables have them."""
-    stretch = read_stretch(query, track, _LONGEST_BANDS)
-    signal = track.read(stretch.first, stretch.last)
+    first, last = read_stretch(query, track, _LONGEST_BANDS)
+    signal = track.read(first, last)
     found = sound_levels(signal, track.rate, reference=track.reference)
     return {
-        "start": stretch.start,
-        "end": stretch.end,
+        "start": first / track.rate,
+        "end": last / track.rate,
         "unit": track.level_unit,
         "level": _plain(found.level),
         "level_a": _plain(found.level_a),
@@ -344,8 +284,8 @@ def equal(track: Track, query: Query) -> dict[str, object]:
 
     The loudness is None for what is too short or too quiet to have one.
     """
-    stretch = read_stretch(query, track, _LONGEST_PLAYED)
-    sound = playable(track.read(stretch.first, stretch.last), track.rate, _RATE)
+    first, last = read_stretch(query, track, _LONGEST_PLAYED)
+    sound = playable(track.read(first, last), track.rate, _RATE)
     peak = float(np.abs(sound).max(initial=0.0))
     known = None
     if peak > 0.0 and sound.size >= LOUDNESS_BLOCK * _RATE:
@@ -384,34 +324,34 @@ _NEAR = 0.03
 
 def outline(track: Track, query: Query) -> tuple[Facts, NDArray[np.float32]]:
     """Return the lowest and the highest sample in each column, shape (2, width)."""
-    stretch = read_stretch(query, track)
-    width = min(stretch.n, int(number(query, "width", 1000, 1, 4000)))
-    edges = np.linspace(stretch.first, stretch.last, width + 1).astype(int)
+    begin, end = read_stretch(query, track)
+    width = min(end - begin, int(number(query, "width", 1, 4000, 1000)))
+    edges = np.linspace(begin, end, width + 1).astype(int)
     ends = np.empty((2, width), np.float32)
-    columns = max(1, (1 << 22) * width // stretch.n)  # read at once
+    columns = max(1, (1 << 22) * width // (end - begin))  # read at once
     for column in range(0, width, columns):
         part = edges[column : column + columns + 1]
         samples = track.read(int(part[0]), int(part[-1]))
         for row, extreme in enumerate((np.minimum, np.maximum)):
             ends[row, column : column + columns] = extreme.reduceat(samples, part[:-1] - part[0])
-    facts: Facts = {"start": stretch.start, "end": stretch.end, "unit": track.unit}
+    facts: Facts = {"start": begin / track.rate, "end": end / track.rate, "unit": track.unit}
     return facts, ends
 
 
 def spectrogram(track: Track, query: Query) -> tuple[Facts, NDArray[np.uint8]]:
     """Return levels in steps, the highest frequency first, shape (height, width)."""
-    stretch = read_stretch(query, track)
+    begin, end = read_stretch(query, track)
     lowest, highest = _frequencies(track, query)
-    width = int(number(query, "width", 1000, 16, 4000))
-    height = int(number(query, "height", 256, 16, 1024))
-    length = _frame(track, query, stretch.n / width)
-    grid = Grid(stretch.first, stretch.last, width, height, lowest, highest, length, padding=2)
+    width = int(number(query, "width", 16, 4000, 1000))
+    height = int(number(query, "height", 16, 1024, 256))
+    length = _frame(track, query, (end - begin) / width)
+    grid = Grid(begin, end, width, height, lowest, highest, length, padding=2)
     levels = levels_of(track.read, track.n, track.rate, track.reference, grid)
     top = _ROUND * math.ceil(float(levels.max()) / _ROUND)
     floor = top - 255 * _STEP
     facts: Facts = {
-        "start": stretch.start,
-        "end": stretch.end,
+        "start": begin / track.rate,
+        "end": end / track.rate,
         "low": lowest,
         "high": highest,
         "width": width,
@@ -427,9 +367,9 @@ def spectrogram(track: Track, query: Query) -> tuple[Facts, NDArray[np.uint8]]:
 def line(track: Track, query: Query) -> Facts:
     """Return the strongest line near a moment and a frequency, measured in one frame."""
     lowest, highest = _frequencies(track, query)
-    time = number(query, "time", 0.0, 0.0, track.duration)
-    frequency = number(query, "frequency", 1000.0, lowest, highest)
-    length = _frame(track, query, number(query, "column", 0.01, 0.0, 1e6) * track.rate)
+    time = number(query, "time", 0.0, track.duration, 0.0)
+    frequency = number(query, "frequency", lowest, highest, 1000.0)
+    length = _frame(track, query, number(query, "column", 0.0, 1e6, 0.01) * track.rate)
     near = max(_NEAR * frequency, 2.0 * track.rate / length)
     found = strongest_line(
         track.read,
@@ -448,8 +388,8 @@ def line(track: Track, query: Query) -> Facts:
 
 def _frequencies(track: Track, query: Query) -> tuple[float, float]:
     nyquist = 0.5 * track.rate
-    highest = number(query, "high", min(HIGHEST, nyquist), 0.0, nyquist)
-    lowest = number(query, "low", min(LOWEST, 0.01 * highest), 0.0, nyquist)
+    highest = number(query, "high", 0.0, nyquist, min(HIGHEST, nyquist))
+    lowest = number(query, "low", 0.0, nyquist, min(LOWEST, 0.01 * highest))
     if not 0.0 < lowest < highest:
         raise ParameterError(f"low {lowest:g} Hz: must be above zero and below high {highest:g} Hz")
     return lowest, highest
@@ -459,7 +399,7 @@ def _frame(track: Track, query: Query, column: float) -> int:
     """Return the power of two that is nearest to what is asked for [samples]."""
     shortest, longest = (seconds * track.rate for seconds in _WINDOW)
     found = min(max(_COLUMNS * column, shortest), longest)
-    wanted = number(query, "window", found / track.rate, 1e-6, 1e3) * track.rate
+    wanted = number(query, "window", 1e-6, 1e3, found / track.rate) * track.rate
     return 1 << round(math.log2(min(max(wanted, _SHORTEST_FRAME), _LONGEST_FRAME)))
 
 

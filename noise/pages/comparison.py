@@ -19,6 +19,8 @@ from noise.base.labels import LABEL_LOOKS, LABELS, Look
 from noise.base.progress import counted
 from noise.pages.clips import Entry
 from noise.pages.maps import (
+    MAP_SIZE,
+    Area,
     Axis,
     Cells,
     ConditionMap,
@@ -28,7 +30,6 @@ from noise.pages.maps import (
     cells_of,
     common_cells,
 )
-from noise.pages.page import MAP_SIZE
 from noise.pages.screen_sounds import (
     ScreenMap,
     ScreenPoint,
@@ -99,33 +100,27 @@ def way_look(how: str) -> Look:
 _MOST_OPEN = 4
 """Comparisons that are unfolded when the page opens."""
 
-_MAP_BYTES, _AREA_BYTES = 12_000.0, 120.0
+_MAP_BYTES, _AREA_BYTES = 12_000.0, 250.0
 """What a map and an area of it take up on a page at most [byte]."""
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Place:
     """Maps of designs at one place: environment, motion, temperature and support.
 
     Parameters
     ----------
     title : str
     maps : tuple of ConditionMap
-        One a design.
-    difference : ConditionMap or None
-        An empty one of the same axes, for a script to draw on; None where there is one design.
+        One a design; where there are several, one more for a script to draw their difference on.
     cells : dict
         For the script: where the cells end, and of each design label, level and how it is known.
-    ways : tuple of str
-        How points are known.
     note : str
     """
 
     title: str
     maps: tuple[ConditionMap, ...]
-    difference: ConditionMap | None
     cells: dict[str, object]
-    ways: tuple[str, ...]
     note: str
 
 
@@ -137,49 +132,54 @@ class Compared:
     ----------
     names : tuple of str
         Of the designs, as they were named.
-    comparisons : tuple of Comparison
+    places : tuple of Place
         One an environment, motion, temperature and support.
     pair : tuple of int
         Numbers of the designs that are compared until others are chosen.
+    ways : tuple of str
+        How points are known.
     """
 
     names: tuple[str, ...]
-    comparisons: tuple[Comparison, ...]
+    places: tuple[Place, ...]
     pair: tuple[int, int]
+    ways: tuple[str, ...]
+    most_open: int = _MOST_OPEN
 
     @property
     def n_maps(self) -> int:
-        """How many maps there are."""
-        return sum(len(one.maps) for one in self.comparisons)
+        """How many maps of designs there are."""
+        return sum(of.design is not None for one in self.places for of in one.maps)
 
     @property
     def weight(self) -> float:
         """What the maps take up on a page at most [byte]."""
-        n_areas = sum(len(of.areas) for one in self.comparisons for of in one.maps)
+        n_areas = sum(len(of.areas) for one in self.places for of in one.maps)
         return _MAP_BYTES * self.n_maps + _AREA_BYTES * n_areas + len(json.dumps(self.data))
-
-    @property
-    def open(self) -> int:
-        """How many comparisons are unfolded."""
-        return _MOST_OPEN
 
     @property
     def looks(self) -> dict[str, Look]:
         """Of all that is drawn."""
-        ways = {f"how-{n}": way_look(how) for n, how in enumerate(self._ways)}
+        ways = {f"how-{n}": way_look(how) for n, how in enumerate(self.ways)}
         return LABEL_LOOKS | LEVELS | DIFFERENCES | ways | {"substituted": SUBSTITUTED}
 
     @property
     def keys(self) -> list[tuple[str, str, list[tuple[str, str]]]]:
         """Legends: name, what it is of, and each look with its words."""
-        ways = [(f"how-{n}", way_look(how).mark) for n, how in enumerate(self._ways)]
-        ways.append(("substituted", SUBSTITUTED.mark))
-        levels = [(key, look.mark) for key, look in LEVELS.items()]
-        keys = [("level", "L_Aeq in dB(A):", levels), ("how", "How a point is known:", ways)]
-        if len(self.names) > 1:
-            differences = [(key, look.mark) for key, look in DIFFERENCES.items()]
-            keys.append(("difference", "Difference, B against A:", differences))
-        return keys
+        looks = self.looks
+        kinds = {
+            "level": ("L_Aeq in dB(A):", list(LEVELS)),
+            "how": (
+                "How a point is known:", [key for key in looks if key.startswith(("how", "sub"))]
+            ),
+            "difference": ("Difference, B against A:", list(DIFFERENCES)),
+        }  # fmt: skip
+        if len(self.names) < 2:
+            del kinds["difference"]
+        return [
+            (name, words, [(key, looks[key].mark) for key in keys])
+            for name, (words, keys) in kinds.items()
+        ]
 
     @property
     def data(self) -> dict[str, object]:
@@ -187,19 +187,11 @@ class Compared:
         return {
             "names": self.names,
             "labels": LABELS,
-            "marks": [LABEL_LOOKS[label].mark for label in LABELS],
             "steps": LEVEL_STEPS,
-            "ways": self._ways,
-            "said": [SAID.get(how, how) for how in self._ways],
+            "said": [SAID.get(how, how) for how in self.ways],
             "pair": self.pair,
-            "comparisons": [one.cells for one in self.comparisons],
+            "places": [one.cells for one in self.places],
         }
-
-    @property
-    def _ways(self) -> list[str]:
-        """How points are known, in one order."""
-        found = {how for one in self.comparisons for how in one.ways}
-        return sorted(found, key=lambda how: (list(WAYS).index(how) if how in WAYS else 9, how))
 
 
 _FEW_ROWS = 8
@@ -268,7 +260,9 @@ def compare_designs(
             continue
         keys[i, own.speed, own.interference] = key = f"m{len(heard) + 1}"
         heard[key] = entry
-    comparisons = tuple(
+    known = {point.how for one in maps for point in one.points}
+    ways = sorted(known, key=lambda how: (list(WAYS).index(how) if how in WAYS else 9, how))
+    laid = tuple(
         _laid_out(
             [maps[i] for i in members],
             [names.index(maps[i].design) for i in members],
@@ -278,11 +272,13 @@ def compare_designs(
             ],
             [silent.get(i, "") for i in members],
             len(names),
+            ways,
         )
         for members, points in zip(places, chosen, strict=True)
     )
     first, second = pair or (names[0], names[min(1, len(names) - 1)])
-    return Compared(tuple(names), comparisons, (names.index(first), names.index(second))), heard
+    at = names.index(first), names.index(second)
+    return Compared(tuple(names), laid, at, tuple(ways)), heard
 
 
 def _places(maps: Sequence[ScreenMap]) -> list[list[int]]:
@@ -312,7 +308,8 @@ def _laid_out(
     heard: Sequence[tuple[SharedPoint, tuple[str, ...]]],
     silent: Sequence[str],
     n_designs: int,
-) -> Comparison:
+    ways: Sequence[str],
+) -> Place:
     """Lay maps out whose designs have these numbers."""
     cells = common_cells(
         [
@@ -328,44 +325,32 @@ def _laid_out(
     height = min(MAP_SIZE[1], _LEAST_HEIGHT + _ROW_HEIGHT * len(fits))
     up = _fit_axis(cells[0], fits, height)
     speed = "Largest speed" if maps[0].points[0].frequency is not None else "Speed"
-    laid = [
-        ConditionMap(
-            one.design,
-            across,
-            up,
-            areas_of(of, [p.label for p in one.points], across, up, (MAP_SIZE[0], height)),
-            _spots(across, up, heard, i, designs, n_designs),
-            _own_note(one, why),
-            speed,
-            height,
-            number,
-            compared=True,
+
+    def condition_map(
+        title: str, own: int | None, areas: tuple[Area, ...] = (), note: str = ""
+    ) -> ConditionMap:
+        spots = _spots(across, up, heard, own, designs, n_designs)
+        number = None if own is None else designs[own]
+        return ConditionMap(
+            title, across, up, areas, spots, note, speed, height, number, compared=True
         )
-        for i, (one, of, number, why) in enumerate(zip(maps, cells, designs, silent, strict=True))
-    ]
-    ways = tuple(dict.fromkeys(point.how for one in maps for point in one.points))
-    difference = None
+
+    laid = []
+    for own, (one, of, why) in enumerate(zip(maps, cells, silent, strict=True)):
+        labels = [point.label for point in one.points]
+        areas = areas_of(of, labels, across, up, (MAP_SIZE[0], height))
+        laid.append(condition_map(one.design, own, areas, _own_note(one, why)))
     if len(maps) > 1:
-        spots = _spots(across, up, heard, None, designs, n_designs)
-        difference = ConditionMap(
-            "Difference", across, up, (), spots, "", speed, height, compared=True
-        )
-    return Comparison(
-        maps[0].where,
-        tuple(laid),
-        difference,
-        {
-            "ways": ways,
-            "x": [round(MAP_SIZE[0] * across.share(float(x)), 2) for x in cells[0].speed_edges],
-            "y": [round(height * (1 - up.share(float(y))), 2) for y in cells[0].interference_edges],
-            "designs": {
-                str(number): _cell_values(one, of, ways)
-                for one, of, number in zip(maps, cells, designs, strict=True)
-            },
+        laid.append(condition_map("Difference: B against A", None))
+    values = {
+        "x": [round(MAP_SIZE[0] * across.share(float(x)), 2) for x in cells[0].speed_edges],
+        "y": [round(height * (1 - up.share(float(y))), 2) for y in cells[0].interference_edges],
+        "designs": {
+            str(number): _cell_values(one, of, ways)
+            for one, of, number in zip(maps, cells, designs, strict=True)
         },
-        ways,
-        _note(maps, heard),
-    )
+    }
+    return Place(maps[0].where, tuple(laid), values, _note(maps, heard))
 
 
 def _cell_values(one: ScreenMap, cells: Cells, ways: Sequence[str]) -> dict[str, object]:

@@ -1,40 +1,49 @@
 """The report of a diagnosis: one page to be understood in a minute, and its data beside it.
 
 Order is rank: what is missing and how sure that is, where it acts, how far it closes the gap, what
-to measure next; then the evidence for eye and ear; figures for whoever doubts come last.
+to measure next; then the evidence for eye and ear; figures for whoever doubts come last. All gaps
+of the waterfall come from one fit and the same held-out recordings, because steps of different
+recordings do not add up.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from models.transfer_functions.files import write_transfer_function
 from noise.base.files import atomic
-from noise.diagnosis.findings import ROLES, LabelsAndLevels
+from noise.diagnosis.findings import ROLES, SURE, Agreement, EffectFinding, LabelsAndLevels
+from noise.diagnosis.fit.closing import CLOSABLE
+from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.improved_file import NAME, RESPONSES, response_files
 from noise.diagnosis.outcome import Diagnosis
 from noise.diagnosis.outcome_json import as_json
 from noise.diagnosis.text.agreement_sentences import agreement_sentence
+from noise.diagnosis.text.found import begins, finding_of, parameter_name, stage_of_effect
 from noise.diagnosis.text.improved_sentences import improved_sentence
-from noise.diagnosis.text.sentences import answer
-from noise.diagnosis.text.verdict_sentences import headline
-from noise.diagnosis.text.words import NOT_DETERMINED, cause_of, joined, number, p_number
-from noise.pages.clips import Clip, Entry
-from noise.pages.diagnosis_answer import (
-    agreement_rows,
-    cause_rows,
-    hypothesis_rows,
-    parameter_rows,
-    place_rows,
-    stage_boxes,
-    waterfall,
+from noise.diagnosis.text.sentences import answer, closed_sentence, closed_words
+from noise.diagnosis.text.verdict_sentences import headline, is_named
+from noise.diagnosis.text.words import (
+    NOT_DETERMINED,
+    STAGES,
+    cause_of,
+    evidence,
+    floors,
+    joined,
+    number,
+    p_number,
+    percent,
 )
+from noise.pages import blocks as b
+from noise.pages.clips import Clip, Entry
 from noise.pages.page import page_html, write_page
+from sim.effects import EFFECTS
 
 
 def write_diagnosis(
@@ -92,47 +101,463 @@ def write_diagnosis(
 def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
     entries: dict[str, Entry] = {}
     clips: dict[str, Clip] = {}
-    contents: dict[str, Any] = {"comparisons": (), "curves": {}, "gain": ()}
+    shown: Sequence[b.Block] = ()
     if diagnosis.illustrations or diagnosis.labels_and_levels:
         # Figures and sounds load much that a quick answer, which has none, need not wait for.
         from noise.pages.diagnosis_evidence import draw_comparisons
 
-        entries, clips, contents = draw_comparisons(diagnosis)
-    likely, unlikely = cause_rows(diagnosis)
-    agreement = "" if diagnosis.bench else agreement_sentence(diagnosis)
-    return page_html(
-        "diagnosis.html.j2",
-        entries,
-        clips,
-        title=headline(diagnosis),
-        agreement=agreement,
-        answer=[sentence for sentence in answer(diagnosis) if sentence != agreement],
-        stages=stage_boxes(diagnosis),
-        waterfall=waterfall(diagnosis),
-        likely=likely,
-        unlikely=unlikely,
-        next_measurement=diagnosis.next_measurement,
-        improved=NAME if commands else "",
-        improved_words=improved_sentence(diagnosis.improvement) if diagnosis.improvement else "",
-        commands=commands,
-        notes=diagnosis.notes,
-        places=place_rows(diagnosis.differences),
-        kinds=KINDS,
-        agreements=agreement_rows(diagnosis.agreement),
-        hypotheses=hypothesis_rows(diagnosis.hypotheses),
-        parameters=parameter_rows(diagnosis.parameters),
-        held_out=diagnosis.held_out,
-        heard=[_heard_row(heard) for heard in diagnosis.labels_and_levels],
-        gap=number(diagnosis.gap),
-        floor=number(diagnosis.floor),
-        p_value=p_number(diagnosis.p_value),
-        seconds=number(diagnosis.seconds, ".1f"),
-        not_determined=NOT_DETERMINED,
-        judged=bool(diagnosis.verdict),
-        bench=diagnosis.bench,
-        fitted_words=_fitted_words(diagnosis),
-        **contents,
+        entries, clips, shown = draw_comparisons(diagnosis)
+    bench, judged = diagnosis.bench, bool(diagnosis.verdict)
+    agreement = "" if bench else agreement_sentence(diagnosis)
+    verdict, *further = [sentence for sentence in answer(diagnosis) if sentence != agreement]
+    chain = b.Section(
+        "Where it lies" if judged else "Each stage of the chain",
+        [b.Other("chain", stage_boxes(diagnosis))],
     )
+    far = b.Section("How far it closes" if judged else "", waterfall(diagnosis))
+    causes = b.Section("Which cause" if judged else "What else it could be", _likely(diagnosis))
+    following = diagnosis.next_measurement or "No further measurement was proposed."
+    notes: b.Block = b.Items(diagnosis.notes, "notes")
+    if not diagnosis.notes:
+        notes = b.Text("Nothing was noted about channels or conditions.", "notes")
+    ahead = b.Section(
+        "What to do next" if bench else "What to measure next", [b.Text(following, "next")]
+    )
+    return page_html(
+        "diagnosis",
+        headline(diagnosis),
+        [
+            b.Text(agreement, "where"),
+            b.Text(verdict, "verdict"),
+            *(b.Text(sentence, "where") for sentence in further),
+        ],
+        [
+            *([] if bench else [chain, b.Group("", [far, causes], style="two")]),
+            b.Section("The improved rig", _improved(diagnosis, commands)),
+            b.Group("", [ahead, b.Section("What to bear in mind", [notes])], style="two"),
+            b.Section(
+                "Measured against simulated",
+                [b.Text(_fitted_words(diagnosis)), *shown] if shown else [],
+            ),
+            b.Section("Details", _details(diagnosis), "details"),
+        ],
+        footer="Spectra: levels in bands of a sixth of an octave, of the whole recording. Torques: "
+        "each around a slip of its own, nearest to the middle of the recording.",
+        tab=f"Diagnosis: {headline(diagnosis)}",
+        entries=entries,
+        clips=clips,
+    )
+
+
+def _improved(diagnosis: Diagnosis, commands: Sequence[str]) -> list[b.Block]:
+    if not commands:
+        return []
+    words = improved_sentence(diagnosis.improvement) if diagnosis.improvement else ""
+    return [
+        b.Text(f"{NAME} beside this page is a rig file. {words}"),
+        b.Text("What it leaves, and what other designs would do:"),
+        *map(b.Pre, commands),
+        b.Text(
+            "Do not trust it at speeds, interferences or supports beyond those recorded. An effect "
+            "that closes the gap need not be its cause. It was fitted once more, in forms that a "
+            "rig file can state and in floors of its own, so its gap is not that above; pictures "
+            "and sounds below are of it. How well each number is known stands in the file.",
+            "soft small",
+        ),
+    ]
+
+
+@dataclass(frozen=True)
+class StageBox:
+    """A stage of the chain as it is drawn: its gap in words, and whether the gap begins there.
+
+    Parameters
+    ----------
+    name, what : str
+    gap, p_value, words : str
+        `words` says what the p-value means; empty where it was not determined.
+    share : str
+        Of the whole gap.
+    guilty : bool
+        Whether the gap begins here, as far as that is sure.
+    differs : bool
+        Whether the p-value is 0.05 or below.
+    causes : tuple of str
+        Effects of the verdict that act here.
+    """
+
+    name: str
+    what: str
+    gap: str
+    p_value: str
+    words: str
+    share: str
+    guilty: bool
+    differs: bool
+    causes: tuple[str, ...]
+
+    @property
+    def gap_words(self) -> str:
+        """Its gap with the unit."""
+        return self.gap if self.gap == NOT_DETERMINED else f"gap {self.gap} floors"
+
+
+def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
+    """Return the chain from drive to measurement.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.findings import StageFinding
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> found = {"drive": StageFinding(1.04, 0.02, 0.4)}
+    >>> boxes = stage_boxes(Diagnosis((), (), None, found, (), {}, {}, "", (), 1.0, 1.0, 0.6, 1.0))
+    >>> [(box.name, box.gap) for box in boxes][:2]
+    [('drive', '1.04'), ('friction', 'not determined')]
+    """
+    boxes, place = [], diagnosis.location
+    named = diagnosis.verdict if is_named(diagnosis) else ()
+    acting = {name: stage_of_effect(diagnosis, name) for name in named}
+    for name, what in STAGES.items():
+        finding = diagnosis.stages.get(name)
+        if finding is not None and finding.gap == 0.0:  # nothing of it was recorded
+            finding = None
+        p_value = math.nan if finding is None else finding.p_value
+        boxes.append(
+            StageBox(
+                name=name,
+                what=what,
+                gap=floors(None if finding is None else finding.gap, ".2f"),
+                p_value=p_number(p_value) if math.isfinite(p_value) else "",
+                words=evidence(p_value) if math.isfinite(p_value) else "",
+                share=percent(None if finding is None else finding.share),
+                guilty=begins(diagnosis) and place is not None and place.stage == name,
+                differs=p_value <= SURE,
+                causes=tuple(cause_of(c).name for c, stage in acting.items() if stage == name),
+            )
+        )
+    return tuple(boxes)
+
+
+_LIKELY_ENOUGH = 0.05
+_FEWEST, _MOST = 3, 6
+_BESIDE_EFFECTS = ("none", "parameters", "unknown")
+
+
+def ranked_causes(diagnosis: Diagnosis) -> tuple[dict[str, float], int]:
+    """Return the probability of each cause, those of the verdict first, and how many lead.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> chances = {"none": 0.9, "parameters": 0.06, "mains_hum": 0.02, "clipping": 0.01}
+    >>> ranked_causes(Diagnosis((), (), None, {}, (), chances, {}, "", (), 1.0, 1.0, 0.6, 1.0))
+    ({'none': 0.9, 'parameters': 0.06, 'mains_hum': 0.02, 'clipping': 0.01}, 3)
+    """
+    chances: dict[str, float] = dict(diagnosis.probabilities)
+    for effect in diagnosis.effects:
+        chances.setdefault(effect.name, effect.probability)
+    order = sorted(chances, key=lambda name: (name not in diagnosis.verdict, -chances[name]))
+    n = sum(chances[name] >= _LIKELY_ENOUGH or _is_verdict(diagnosis, name) for name in order)
+    n = min(max(n, _FEWEST), max(_MOST, len(diagnosis.verdict)))
+    return {name: chances[name] for name in order}, n
+
+
+def _is_verdict(diagnosis: Diagnosis, name: str) -> bool:
+    return name in (diagnosis.verdict or ("none",)) and is_named(diagnosis)
+
+
+def _likely(diagnosis: Diagnosis) -> list[b.Block]:
+    """Return the causes that are worth a look: how likely, how far each closes, how strong."""
+    chances, n = ranked_causes(diagnosis)
+    if not chances:
+        return [b.Text(NOT_DETERMINED.capitalize() + ".")]
+    rows: list[list[b.Cell | str]] = []
+    for name, chance in list(chances.items())[:n]:
+        finding, cause, named = finding_of(diagnosis, name), cause_of(name), ""
+        closed = strength = ""
+        if name not in _BESIDE_EFFECTS:
+            fitted = finding is not None and any(gap is not None for gap in _gaps(finding))
+            closed = closed_words(finding) if fitted else "not fitted"
+            strength = _strength(finding) if finding is not None and fitted else ""
+        if _is_verdict(diagnosis, name):
+            named = "cause"
+        bar = b.Bar(0.0, 100.0 * chance, named)
+        arrow = "\N{BLACK RIGHT-POINTING TRIANGLE} " if named else ""
+        rows.append(
+            [b.Cell(arrow + cause.name, cause.clause), b.Cell(percent(chance), bars=[bar]),
+             closed, strength]
+        )  # fmt: skip
+    more = len(chances) - n
+    rest = f" {more} less probable cause{'s are' if more > 1 else ' is'} listed in the details."
+    return [
+        b.Table(("Cause", "Probability", "Gap closed", "Strength, 90 %"), rows, style="causes"),
+        b.Text(
+            "An effect's probability is that it is at work, alone or with others; the 90 % "
+            "interval of what closes is that of the effect, of which the forms tried may show a "
+            "part." + (rest if more else ""),
+            "soft small",
+        ),
+    ]
+
+
+def _gaps(finding: EffectFinding) -> tuple[float | None, ...]:
+    return finding.gap_before, finding.gap_recalibrated, finding.gap_after, finding.gap_floor
+
+
+def _cause_row(diagnosis: Diagnosis, name: str, chance: float) -> list[str]:
+    """Return all that is known of a cause, in the order of the table of all causes."""
+    finding, beside = finding_of(diagnosis, name), name in _BESIDE_EFFECTS
+    row = [cause_of(name).name, "" if beside else stage_of_effect(diagnosis, name), percent(chance)]
+    if finding is None or all(gap is None for gap in _gaps(finding)):
+        return [*row, *[""] * 5, "" if beside else "not fitted"]
+    known = EFFECTS[name].parameters if _known_form(finding) else {}
+    fitted = []
+    for key, value in finding.parameters.items():
+        text = value if isinstance(value, str) else number(value, ".3g")
+        unit = known[key].unit if key in known else ""
+        fitted.append(f"{parameter_name(key)} {text} {unit}".strip())
+    gaps = [number(gap) for gap in _gaps(finding)]
+    return [*row, *gaps, percent(finding.closed_by_effect), "; ".join(fitted) or NOT_DETERMINED]
+
+
+def _strength(finding: EffectFinding) -> str:
+    if finding.strength is None:
+        return NOT_DETERMINED
+    low, high = (number(end, ".3g") for end in finding.strength)
+    if finding.name not in EFFECTS:
+        return f"{low} to {high}"
+    effect = EFFECTS[finding.name]
+    if not _known_form(finding):
+        of = "of a gross one" if "strength" in finding.parameters else "of what was estimated"
+        return f"{low} to {high} {of}"
+    unit = effect.parameters[effect.strength].unit
+    return f"{parameter_name(effect.strength)} {low} to {high} {unit}".strip()
+
+
+def _known_form(finding: EffectFinding) -> bool:
+    """Tell whether a fit has a form of the simulator's own, whose numbers have its units."""
+    if finding.name not in EFFECTS:
+        return False
+    return (
+        finding.parameters.get("form", EFFECTS[finding.name].forms[0])
+        in EFFECTS[finding.name].forms
+    )
+
+
+_MOST_PLACES = 12
+_LEAST_REACH = 0.05  # of the axis of relative parameters, to either side of 1
+
+
+def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> list[list[b.Cell | str]]:
+    """Return refitted parameters: name, interval, where it lies on a common axis about 1.
+
+    Examples
+    --------
+    >>> ((name, interval, cell),) = parameter_rows({"kinetic_torque": (1.02, 1.1)})
+    >>> interval, cell.text, [(round(bar.left), round(bar.width)) for bar in cell.bars]
+    ('1.020 to 1.100', 'differs', [(59, 36), (50, 0)])
+    """
+    ends = [abs(end - 1.0) for interval in intervals.values() for end in interval]
+    reach = 1.1 * max([_LEAST_REACH, *ends])
+    rows: list[list[b.Cell | str]] = []
+    for name, (low, high) in intervals.items():
+        off = low > 1.0 or high < 1.0
+        left, width = 50.0 * (1.0 + (low - 1.0) / reach), 50.0 * (high - low) / reach
+        bars = [b.Bar(left, width, "opened" if off else ""), b.Bar(50.0, 0.0, "mark")]
+        words = "differs" if off else "agrees with the rig file"
+        rows.append([parameter_name(name), f"{low:.3f} to {high:.3f}", b.Cell(words, bars=bars)])
+    return rows
+
+
+def _details(diagnosis: Diagnosis) -> list[b.Block]:
+    chances, _ = ranked_causes(diagnosis)
+    found = diagnosis.differences[:_MOST_PLACES]
+    places = [
+        [
+            place.stage, ", ".join(place.channels),
+            place.phase if place.phase != "all" else f"{place.band[0]:g} to {place.band[1]:g} Hz",
+            place.conditions.replace("speed_rad_s", "speed [rad/s]"), p_number(place.p_value),
+        ]
+        for place in found
+    ]  # fmt: skip
+    hypotheses = [
+        [
+            joined([cause_of(name).name for name in one.causes or ("none",)]),
+            percent(one.probability), "not fitted" if one.gap is None else floors(one.gap),
+        ]
+        for one in diagnosis.hypotheses
+    ]  # fmt: skip
+    held_out = ", ".join(diagnosis.held_out) or "none, since nothing was fitted"
+    facts = [
+        ("Gap before any fit", f"{number(diagnosis.gap)} (floor {number(diagnosis.floor)}; "
+         f"{p_number(diagnosis.p_value)})"),
+        ("Held out", held_out),
+        ("Time taken", f"{number(diagnosis.seconds, '.1f')} s"),
+    ]  # fmt: skip
+    stages = [
+        [box.name, box.gap, box.share, box.p_value or NOT_DETERMINED, box.words]
+        for box in stage_boxes(diagnosis)
+    ]
+    tables: dict[str, tuple[Sequence[str], Sequence[Sequence[b.Cell | str]]]] = {
+        "How far each recording is from the rig file": (
+            ["Recording", "Speed [rad/s]", "Interference [mm]", "Gap [floors]",
+             *(kind.capitalize() for kind in KINDS)],
+            [_agreement_row(one) for one in diagnosis.agreement],
+        ),
+        "Stages": (("Stage", "Gap [floors]", "Share of the gap", "p-value", "Meaning"), stages),
+        "Where it differs most surely": (
+            ("Stage", "Channel", "Band or phase", "Conditions", "p-value, corrected for all looks"),
+            places,
+        ),
+        "Parameters, relative to the rig file, 90 % intervals": (
+            ("Parameter", "Interval", "About 1.0"), parameter_rows(diagnosis.parameters),
+        ),
+        "Labels and levels of held-out recordings": (
+            ("Recording", "Measured", "Nominal model", "Fitted model"),
+            [_heard_row(heard) for heard in diagnosis.labels_and_levels],
+        ),
+        "The likeliest sets of causes": (
+            ("At work together", "Probability", "Gap left, held out [floors]"), hypotheses,
+        ),
+        "All causes": (
+            ("Cause", "Stage", "Probability", "Gap nominal", "recalibrated", "with effect", "floor",
+             "Closed by the effect alone", "As fitted"),
+            [_cause_row(diagnosis, *one) for one in chances.items()],
+        ),
+    }  # fmt: skip
+    missing = {
+        "Where it differs most surely": "Nowhere surely: no single channel, band or phase differs "
+        "at p = 0.05 or below, all looks counted.",
+        "Parameters, relative to the rig file, 90 % intervals": NOT_DETERMINED.capitalize() + ".",
+    }
+    return [
+        b.Items(facts),
+        *(
+            b.Group(title, [b.Table(columns, rows) if rows else b.Text(missing.get(title, ""))])
+            for title, (columns, rows) in tables.items()
+        ),
+    ]
+
+
+def _agreement_row(one: Agreement) -> list[str]:
+    """Return how far a recording is off: name, speed, interference, whole gap, each channel's."""
+    channels = (floors(one.channels[k]) if k in one.channels else "not recorded" for k in KINDS)
+    fit = f"{1e3 * one.interference:.3g}"
+    return [one.recording, f"{one.speed:g}", fit, floors(one.gap), *channels]
+
+
+_SAME = 1e-9
+
+
+def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
+    """Return bars from the nominal gap to what is left of it, and how much is closed in words.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.findings import EffectFinding
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> hum = EffectFinding("mains_hum", "measurement", 0.9, gap_before=7.7, gap_recalibrated=4.1,
+    ...                     gap_after=1.3, gap_floor=1.0, closed=0.955)
+    >>> table, *_ = waterfall(Diagnosis(("mains_hum",), (), None, {}, (hum,), {}, {}, "", (), 7.7,
+    ...                                 1.0, 0.0, 1.0))
+    >>> [(name, cell.text) for name, cell in table.rows][1:3]
+    [('refitted parameters', '−3.60, to 4.10'), ('with mains hum', '−2.80, to 1.30')]
+    """
+    verdict = diagnosis.verdict
+    if not verdict:
+        return []
+    fitted = _shown_fit(diagnosis)
+    before = diagnosis.gap if fitted is None else _known(fitted.gap_before, diagnosis.gap)
+    floor = diagnosis.floor if fitted is None else _known(fitted.gap_floor, diagnosis.floor)
+    if not (math.isfinite(before) and math.isfinite(floor)):
+        return [b.Text(f"How large the gap is was {NOT_DETERMINED}.")]
+    steps: dict[str, float] = {}
+    closed = None
+    if fitted is not None and fitted.gap_recalibrated is not None:
+        steps["refitted parameters"] = fitted.gap_recalibrated
+    if fitted is not None and fitted.gap_after is not None and verdict != ("parameters",):
+        steps[_effect_label(diagnosis, fitted)] = fitted.gap_after
+        closed = closed_sentence(fitted)
+        if verdict == ("unknown",):
+            tried = joined([cause_of(name).name for name in (fitted.name, *fitted.fitted_with)])
+            best = f"The best fit that was tried, with {tried}, closes"
+            closed = closed.replace("The fit closes", best, 1)
+    top = 1.04 * max(floor, before, *steps.values())
+    rows = [("nominal model", _gap_cell(0.0, before, "", f"{before:.2f}", floor, top))]
+    gap = before
+    for label, after in steps.items():
+        change = f"{after - gap:+.2f}".replace("-", "\N{MINUS SIGN}")
+        kind = "cause" if after <= gap else "opened"
+        cell = _gap_cell(min(gap, after), max(gap, after), kind, f"{change}, to {after:.2f}",
+                         floor, top)  # fmt: skip
+        rows.append((label, cell))
+        gap = after
+    if steps:
+        rows.append(("what is left", _gap_cell(0.0, gap, "", f"{gap:.2f}", floor, top)))
+    words = closed if closed is not None else _closed_so_far(before, gap, floor, bool(steps))
+    if not words and before - floor < CLOSABLE:
+        words = "On these recordings the gap is hardly larger than the floor."
+    unseen = "recordings that no fit has seen"
+    among = ", ".join(diagnosis.held_out)
+    of = (
+        f"{len(diagnosis.held_out)} {unseen}"
+        if len(diagnosis.held_out) > 6
+        else f"{unseen}: {among}"
+    )
+    return [
+        b.Table(("Model", f"Gap; the line is the floor, {floor:.2f}"), rows, style="waterfall"),
+        b.Text(words or "How much of the gap can be closed was not determined."),
+        b.Text(
+            f"The gap is in units of what repeats of a run differ by, on {of}." if among else "",
+            "soft small",
+        ),
+    ]
+
+
+def _gap_cell(low: float, high: float, look: str, words: str, floor: float, top: float) -> b.Cell:
+    bar = b.Bar(100.0 * low / top, 100.0 * (high - low) / top, look)
+    return b.Cell(words, bars=[bar, b.Bar(100.0 * floor / top, 0.0, "mark")])
+
+
+def _shown_fit(diagnosis: Diagnosis) -> EffectFinding | None:
+    """Return the fit to show: of the verdict's effects, else of any, the one that closes most."""
+    named = [finding_of(diagnosis, name) for name in diagnosis.verdict]
+    among = [finding for finding in named if finding is not None]
+    if diagnosis.verdict in {("parameters",), ("unknown",)}:
+        among = list(diagnosis.effects)
+    known = [finding for finding in among if finding.gap_recalibrated is not None]
+    after = [finding for finding in among if finding.gap_after is not None]
+    if after:
+        return min(after, key=lambda finding: finding.gap_after or 0.0)
+    return known[0] if known else None
+
+
+def _effect_label(diagnosis: Diagnosis, fitted: EffectFinding) -> str:
+    if diagnosis.verdict == ("unknown",):
+        return "best fit tried"
+    together = [
+        name
+        for name in diagnosis.verdict
+        if (finding := finding_of(diagnosis, name)) is not None
+        and finding.gap_after is not None
+        and abs(finding.gap_after - (fitted.gap_after or 0.0)) < _SAME
+    ]
+    if 1 < len(together) == len(diagnosis.verdict):
+        return "with both effects" if len(together) == 2 else "with all effects"
+    return f"with {joined([cause_of(name).name for name in together])}"
+
+
+def _closed_so_far(before: float, gap: float, floor: float, fitted: bool) -> str:
+    if before <= floor:
+        return "The nominal gap is no larger than the floor, so there is nothing to close."
+    if not fitted:
+        return ""
+    share = percent(closed_fraction(before, gap, floor))
+    return f"Refitted parameters close {share} of the closable gap."
+
+
+def _known(value: float | None, otherwise: float) -> float:
+    return otherwise if value is None else value
 
 
 def _fitted_words(diagnosis: Diagnosis) -> str:

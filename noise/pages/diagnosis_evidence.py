@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 import soundfile
@@ -32,6 +32,7 @@ from models.recording import Channel, Recording
 from noise.audio.sound import audible
 from noise.diagnosis.findings import ROLES, Illustration, LabelsAndLevels
 from noise.diagnosis.text.words import number
+from noise.pages import blocks as b
 from noise.pages.cards import facts_of
 from noise.pages.clips import RATE, Clip, Entry, common_gain, make_clips
 from noise.pages.figures import COLUMNS, Panel, as_svg, new_panel, panel_frequencies
@@ -457,19 +458,9 @@ def _entry(
     )
 
 
-class Comparison(NamedTuple):
-    """One recording beside its simulations; `sounds` are ids by role."""
-
-    name: str
-    condition: str
-    roles: tuple[str, ...]
-    sounds: dict[str, str]
-    panels: tuple[Panel, ...]
-
-
 def draw_comparisons(
     diagnosis: Diagnosis,
-) -> tuple[dict[str, Entry], dict[str, Clip], dict[str, object]]:
+) -> tuple[dict[str, Entry], dict[str, Clip], list[b.Block]]:
     """Draw and sound what a diagnosis illustrates.
 
     Parameters
@@ -482,8 +473,8 @@ def draw_comparisons(
         By id.
     clips : dict of str to Clip
         Of those that can be heard.
-    contents : dict of str to object
-        What the template names: ``comparisons``, ``curves`` and ``gain``.
+    shown : list of Block
+        Each recording beside its simulations.
 
     Raises
     ------
@@ -491,22 +482,29 @@ def draw_comparisons(
         A signal that cannot be analysed.
     """
     entries: dict[str, Entry] = {}
-    comparisons = []
+    groups: list[b.Block] = []
     for illustration in diagnosis.illustrations:
         found = illustration_entries(illustration, diagnosis.labels_and_levels)
-        keys = {role: f"s{len(entries) + i}" for i, role in enumerate(found, 1)}
-        entries |= {keys[role]: entry for role, entry in found.items()}
+        keys = [f"s{len(entries) + i}" for i in range(1, len(found) + 1)]
+        entries |= dict(zip(keys, found.values(), strict=True))
         known = facts_of(Entry(illustration.name, condition=illustration.measured.condition))
-        comparisons.append(
-            Comparison(
+        silent = "" if found else "There is no sound pressure to be heard."
+        panels = (*illustration_panels(illustration), *contact_panels(illustration.contacts))
+        groups.append(
+            b.Group(
                 illustration.name,
+                [b.Cards(keys, "narrow"), b.Text(silent, "soft small"), b.Panels(panels)],
                 ", ".join(fact.words for name, fact in known.items() if name != "material"),
-                ROLES if illustration.after is not None else ROLES[:2],
-                keys,
-                (*illustration_panels(illustration), *contact_panels(illustration.contacts)),
+                "compared",
             )
         )
+    if not groups:
+        return {}, {}, []
     gain = common_gain(entries.values())
     clips, _ = make_clips(entries, gain)
-    sentences = gain.sentences if clips else ()
-    return entries, clips, {"comparisons": comparisons, "curves": CURVES, "gain": sentences}
+    curves = b.Other("curves", list(CURVES.values()))
+    return (
+        entries,
+        clips,
+        [b.Sounds(gain.sentences if clips else (), labels=False), curves, *groups],
+    )

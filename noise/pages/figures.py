@@ -88,6 +88,83 @@ def panel_frequencies(axes: Axes, low: float, high: float) -> None:
     axes.xaxis.set_major_locator(FixedLocator([tick for tick in _TICKS if low <= tick <= high]))
 
 
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A curve of a panel.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (n,)
+        In the units of the axes [-].
+    colour, label : str
+    width : float
+        [point]
+    style, marker : str
+        Of matplotlib.
+    """
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    colour: str
+    label: str = ""
+    width: float = 1.5
+    style: str = "-"
+    marker: str = ""
+
+
+def lines_panel(
+    title: str,
+    across: str,
+    up: str,
+    lines: Sequence[Line],
+    alt: str,
+    *,
+    legend: str = "",
+    bands: Sequence[tuple[float, float, str]] = (),
+    above: float = 0.0,
+    below: float = 0.0,
+    from_zero: bool = False,
+) -> Panel:
+    """Draw lines, to be called within `models.drawing.styled`.
+
+    Parameters
+    ----------
+    title, across, up : str
+    lines : sequence of Line
+    alt : str
+        What the panel shows, in words.
+    legend : str
+        Where it stands; none by default.
+    bands : sequence of (float, float, str)
+        Values between which the panel is coloured [unit of `up`], and colours.
+    above, below : float
+        Room for the legend, as a share of what the lines span [-].
+    from_zero : bool
+        Whether the vertical axis begins there.
+
+    Examples
+    --------
+    >>> line = Line(np.arange(2.0), np.ones(2), "#222222")
+    >>> lines_panel("Torque", "Time [ms]", "Torque [Nm]", [line], "1 Nm throughout.").alt
+    '1 Nm throughout.'
+    """
+    figure, axes = new_panel(title, across, up)
+    for one in lines:
+        axes.plot(
+            one.x, one.y, color=one.colour, label=one.label or None, lw=one.width,
+            ls=one.style or "none", marker=one.marker, ms=2 if one.marker == "." else 5,
+        )  # fmt: skip
+    for low, high, colour in bands:
+        axes.axhspan(low, high, color=colour, alpha=0.18, lw=0)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - below * (high - low), high + above * (high - low))
+    if from_zero:
+        axes.set_ylim(0.0, 1.12 * high)
+    if legend:
+        axes.legend(loc=legend, fontsize=8)
+    return Panel(as_svg(figure), alt)
+
+
 def as_svg(figure: Figure) -> bytes:
     """Write a figure out, the same one as the same bytes.
 

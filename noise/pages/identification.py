@@ -16,7 +16,8 @@ from noise.base.files import atomic
 from noise.identification.law_candidates import CANDIDATES
 from noise.identification.outcome import Forecast, Identification, Number, Seen, as_json
 from noise.identification.quantities import QUANTITIES
-from noise.pages.figures import Panel, as_svg, new_panel
+from noise.pages import blocks as b
+from noise.pages.figures import Line, Panel, as_svg, lines_panel, new_panel
 from noise.pages.page import page_html, write_page
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ _MARKERS = "osD^v"
 
 
 def recording_panels(one: Seen) -> tuple[Panel, ...]:
-    """Draw what one recording said: the rise in stick, a slip, and what the law foretells.
+    """Draw what one recording said: the rise in stick, a slip, and what the law predicts.
 
     Parameters
     ----------
@@ -44,37 +45,33 @@ def recording_panels(one: Seen) -> tuple[Panel, ...]:
     tuple of Panel
     """
     with styled():
-        panels = (_static(one), _ringing(one))
-        return panels if one.forecast is None else (*panels, _forecast(one.forecast))
+        panels = (_rise(one), _ringing(one))
+        return panels if one.forecast is None else (*panels, _prediction(one.forecast))
 
 
-def _static(one: Seen) -> Panel:
+def _rise(one: Seen) -> Panel:
     """Torque over the shaft's angle, with the rise by the effective stiffness."""
     spectrum, fit = one.fit.spectrum, one.fit
     begin, end = _window(one, _SHOWN)
     angle = np.cumsum(spectrum.shaft_speed[begin:end]) / spectrum.rate
     angle -= angle[0]
-    torque = spectrum.torque[begin:end]
-    stuck = fit.phases.stuck[begin:end]
+    torque, stuck = spectrum.torque[begin:end], fit.phases.stuck[begin:end]
     bushing = fit.bushing
-    compliance = 1.0 / bushing.elastomer_stiffness + 1.0 / bushing.support_stiffness
-    figure, axes = new_panel("Torque over the shaft's angle", "Angle [mrad]", "Torque [Nm]")
-    axes.plot(1e3 * angle, torque, color=GREY, label="slips")
-    axes.plot(1e3 * angle, np.where(stuck, torque, np.nan), color=BLUE, lw=2.0, label="sticks")
+    stiffness = 1.0 / (1.0 / bushing.elastomer_stiffness + 1.0 / bushing.support_stiffness)
     first = int(np.argmin(torque))
-    rise = torque[first] + (angle - angle[first]) / compliance
+    rise = torque[first] + (angle - angle[first]) * stiffness
     inside = (rise <= torque.max()) & (angle >= angle[first])
-    axes.plot(
-        1e3 * angle[inside], rise[inside], color=VERMILION, ls="--",
-        label=f"rise by k_EFF = {1.0 / compliance:.4g} Nm/rad",
+    return lines_panel(
+        "Torque over the shaft's angle", "Angle [mrad]", "Torque [Nm]",
+        [
+            Line(1e3 * angle, torque, GREY, "slips"),
+            Line(1e3 * angle, np.where(stuck, torque, np.nan), BLUE, "sticks", 2.0),
+            Line(1e3 * angle[inside], rise[inside], VERMILION,
+                 f"rise by k_EFF = {stiffness:.4g} Nm/rad", style="--"),
+        ],
+        f"Torque over angle: rises by {stiffness:.4g} Nm/rad while the contact sticks.",
+        legend="upper left", above=0.55,
     )  # fmt: skip
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.55 * (high - low))  # room for the legend
-    axes.legend(loc="upper left", fontsize=8)
-    return Panel(
-        as_svg(figure),
-        f"Torque over angle: rises by {1.0 / compliance:.4g} Nm/rad while the contact sticks.",
-    )
 
 
 def _ringing(one: Seen) -> Panel:
@@ -82,31 +79,34 @@ def _ringing(one: Seen) -> Panel:
     spectrum, contact = one.fit.spectrum, one.fit.contact
     begin, end = _window(one, _AROUND_SLIP)
     time = 1e3 * np.arange(end - begin) / spectrum.rate
-    figure, axes = new_panel("Around a slip: what rings, and how it decays", "Time [ms]", "Nm")
-    axes.plot(time, spectrum.torque[begin:end], color=BLUE, label="torque cell")
-    axes.plot(time, contact.torque[begin:end], color=ORANGE, lw=1.0, label="in the contact")
-    for level in (one.values["critical_torque"], one.values["kinetic_torque"]):
-        axes.axhline(level, color=GREY, ls=":", lw=1.0)
-    axes.legend(loc="lower left", fontsize=8)
+    levels = [one.values["critical_torque"], one.values["kinetic_torque"]]
     modes = ", ".join(f"{f:.0f} Hz" for f in one.fit.bushing.natural_frequencies())
-    return Panel(
-        as_svg(figure),
+    return lines_panel(
+        "Around a slip: what rings, and how it decays", "Time [ms]", "Nm",
+        [
+            Line(time, spectrum.torque[begin:end], BLUE, "torque cell"),
+            Line(time, contact.torque[begin:end], ORANGE, "in the contact", 1.0),
+            *(Line(time[[0, -1]], np.full(2, level), GREY, "", 1.0, ":") for level in levels),
+        ],
         f"Torques around a slip; modes while it slides at {modes}, damping "
         f"{one.values['damping']:.3g} Nm s/rad.",
-    )
+        legend="lower left",
+    )  # fmt: skip
 
 
-def _forecast(forecast: Forecast) -> Panel:
-    """Torque of an excerpt, and what the law foretells of it from its first sample on."""
+def _prediction(forecast: Forecast) -> Panel:
+    """Torque of an excerpt, and what the law predicts of it from its first sample on."""
     time = 1e3 * np.arange(forecast.recorded.size) / forecast.rate
     missed = float(np.std(forecast.foretold - forecast.recorded) / np.std(forecast.recorded))
-    figure, axes = new_panel("What the law foretells of a cycle", "Time [ms]", "Torque [Nm]")
-    axes.plot(time, forecast.recorded, color=GREY, lw=2.5, label="recorded")
-    axes.plot(time, forecast.foretold, color=VERMILION, lw=1.0, label="foretold")
-    low, high = axes.get_ylim()
-    axes.set_ylim(low - 0.25 * (high - low), high)  # room for the legend
-    axes.legend(loc="lower right", fontsize=8, ncols=2)
-    return Panel(as_svg(figure), f"Recorded and foretold torque; {100.0 * missed:.1f} % is missed.")
+    return lines_panel(
+        "What the law predicts of a cycle", "Time [ms]", "Torque [Nm]",
+        [
+            Line(time, forecast.recorded, GREY, "recorded", 2.5),
+            Line(time, forecast.foretold, VERMILION, "predicted", 1.0),
+        ],
+        f"Recorded and predicted torque; {100.0 * missed:.1f} % is missed.",
+        legend="lower right", below=0.25,
+    )  # fmt: skip
 
 
 def _window(one: Seen, seconds: float) -> tuple[int, int]:
@@ -132,36 +132,32 @@ def level_panels(found: Identification) -> tuple[Panel, ...]:
     tuple of Panel
     """
     with styled():
+        torques = ("critical_torque", "kinetic_torque")
         return (
-            _levels(found, "Torque levels", "Torque", "Nm", ("critical_torque", "kinetic_torque")),
-            _levels(
-                found, "Elastomer's stiffness", "Stiffness", "Nm/rad", ("elastomer_stiffness",)
-            ),
+            _levels(found, "Torque levels", "Torque [Nm]", torques),
+            _levels(found, "Elastomer's stiffness", "Stiffness [Nm/rad]", ("elastomer_stiffness",)),
         )
 
 
-def _levels(found: Identification, title: str, up: str, unit: str, names: tuple[str, ...]) -> Panel:
-    figure, axes = new_panel(title, "Speed of the shaft [rad/s]", f"{up} [{unit}]")
-    words = []
-    colours = (VERMILION, BLUE)
-    for name, colour in zip(names, colours, strict=False):
+def _levels(found: Identification, title: str, up: str, names: tuple[str, ...]) -> Panel:
+    lines, bands, words = [], [], []
+    for name, colour in zip(names, (VERMILION, BLUE), strict=False):
         for k, number in enumerate(n for n in found.numbers if n.name == name):
-            own = [one for one in found.seen if _belongs(one, number)]
-            speeds = [one.measured.condition.speed for one in own]
+            own = [
+                one for one in found.seen
+                if one.levels.slips and one.measured.condition.interference == number.interference
+            ]  # fmt: skip
+            speeds = np.array([one.measured.condition.speed for one in own], dtype=float)
+            values = np.array([one.values[name] for one in own])
             label = f"{name.split('_')[0]}, {1e3 * (number.interference or 0.0):g} mm"
-            axes.plot(
-                speeds, [one.values[name] for one in own], color=colour, ls="none",
-                marker=_MARKERS[k % len(_MARKERS)], ms=5, label=label,
-            )  # fmt: skip
-            axes.axhspan(number.low, number.high, color=colour, alpha=0.18, lw=0)
-            words.append(f"{label}: {number.value:.4g} {unit}")
-    axes.set_ylim(0.0, 1.12 * axes.get_ylim()[1])
-    axes.legend(loc="lower right", fontsize=8)
-    return Panel(as_svg(figure), f"{title}: {'; '.join(words)}.")
-
-
-def _belongs(one: Seen, number: Number) -> bool:
-    return bool(one.levels.slips) and one.measured.condition.interference == number.interference
+            marker = _MARKERS[k % len(_MARKERS)]
+            lines.append(Line(speeds, values, colour, label, style="", marker=marker))
+            bands.append((number.low, number.high, colour))
+            words.append(f"{label}: {number.value:.4g}")
+    return lines_panel(
+        title, "Speed of the shaft [rad/s]", up, lines, f"{title}, {up}: {'; '.join(words)}.",
+        legend="lower right", bands=bands, from_zero=True,
+    )  # fmt: skip
 
 
 def law_panel(found: Identification) -> Panel:
@@ -180,16 +176,14 @@ def law_panel(found: Identification) -> Panel:
             "What each law misses within a cycle", "Share of the oscillation [%]", ""
         )
         laws = list(reversed(found.laws))
-        for row, score in enumerate(laws):
-            colour = BLUE if score.law == found.law else GREY
-            axes.barh(row, 100.0 * score.missed, color=colour, height=0.6)
+        colours = [BLUE if score.law == found.law else GREY for score in laws]
+        missed = [100.0 * score.missed for score in laws]
+        axes.barh(range(len(laws)), missed, color=colours, height=0.6)
         axes.set_yticks(range(len(laws)), [score.law.replace("_", " ") for score in laws])
         axes.tick_params(axis="y", labelsize=8)
-        return Panel(
-            as_svg(figure),
-            "Share of the oscillation that a law does not foretell: "
-            + ", ".join(f"{s.law} {100.0 * s.missed:.1f} %" for s in found.laws),
-        )
+        scores = ", ".join(f"{s.law} {100.0 * s.missed:.1f} %" for s in found.laws)
+        alt = f"Share of the oscillation that a law does not predict: {scores}"
+        return Panel(as_svg(figure), alt)
 
 
 def static_panels(test: StaticTest) -> tuple[Panel, ...]:
@@ -204,12 +198,12 @@ def static_panels(test: StaticTest) -> tuple[Panel, ...]:
     tuple of Panel
     """
     with styled():
-        ring = test.ring_down
-        return (
-            _slope(test),
-            *(() if test.elastic else (_parting(test),)),
-            *(() if ring is None else (_decay(ring),)),
-        )
+        panels = [_slope(test)]
+        if not test.elastic:
+            panels.append(_yielding(test))
+        if test.ring_down is not None:
+            panels.append(_decay(test.ring_down))
+        return tuple(panels)
 
 
 def _slope(test: StaticTest) -> Panel:
@@ -219,53 +213,49 @@ def _slope(test: StaticTest) -> Panel:
         if test.elastic
         else f"loading and unloading part by {100.0 * test.parting:.1f} % of the angle"
     )
-    figure, axes = new_panel("Torque over the shaft's angle, slowly", "Angle [mrad]", "Torque [Nm]")
-    axes.plot(1e3 * test.angle, test.torque, color=GREY, ls="none", marker=".", ms=2)
-    axes.plot(1e3 * test.fitted_angle, test.torque, color=BLUE, lw=1.0, label="regression")
     middle = float(np.median(test.angle - test.torque / test.effective_stiffness))
     ends = np.array([test.torque.min(), test.torque.max()])
-    axes.plot(
-        1e3 * (middle + ends / test.effective_stiffness), ends, color=VERMILION, ls="--",
-        label=f"k_EFF = {slope}",
+    return lines_panel(
+        "Torque over the shaft's angle, slowly", "Angle [mrad]", "Torque [Nm]",
+        [
+            Line(1e3 * test.angle, test.torque, GREY, "", style="", marker="."),
+            Line(1e3 * test.fitted_angle, test.torque, BLUE, "regression", 1.0),
+            Line(1e3 * (middle + ends / test.effective_stiffness), ends, VERMILION,
+                 f"k_EFF = {slope}", style="--"),
+        ],
+        f"Torque over angle: {slope} (+-{100 * test.error:.1f} %), {told}.",
+        legend="upper left",
     )  # fmt: skip
-    axes.legend(loc="upper left", fontsize=8)
-    return Panel(
-        as_svg(figure), f"Torque over angle: {slope} (+-{100 * test.error:.1f} %), {told}."
-    )
 
 
-def _parting(test: StaticTest) -> Panel:
+def _yielding(test: StaticTest) -> Panel:
     beyond = test.torque / test.held_stiffness
-    figure, axes = new_panel(
-        "What yields beside elastomer and beams", "Torque [Nm]", "Angle beyond theirs [mrad]"
-    )
-    axes.plot(
-        test.torque, 1e3 * (test.angle - beyond), color=GREY, ls="none", marker=".", ms=2,
-        label="recorded",
-    )  # fmt: skip
-    axes.plot(test.torque, 1e3 * (test.fitted_angle - beyond), color=BLUE, lw=1.0, label="contact")
-    axes.legend(loc="upper left", fontsize=8)
-    return Panel(
-        as_svg(figure),
+    return lines_panel(
+        "What yields beside elastomer and beams", "Torque [Nm]", "Angle beyond theirs [mrad]",
+        [
+            Line(test.torque, 1e3 * (test.angle - beyond), GREY, "recorded", style="", marker="."),
+            Line(test.torque, 1e3 * (test.fitted_angle - beyond), BLUE, "contact", 1.0),
+        ],
         f"Angle beyond that of elastomer and beams; without what yields the slope is "
         f"{test.held_stiffness:.4g} Nm/rad (+-{100.0 * test.held_error:.1f} %).",
-    )
+        legend="upper left",
+    )  # fmt: skip
 
 
 def _decay(ring: RingDown) -> Panel:
     time = 1e3 * ring.time
     envelope = float(np.abs(ring.fitted).max()) * np.exp(-ring.decay * ring.time)
-    figure, axes = new_panel("After the shaft is held: ring-down", "Time [ms]", "Torque [Nm]")
-    axes.plot(time, ring.torque, color=GREY, label="recorded")
-    axes.plot(time, ring.fitted, color=BLUE, lw=1.0, label="fitted")
-    for side in (1.0, -1.0):
-        axes.plot(time, side * envelope, color=VERMILION, ls="--", lw=1.0)
-    axes.legend(loc="upper right", fontsize=8)
     ratio = ring.decay / (2.0 * math.pi * ring.frequency)
-    return Panel(
-        as_svg(figure),
+    return lines_panel(
+        "After the shaft is held: ring-down", "Time [ms]", "Torque [Nm]",
+        [
+            Line(time, ring.torque, GREY, "recorded"),
+            Line(time, ring.fitted, BLUE, "fitted", 1.0),
+            *(Line(time, side * envelope, VERMILION, "", 1.0, "--") for side in (1.0, -1.0)),
+        ],
         f"Ring-down at {ring.frequency:.0f} Hz, damping ratio {100.0 * ratio:.2f} %.",
-    )
+        legend="upper right",
+    )  # fmt: skip
 
 
 _WORDS = {candidate.name: candidate.words for candidate in CANDIDATES}
@@ -296,42 +286,78 @@ def write_identification(folder: Path, found: Identification) -> None:
 
 def _html(found: Identification) -> str:
     slipping = [one for one in found.seen if one.levels.slips]
+    answer, *further = _answer(found)
+    laws = [
+        [
+            one.law.replace("_", " "), _WORDS[one.law], f"{100.0 * one.missed:.1f}",
+            f"{one.held_out:.2f}", f"{one.trained:.2f}",
+        ]
+        for one in found.laws
+    ]  # fmt: skip
+    choice = (
+        f"Held out: {', '.join(found.held_out) or 'none'}. Missed is the share of the oscillation "
+        "that a law, begun where a recording shows a slip, does not predict over the next cycle. "
+        f"The simplest law is taken that misses at most {100.0 * (found.margin - 1.0):.0f} % more "
+        "than the best for each number that it has less, and is as near over a whole run; 1 floor "
+        "is what repeats of one run differ by."
+    )
+    numbers, measured = map(_row, found.numbers), [_measured(*one) for one in found.measured]
+    lists = {
+        "Assumed": found.assumed,
+        "Not found": found.not_found,
+        "To know": found.notes,
+        "Left out": [f"{name}: {reason}" for name, reason in found.refused],
+    }
+    beside = b.Table(("Number", "At", "Measured", "This rig"), measured)
+    columns = ("Law", "Meaning", "Missed [%]", "Held out [floors]", "Fitted to [floors]")
     return page_html(
-        "identification.html.j2",
-        {},
-        {},
-        title=_title(found),
-        answer=_answer(found),
-        numbers=[_row(number) for number in found.numbers],
-        levels=level_panels(found) if slipping else (),
-        static=[
-            (one.name, ", ".join(Condition(None, one.interference, one.support_stiffness).words),
-             static_panels(one))
-            for one in found.static
+        "diagnosis",
+        _title(found),
+        [b.Text(answer, "verdict"), *(b.Text(sentence, "where") for sentence in further)],
+        [
+            b.Section(
+                "Numbers, with 90 % intervals",
+                [
+                    b.Table(("Number", "At", "Value", "Interval", "Recordings"), list(numbers)),
+                    b.Panels(level_panels(found) if slipping else ()),
+                    b.Group("Measured numbers beside what this rig gives", [beside]),
+                ],
+            ),
+            b.Section(
+                "Static tests",
+                [
+                    b.Group(
+                        one.name,
+                        [b.Panels(static_panels(one))],
+                        ", ".join(Condition(None, one.interference, one.support_stiffness).words),
+                    )
+                    for one in found.static
+                ],
+            ),
+            b.Section(
+                "Law of friction",
+                [
+                    b.Panels((law_panel(found),) if laws else ()),
+                    b.Table(columns, laws),
+                    b.Text(choice if laws else "", "soft"),
+                ],
+            ),
+            b.Section(
+                "What each recording said",
+                [
+                    b.Group(one.measured.name, [b.Panels(recording_panels(one))], _condition(one))
+                    for one in slipping
+                ],
+            ),
+            b.Section(
+                "Assumed, and not found",
+                [b.Group(heading, [b.Items(items)]) for heading, items in lists.items()],
+            ),
+            b.Section("The rig file", [b.Pre(found.rig_toml)]),
         ],
-        measured=[_measured(*one) for one in found.measured],
-        law_picture=(law_panel(found),) if found.laws else (),
-        laws=[
-            [
-                one.law.replace("_", " "), _WORDS[one.law], f"{100.0 * one.missed:.1f}",
-                f"{one.held_out:.2f}", f"{one.trained:.2f}",
-            ]
-            for one in found.laws
-        ],
-        recordings=[
-            (one.measured.name, _condition(one), recording_panels(one)) for one in slipping
-        ],
-        rig_toml=found.rig_toml,
-        lists=[
-            ("Assumed", found.assumed),
-            ("Not found", found.not_found),
-            ("To know", found.notes),
-            ("Left out", [f"{name}: {reason}" for name, reason in found.refused]),
-        ],
-        held_out=found.held_out,
-        margin=f"{100.0 * (found.margin - 1.0):.0f}",
-        seconds=f"{found.seconds:.0f}",
-    )  # fmt: skip
+        footer=f"Identified in {found.seconds:.0f} s.",
+        tab=f"Identification: {_title(found)}",
+    )
 
 
 def _title(found: Identification) -> str:

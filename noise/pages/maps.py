@@ -19,8 +19,10 @@ from numpy.typing import NDArray
 
 from noise.labels.conditions import Place, Range, conditions_map
 from noise.pages.cards import round_ticks
-from noise.pages.page import MAP_SIZE
 from noise.pictures.figure import place_title
+
+MAP_SIZE = (500.0, 300.0)
+"""Width and height of the drawing of a condition map [px]."""
 
 _RASTER = (100, 60)
 """Into how many cells a map is divided whose points make no grid."""

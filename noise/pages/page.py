@@ -1,4 +1,4 @@
-"""Page: entries and their sounds laid into a template, in one file.
+"""Page: one file of blocks with the sounds, pictures, scripts and styles that they need.
 
 Such a page is mailed, projected in a meeting and opened again after years. So everything is inside
 it, every name is escaped, and the page itself forbids the browser to fetch anything from elsewhere.
@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Collection, Mapping
+import re
+from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -16,11 +17,10 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from noise.base.files import atomic
 from noise.base.labels import LABEL_LOOKS
-from noise.pages.cards import EntryDisplay, draw_entries, frequency_ticks, scale_picture
+from noise.pages import blocks as b
+from noise.pages.cards import draw_entries, frequency_ticks, scale_picture
 from noise.pages.clips import MOST_RAISED, Clip, Entry, equal_factors
-
-MAP_SIZE = (500.0, 300.0)
-"""Width and height of the drawing of a condition map [px]."""
+from noise.pages.maps import MAP_SIZE
 
 PAGE_BYTES, CARD_BYTES, ORDERS_BYTES = 75_000.0, 45_000.0, 10_000.0
 """What a page takes up, and at most each of its sounds beside the sound itself and an order map
@@ -28,54 +28,74 @@ PAGE_BYTES, CARD_BYTES, ORDERS_BYTES = 75_000.0, 45_000.0, 10_000.0
 
 
 def page_html(
-    template: str,
-    entries: Mapping[str, Entry],
-    clips: Mapping[str, Clip],
+    kind: str,
+    title: str,
+    header: Sequence[b.Block],
+    sections: Sequence[b.Block],
     *,
+    footer: str = "",
+    tab: str = "",
+    entries: Mapping[str, Entry] | None = None,
+    clips: Mapping[str, Clip] | None = None,
     without_card: Collection[str] = (),
-    **contents: object,
 ) -> str:
     """Return a page.
 
     Parameters
     ----------
-    template : str
-        Of the folder ``templates``; it extends ``base.html.j2``.
-    entries : mapping of str to Entry
-        By id; the template finds them as ``displays``.
-    clips : mapping of str to Clip
+    kind : str
+        Of page, for the style sheet.
+    title : str
+    header, sections : sequence of Block
+        Below the title, and after that.
+    footer : str
+    tab : str
+        Title of the browser's tab; by default that of the page.
+    entries : mapping of str to Entry, optional
+        By id.
+    clips : mapping of str to Clip, optional
         Of those that can be heard.
     without_card : collection of str
-        Ids of sounds that the template shows no card of, so that the player brings their picture.
-    **contents
-        What else the template names.
+        Ids of sounds that have no card, so that the player brings their picture.
 
     Examples
     --------
-    >>> from noise.diagnosis.outcome import Diagnosis
-    >>> html = page_html("review.html.j2", {}, {}, title="<b>", summary="", gain=(), refused=(),
-    ...                  shortened=None, compared=None, recorded_maps=(), unplaced=0,
-    ...                  diagnoses=(), recorded=(), counts=())
-    >>> "<h1>&lt;b&gt;</h1>" in html
-    True
+    >>> from noise.pages import blocks as b
+    >>> html = page_html("review", "<b>", [b.Text("nothing")],
+    ...                  [b.Section("Runs", [b.Items(["run07"])])])
+    >>> "<h1>&lt;b&gt;</h1>" in html, "<li>run07</li>" in html
+    (True, True)
     """
+    entries, clips = entries or {}, clips or {}
     displays, scale_words = draw_entries(entries, clips)
     factors, target = equal_factors(
         {key: clip.samples.astype(float) / clip.full_scale for key, clip in clips.items()}
     )
+    about: dict[str, dict[str, object]] = {}
+    for key in clips:
+        display, on_card = displays[key], key not in without_card
+        facts = [fact.words for fact in display.facts.values()] if on_card else [display.note]
+        about[key] = {
+            "title": display.title, "label": " + ".join(display.labels),
+            "facts": " · ".join(facts), "duration": display.duration, "equal": factors.get(key),
+        }  # fmt: skip
+        if not on_card:
+            about[key]["picture"] = f"data:image/png;base64,{as_base64(display.picture)}"
     return (
         _environment()
-        .get_template(template)
+        .get_template("page.html.j2")
         .render(
+            kind=kind,
+            title=title,
+            tab=tab or title,
+            header=header,
+            sections=sections,
+            footer=footer,
             displays=displays,
             scale_words=scale_words,
             sounds={key: (clip, entries[key].data) for key, clip in clips.items()},
-            about={
-                key: _about(displays[key], factors.get(key), on_card=key not in without_card)
-                for key in clips
-            },
+            about=about,
             equal=_equal_words(len(factors), len(clips), target),
-            **contents,
         )
     )
 
@@ -113,19 +133,18 @@ def as_base64(content: bytes) -> str:
     return base64.b64encode(content).decode()
 
 
-def _about(display: EntryDisplay, factor: float | None, *, on_card: bool) -> dict[str, object]:
-    """Tell the player of a sound."""
-    facts = [fact.words for fact in display.facts.values()] if on_card else [display.note]
-    told: dict[str, object] = {
-        "title": display.title,
-        "label": " + ".join(display.labels),
-        "facts": " · ".join(facts),
-        "duration": display.duration,
-        "equal": factor,
-    }
-    if not on_card:
-        told["picture"] = f"data:image/png;base64,{as_base64(display.picture)}"
-    return told
+def shortened_text(shortened: float | None) -> b.Text:
+    """Say that sounds were cut to keep to the size of the page, if they were.
+
+    Examples
+    --------
+    >>> bool(shortened_text(None)), shortened_text(4.0).words[-29:]
+    (False, '4 s; each says which stretch.')
+    """
+    if shortened is None:
+        return b.Text("")
+    words = f"So that the page keeps to its size, sounds are no longer than {shortened:.3g} s"
+    return b.Text(f"{words}; each says which stretch.", "soft")
 
 
 def _equal_words(n_equal: int, n_sounds: int, target: float) -> str:
@@ -158,6 +177,9 @@ def _environment() -> Environment:
     }
     environment.filters |= {
         "base64": as_base64,
+        "macro": lambda block: getattr(block, "macro", type(block).__name__.lower()),
+        # Modules of the app, whose files stand one after the other in the page.
+        "inline": lambda text: re.sub(r"^import .*;\n|^export ", "", text, flags=re.MULTILINE),
         # What the page's own policy lets the browser run.
         "sha256": lambda text: as_base64(hashlib.sha256(text.encode()).digest()),
         # Numbers keep their unit at the end of a line.

@@ -8,7 +8,7 @@ all.
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,6 +22,8 @@ from models.show import short_repr
 from noise.audio.sound import resampled
 from noise.base.labels import LABELS
 from noise.diagnosis.text.words import percent
+from noise.pages import blocks as b
+from noise.pages.cards import Fact, facts_of
 from noise.pages.clips import RATE, Clip, Entry, full_scale_words, labels_sentence
 from noise.pages.figures import entry_figures
 from noise.pages.page import page_html, write_page
@@ -119,27 +121,62 @@ def write_report(
         if entry.audio is not None
     }
     on_page = {key: _entry(entry, clips.get(key)) for key, entry in zip(keys, entries, strict=True)}
+    figures = entry_figures([(one.recording, one.segment) for one in entries])
+    shown = {key: facts_of(entry) for key, entry in on_page.items()}
+    more: dict[str, list[b.Block]] = {}
+    rows: list[list[b.Cell | str]] = []
+    for (key, facts), entry, figure in zip(shown.items(), entries, figures, strict=True):
+        label = entry.segment.label
+        columns = ["" if one not in facts else facts[one].words for one in _COLUMNS]
+        rows.append(
+            [b.Cell(entry.title, link=f"card-{key}"), b.Cell(labels=((label, ""),)), *columns]
+        )
+        more[key] = [
+            b.Table(("Known", "Value"), _known_rows(entry, facts, clips.get(key)), style="known"),
+            _probabilities(entry.segment),
+            b.Panels(figure.panels, figure.caption),
+        ]
+    if summary is None:
+        summary = f"{labels_sentence(list(on_page.values()))}."
+    names = ["Recording", "Label", *(name.capitalize() for name in _COLUMNS)]
     html = page_html(
-        "report.html.j2",
-        on_page,
-        clips,
-        title=title,
-        summary=f"{labels_sentence(list(on_page.values()))}." if summary is None else summary,
-        gain=_common_gain(entries),
-        channels={key: entry.segment.channel for key, entry in zip(keys, entries, strict=True)},
-        probabilities={
-            key: _probabilities(entry.segment) for key, entry in zip(keys, entries, strict=True)
-        },
-        gains={
-            key: f"{clips[key].end:.3g} s; {_gain(entry.full_scale)}"
-            for key, entry in zip(keys, entries, strict=True)
-            if key in clips
-        },
-        figures=dict(
-            zip(keys, entry_figures([(one.recording, one.segment) for one in entries]), strict=True)
-        ),
+        "report",
+        title,
+        [b.Text(summary, "summary"), b.Sounds(_common_gain(entries))],
+        [
+            b.Section("Overview", [b.Table(names, rows, name="All recordings", style="overview")]),
+            b.Section("Recordings", [b.Cards(keys, "single", more=more)], "recordings"),
+        ],
+        footer="Autospectra of one kind of channel share their axes on this page. Time histories "
+        "have a scale of their own, which spans no less than a twentieth of the largest of their "
+        "kind.",
+        entries=on_page,
+        clips=clips,
     )
     write_page(Path(path), html)
+
+
+_COLUMNS = ("speed", "interference", "stiffness", "material", "level", "frequency")
+
+
+def _known_rows(
+    entry: ReportEntry, facts: Mapping[str, Fact], clip: Clip | None
+) -> list[tuple[str, str]]:
+    """Return condition, level, frequency and gain, and that they are not known where they are."""
+    rows = [
+        (name.capitalize(), facts[name].words if name in facts else "not known")
+        for name in (*_COLUMNS[:4], "temperature")
+    ]
+    rows += [
+        (name.capitalize(), facts[name].words if name in facts else "none") for name in _COLUMNS[4:]
+    ]
+    if entry.segment.channel != "all":
+        rows.append(("Track", entry.segment.channel))
+    gain = "gain not stated"
+    if entry.full_scale is not None:
+        gain = full_scale_words(entry.full_scale)
+    rows.append(("Sound", "none to play" if clip is None else f"{clip.end:.3g} s; {gain}"))
+    return rows
 
 
 def _clip(entry: ReportEntry, audio: Path | bytes) -> Clip:
@@ -199,26 +236,23 @@ def _entry(entry: ReportEntry, clip: Clip | None) -> Entry:
     )
 
 
-def _gain(full_scale: float | None) -> str:
-    return "gain not stated" if full_scale is None else full_scale_words(full_scale)
-
-
-def _common_gain(entries: Sequence[ReportEntry]) -> str:
+def _common_gain(entries: Sequence[ReportEntry]) -> list[str]:
     gains = {entry.full_scale for entry in entries if entry.audio is not None}
     if not gains:
-        return ""
+        return []
     if gains == {None}:
-        return "The gain of the sounds is not stated: do not compare their loudness."
+        return ["The gain of the sounds is not stated: do not compare their loudness."]
     (first, *others) = sorted(gain for gain in gains if gain is not None)
     if others or None in gains:
-        return "The sounds have different gains, stated with each: do not compare their loudness."
-    return f"Sounds: {full_scale_words(first)}, the same for all sounds on this page."
+        return ["The sounds have different gains, stated with each: do not compare their loudness."]
+    return [f"Sounds: {full_scale_words(first)}, the same for all sounds on this page."]
 
 
-def _probabilities(segment: Segment) -> list[tuple[str, float, str]]:
-    """Label, probability from 0 to 1, and the same in words."""
-    return [
-        (label, share, percent(share))
+def _probabilities(segment: Segment) -> b.Table:
+    """Return a table of the probability of each label."""
+    rows = [
+        (label, b.Cell(percent(share), bars=[b.Bar(0.0, 100.0 * share, label)]))
         for label in LABELS
         if (share := segment.probabilities.get(label)) is not None
     ]
+    return b.Table(("Label", "Probability"), rows, style="shares")

@@ -27,11 +27,19 @@ from noise.diagnosis.outcome_json import from_json
 from noise.diagnosis.text.sentences import answer
 from noise.diagnosis.text.verdict_sentences import headline
 from noise.labels.table import cell_number, check_name
+from noise.pages import blocks as b
 from noise.pages.clips import Entry, common_gain, label_counts, labels_sentence, make_clips
 from noise.pages.comparison import Compared, compare_designs
 from noise.pages.diagnosis_evidence import reported_entries
 from noise.pages.maps import recorded_maps
-from noise.pages.page import CARD_BYTES, ORDERS_BYTES, PAGE_BYTES, page_html, write_page
+from noise.pages.page import (
+    CARD_BYTES,
+    ORDERS_BYTES,
+    PAGE_BYTES,
+    page_html,
+    shortened_text,
+    write_page,
+)
 from noise.pages.review_inputs import Inputs, Refusal, recorded_entries, sort_inputs
 from noise.pages.screen_sounds import ScreenMap, ScreenPoint
 from noise.recordings.folders import is_file
@@ -247,7 +255,7 @@ def screened_maps(
     compared : Compared or None
         None where there is no screen.
     heard : dict of str to Entry
-        Sounds by id.
+        b.Sounds by id.
     """
     maps: list[ScreenMap] = []
     rigs: list[Rig | str] = []
@@ -398,25 +406,53 @@ def review(
     titles = {key: entry.title for key, entry in entries.items()}
     of_recordings, unplaced = recorded_maps(rows, titles, clips)
     counts = label_counts(recorded)
+    left_out = f"Not on a map, without a logged speed and interference: {unplaced}."
+    summary = _summary(recorded, diagnosed, n_maps, len(heard))
     html = page_html(
-        "review.html.j2",
-        entries,
-        clips,
+        "review",
+        title,
+        [
+            b.Text(summary, "summary"),
+            b.Sounds(gain.sentences if clips else ()),
+            shortened_text(shortened),
+        ],
+        [
+            b.Section(
+                "Not on this page",
+                [b.Items([(one.name, one.reason) for one in refused])],
+                "refused",
+            ),
+            b.Section("What the screen expects", [b.Other("designs", compared)]),
+            b.Section(
+                "Which noise at which condition",
+                [
+                    b.Maps(of_recordings),
+                    b.Text(left_out if of_recordings and unplaced else "", "note"),
+                ],
+            ),
+            *map(_diagnosis_section, diagnosed, groups[1:]),
+            b.Section(
+                "Recordings",
+                [b.Cards(groups[0], counts=counts if len(counts) > 1 else [])],
+                "recordings",
+            ),
+        ],
+        entries=entries,
+        clips=clips,
         without_card=heard,
-        title=title,
-        summary=_summary(recorded, diagnosed, n_maps, len(heard)),
-        gain=gain.sentences if clips else (),
-        shortened=shortened,
-        refused=refused,
-        recorded=groups[0],
-        counts=counts if len(counts) > 1 else [],
-        recorded_maps=of_recordings,
-        unplaced=unplaced,
-        compared=compared,
-        diagnoses=list(zip(diagnosed, groups[1:], strict=True)),
     )
     write_page(target, html)
     return Review(target, len(clips), shortened, tuple(refused))
+
+
+def _diagnosis_section(one: DiagnosisDisplay, keys: Sequence[str]) -> b.Section:
+    blocks = [
+        *(b.Text(sentence) for sentence in one.answer),
+        b.Text(one.next_measurement, "next", "To measure next:"),
+        b.Items(one.notes, "soft"),
+        b.Cards(keys),
+    ]
+    return b.Section(f"Diagnosis {one.name}: {one.headline}", blocks, "diagnosis")
 
 
 def page_path(out: Path) -> Path:

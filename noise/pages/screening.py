@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.base.labels import LABEL_LOOKS, LABELS
 from noise.base.progress import counted
+from noise.pages import blocks as b
 from noise.pages.clips import BYTES_A_SECOND, SHORTEST, common_gain, make_clips
 from noise.pages.comparison import compare_designs
-from noise.pages.page import CARD_BYTES, PAGE_BYTES, page_html, write_page
+from noise.pages.page import CARD_BYTES, PAGE_BYTES, page_html, shortened_text, write_page
 from noise.pages.screen_sounds import screen_maps
 from noise.screening.design.environments import environment, in_environment
-from noise.screening.map.batches import LABELS
 from noise.screening.tables.summary import conditions_lines, parts_lines, risk_words
 
 if TYPE_CHECKING:
@@ -23,71 +23,46 @@ if TYPE_CHECKING:
     from noise.screening.ranking.ranking import Standing
 
 
-@dataclass(frozen=True)
-class RankingRow:
-    """A design in one environment and motion.
-
-    Parameters
-    ----------
-    rank : str
-    design, where : str
-    risk : str
-    shares : tuple of (str, float, str)
-        Label, share of the conditions of use [-], and it in words; those that occur.
-    loudest, margin : str
-    words, hint : str
-    notes : tuple of str
-    """
-
-    rank: str
-    design: str
-    where: str
-    risk: str
-    shares: tuple[tuple[str, float, str], ...]
-    loudest: str
-    margin: str
-    words: str
-    hint: str
-    notes: tuple[str, ...]
+RANKING = ("Rank", "Design", "Noise, of the conditions of use", "Loudest", "Margin", "In words")
 
 
-def ranking_rows(found: Screening) -> list[RankingRow]:
-    """Return the rows, the quietest design first.
+def ranking_rows(found: Screening) -> list[list[b.Cell | str]]:
+    """Return the rows of `RANKING`, the quietest design first.
 
     Examples
     --------
     >>> from noise.screening.design.design import Use
     >>> from noise.screening.screen import screen
     >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
-    >>> row = ranking_rows(found)[0]
-    >>> row.rank, row.shares, row.loudest
-    ('1', (('none', 1.0, '100 %'),), 'quiet')
+    >>> rank, design, noise, loudest, *_ = ranking_rows(found)[0]
+    >>> rank, design.text, noise.labels, loudest
+    ('1', 'PDMS', (('none', '100 %'),), 'quiet')
     """
     return [_row(one, found) for one in found.standings]
 
 
-def _row(one: Standing, found: Screening) -> RankingRow:
+def _row(one: Standing, found: Screening) -> list[b.Cell | str]:
     loudest = "quiet" if one.rank is not None else ""
     if math.isfinite(one.loudest_level):
         loudest = f"{one.loudest_level:.0f} dB(A)"
-    shares = tuple(
-        (name, one.shares[name], _percent(one.shares[name]))
-        for name in LABELS
-        if one.shares.get(name)
-    )
+    shares = {name: one.shares[name] for name in LABELS if one.shares.get(name)}
+    ends = np.cumsum([0.0, *shares.values()])
+    bars = [
+        b.Bar(100.0 * begin, 100.0 * share, f"filled {name} {LABEL_LOOKS[name].pattern}")
+        for begin, (name, share) in zip(ends, shares.items(), strict=False)
+    ]
     parts = parts_lines(found.statistics_of(one.design, one.environment))
-    return RankingRow(
+    where = one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}"
+    hint = [f"What to change: {one.hint}"] if one.hint else []
+    notes = [*hint, *parts, *(note for note in one.notes if note != one.never_slips)]
+    return [
         "\N{EN DASH}" if one.rank is None else str(one.rank),
-        one.design,
-        one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}",
-        risk_words(one.risk),
-        shares,
+        b.Cell(one.design, f"{where}; risk {risk_words(one.risk)}"),
+        b.Cell(bars=bars, labels=tuple((name, _percent(share)) for name, share in shares.items())),
         loudest,
         _margin(one),
-        one.words,
-        one.hint,
-        tuple(dict.fromkeys([*parts, *(note for note in one.notes if note != one.never_slips)])),
-    )
+        b.Cell(one.words, items=tuple(dict.fromkeys(notes))),
+    ]
 
 
 def _margin(one: Standing) -> str:
@@ -160,23 +135,46 @@ def write_screening(
     gain = common_gain(heard.values())
     left = max(room - CARD_BYTES * len(heard) - compared.weight, each * len(heard))
     clips, shortened = make_clips(heard, gain, budget=left, dither=np.random.default_rng(seed))
+    refused = [*found.refused, *((f"{name}, in part", reason) for name, reason in found.failed)]
+    first, *lines = conditions_lines(found)
+    compared_at = [f"Compared: {first}.", *(f"{line[0].upper()}{line[1:]}." for line in lines)]
+    several = ", and what differs" if len(compared.names) > 1 else ""
     html = page_html(
-        "screening.html.j2",
-        heard,
-        clips,
+        "screening",
+        _title(found),
+        [
+            b.Text(_summary(found), "summary"),
+            b.Sounds(gain.sentences),
+            shortened_text(shortened),
+        ],
+        [
+            b.Section("Not on this page", [b.Items(refused)], "refused"),
+            b.Section(
+                "Ranking",
+                [
+                    b.Text(" ".join(compared_at), "soft"),
+                    b.Table(RANKING, ranking_rows(found), head=1, style="ranking"),
+                ],
+            ),
+            b.Section(
+                f"Which noise where{several}",
+                [b.Text(_HEARD if clips else "", "soft aloud"), b.Other("designs", compared)],
+            ),
+        ],
+        footer=f"Screened in {found.seconds + found.statistics_seconds:.1f} s. Labels are those of "
+        "the physics of the motion, levels without room and microphone.",
+        entries=heard,
+        clips=clips,
         without_card=heard,
-        title=_title(found),
-        summary=_summary(found),
-        gain=gain.sentences,
-        shortened=shortened,
-        conditions=conditions_lines(found),
-        rows=ranking_rows(found),
-        refused=found.refused,
-        failed=found.failed,
-        compared=compared,
-        seconds=f"{found.seconds + found.statistics_seconds:.1f}",
     )
     write_page(path, html)
+
+
+_HEARD = (
+    "Sounds, all simulated with one seed, are at the spots: where each noise of each design is "
+    "loudest, where levels differ most, and amid the regions of each combination of noises. A "
+    "click there plays it; A and B run in step, and the keys A and B change over."
+)
 
 
 def _pair(found: Screening) -> tuple[str, str]:

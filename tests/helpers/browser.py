@@ -116,6 +116,16 @@ def chromium() -> Iterator[Browser]:
         browser.close()
 
 
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+
+
+def accessibility_errors(page: Page) -> list[tuple[str, str]]:
+    """Rules of axe-core that the page breaks, each with the beginning of an element."""
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not there")
+    found = axe.Axe().run(page, options={"runOnly": {"type": "tag", "values": RULES}}).response
+    return [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]]
+
+
 class OpenedPage:
     """The page in the browser, with all that it complains of and asks for."""
 
@@ -131,7 +141,6 @@ class OpenedPage:
 
     def state(self):
         return self.page.evaluate(
-            "({ playing: engine.playing, at: engine.now(), active: engine.active, "
-            "a: engine.slots.a, b: engine.slots.b, looping: engine.looping, "
-            "title: engine.key === null ? null : about[engine.key].title, gains: engine.gains() })"
+            "({ playing: engine.playing, at: engine.now(), "
+            "title: engine.key === null ? null : about[engine.key].title })"
         )

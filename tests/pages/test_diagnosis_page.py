@@ -19,8 +19,13 @@ from noise.diagnosis.outcome import Diagnosis
 from noise.diagnosis.outcome_json import as_json
 from noise.diagnosis.text.verdict_sentences import verdict_sentence
 from noise.pages.clips import common_gain, make_clips
-from noise.pages.diagnosis import write_diagnosis
-from noise.pages.diagnosis_answer import cause_rows, parameter_rows, stage_boxes, waterfall
+from noise.pages.diagnosis import (
+    parameter_rows,
+    ranked_causes,
+    stage_boxes,
+    waterfall,
+    write_diagnosis,
+)
 from noise.pages.diagnosis_evidence import (
     cycle_window,
     illustration_entries,
@@ -95,27 +100,27 @@ def test_a_diagnosis_of_which_nothing_is_known_is_said_to_be_undetermined(tmp_pa
 
 
 def test_there_is_no_waterfall_where_there_is_no_gap():
-    assert waterfall(none()) is None
+    assert waterfall(none()) == []
 
 
 @pytest.mark.parametrize("made", [one_effect, pair, unknown, parameters])
 def test_each_bar_begins_where_the_one_above_ends(made):
-    whole, *steps, left = waterfall(made()).bars
-    gap = whole.high
+    whole, *steps, left = (cell.bars[0] for _, cell in waterfall(made())[0].rows)
+    gap = whole.width
     for step in steps:
-        assert step.kind == "closed"
-        assert step.high == pytest.approx(gap)
-        gap = step.low
-    assert left.low == 0.0
-    assert left.high == pytest.approx(gap)
+        assert step.look == "cause"
+        assert step.left + step.width == pytest.approx(gap)
+        gap = step.left
+    assert (left.left, left.width) == (0.0, pytest.approx(gap))
 
 
 def test_the_waterfall_says_how_much_is_closed_and_how_sure_that_is():
-    assert waterfall(one_effect()).words == (
+    assert waterfall(one_effect())[1].words == (
         "The fit closes 96 % of the closable gap (90 % interval 91 % to 99 %), and 90 % of what "
         "refitted parameters leave."
     )
-    assert waterfall(parameters()).words == "Refitted parameters close 97 % of the closable gap."
+    words = waterfall(parameters())[1].words
+    assert words == "Refitted parameters close 97 % of the closable gap."
 
 
 def test_the_guilty_stage_is_the_only_one_marked():
@@ -124,21 +129,19 @@ def test_the_guilty_stage_is_the_only_one_marked():
 
 
 def test_the_verdict_leads_the_causes_and_none_is_lost():
-    shown, others = cause_rows(one_effect())
-    assert shown[0].name == "partial slip"
-    assert shown[0].named
-    assert shown[0].strength == "share 0.52 to 0.66"
-    assert len(shown) + len(others) == len(one_effect().probabilities)
-    rest = [row.probability for row in (*shown[1:], *others)]
-    assert rest == sorted(rest, reverse=True)
+    chances, n = ranked_causes(one_effect())
+    first, *rest = chances
+    assert first == "partial_slip"
+    assert set(chances) == set(one_effect().probabilities)
+    assert [chances[name] for name in rest] == sorted((chances[k] for k in rest), reverse=True)
+    assert 0 < n < len(chances)
 
 
 def test_a_parameter_is_off_only_where_its_interval_excludes_one():
     rows = parameter_rows({"a": (0.9, 1.1), "b": (1.01, 1.1), "c": (0.8, 0.99)})
-    assert [row.off for row in rows] == [False, True, True]
-    for row in rows:
-        assert row.start >= 0.0
-        assert row.start + row.width <= 100.0
+    assert [cell.text == "differs" for _, _, cell in rows] == [False, True, True]
+    for _, _, cell in rows:
+        assert 0.0 <= cell.bars[0].left <= 100.0 - cell.bars[0].width
 
 
 def played_sounds(*recordings):

@@ -92,7 +92,7 @@ def write(tmp_path):
 
 def test_the_page_refers_to_nothing_outside_itself(write):
     page = write(ReportEntry("Squeal", RIG, segment(), sound(TONE)))
-    assert not re.search(r"https?:|@import|url\(", page.html)
+    assert not re.search(r"https?:|@import|url\((?!#)", page.html)
     references = [a[key] for _, a in page.tags for key in ("src", "href") if key in a]
     assert len(references) == 5  # two panels, spectrogram, its colours, one link
     assert all(reference.startswith(("data:", "#")) for reference in references)
@@ -111,23 +111,24 @@ def test_the_page_tells_language_heading_and_meaning_of_everything(write):
 
 def test_conditions_level_and_frequency_are_in_the_units_of_the_page(write):
     page = write(ReportEntry("Squeal", RIG, segment(weighted=91.2)))
-    cells = page.text("td")
-    assert cells[:6] == ["10", "0.279", "3745", "fluorocarbon", "91.2", "1046"]
-    shown = page.text("dd")
-    assert shown[:5] == ["10 rad/s", "0.279 mm", "3745 Nm/rad", "fluorocarbon", "23 °C"]
-    assert shown[5:] == ["91.2 dB(A) re 20 µPa", "1046 Hz"]
+    overview, known = page.text("td")[:6], page.text("td")[6:14]
+    assert overview == [
+        "10 rad/s",
+        "0.279 mm",
+        "3745 Nm/rad",
+        "fluorocarbon",
+        "91.2 dB(A)",
+        "1046 Hz",
+    ]
+    assert known[:5] == [*overview[:4], "23 °C"]
+    assert known[5:7] == overview[4:]
 
 
 def test_what_is_not_known_is_said_to_be(write):
-    page = write(
-        ReportEntry(
-            "Old file",
-            recording(pressure=TONE, calibrated=False),
-            segment(frequency=None, level=None, dbfs=-23.2),
-        )
-    )
-    assert page.text("span").count("not known") == 5
-    assert "\N{MINUS SIGN}23.2 dBFS" in page.text("dd")
+    old = recording(pressure=TONE, calibrated=False)
+    page = write(ReportEntry("Old file", old, segment(frequency=None, level=None, dbfs=-23.2)))
+    assert page.text("td").count("not known") == 5
+    assert "\N{MINUS SIGN}23.2 dBFS" in page.text("td")
 
 
 @pytest.mark.parametrize(
@@ -204,18 +205,3 @@ def test_a_noisy_recording_of_two_seconds_adds_less_than_three_quarters_of_a_meg
     audio = sound(0.1 * rng.normal(size=2 * 48_000), rate=48_000)
     hiss = ReportEntry("Hiss", Recording(noise, RATE, channels), segment(), audio)
     assert len(write(hiss).html) < 0.75e6
-
-
-def test_text_stands_out_from_its_ground(write):
-    def luminance(colour):
-        values = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
-        linear = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
-        return float(linear @ [0.2126, 0.7152, 0.0722])
-
-    html = write(ReportEntry("Squeal", RIG, segment())).html
-    colours = dict(re.findall(r"--(\w+): (#\w{6});", html))
-    (link,) = re.findall(r"a \{ color: (#\w{6});", html)
-    for ink in (colours["ink"], colours["soft"], link):
-        for ground in ("#ffffff", colours["wash"]):
-            ratio = (luminance(ground) + 0.05) / (luminance(ink) + 0.05)
-            assert ratio >= 4.5

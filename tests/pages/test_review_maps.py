@@ -8,8 +8,7 @@ from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
 from noise.pages import screen_sounds as sounds
-from noise.pages.maps import areas_of, axis_of, cells_of, recorded_maps
-from noise.pages.page import MAP_SIZE
+from noise.pages.maps import MAP_SIZE, areas_of, axis_of, cells_of, recorded_maps
 from noise.pages.review import read_screen, rig_of
 from noise.pages.screen_sounds import MOST_SILENT, ScreenPoint, SharedPoint, chosen_points
 from tests.helpers.made_reviews import row, screen_rows, write_screen

@@ -15,7 +15,7 @@ from models.rig_file import load_material_rig
 from noise.pages.comparison import compare_designs
 from noise.pages.maps import cells_of, common_cells
 from noise.pages.screen_sounds import chosen_points, screen_maps, shared_points
-from noise.pages.screening import ranking_rows, write_screening
+from noise.pages.screening import RANKING, ranking_rows, write_screening
 from noise.screening.design.design import Design, Use
 from noise.screening.screen import screen
 
@@ -117,14 +117,17 @@ def test_a_page_asks_nothing_of_the_network(two, tmp_path):
     assert fetched == []
 
 
+def by_name(rows):
+    return {row[1].text: dict(zip(RANKING, row, strict=True)) for row in rows}
+
+
 def test_a_quiet_design_is_shown_as_quiet_and_a_noisy_one_by_its_shares(two):
-    rows = {row.design: row for row in ranking_rows(two)}
-    assert rows["PDMS"].loudest == "quiet"
-    assert rows["PDMS"].shares == (("none", 1.0, "100 %"),)
-    assert rows["PDMS"].rank == "1"
+    rows = by_name(ranking_rows(two))
+    assert (rows["PDMS"]["Rank"], rows["PDMS"]["Loudest"]) == ("1", "quiet")
+    assert rows["PDMS"][RANKING[2]].labels == (("none", "100 %"),)
     noisy = rows["fluorocarbon"]
-    assert sum(share for _, share, _ in noisy.shares) == pytest.approx(1.0)
-    assert re.fullmatch(r"\d+ dB\(A\)", noisy.loudest)
+    assert sum(bar.width for bar in noisy[RANKING[2]].bars) == pytest.approx(100.0)
+    assert re.fullmatch(r"\d+ dB\(A\)", noisy["Loudest"])
 
 
 def test_a_design_that_never_slips_has_no_rank_no_sound_and_says_why(tmp_path):
@@ -132,10 +135,9 @@ def test_a_design_that_never_slips_has_no_rank_no_sound_and_says_why(tmp_path):
         critical_torque="x1000", kinetic_torque="x1000"
     )
     found = screen(["fluorocarbon", Design("in Nmm", held)], replace(QUICK, speed=(5.0,)))
-    row = next(one for one in ranking_rows(found) if one.design == "in Nmm")
-    assert row.rank == "\N{EN DASH}"
-    assert row.margin == row.loudest == ""
-    assert "never slips" in row.words
+    row = by_name(ranking_rows(found))["in Nmm"]
+    assert (row["Rank"], row["Margin"], row["Loudest"]) == ("\N{EN DASH}", "", "")
+    assert "never slips" in row["In words"].text
     page = page_of(found, tmp_path, sounds=2)
     assert "No sounds: never slips" in page.said
     assert {one["title"].partition(":")[0] for one in page.data("about").values()} == {
@@ -173,7 +175,7 @@ def test_cells_have_the_labels_and_levels_of_the_map(two):
         screen_maps(two), ["not wanted"] * len(screen_maps(two)), number=5, seed=0
     )
     assert heard == {}
-    (place,) = compared.data["comparisons"]
+    (place,) = compared.data["places"]
     for number, mapped in enumerate(two.maps):
         cells = place["designs"][str(number)]
         labels = [compared.data["labels"][label] for label in cells["label"]]

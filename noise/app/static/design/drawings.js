@@ -1,4 +1,7 @@
 // Torque over time and spectrum of the pressure, of what was heard last.
+import { sheet } from "../labels/timeline.js";
+import { ticks } from "../shared/player.js";
+
 const REFERENCE = 2e-5, SIZE = 8192, FLOOR = 0, TOP = 100; // Pa, samples, dB
 const LOWEST = 50, HIGHEST = 20000; // Hz
 const SHOWN = 0.2; // of the torque [s]
@@ -30,12 +33,12 @@ export class Drawings extends EventTarget {
   }
 
   #torque() {
-    const { pen, width, height } = sized(this.screens.torque), of = this.torque;
+    const { pen, width, height } = sheet(this.screens.torque), of = this.torque;
     let low = Infinity, high = -Infinity;
     for (const one of of) { low = Math.min(low, one); high = Math.max(high, one); }
     const centre = (low + high) / 2, half = Math.max((high - low) / 2, 0.05 * Math.abs(centre), 0.5) * 1.1;
     const y = (value) => height / 2 - (value - centre) / half * height / 2;
-    grid(pen, width, height, ticks(centre - half, centre + half, 4).map((value) => [y(value), `${value} Nm`]), []);
+    grid(pen, width, height, ticks(centre - half, centre + half, 4).found.map((value) => [y(value), `${value} Nm`]), []);
     pen.beginPath();
     for (let i = 0; i < of.length; i++) pen.lineTo(i / (of.length - 1) * width, y(of[i]));
     pen.strokeStyle = "#0b57a4";
@@ -44,7 +47,7 @@ export class Drawings extends EventTarget {
   }
 
   #spectrum() {
-    const { pen, width, height } = sized(this.screens.spectrum);
+    const { pen, width, height } = sheet(this.screens.spectrum);
     const power = powers(this.pressure);
     this.mean ??= power.slice();
     for (let i = 0; i < power.length; i++) this.mean[i] += 0.3 * (power[i] - this.mean[i]);
@@ -73,19 +76,7 @@ function push(held, more) {
   held.set(more, held.length - more.length);
 }
 
-export function sized(canvas) {
-  const ratio = Math.min(2, devicePixelRatio || 1), width = canvas.clientWidth, height = canvas.clientHeight;
-  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-  }
-  const pen = canvas.getContext("2d");
-  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  pen.clearRect(0, 0, width, height);
-  return { pen, width, height };
-}
-
-export function grid(pen, width, height, across, along) {
+function grid(pen, width, height, across, along) {
   pen.strokeStyle = "#d9dee3";
   pen.fillStyle = "#55606b";
   pen.lineWidth = 1;
@@ -96,13 +87,6 @@ export function grid(pen, width, height, across, along) {
   pen.stroke();
   for (const [y, text] of across) if (y > 12) pen.fillText(text, 3, y - 3);
   for (const [x, text] of along) pen.fillText(text, x + 3, height - 4);
-}
-
-export function ticks(low, high, about) {
-  const rough = (high - low) / about, ten = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((one) => one * ten).find((one) => one >= rough), found = [];
-  for (let value = Math.ceil(low / step) * step; value <= high; value += step) found.push(Number(value.toPrecision(6)));
-  return found;
 }
 
 const window_ = Float64Array.from({ length: SIZE }, (_, i) => 0.5 - 0.5 * Math.cos(2 * Math.PI * i / SIZE));

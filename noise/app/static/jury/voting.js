@@ -2,7 +2,7 @@
 import { api, told } from "../api.js";
 import { made } from "../dom.js";
 import { listen } from "../labels/keys.js";
-import { Player } from "../labels/player.js";
+import { RecordingPlayer } from "../labels/player.js";
 import { wav } from "../labels/sounds.js";
 
 const RATE = 48000; // of the sounds that come [Hz]
@@ -12,7 +12,7 @@ const KEYS = "Keys: A, B to hear A, B; X the other one; Space to play and pause;
 export class Voting {
   constructor(element, goes) {
     this.goes = goes;
-    this.player = new Player(told, ({ samples }) => Promise.resolve(samples));
+    this.player = new RecordingPlayer(({ samples }) => Promise.resolve(samples));
     this.kept = new Map(); // sounds of this comparison and the next
     this.ready = false;
     this.shown = 0; // counts what is shown: what was asked for before comes too late
@@ -126,7 +126,7 @@ export class Voting {
   #start() {
     const { player } = this, { duration } = player.slots.a;
     const from = player.playing ? player.now() : player.position;
-    return player.play({ start: 0, end: duration }, from < duration - 0.005 ? from : 0);
+    return player.play(from < duration - 0.005 ? from : 0, { start: 0, end: duration });
   }
 
   #playing() {

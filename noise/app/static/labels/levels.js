@@ -1,6 +1,7 @@
 // Level over time, and third octaves of a stretch.
 import { facts } from "./sounds.js";
-import { DEEP, INK, LINE, SOFT, sheet, ticks } from "./timeline.js";
+import { ticks } from "../shared/player.js";
+import { DEEP, INK, LINE, SOFT, sheet } from "./timeline.js";
 
 const LEAST_RANGE = 30; // of the level axis [dB]
 

@@ -1,8 +1,8 @@
-// Two recordings run in step, A and B, at one gain or at equal loudness; to change over is to cross their gains.
-import { Voices } from "../shared/voices.js";
+// Two recordings in step, A and B, at one gain or at equal loudness; of long ones a stretch is read at a time.
+import { Player } from "../shared/player.js";
 import { facts, samples } from "./sounds.js";
 
-const RATE = 48000; // Hz
+const { RATE } = Player;
 const QUIETEST = 0.1; // nothing is amplified beyond this full scale [Pa]
 const HEADROOM = 1.12; // peaks between two samples are higher
 const KEPT = 4; // sounds in memory
@@ -10,30 +10,15 @@ const LONGEST = 600; // of one answer of the server [s]
 const TARGET = -23, CEILING = -3, MOST_RAISED = 36; // LUFS, dB re full scale, dB
 const SLOPES = [0.541, 1.307]; // quality of two second-order filters: Butterworth, 24 dB an octave
 
-export class Player extends EventTarget {
+export class RecordingPlayer extends Player {
+  fullScale = null; // of calibrated sounds [Pa]
+  band = null; // { low, high } [Hz]
+  kept = new Map();
+
   // `read` gives the samples of a sound from a moment on, as many as there are in one answer.
-  constructor(tell, read = (sound, start) => samples(sound.id, { channel: sound.channel, start })) {
+  constructor(read = (sound, start) => samples(sound.id, { channel: sound.channel, start })) {
     super();
-    this.tell = tell;
-    this.read = read;
-    this.slots = { a: null, b: null }; // { id, name, channel, kind, calibrated, duration, anchor }
-    this.active = "a";
-    this.looping = true;
-    this.equal = false;
-    this.fullScale = null; // of calibrated sounds [Pa]
-    this.band = null; // { low, high } [Hz]
-    this.position = 0;
-    this.running = null;
-    this.kept = new Map();
-    this.request = 0;
-  }
-
-  get playing() { return this.running !== null; }
-
-  #open() {
-    this.context ??= new AudioContext({ sampleRate: RATE });
-    if (this.context.state === "suspended") this.context.resume();
-    return this.context;
+    this.read = read; // slots hold { id, name, channel, kind, calibrated, duration, anchor }
   }
 
   put(slot, sound) {
@@ -41,28 +26,19 @@ export class Player extends EventTarget {
     this.slots[slot] = sound;
     if (!sound && this.active === slot) this.active = "a";
     if (!same) this.stop();
-    this.#tell();
-  }
-
-  #tell() { this.dispatchEvent(new Event("change")); }
-
-  // Where A is [s].
-  now() {
-    return this.running ? this.start + this.running.position : this.position;
+    this.tell();
   }
 
   // A stretch of a sound, silent where there is nothing: all that is played is as long as A's.
   async #cut(sound, start, length) {
-    const from = Math.max(0, Math.min(start, Math.max(0, sound.duration - LONGEST)));
-    const key = `${sound.id} ${sound.channel} ${sound.duration > LONGEST ? from : 0}`;
-    const whole = this.kept.get(key) ?? this.read(sound, sound.duration > LONGEST ? from : 0);
+    const from = sound.duration > LONGEST ? Math.max(0, Math.min(start, sound.duration - LONGEST)) : 0;
+    const key = `${sound.id} ${sound.channel} ${from}`, whole = this.kept.get(key) ?? this.read(sound, from);
     this.kept.delete(key); // the one used last is kept longest
     this.kept.set(key, whole);
     for (const old of this.kept.keys()) if (this.kept.size > KEPT) this.kept.delete(old);
     whole.catch(() => this.kept.delete(key));
-    const all = await whole;
+    const all = await whole, begin = Math.round((start - from) * RATE);
     sound.peak = all.reduce((most, one) => Math.max(most, Math.abs(one)), 0);
-    const begin = Math.round((start - (sound.duration > LONGEST ? from : 0)) * RATE);
     const cut = new Float32Array(Math.max(1, Math.round(length * RATE)));
     if (begin < all.length && begin + cut.length > 0) cut.set(all.subarray(Math.max(0, begin), begin + cut.length), Math.max(0, -begin));
     const buffer = this.context.createBuffer(1, cut.length, RATE);
@@ -70,49 +46,24 @@ export class Player extends EventTarget {
     return buffer;
   }
 
-  // Play a stretch of A from a moment on, and of B what is in step with it.
-  async play({ start, end }, from) {
-    const context = this.#open(), mine = ++this.request;
-    const length = Math.max(0.02, Math.min(end - start, LONGEST));
-    const { a, b } = this.slots;
-    const shift = b?.anchor !== null && b?.anchor !== undefined ? b.anchor - start : 0;
+  // A stretch of A, and of B what is in step with it.
+  async load({ start, end }) {
+    const length = Math.max(0.02, Math.min(end - start, LONGEST)), { a, b } = this.slots;
+    const shift = (b?.anchor ?? start) - start;
     const [first, second] = await Promise.all([this.#cut(a, start, length), b && this.#cut(b, start + shift, length)]);
-    if (mine !== this.request) return;
     this.#scale();
     if (this.equal) await this.#measure({ start, end: start + length }, shift);
-    if (mine !== this.request) return;
-    this.#silence();
-    this.bus = context.createGain();
-    this.#filter();
-    this.start = start;
-    this.running = new Voices(context, { a: first, b: second }, {
-      offset: Math.min(Math.max(0, from - start), length) % length, loop: this.looping, level: (slot) => this.gain(slot), target: this.bus, ended: () => this.stop(),
-    });
-    this.#tell();
-  }
-
-  stop() {
-    this.request++;
-    this.position = this.now();
-    this.#silence();
-    this.#tell();
-  }
-
-  #silence() {
-    this.running?.silence();
-    this.running = null;
+    return { start, a: first, b: second };
   }
 
   // One full scale for all calibrated sounds: what the loudest so far needs, in steps of 1, 2, 5.
   #scale() {
     const calibrated = Object.values(this.slots).filter((sound) => sound?.calibrated);
     const needed = Math.max(QUIETEST, ...calibrated.map((sound) => HEADROOM * sound.peak));
-    if (!calibrated.length || (this.fullScale !== null && this.fullScale >= needed)) return;
-    const ten = 10 ** Math.floor(Math.log10(needed));
-    this.fullScale = Number([1, 2, 5, 10].map((one) => one * ten).find((one) => one >= needed * 0.9999).toPrecision(1));
+    if (calibrated.length && !(this.fullScale >= needed)) this.fullScale = roundedUp(needed);
   }
 
-  // By which the samples of a slot are multiplied before it is heard or not.
+  // By which the samples of a slot are multiplied.
   factor(slot) {
     const sound = this.slots[slot];
     if (!sound) return 0;
@@ -120,8 +71,6 @@ export class Player extends EventTarget {
     if (sound.calibrated) return 1 / (this.fullScale ?? 1);
     return sound.kind === "pressure" ? 1 : 0.5 / (sound.peak || 1);
   }
-
-  gain(slot) { return slot === this.active ? this.factor(slot) : 0; }
 
   async #measure(stretch, shift) {
     const known = [];
@@ -132,38 +81,36 @@ export class Player extends EventTarget {
       sound.equal = null;
       if (found.loudness !== null) known.push({ sound, ...found });
     }
-    const target = Math.min(TARGET, ...known.map(({ loudness, peak }) => loudness - 20 * Math.log10(peak) + CEILING));
+    this.loudness = Math.min(TARGET, ...known.map(({ loudness, peak }) => loudness - 20 * Math.log10(peak) + CEILING));
     for (const { sound, loudness } of known) {
-      const raised = target - loudness - 20 * Math.log10(1 / (this.fullScale ?? 1));
-      sound.equal = raised > MOST_RAISED ? null : 10 ** ((target - loudness) / 20);
+      const raised = this.loudness - loudness + 20 * Math.log10(this.fullScale ?? 1);
+      sound.equal = raised > MOST_RAISED ? null : 10 ** ((this.loudness - loudness) / 20);
     }
-    this.target = target;
   }
 
-  hear(slot) {
-    if (!this.slots[slot]) return;
-    this.active = slot;
-    this.running?.cross();
-    this.#tell();
-  }
+  hear(slot) { if (this.slots[slot]) super.hear(slot); }
 
   setBand(band) {
     this.band = band;
     if (this.running) this.#filter();
-    this.#tell();
+    this.tell();
+  }
+
+  target() {
+    this.bus = this.context.createGain();
+    this.#filter();
+    return this.bus;
   }
 
   #filter() {
     this.bus.disconnect();
     let last = this.bus;
-    if (this.band) {
-      for (const [type, frequency] of [["highpass", this.band.low], ["lowpass", this.band.high]]) {
-        for (const quality of SLOPES) {
-          const filter = Object.assign(this.context.createBiquadFilter(), { type });
-          filter.frequency.value = Math.min(frequency, 0.499 * RATE);
-          filter.Q.value = 20 * Math.log10(quality); // of these types in dB
-          last = last.connect(filter);
-        }
+    for (const [type, frequency] of this.band ? [["highpass", this.band.low], ["lowpass", this.band.high]] : []) {
+      for (const quality of SLOPES) {
+        const filter = Object.assign(this.context.createBiquadFilter(), { type });
+        filter.frequency.value = Math.min(frequency, 0.499 * RATE);
+        filter.Q.value = 20 * Math.log10(quality); // of these types in dB
+        last = last.connect(filter);
       }
     }
     last.connect(this.context.destination);
@@ -171,13 +118,12 @@ export class Player extends EventTarget {
 
   // What a listener has to know before comparing.
   get words() {
-    const { a, b } = this.slots, said = [];
-    const heard = [a, b].filter(Boolean);
+    const { a, b } = this.slots, said = [], heard = [a, b].filter(Boolean);
     if (!heard.length) return "";
     const equal = (sound) => this.equal && sound.equal;
     if (heard.every(equal)) {
       const decibel = (slot) => `${(20 * Math.log10(this.factor(slot) * (this.slots[slot].calibrated ? this.fullScale : 1))).toFixed(1)} dB`;
-      said.push(`Equal loudness, ${this.target.toFixed(0)} LUFS: A ${decibel("a")}${b ? `, B ${decibel("b")}` : ""} beside ${heard.every((sound) => sound.calibrated) ? "the one gain" : "what the files hold"}`);
+      said.push(`Equal loudness, ${this.loudness.toFixed(0)} LUFS: A ${decibel("a")}${b ? `, B ${decibel("b")}` : ""} beside ${heard.every((sound) => sound.calibrated) ? "the one gain" : "what the files hold"}`);
     } else if (heard.some((sound) => sound.calibrated) && this.fullScale !== null) {
       said.push(`Calibrated sounds share one gain: full scale = ${this.fullScale} Pa (${(20 * Math.log10(this.fullScale / 2e-5)).toFixed(0)} dB peak re 20 µPa)`);
     }
@@ -186,4 +132,10 @@ export class Player extends EventTarget {
     if (this.band) said.push(`heard from ${this.band.low.toFixed(0)} to ${this.band.high.toFixed(0)} Hz`);
     return said.join("; ");
   }
+}
+
+// A number rounded up to 1, 2 or 5 times a power of ten.
+export function roundedUp(value) {
+  const ten = 10 ** Math.floor(Math.log10(value));
+  return Number([1, 2, 5, 10].map((one) => one * ten).find((one) => one >= value * 0.9999).toPrecision(1));
 }

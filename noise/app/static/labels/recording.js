@@ -8,7 +8,7 @@ import { Bands, LevelCourse } from "./levels.js";
 import { made, onceShown } from "../dom.js";
 import { refresh } from "./list.js";
 import { Outline } from "./outline.js";
-import { Player } from "./player.js";
+import { RecordingPlayer } from "./player.js";
 import { follow } from "./pointer.js";
 import { showSegment } from "./segment.js";
 import { Segments } from "./segments.js";
@@ -25,7 +25,7 @@ export class RecordingPage {
     this.onOpen = onOpen;
     const parts = (this.parts = build(element));
     const timeline = (this.timeline = new Timeline());
-    this.player = new Player(told);
+    this.player = new RecordingPlayer();
     this.corrections = new Corrections((text) => { parts.saved.textContent = text; });
     this.spectrogram = new Spectrogram(timeline, { plot: parts.plot, marks: parts.marks, axis: parts.frequencies, legend: parts.legend, readout: parts.readout });
     this.outline = new Outline(timeline, { plot: parts.wave, axis: parts.waveAxis });
@@ -113,7 +113,7 @@ export class RecordingPage {
   play(from = this.timeline.position) {
     const stretch = this.stretch;
     const inside = from >= stretch.start && from < stretch.end - 0.005;
-    return this.player.play(stretch, inside ? from : stretch.start);
+    return this.player.play(inside ? from : stretch.start, stretch);
   }
 
   seek(time) {

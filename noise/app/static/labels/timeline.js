@@ -1,5 +1,7 @@
 // The time axis that all lanes of a recording share: what is in view, where it is, what is chosen.
 
+import { ticks } from "../shared/player.js";
+
 const SHORTEST = 0.005; // in view [s]
 
 export class Timeline extends EventTarget {
@@ -73,16 +75,6 @@ export function sheet(canvas) {
   pen.clearRect(0, 0, width, height);
   pen.font = "11px system-ui, sans-serif";
   return { pen, width, height };
-}
-
-// Round numbers between two, at most so many.
-export function ticks(low, high, most) {
-  const rough = (high - low) / Math.max(1, most);
-  const ten = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((one) => one * ten).find((one) => one >= rough * 0.999);
-  const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push(k * step);
-  return { step, found };
 }
 
 export function seconds(time, step = 0.001) {

@@ -1,0 +1,104 @@
+"""Checks of what a request says: numbers, choices and texts, refused in one line each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from models.errors import ParameterError
+
+_SHOWN = 40
+"""Characters of a value that a message shows."""
+
+
+def number(
+    said: Mapping[str, Any],
+    key: str,
+    low: float,
+    high: float,
+    missing: float | None = None,
+    *,
+    whole: bool = False,
+) -> float:
+    """Return a number of a request.
+
+    Parameters
+    ----------
+    said : mapping
+        What the request says: numbers of JSON, or words of an address.
+    key : str
+    low, high : float
+        Between which it has to be [unit of the key].
+    missing : float, optional
+        Its value where nothing is said [unit of the key]; by default something has to be.
+    whole : bool
+        Whether it has to be a whole number.
+
+    Raises
+    ------
+    ParameterError
+        It is none, or out of bounds.
+
+    Examples
+    --------
+    >>> number({"low": "50"}, "low", 1.0, 100.0), number({}, "low", 1.0, 100.0, 20.0)
+    (50.0, 20.0)
+    >>> number({"place": 3}, "place", 0, 9, whole=True)
+    3
+    """
+    value = said.get(key)
+    if value in (None, "") and missing is not None:
+        return missing
+    found: float = math.nan
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        found = value
+    elif isinstance(value, str):
+        try:
+            found = int(value) if whole else float(value)
+        except ValueError:
+            found = math.nan
+    if not low <= found <= high or (whole and not isinstance(found, int)):
+        kind = "a whole number" if whole else "a number"
+        bounds = f"from {low:g} to {high:g}" if math.isfinite(high) else f"from {low:g} on"
+        raise ParameterError(f"{key} {str(value)[:_SHOWN]!r}: must be {kind} {bounds}")
+    return found
+
+
+def choice(said: Mapping[str, Any], key: str, known: Iterable[str], missing: str = "") -> str:
+    """Return one of several words.
+
+    Raises
+    ------
+    ParameterError
+        It is none of them.
+
+    Examples
+    --------
+    >>> choice({"order": "desc"}, "order", ("asc", "desc"))
+    'desc'
+    """
+    value, words = said.get(key, missing), tuple(known)
+    if not isinstance(value, str) or (value not in words and value != missing):
+        named = ", ".join(filter(None, words))
+        raise ParameterError(f"{key} {str(value)[:_SHOWN]!r}: must be one of {named}")
+    return value
+
+
+def text(said: Mapping[str, Any], key: str, longest: int) -> str:
+    """Return a text, its spaces single; empty where nothing is said.
+
+    Raises
+    ------
+    ParameterError
+        It is none, or too long.
+
+    Examples
+    --------
+    >>> text({"question": " Which  annoys more? "}, "question", 80)
+    'Which annoys more?'
+    """
+    value = said.get(key, "")
+    if not isinstance(value, str) or len(value) > longest:
+        raise ParameterError(f"{key}: must be a text of at most {longest} characters")
+    return " ".join(value.split())

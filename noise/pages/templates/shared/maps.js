@@ -1,0 +1,270 @@
+// Condition maps: a click plays what is there, or the nearest sound of the same label, and says which.
+// Of designs compared it draws levels, how points are known, and what differs between two of them, A and B.
+const short = (value) => Number(value.toPrecision(3)).toString();
+const at = (spot) => [parseFloat(spot.style.left) / 100, parseFloat(spot.style.bottom) / 100];
+
+const comparison = (function () {
+  const content = document.getElementById("compared");
+  if (!content) return null;
+  const data = JSON.parse(content.textContent);
+  const NONE = data.labels.indexOf("none"), SOFT = 3, MUCH = 10; // dB
+  const sections = [...document.querySelectorAll("[data-comparison]")];
+  let [a, b] = data.pair, look = "noise";
+
+  const signed = (value) => (Math.round(value) < 0 ? "\u2212" : Math.round(value) > 0 ? "+" : "") + Math.abs(Math.round(value));
+  const percent = (share) => (share > 0 && share < 0.005 ? "<1" : Math.round(100 * share)) + " %";
+  const placeOf = (map) => data.places[map.closest("[data-comparison]").dataset.comparison];
+  const designOf = (map) => (map.dataset.design === undefined ? null : Number(map.dataset.design));
+  const has = (of, cell) => of !== undefined && of.label[cell] >= 0;
+  const noisy = (of, cell) => has(of, cell) && of.label[cell] !== NONE;
+
+  function element(name, values, text = "") {
+    const made = document.createElementNS(document.querySelector("svg").namespaceURI, name);
+    for (const [key, value] of Object.entries(values)) made.setAttribute(key, value);
+    made.textContent = text;
+    return made;
+  }
+
+  // Runs of cells of one key as rectangles, with words where there is room; rows count from the lowest.
+  function draw(map, place, keyOf, wordsOf) {
+    const svg = map.querySelector(".plot svg"), group = element("g", { class: "drawn" }), columns = place.x.length - 1;
+    for (let row = 0; row + 1 < place.y.length; row++) {
+      const keys = Array.from({ length: columns }, (_, column) => keyOf(row * columns + column));
+      for (let first = 0, end; first < columns; first = end) {
+        end = first + 1;
+        while (end < columns && keys[end] === keys[first]) end++;
+        if (!keys[first]) continue;
+        const x = place.x[first], y = place.y[row + 1], width = place.x[end] - x, height = place.y[row] - y;
+        group.append(element("rect", { x, y, width, height, fill: "url(#fill-" + keys[first] + ")" }));
+        const cells = Array.from({ length: end - first }, (_, i) => row * columns + first + i), text = wordsOf(keys[first], cells);
+        if (text && width > 9 * text.length && height > 18) group.append(element("text", { x: x + 6, y: y + height - 7 }, text));
+      }
+    }
+    svg.append(group);
+  }
+
+  function levels(of, cells) {
+    const known = cells.map((cell) => of.level[cell]).filter((level) => level !== null);
+    if (!known.length) return "";
+    const [low, high] = [Math.round(Math.min(...known)), Math.round(Math.max(...known))];
+    return low === high ? "" + low : low + "\u2013" + high;
+  }
+
+  function drawDesign(map, place, of) {
+    if (look === "level") {
+      const step = (cell) => data.steps.filter((one) => of.level[cell] >= one).length;
+      draw(map, place, (cell) => !has(of, cell) ? "" : !noisy(of, cell) || of.level[cell] === null ? "none" : "level-" + step(cell),
+        (key, cells) => (key === "none" ? "quiet" : levels(of, cells)));
+    } else if (look === "how") {
+      draw(map, place, (cell) => (has(of, cell) ? "how-" + of.how[cell] : ""), () => "");
+      draw(map, place, (cell) => (has(of, cell) && of.note[cell] ? "substituted" : ""), () => "");
+    }
+  }
+
+  // What B does against A in a cell.
+  function differing(place, cell) {
+    const [one, other] = [place.designs[a], place.designs[b]];
+    if (!has(one, cell) || !has(other, cell)) return "";
+    const [before, after] = [noisy(one, cell), noisy(other, cell)];
+    if (!before || !after) return before ? "gone" : after ? "new" : "quiet";
+    if (one.level[cell] === null || other.level[cell] === null) return "alike";
+    const by = other.level[cell] - one.level[cell];
+    return Math.abs(by) < SOFT ? "alike" : (by < 0 ? "softer" : "louder") + (Math.abs(by) >= MUCH ? "-much" : "");
+  }
+
+  function median(values) {
+    const sorted = values.filter(Number.isFinite).sort((one, other) => one - other), half = sorted.length >> 1;
+    if (!sorted.length) return null;
+    return sorted.length % 2 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
+  }
+
+  function drawDifference(map, place, told) {
+    const [one, other] = [place.designs[a], place.designs[b]];
+    const by = (cell) => (one.level[cell] === null || other.level[cell] === null ? NaN : other.level[cell] - one.level[cell]);
+    draw(map, place, (cell) => differing(place, cell), (kind, cells) => {
+      const middle = median(cells.map(by));
+      return ["gone", "new", "quiet", "alike"].includes(kind) || middle === null ? kind : signed(middle) + " dB";
+    });
+    // In words, over the points that both have; a cell of a map without a grid counts as a point.
+    const cells = Array.from({ length: (place.x.length - 1) * (place.y.length - 1) }, (_, cell) => cell);
+    const known = cells.map((cell) => [differing(place, cell), cell]).filter(([kind]) => kind);
+    const parts = Object.entries({
+      "noise gone": (kind) => kind === "gone",
+      "noise new": (kind) => kind === "new",
+      "softer by 3 dB or more": (kind) => kind.startsWith("softer"),
+      "louder by 3 dB or more": (kind) => kind.startsWith("louder"),
+      "another noise": (kind, cell) => kind !== "gone" && kind !== "new" && one.label[cell] !== other.label[cell],
+    }).map(([words, test]) => [words, known.filter((of) => test(...of)).length]).filter(([, n]) => n).map(([words, n]) => words + " at " + percent(n / known.length));
+    const middle = median(known.filter(([kind]) => !["gone", "new", "quiet"].includes(kind)).map(([, cell]) => by(cell)));
+    if (!parts.length) parts.push("no difference beyond 3 dB");
+    if (middle !== null) parts.push("where both make noise " + signed(middle) + " dB in the median");
+    told.textContent = known.length ? `B, ${data.names[b]}, against A, ${data.names[a]}: ${parts.join("; ")}.` : "A and B have no conditions in common here.";
+  }
+
+  function cellAt(map, x, y) {
+    const place = placeOf(map), svg = map.querySelector(".plot svg").viewBox.baseVal, columns = place.x.length - 1;
+    const column = place.x.findLastIndex((edge) => edge <= x * svg.width), row = place.y.findLastIndex((edge) => edge >= (1 - y) * svg.height);
+    return Math.max(0, Math.min(place.y.length - 2, row)) * columns + Math.max(0, Math.min(columns - 1, column));
+  }
+
+  function says(place, design, cell) {
+    const of = place.designs[design];
+    if (!has(of, cell)) return "not screened";
+    const level = of.level[cell], note = of.notes[of.note[cell]];
+    return [data.labels[of.label[cell]], noisy(of, cell) && level !== null ? Math.round(level) + " dB(A)" : "", data.said[of.how[cell]] + (note ? ` (${note})` : "")].filter(Boolean).join(", ");
+  }
+
+  // What designs do at a place of a map, in words, and their labels: both of the pair on its maps.
+  function here(map, x, y) {
+    const place = placeOf(map), cell = cellAt(map, x, y), own = designOf(map);
+    const designs = own === null || own === a || own === b ? [...new Set([a, b])] : [own];
+    const words = designs.map((design) => (designs.length > 1 ? (design === a ? "A " : "B ") : "") + says(place, design, cell));
+    return { words: words.join("; "), labels: designs.map((design) => (has(place.designs[design], cell) ? place.designs[design].label[cell] : -1)).join() };
+  }
+
+  // What is heard at a spot: of both designs where both go to the player.
+  function words(map, spot) {
+    const label = spot.getAttribute("aria-label"), found = here(map, ...at(spot));
+    return found.labels.includes(",") ? label.split(":")[0] + ": " + found.words : label;
+  }
+
+  // Both designs of the pair go to the player, in step; a click on the other map changes over.
+  function play(map, spot) {
+    const mates = spot.dataset.mates.split(","), own = designOf(map) ?? (engine.active === "a" ? a : b);
+    if (own !== a && own !== b) choose(a, own);
+    const slot = own === a ? "a" : "b", pair = { a: mates[a] || null, b: a === b ? null : mates[b] || null };
+    const same = engine.playing && engine.active !== slot && engine.slots.a === pair.a && engine.slots.b === pair.b;
+    engine.slots = pair;
+    engine.hear(slot);
+    if (!same && mates[own]) engine.begin(mates[own]);
+    return mates[own];
+  }
+
+  function choose(one, other) {
+    const changed = one !== a || other !== b;
+    [a, b] = [one, other];
+    for (const [slot, value] of Object.entries({ a, b })) {
+      const select = document.getElementById("design-" + slot);
+      if (select) select.value = String(value);
+    }
+    // What plays goes on with the designs now chosen, where they are heard at this condition.
+    const spot = changed && document.querySelector(".spot[aria-pressed=true][data-mates]");
+    const mates = spot ? spot.dataset.mates.split(",") : [];
+    if (mates[a]) engine.put("a", mates[a]);
+    if (mates[b]) engine.put("b", mates[b]);
+    update();
+  }
+
+  function update() {
+    for (const section of sections) {
+      const place = data.places[section.dataset.comparison], told = section.querySelector(".differs");
+      const both = place.designs[a] && place.designs[b] && a !== b;
+      told.hidden = !both;
+      for (const map of section.querySelectorAll("[data-map]")) {
+        const design = designOf(map), slot = map.querySelector(".slot");
+        for (const old of map.querySelectorAll(".drawn")) old.remove();
+        map.style.order = design === null ? 2 : a === b || design === a ? 0 : design === b ? 1 : 3;
+        if (design !== null) {
+          slot.hidden = a === b || (design !== a && design !== b);
+          slot.textContent = design === a ? "A" : "B";
+          map.querySelector(".areas").toggleAttribute("hidden", look !== "noise");
+          drawDesign(map, place, place.designs[design]);
+          continue;
+        }
+        map.hidden = !both;
+        if (!both) continue;
+        drawDifference(map, place, told);
+        for (const spot of map.querySelectorAll(".spot")) {
+          const cell = cellAt(map, ...at(spot)), where = spot.getAttribute("aria-label").split(":")[0];
+          spot.setAttribute("aria-label", `${where}: A ${says(place, a, cell)}; B ${says(place, b, cell)}`);
+        }
+      }
+    }
+    for (const button of document.querySelectorAll("[data-look]")) button.setAttribute("aria-pressed", String(button.dataset.look === look));
+    for (const key of document.querySelectorAll("[data-key]")) key.hidden = key.dataset.key === "difference" ? a === b : key.dataset.key !== look;
+  }
+
+  document.addEventListener("click", (event) => {
+    const button = event.target.closest("[data-look], #swap");
+    if (!button) return;
+    if (button.id === "swap") choose(b, a);
+    else { look = button.dataset.look; update(); }
+  });
+  document.addEventListener("change", ({ target }) => {
+    if (target.id === "design-a") choose(Number(target.value), b);
+    if (target.id === "design-b") choose(a, Number(target.value));
+  });
+  // What is folded away is printed as well, and folded again.
+  let folded = [];
+  addEventListener("beforeprint", () => {
+    folded = sections.filter((section) => !section.open);
+    for (const section of folded) section.open = true;
+  });
+  addEventListener("afterprint", () => { for (const section of folded) section.open = false; });
+  update();
+  return { here, play, words };
+})();
+
+for (const map of document.querySelectorAll("[data-map]")) {
+  const plot = map.querySelector(".plot"), asked = map.querySelector(".asked"), section = map.closest("[data-comparison]");
+  const told = (section || map).querySelector(".told"), spots = [...map.querySelectorAll(".spot")];
+  const heard = spots.filter((spot) => spot.dataset.sounds);
+  const [speeds, fits] = [map.dataset.speed, map.dataset.interference].map((text) => text.split(" ").map(Number));
+
+  function tell(text) {
+    told.textContent = text;
+    page.say(text);
+  }
+
+  function play(spot, before = "") {
+    const keys = spot.dataset.sounds.split(" ").filter(Boolean);
+    for (const other of spots) other.tabIndex = other === spot ? 0 : -1;
+    if (!keys.length) return tell(spot.getAttribute("aria-label") + ".");
+    let key = keys[(keys.indexOf(engine.key) + 1) % keys.length];
+    if (section) key = comparison.play(map, spot);
+    else engine.begin(key);
+    page.choose(key || null, false);
+    const which = keys.length > 1 && !section ? ` (sound ${keys.indexOf(key) + 1} of ${keys.length})` : "";
+    tell(before + (section ? comparison.words(map, spot) : spot.getAttribute("aria-label")) + which + ".");
+  }
+
+  plot.addEventListener("click", (event) => {
+    const spot = event.target.closest(".spot");
+    asked.hidden = Boolean(spot);
+    if (spot) return play(spot);
+    const box = plot.getBoundingClientRect();
+    const x = (event.clientX - box.left) / box.width, y = 1 - (event.clientY - box.top) / box.height;
+    asked.style.left = 100 * x + "%";
+    asked.style.bottom = 100 * y + "%";
+    let words = `${short(speeds[0] + x * (speeds[1] - speeds[0]))} rad/s, ${short(fits[0] + y * (fits[1] - fits[0]))} mm`, among = heard, of = "sound";
+    if (section) {
+      const found = comparison.here(map, x, y), alike = heard.filter((one) => comparison.here(map, ...at(one)).labels === found.labels);
+      words += ": " + found.words;
+      if (alike.length) among = alike;
+      of += !alike.length ? ", which has other labels" : found.labels.includes(",") ? " of those labels" : " of that label";
+    }
+    if (!among.length) return tell(words + ". There is no sound on this map.");
+    const far = (one) => Math.hypot(at(one)[0] - x, at(one)[1] - y);
+    return play(among.reduce((best, one) => (far(one) < far(best) ? one : best)), `${words}. Nearest ${of}: `);
+  });
+
+  plot.addEventListener("keydown", (event) => {
+    const spot = event.target.closest(".spot");
+    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!spot || !way || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const far = (other) => {
+      const [u, v] = [at(other)[0] - at(spot)[0], at(other)[1] - at(spot)[1]], on = u * way[0] + v * way[1];
+      return on > 1e-6 ? on + 3 * (Math.abs(u * way[1]) + Math.abs(v * way[0])) : Infinity;
+    };
+    const next = spots.reduce((best, other) => (far(other) < far(best) ? other : best));
+    if (far(next) === Infinity) return;
+    for (const other of spots) other.tabIndex = other === next ? 0 : -1;
+    next.focus();
+  });
+
+  engine.addEventListener("change", () => {
+    for (const spot of spots) spot.setAttribute("aria-pressed", String(engine.key !== null && spot.dataset.sounds.split(" ").includes(engine.key)));
+  });
+}

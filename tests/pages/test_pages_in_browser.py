@@ -1,0 +1,291 @@
+"""Every kind of page in a browser: on screens and on paper, quiet, safe, and what a click plays."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from models.rig_file import load_material_rig
+from noise.cli import main
+from noise.identification import law_choice
+from noise.identification.law_candidates import CANDIDATES
+from noise.pages.diagnosis import write_diagnosis
+from noise.pages.review import review
+from noise.pages.screening import write_screening
+from noise.screening.design.design import Design, Use
+from noise.screening.screen import screen
+from tests.blind.identify.rigs import make_rig, write_rig
+from tests.helpers.browser import OpenedPage, accessibility_errors
+from tests.helpers.made_diagnoses import KINDS, one_effect
+from tests.helpers.made_reviews import screen_rows, write_campaign, write_screen
+
+WIDTHS = (320, 390, 720, 961, 1280, 1920)
+PAPER = (round(186 * 96.0 / 25.4), round(273 * 96.0 / 25.4))
+"""A4 within the margins of the pages' own rule, in the browser's pixels."""
+
+OLD, NEW, QUIET = "old <b>", "new & damped", "PDMS"
+CREAK, SQUEAL = "day1/recordings/creak.wav", "day1/recordings/squeal.wav"
+
+CUT = """([selector, height]) => {
+  const stays = (node) => {
+    for (let one = node; one && one !== document.body; one = one.parentElement)
+      if (getComputedStyle(one).breakInside === "avoid" && one.offsetHeight !== undefined
+          && one.getBoundingClientRect().height <= height) return true;
+    return false;
+  };
+  const shown = [...document.querySelectorAll(selector)].filter((node) =>
+    node.checkVisibility() && node.getBoundingClientRect().height > 2);
+  return [shown.length, shown.filter((node) => !stays(node)).map((node) =>
+    `${node.tagName} ${node.getAttribute("class")} ${node.textContent.slice(0, 40)}`)];
+}"""
+"""How many are printed of what has to stay whole, and what of it a page break may cut."""
+
+
+def report(folder):
+    assert main(["demo", "--out", str(folder)]) == 0
+
+
+def reviewed(folder):
+    write_campaign(folder / "day1")
+    rows = [
+        {**row, "support_stiffness_Nm_rad": support}
+        for support in (2214.0, 3000.0, 3745.0, 5000.0, "fixed")
+        for row in screen_rows()
+    ]
+    write_screen(folder / "screen", rows)
+    write_diagnosis(folder / "diagnosis", one_effect())
+    (folder / "day1" / "recordings" / "broken.wav").write_bytes(b"RIFF no more")
+    review(folder, folder / "report.html", title="A review & more", simulated=4)
+
+
+def screened(folder):
+    rig = load_material_rig("fluorocarbon")
+    designs = [Design(OLD, rig), Design(NEW, rig.changed(damping="x2"))]
+    designs.append(Design(QUIET, load_material_rig("PDMS")))
+    use = Use(
+        speed=tuple(np.linspace(1.0, 12.0, 12)),
+        interference=(0.279e-3, 0.381e-3),
+        support_stiffness=(2214.0,),
+    )
+    found = screen(designs, use)
+    write_screening(folder / "report.html", found, sounds=9, workers=2)
+    return found
+
+
+def diagnosis(kind):
+    return lambda folder: write_diagnosis(folder, KINDS[kind]())
+
+
+def identification(folder):
+    write_rig(make_rig(1, 0, recordings=3), folder / "data")
+    known = str(folder / "data" / "known.toml")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(law_choice, "CANDIDATES", CANDIDATES[:2])
+        assert main(["identify", str(folder / "data"), "--rig", known, "--out", str(folder)]) == 0
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Make each kind of page once; give its file, and what was returned."""
+    known = {}
+
+    def page(make):
+        if make not in known:
+            folder = tmp_path_factory.mktemp("page")
+            known[make] = folder / "report.html", make(folder)
+        return known[make]
+
+    return page
+
+
+ALL = [
+    reviewed, screened,
+    *(pytest.param(diagnosis(kind), id=kind) for kind in ("one effect", "none", "pressure alone")),
+    *(pytest.param(make, marks=pytest.mark.slow) for make in (report, identification)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("make", ALL)
+def test_a_page_is_accessible_fits_every_screen_and_paper_and_asks_nothing(browser, made, make):
+    opened = OpenedPage(browser, made(make)[0])
+    page = opened.page
+    page.wait_for_function("[...document.images].every((image) => image.complete)")
+    if page.locator(".card .play").count():
+        page.locator(".card .play").first.click()
+        page.wait_for_function("() => engine.playing && engine.now() > 0.05")
+    for width in WIDTHS:
+        page.set_viewport_size({"width": width, "height": 800})
+        right = page.evaluate(
+            "Math.max(...[...document.querySelectorAll('text, td, th, p, .player *, .card > *')]"
+            ".filter((e) => e.checkVisibility()).map((e) => e.getBoundingClientRect().right))"
+        )
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert right <= width + 1
+        if width in (390, 1280):
+            assert accessibility_errors(page) == []
+    assert opened.complaints == []
+    assert [url.partition(":")[0] for url in opened.requests].count("file") == 1
+    assert {url.partition(":")[0] for url in opened.requests} <= {"file", "data"}
+    page.set_viewport_size(dict(zip(("width", "height"), PAPER, strict=True)))
+    page.emulate_media(media="print")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert page.locator("details:not([open])").count() == 0
+    for selector in ("main img", "tbody tr", ".map svg", "figure", ".card"):
+        assert page.evaluate(CUT, [selector, PAPER[1]])[1] == []
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert page.locator("details:not([open])").count() == max(
+        0, page.locator("details").count() - 4
+    )
+    pdf = page.pdf(format="A4", prefer_css_page_size=True)
+    assert 1 <= len(re.findall(rb"/Type\s*/Page\b", pdf)) <= 12
+    page.close()
+
+
+class Opened(OpenedPage):
+    """A page with cards and maps."""
+
+    def card(self, title):
+        return self.page.locator(".card", has=self.page.get_by_role("heading", name=title))
+
+    def play(self, title):
+        self.card(title).get_by_role("button", name="Play", exact=False).click()
+        self.page.wait_for_function("() => engine.playing && engine.now() > 0.05")
+
+    def spot(self, name, number=0):
+        design = [OLD, NEW, QUIET].index(name)
+        self.page.locator(f"[data-map][data-design='{design}'] .spot").nth(number).click()
+        self.page.wait_for_function("() => engine.playing && engine.now() > 0.05")
+
+
+@pytest.fixture
+def shown(browser, made):
+    """Open a page, the first sound of which may be tapped."""
+    pages = []
+
+    def opened(make, **options):
+        pages.append(Opened(browser, made(make)[0], **options))
+        return pages[-1]
+
+    yield opened
+    for one in pages:
+        one.page.close()
+
+
+def test_a_click_plays_and_the_cursor_moves_and_keys_go_from_sound_to_sound(shown):
+    opened = shown(reviewed)
+    opened.play(CREAK)
+    cursor = opened.card(CREAK).locator(".cursor")
+    opened.page.wait_for_function(
+        "(cursor) => parseFloat(cursor.style.left) > 20", arg=cursor.element_handle()
+    )
+    assert not opened.card(SQUEAL).locator(".cursor").is_visible()
+    factor = opened.page.evaluate("about[engine.key].equal")
+    opened.page.keyboard.press("e")
+    opened.page.wait_for_function("(f) => Math.abs(engine.gains.a - f) < 1e-4", arg=factor)
+    assert "for equal loudness" in opened.page.locator("#status").text_content()
+    opened.page.keyboard.press("Space")
+    titles = []
+    for key in ("ArrowDown", "ArrowUp"):
+        opened.page.keyboard.press(key)
+        titles.append(opened.state()["title"])
+        assert opened.page.locator(".card.chosen h3").text_content() == titles[-1]
+    assert titles[0] != titles[1] == CREAK
+    opened.page.evaluate("engine.seek(0)")
+    opened.page.keyboard.press("Shift+ArrowRight")
+    opened.page.keyboard.press("Shift+ArrowRight")
+    assert opened.state()["at"] == pytest.approx(0.2)
+    opened.page.get_by_role("button", name="squeal 1").click()
+    assert opened.card(SQUEAL).is_visible()
+    assert not opened.card(CREAK).is_visible()
+
+
+def test_changing_over_leaves_no_gap_and_both_run_in_step(shown):
+    opened = shown(reviewed, tapped=True)
+    for slot in "AB":
+        opened.card(SQUEAL).get_by_role("button", name=f"into {slot}").click()
+    opened.page.keyboard.press("Space")
+    opened.page.wait_for_function("() => engine.playing && engine.now() > 0.3")
+    opened.page.evaluate("hearAnew()")
+    for key in "baxx":
+        known = opened.page.evaluate("heard.length")
+        opened.page.keyboard.press(key)
+        opened.page.wait_for_function("(n) => heard.length > n", arg=known + 6000)
+    heard = np.array(opened.page.evaluate("heard"))
+    cycles = heard[: heard.size // 100 * 100].reshape(-1, 100)  # two of the tone, and a little
+    level = cycles.max(axis=1)
+    assert level.min() > 0.97 * level.max() > 0.05
+
+
+def test_a_click_on_a_map_plays_a_sound_and_says_which(shown):
+    opened = shown(reviewed)
+    spot = opened.page.get_by_role("button", name="10 rad/s, 0.279 mm: squeal")
+    spot.click()
+    opened.page.wait_for_function("() => engine.playing")
+    assert opened.state()["title"] == SQUEAL
+    assert spot.get_attribute("aria-pressed") == "true"
+    plot = opened.page.locator("[data-map] .plot").first
+    box = plot.bounding_box()
+    plot.click(position={"x": 0.05 * box["width"], "y": 0.9 * box["height"]})
+    told = opened.page.locator("#status").filter(has_text="Nearest sound")
+    told.wait_for()
+    assert "mm: creak, 80 dB(A), simulated. Nearest sound" in told.text_content()
+    assert told.text_content() == opened.page.locator(".told").first.text_content()
+
+
+def test_a_click_on_the_other_map_changes_over_without_a_jump(shown):
+    opened = shown(screened)
+    opened.page.locator("#design-b").select_option(label=NEW)
+    opened.spot(OLD, 1)
+    opened.page.wait_for_function("() => engine.now() > 0.3")
+    before, after = opened.page.evaluate(
+        """() => {
+          const before = engine.now();
+          document.querySelectorAll("[data-design='1'] .spot")[1].click();
+          return [before, engine.now()];
+        }"""
+    )
+    assert after == pytest.approx(before, abs=0.03)
+    opened.page.wait_for_function("() => engine.gains.b === 1 && engine.gains.a === 0")
+    assert opened.state()["title"].startswith(f"{NEW}: ")
+
+
+@pytest.mark.parametrize(("first", "second"), [(OLD, NEW), (NEW, OLD), (OLD, QUIET), (QUIET, NEW)])
+def test_the_difference_is_that_of_the_pair_that_was_chosen(shown, made, first, second):
+    opened, found = shown(screened), made(screened)[1]
+    for slot, name in (("a", first), ("b", second)):
+        opened.page.locator(f"#design-{slot}").select_option(label=name)
+    one, other = (next(of for of in found.maps if of.design == name) for name in (first, second))
+    before, after = (of.label != "none" for of in (one, other))
+    change = np.round(other.level, 1) - np.round(one.level, 1)
+    both = before & after
+    expected = {
+        "noise gone": before & ~after,
+        "noise new": ~before & after,
+        "softer by 3 dB or more": both & (change <= -3.0),
+        "louder by 3 dB or more": both & (change >= 3.0),
+        "another noise": both & (one.label != other.label),
+    }
+    said = opened.page.locator(".differs").text_content()
+    told = dict(re.findall(r"(\w[\w ]*?) at <?(\d+) %", said))
+    shares = {words: round(100.0 * where.mean()) for words, where in expected.items()}
+    assert {words: int(share) for words, share in told.items()} == {
+        words: share for words, share in shares.items() if share
+    }
+
+
+def test_maps_show_noise_levels_or_how_points_are_known(shown):
+    opened = shown(screened)
+    drawn = opened.page.locator("[data-map][data-design='0'] svg")
+    words = {"noise": r"Cr|Sk|quiet", "level": r"\d\d.*|quiet", "how": r""}
+    for look, pattern in words.items():
+        opened.page.locator(f"[data-look='{look}']").click()
+        texts = drawn.locator("text:visible").all_text_contents()
+        assert all(re.fullmatch(pattern, text) for text in texts)
+        assert bool(texts) == (look != "how")
+        fills = drawn.locator("rect:visible").evaluate_all(
+            "(all) => all.map((one) => one.getAttribute('fill')).join()"
+        )
+        assert {"noise": "squawk"}.get(look, f"{look}-") in fills
+        assert accessibility_errors(opened.page) == []
