@@ -188,3 +188,4 @@ class Section:
 
 
 Block = Text | Items | Pre | Table | Panels | Cards | Maps | Group | Sounds | Other | Section
+"""Any of these."""

@@ -342,7 +342,7 @@ def _laid_out(
         laid.append(condition_map(one.design, own, areas, _own_note(one, why)))
     if len(maps) > 1:
         laid.append(condition_map("Difference: B against A", None))
-    values = {
+    values: dict[str, object] = {
         "x": [round(MAP_SIZE[0] * across.share(float(x)), 2) for x in cells[0].speed_edges],
         "y": [round(height * (1 - up.share(float(y))), 2) for y in cells[0].interference_edges],
         "designs": {

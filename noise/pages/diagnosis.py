@@ -109,10 +109,10 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
         entries, clips, shown = draw_comparisons(diagnosis)
     bench, judged = diagnosis.bench, bool(diagnosis.verdict)
     agreement = "" if bench else agreement_sentence(diagnosis)
-    verdict, *further = [sentence for sentence in answer(diagnosis) if sentence != agreement]
+    answers = [sentence for sentence in answer(diagnosis) if sentence != agreement]
     chain = b.Section(
         "Where it lies" if judged else "Each stage of the chain",
-        [b.Other("chain", stage_boxes(diagnosis))],
+        [b.Other("chain", () if bench else stage_boxes(diagnosis))],
     )
     far = b.Section("How far it closes" if judged else "", waterfall(diagnosis))
     causes = b.Section("Which cause" if judged else "What else it could be", _likely(diagnosis))
@@ -128,11 +128,12 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
         headline(diagnosis),
         [
             b.Text(agreement, "where"),
-            b.Text(verdict, "verdict"),
-            *(b.Text(sentence, "where") for sentence in further),
+            *(b.Text(sentence, "verdict") for sentence in answers[:1]),
+            *(b.Text(sentence, "where") for sentence in answers[1:]),
         ],
         [
-            *([] if bench else [chain, b.Group("", [far, causes], style="two")]),
+            chain,
+            b.Group("", [] if bench else [far, causes], style="two"),
             b.Section("The improved rig", _improved(diagnosis, commands)),
             b.Group("", [ahead, b.Section("What to bear in mind", [notes])], style="two"),
             b.Section(

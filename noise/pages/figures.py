@@ -14,7 +14,7 @@ import io
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -103,8 +103,8 @@ class Line:
         Of matplotlib.
     """
 
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
+    x: NDArray[np.floating[Any]]
+    y: NDArray[np.floating[Any]]
     colour: str
     label: str = ""
     width: float = 1.5
@@ -161,7 +161,7 @@ def lines_panel(
     if from_zero:
         axes.set_ylim(0.0, 1.12 * high)
     if legend:
-        axes.legend(loc=legend, fontsize=8)
+        axes.legend(loc=legend, fontsize=8)  # type: ignore[call-overload]
     return Panel(as_svg(figure), alt)
 
 

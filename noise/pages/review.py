@@ -446,7 +446,7 @@ def review(
 
 
 def _diagnosis_section(one: DiagnosisDisplay, keys: Sequence[str]) -> b.Section:
-    blocks = [
+    blocks: list[b.Block] = [
         *(b.Text(sentence) for sentence in one.answer),
         b.Text(one.next_measurement, "next", "To measure next:"),
         b.Items(one.notes, "soft"),
