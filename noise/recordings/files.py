@@ -22,7 +22,7 @@ from models.errors import ParameterError, RecordingError
 from models.foreign_file import reading, refusing
 from models.recording import Recording
 from noise.base.progress import note
-from noise.recordings.folders import OTHERS, what_to_do
+from noise.recordings.folders import why_not_read
 from noise.recordings.formats import RawRecording, check_rate, formats
 from noise.recordings.formats.isolated import open_isolated
 from noise.recordings.meaning import Meaning, PascalPerFullScale, check_finite, describe
@@ -154,12 +154,10 @@ def open_raw(path: Path) -> Iterator[RawRecording]:
         with reading(path, "recording", error=RecordingError):
             if path.stat().st_size == 0:
                 raise RecordingError(f"{path}: is empty (0 bytes)")
-            if path.suffix.lower() in OTHERS:
-                raise RecordingError(f"{path}: {what_to_do(path.name)}")
             of = formats().get(path.suffix.lower())
             if of is None:
-                known = ", ".join(formats())
-                raise RecordingError(f"{path}: has no ending of a recording; known are {known}")
+                known = f"has no ending of a recording; known are {', '.join(formats())}"
+                raise RecordingError(f"{path}: {why_not_read(path.name) or known}")
             raw = stack.enter_context((of.open or open_isolated)(path))
             check_rate(raw.rate, str(path))
             if raw.n_samples < MIN_SAMPLES:

@@ -22,8 +22,8 @@ _NAMED = 3
 """Of what is left out, so many are named."""
 
 _CONVERT = "convert to WAV or FLAC, as by: ffmpeg -i {name} {stem}.wav"
-_EXPORT = "export as TDMS, MDF4, HDF5, UFF58 or WAV from the program that wrote it"
-OTHERS = {
+_EXPORT = "export as WAV, or a format that is read, from the program that wrote it"
+_OTHERS = {
     **dict.fromkeys(
         (".3gp", ".aac", ".ac3", ".amr", ".ape", ".au", ".caf", ".dsf", ".m4a", ".m4b", ".mka",
          ".mkv", ".mov", ".mp2", ".mp4", ".snd", ".w64", ".webm", ".wma", ".wv"), _CONVERT
@@ -199,13 +199,25 @@ def find_recordings(
 def _note_others(folder: Path, names: list[str]) -> None:
     """Name the recordings in a folder that cannot be read, with what to do."""
     for advice in (_CONVERT, _EXPORT):
-        left = [name for name in names if OTHERS.get(Path(name).suffix.lower()) == advice]
+        left = [name for name in names if _advice(Path(name)) == advice]
         if left:
             more = f" and {len(left) - _NAMED} more" * (len(left) > _NAMED)
-            note(f"{folder}: left out {', '.join(left[:_NAMED])}{more}: {what_to_do(left[0])}")
+            note(f"{folder}: left out {', '.join(left[:_NAMED])}{more}: {why_not_read(left[0])}")
 
 
-def what_to_do(name: str) -> str:
-    """Return why a recording is not read, and what to do."""
+def why_not_read(name: str) -> str:
+    """Say that a recording is not read, and what to do; empty where its ending is none of one.
+
+    Examples
+    --------
+    >>> why_not_read("memo.m4a")
+    'not read; convert to WAV or FLAC, as by: ffmpeg -i memo.m4a memo.wav'
+    """
     path = Path(name)
-    return "not read; " + OTHERS[path.suffix.lower()].format(name=path.name, stem=path.stem)
+    advice = _advice(path).format(name=path.name, stem=path.stem)
+    return f"not read; {advice}" if advice else ""
+
+
+def _advice(path: Path) -> str:
+    ending = path.suffix.lower()
+    return "" if ending in formats() else _OTHERS.get(ending, "")

@@ -97,13 +97,13 @@ def test_a_folder_that_cannot_be_looked_into_or_goes_away_costs_no_other(
 
 
 def test_recordings_that_are_not_read_are_named_once_with_what_to_do(day, tmp_path, capsys):
-    others = ("memo.m4a", "MEMO2.WMA", "day1/a.aac", "day1/b.caf", "x.mat", "notes.txt", "p.pdf")
+    others = ("memo.m4a", "MEMO2.WMA", "day1/a.aac", "day1/b.caf", "x.sie", "notes.txt", "p.pdf")
     for name in others:
         (tmp_path / name).touch()
     assert names(tmp_path) == ["day1/run07.wav", "day1/run08.wav"]
     assert capsys.readouterr().err.splitlines() == [
         f"bushing-noise: note: {tmp_path}: left out MEMO2.WMA, day1/a.aac, day1/b.caf and 1 more: "
         "not read; convert to WAV or FLAC, as by: ffmpeg -i MEMO2.WMA MEMO2.wav",
-        f"bushing-noise: note: {tmp_path}: left out x.mat: not read; export as TDMS, MDF4, HDF5, "
-        "UFF58 or WAV from the program that wrote it",
+        f"bushing-noise: note: {tmp_path}: left out x.sie: not read; export as WAV, or a format "
+        "that is read, from the program that wrote it",
     ]
