@@ -13,8 +13,8 @@ import numpy as np
 
 from features.table import recording_feature_names, recording_features
 from models.rig_file import load_material_rig
+from noise.audio.audio_file import write_audio
 from noise.audio.gain import QUIETEST_FULL_SCALE, common_full_scale
-from noise.audio.render import write_audio
 from noise.audio.sound import audible
 from noise.base.files import locked
 from noise.base.progress import say, track

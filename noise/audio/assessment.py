@@ -1,4 +1,4 @@
-"""Levels and sound quality of a recording, in the air and in the file that is written.
+"""Levels of a recording, in the air and in the file that is written, and of a sound power.
 
 Levels in the air are those of the recording before it is faded and resampled, so that they are
 the measurement's and a gain does not change them. Without a calibration there is no level in the
@@ -10,9 +10,18 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass
 
-from features.kernels.levels import NOMINAL_THIRD_OCTAVES, SoundLevels, sound_levels
+import numpy as np
+from numpy.typing import NDArray
+
+from features.kernels.levels import (
+    NOMINAL_THIRD_OCTAVES,
+    SoundLevels,
+    a_weighting,
+    sound_levels,
+)
 from features.sound_quality import SOUND_QUALITY_RATE, SoundQuality, sound_quality_of
 from models.errors import ParameterError
+from models.radiation.sound_power import BandPower
 from models.recording import REFERENCE_PRESSURE, Recording
 from noise.audio.sound import pressure_channel, resampled
 
@@ -36,6 +45,12 @@ COLUMNS = (
     *_QUALITY_COLUMNS.values(),
 )
 """Of a table of levels, in the order of a sound level meter's."""
+
+POWER_COLUMNS = ("band_hz", "power_level_db", "power_level_dba")
+"""Nominal middle of the band, sound power levels [dB re 1 pW] of the plate in a rigid baffle."""
+
+TOTAL = "total"
+"""What stands for the band in the last row, the sum of all bands."""
 
 
 @dataclass(frozen=True)
@@ -150,4 +165,28 @@ def assess(recording: Recording, *, quality: bool = False) -> Assessment:
 
 
 def _rounded(value: float, digits: int = 2) -> float | None:
-    return round(value, digits) if math.isfinite(value) else None
+    return round(float(value), digits) if math.isfinite(value) else None
+
+
+def sound_power_rows(power: BandPower) -> list[dict[str, object]]:
+    """Rows by `POWER_COLUMNS`, one a band and one of their sum.
+
+    Parameters
+    ----------
+    power : BandPower
+
+    Returns
+    -------
+    list of dict
+        Levels in dB re 1 pW to 0.01 dB; None for a band without power.
+    """
+    levels = [power.level, power.level + a_weighting(power.centre)]
+    first = NOMINAL_THIRD_OCTAVES.index(f"{power.centre[0]:.0f}")
+    bands = (*NOMINAL_THIRD_OCTAVES[first : first + power.level.size], TOTAL)
+    columns = [[*map(_rounded, column), _rounded(_sum(column))] for column in levels]
+    return [dict(zip(POWER_COLUMNS, row, strict=True)) for row in zip(bands, *columns, strict=True)]
+
+
+def _sum(levels: NDArray[np.float64]) -> float:
+    with np.errstate(divide="ignore"):
+        return float(10.0 * np.log10(np.sum(10.0 ** (levels / 10.0))))

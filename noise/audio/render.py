@@ -14,39 +14,31 @@ from __future__ import annotations
 
 import json
 import math
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from models.blocks import RecordingBlocks
 from models.condition import Condition
 from models.errors import ParameterError
 from models.recording import Recording
 from noise.audio.assessment import COLUMNS as LEVEL_COLUMNS, Assessment, assess
+from noise.audio.audio_file import write_audio
 from noise.audio.gain import (
     CEILING,
     LOUDNESS_BLOCK,
     QUIETEST_FULL_SCALE,
     common_full_scale,
     full_scale_without_clipping,
-    least_full_scale,
     loudness,
     matched_full_scale,
     matched_loudness,
     true_peak,
 )
-from noise.audio.sound import FADE, audible, in_band, pressure_channel
-from noise.base.files import atomic
+from noise.audio.sound import FADE, GAP, joined, refuse_mixed
 from noise.recordings.sidecar import sidecar_text
-from noise.recordings.wav import BITS, largest_sample, wav_bytes, with_full_scale
-
-GAP = 0.5
-"""Silence between two recordings in one file [s]."""
 
 COLUMNS = (
     *("part", "start_s", "end_s", "calibrated", "gain", "full_scale_Pa"),
@@ -113,103 +105,6 @@ class FullScale:
     value: float
     gain: str
     target: float | None = None
-
-
-def heard(
-    recording: Recording | RecordingBlocks, band: tuple[float, float] | None = None
-) -> Recording:
-    """Return the first pressure channel of a recording as one of its own, in a band [Hz] alone.
-
-    Raises
-    ------
-    RecordingError
-        There is no pressure channel, or nothing to be heard.
-    ParameterError
-        A frequency is not below half the sampling rate.
-
-    Examples
-    --------
-    >>> from models.recording import Channel
-    >>> tones = np.sin(2 * np.pi * np.array([[100.0], [1000.0]]) * np.arange(48000) / 48e3).sum(0)
-    >>> both = Recording(tones[None], 48e3, (Channel("pressure"),))
-    >>> heard(both, (500.0, 2000.0)).notes
-    ('filtered: 500 to 2000 Hz, zero-phase; 3.0 dB below the whole sound',)
-    """
-    blocks = RecordingBlocks.of(recording)
-    channel = pressure_channel(blocks)
-    samples = blocks.track(blocks.channels.index(channel)).read(0, blocks.n_samples)
-    notes = getattr(recording, "notes", ())
-    if band is not None:
-        try:
-            kept = in_band(samples[0], blocks.rate, band)
-        except ParameterError as error:
-            raise ParameterError(f"{blocks.name}: {error}") from None
-        before, after = float(samples.std()), float(kept.std())
-        change = "silent"
-        if before > 0.0 and after > 0.0:
-            change = f"{20.0 * math.log10(before / after):.1f} dB below the whole sound"
-        low, high = band
-        notes = (*notes, f"filtered: {low:g} to {high:g} Hz, zero-phase; {change}")
-        samples = kept[np.newaxis]
-    return Recording(
-        samples, blocks.rate, (channel,), blocks.condition, blocks.calibrated, blocks.name, notes
-    )
-
-
-def joined(
-    recordings: Sequence[Recording], rate: int = 48000, *, gap: float = GAP, fade: float = FADE
-) -> tuple[NDArray[np.float64], list[tuple[float, float]]]:
-    """Put the sounds of recordings behind one another, at the same gain.
-
-    Parameters
-    ----------
-    recordings : sequence of Recording
-    rate : int
-        Sampling rate of the result [Hz].
-    gap : float
-        Silence between two of them [s].
-    fade : float
-        Length of the fades of each [s].
-
-    Returns
-    -------
-    samples : ndarray, shape (n_samples,)
-        As `noise.audio.sound.audible` gives them.
-    times : list of tuple of float
-        Where each begins and ends [s].
-
-    Raises
-    ------
-    ParameterError
-        Some are calibrated and others are not.
-
-    Examples
-    --------
-    >>> from models.recording import Channel
-    >>> run = Recording(np.ones((1, 48)), 48e3, (Channel("pressure"),), name="A")
-    >>> samples, times = joined([run, run], gap=0.001)
-    >>> samples.size, times
-    (144, [(0.0, 0.001), (0.002, 0.003)])
-    """
-    _refuse_mixed({one.calibrated: one.name for one in recordings}, "give its calibration")
-    pieces: list[NDArray[np.float64]] = []
-    times: list[tuple[float, float]] = []
-    start = 0
-    for recording in recordings:
-        sound = audible(recording, rate, fade=fade)
-        times.append((start / rate, (start + sound.size) / rate))
-        pieces += [sound, np.zeros(round(gap * rate))]
-        start += sound.size + pieces[-1].size
-    return np.concatenate(pieces[:-1]), times
-
-
-def _refuse_mixed(known: Mapping[bool, str], remedy: str) -> None:
-    """Refuse one gain for sounds of which some are calibrated and others are not."""
-    if len(known) > 1:
-        raise ParameterError(
-            f"{known[True]} is calibrated and {known[False]} is not, so one gain cannot keep how "
-            f"loud they are to each other; {remedy}"
-        )
 
 
 def measure(
@@ -318,7 +213,7 @@ def full_scales(
                 f"does not is {full_scale_without_clipping(loud.true_peak):g}"
             )
         return dict.fromkeys(sounds, FullScale(pascal, "calibrated"))
-    _refuse_mixed(known, "--full-scale gives a calibration, --match-loudness needs none")
+    refuse_mixed(known, "--full-scale gives a calibration, --match-loudness needs none")
     value = common_full_scale([np.array([of.true_peak]) for of in sounds.values()])
     if True in known:  # so that silence is not made loud
         value = max(value, QUIETEST_FULL_SCALE)
@@ -438,100 +333,3 @@ def _common(recordings: Sequence[Recording]) -> Recording:
     values = {one.name: {getattr(c, one.name) for c in conditions} for one in fields(Condition)}
     shared: dict[str, Any] = {name: of.pop() for name, of in values.items() if len(of) == 1}
     return replace(recordings[0], condition=Condition(**shared), notes=())
-
-
-def write_audio(
-    path: str | Path,
-    samples: NDArray[np.float64],
-    rate: int,
-    *,
-    full_scale: float,
-    bits: int = 24,
-    recording: Recording,
-    dither: np.random.Generator | None = None,
-    about: Mapping[str, object] | None = None,
-) -> Path:
-    """Write sound as a WAV file for listening, with a sidecar; both whole or not at all.
-
-    Parameters
-    ----------
-    path : path-like
-        ``squeal`` and ``squeal.wav`` are the same; parent folders are made.
-    samples : ndarray, shape (n_samples,)
-        As `noise.audio.sound.audible` gives them.
-    rate : int
-        Sampling rate [Hz].
-    full_scale : float
-        Value of a full-scale sample, in the unit of `samples`.
-    bits : int
-        One of `noise.recordings.wav.BITS`; 32 is floating point, full scale being 1.
-    recording : Recording
-        Where the sound comes from: its condition, microphone and calibration go into the sidecar.
-    dither : numpy.random.Generator, optional
-        Of the dither of integer samples; none by default.
-    about : mapping of str to object, optional
-        What else the sidecar says, as JSON has it.
-
-    Returns
-    -------
-    Path
-        The WAV file. `noise.recordings.read_recording` reads it back calibrated, if the recording
-        was.
-
-    Raises
-    ------
-    ParameterError
-        A sample would clip, or the file cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from models.recording import Channel
-    >>> from noise.recordings import read_recording
-    >>> run = Recording(np.full((1, 480), 0.25), 48e3, (Channel("pressure"),))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = write_audio(Path(folder) / "tone", run["pressure"], 48000, full_scale=2.0,
-    ...                        recording=run)
-    ...     float(read_recording(path)["pressure"].max())
-    0.25
-    """
-    target = audio_path(Path(path))
-    if bits not in BITS:
-        raise ParameterError(f"{target}: samples of {bits} bit; there are 16, 24 and 32 (float)")
-    if not 0.0 < full_scale < math.inf:
-        raise ParameterError(f"{target}: full scale is {full_scale!r}, expected a positive number")
-    if not np.abs(samples).max(initial=0.0) <= full_scale * largest_sample(bits):
-        raise ParameterError(
-            f"{target}: full scale {full_scale:g} would clip; the smallest that does not is "
-            f"{least_full_scale(samples, bits):g}"
-        )
-    channel = replace(pressure_channel(recording), name="pressure")
-    content = json.loads(
-        sidecar_text(replace(recording, samples=np.empty((1, 0)), channels=(channel,)))
-    )
-    if recording.calibrated and bits < 32:
-        content["channels"][0]["scale"] = full_scale
-    elif recording.calibrated:
-        # Floating-point samples whose channels are named would be read as pascals; these are
-        # fractions of full scale, and the file's description says what that is.
-        del content["calibrated"]
-        content["audio"] = content.pop("channels")[0] | {"scale": full_scale}
-    description = with_full_scale(full_scale) if recording.calibrated else ""
-    data = wav_bytes(samples / full_scale, rate, bits, description=description, dither=dither)
-    content["wav_crc32"] = f"{zlib.crc32(data):08x}"
-    text = json.dumps(content | dict(about or {}), indent=1) + "\n"
-    with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
-        wav.write_bytes(data)
-        sidecar.write_text(text, encoding="utf-8")
-    return target
-
-
-def audio_path(path: Path) -> Path:
-    """Return the path with the ending ``.wav``, added where it is missing.
-
-    Examples
-    --------
-    >>> audio_path(Path("run0.5")).name, audio_path(Path("run.WAV")).name
-    ('run0.5.wav', 'run.WAV')
-    """
-    return path if path.suffix.lower() == ".wav" else path.with_name(path.name + ".wav")

@@ -8,7 +8,7 @@ the filter's phase is linear, so that a slip stays a click.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from typing import Protocol
@@ -16,11 +16,15 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 
 FADE = 0.010
 """Half a Hann window at either end [s]."""
+
+GAP = 0.5
+"""Silence between two recordings in one file [s]."""
 
 LOWEST_HEARD = 40.0
 """Sampling rate below which no frequency is left that is heard [Hz]."""
@@ -210,3 +214,100 @@ def in_band(
     # Long enough for it to die out in; at its ends the sound is turned about them.
     padding = min(signal.size - 1, round(4.0 * rate / low))
     return np.asarray(sosfiltfilt(sections, signal - signal.mean(), padlen=padding))
+
+
+def heard(
+    recording: Recording | RecordingBlocks, band: tuple[float, float] | None = None
+) -> Recording:
+    """Return the first pressure channel of a recording as one of its own, in a band [Hz] alone.
+
+    Raises
+    ------
+    RecordingError
+        There is no pressure channel, or nothing to be heard.
+    ParameterError
+        A frequency is not below half the sampling rate.
+
+    Examples
+    --------
+    >>> from models.recording import Channel
+    >>> tones = np.sin(2 * np.pi * np.array([[100.0], [1000.0]]) * np.arange(48000) / 48e3).sum(0)
+    >>> both = Recording(tones[None], 48e3, (Channel("pressure"),))
+    >>> heard(both, (500.0, 2000.0)).notes
+    ('filtered: 500 to 2000 Hz, zero-phase; 3.0 dB below the whole sound',)
+    """
+    blocks = RecordingBlocks.of(recording)
+    channel = pressure_channel(blocks)
+    samples = blocks.track(blocks.channels.index(channel)).read(0, blocks.n_samples)
+    notes = getattr(recording, "notes", ())
+    if band is not None:
+        try:
+            kept = in_band(samples[0], blocks.rate, band)
+        except ParameterError as error:
+            raise ParameterError(f"{blocks.name}: {error}") from None
+        before, after = float(samples.std()), float(kept.std())
+        change = "silent"
+        if before > 0.0 and after > 0.0:
+            change = f"{20.0 * math.log10(before / after):.1f} dB below the whole sound"
+        low, high = band
+        notes = (*notes, f"filtered: {low:g} to {high:g} Hz, zero-phase; {change}")
+        samples = kept[np.newaxis]
+    return Recording(
+        samples, blocks.rate, (channel,), blocks.condition, blocks.calibrated, blocks.name, notes
+    )
+
+
+def joined(
+    recordings: Sequence[Recording], rate: int = 48000, *, gap: float = GAP, fade: float = FADE
+) -> tuple[NDArray[np.float64], list[tuple[float, float]]]:
+    """Put the sounds of recordings behind one another, at the same gain.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    rate : int
+        Sampling rate of the result [Hz].
+    gap : float
+        Silence between two of them [s].
+    fade : float
+        Length of the fades of each [s].
+
+    Returns
+    -------
+    samples : ndarray, shape (n_samples,)
+        As `audible` gives them.
+    times : list of tuple of float
+        Where each begins and ends [s].
+
+    Raises
+    ------
+    ParameterError
+        Some are calibrated and others are not.
+
+    Examples
+    --------
+    >>> from models.recording import Channel
+    >>> run = Recording(np.ones((1, 48)), 48e3, (Channel("pressure"),), name="A")
+    >>> samples, times = joined([run, run], gap=0.001)
+    >>> samples.size, times
+    (144, [(0.0, 0.001), (0.002, 0.003)])
+    """
+    refuse_mixed({one.calibrated: one.name for one in recordings}, "give its calibration")
+    pieces: list[NDArray[np.float64]] = []
+    times: list[tuple[float, float]] = []
+    start = 0
+    for recording in recordings:
+        sound = audible(recording, rate, fade=fade)
+        times.append((start / rate, (start + sound.size) / rate))
+        pieces += [sound, np.zeros(round(gap * rate))]
+        start += sound.size + pieces[-1].size
+    return np.concatenate(pieces[:-1]), times
+
+
+def refuse_mixed(known: Mapping[bool, str], remedy: str) -> None:
+    """Refuse one gain for sounds of which some are calibrated and others are not."""
+    if len(known) > 1:
+        raise ParameterError(
+            f"{known[True]} is calibrated and {known[False]} is not, so one gain cannot keep how "
+            f"loud they are to each other; {remedy}"
+        )

@@ -18,10 +18,10 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple, TextIO
+from typing import NamedTuple, TextIO
 
-if TYPE_CHECKING:
-    Cell = bool | int | float | str | None
+Cell = bool | int | float | str | None
+"""A value as every format of a table can hold it."""
 
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8"),

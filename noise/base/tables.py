@@ -22,21 +22,27 @@ from pathlib import Path
 from typing import Any
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError, not_installed
-from models.foreign_file import LARGEST_TEXT, ExcessError, check_inflation, parse_json, reading
+from models.foreign_file import LARGEST_TEXT, ExcessError, parse_json, reading
+from noise.base.binary_tables import (
+    cell_text,
+    finite,
+    parquet_lines,
+    sheet_lines,
+    sheet_names,
+    write_parquet,
+    write_workbook,
+)
 from noise.base.csv_table import (
     PLAIN,
+    Cell,
     csv_form,
     csv_lines,
     decimal_sign,
     decoded,
-    finite_or_fixed,
     write_csv,
 )
 from noise.base.files import atomic
 from noise.base.progress import readable
-
-Cell = bool | int | float | str | None
-
 
 TABLE_ENDINGS = (".csv", ".xlsx", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""
@@ -50,12 +56,6 @@ _OF_LABELS = "label_source"
 
 _LONGEST_LINE = 1 << 20
 """Characters of a line of JSON that are looked at for the columns."""
-
-_FEW_CELLS, _MOST_CELLS = 1_000_000, 20
-"""Cells that a workbook or Parquet file may hold: so many, and so many a byte."""
-
-_MOST_ROWS, _LONGEST_TEXT, _WIDEST = 1_048_576, 32_767, 48
-"""Of a sheet; of a cell; and of a column [characters]."""
 
 
 def table_endings(*more: str) -> str:
@@ -97,7 +97,7 @@ def check_table_path(path: str | Path | None, columns: Collection[str] = (_OF_LA
         return
     path = Path(path)
     _check_format(path)
-    if path.suffix.lower() == ".xlsx" and path.is_file() and (others := _sheet_names(path)[1:]):
+    if path.suffix.lower() == ".xlsx" and path.is_file() and (others := sheet_names(path)[1:]):
         raise ParameterError(
             f"{path}: has more sheets than that of the table ({', '.join(others)}), which would "
             "be lost; name another file"
@@ -163,13 +163,13 @@ def write_table(
     check_table_path(path, columns)
     with atomic(path) as temporary:
         if ending == ".parquet":
-            _write_parquet(temporary, columns, cells)
+            write_parquet(temporary, columns, cells)
         elif ending == ".xlsx":
-            _write_workbook(temporary, columns, cells, path.stem)
+            write_workbook(temporary, columns, cells, path.stem)
         elif ending == ".jsonl":
             with temporary.open("w", encoding="utf-8", newline="") as file:
                 for row in cells:
-                    named = dict(zip(columns, map(_finite, row), strict=True))
+                    named = dict(zip(columns, map(finite, row), strict=True))
                     file.write(json.dumps(named, ensure_ascii=False) + "\n")
         else:
             _write_csv(temporary, columns, cells, path)
@@ -227,7 +227,9 @@ def read_table(
                 return [], [parse_json(line) for line in file if line.strip()]
         lines, separator = _lines(path, names)
         meant = {name.casefold(): name for name in known}
-        header = [meant.get(name.strip().casefold(), name) for name in map(_text, next(lines, ()))]
+        header = [
+            meant.get(name.strip().casefold(), name) for name in map(cell_text, next(lines, ()))
+        ]
         return [name for name in header if name], _named(header, lines, numbers, separator)
 
 
@@ -235,7 +237,7 @@ def _lines(path: Path, names: Iterable[str] = ()) -> tuple[Iterator[Sequence[obj
     """Return names of columns and rows, and what stands between the cells of a CSV."""
     ending = path.suffix.lower()
     if ending != ".csv":
-        return (_parquet_lines(path) if ending == ".parquet" else _sheet_lines(path)), ""
+        return (parquet_lines(path) if ending == ".parquet" else sheet_lines(path)), ""
     text, encoding = decoded(path.read_bytes(), names)
     form = csv_form(text, encoding)
     return csv_lines(text, form), form.separator
@@ -254,12 +256,14 @@ def _named(
     unnamed = [place for place, name in enumerate(header) if not name]
     rows: list[dict[str, object]] = []
     for line in lines:
-        if all(_text(cell) == "" for cell in line):
+        if all(cell_text(cell) == "" for cell in line):
             continue
         beyond = [*(line[place] for place in unnamed if place < len(line)), *line[len(header) :]]
-        if any(_text(cell) for cell in beyond):
-            cell = next(filter(_text, beyond))
-            raise ExcessError(f"row {len(rows) + 1} has {_text(cell)!r} in a column without a name")
+        if any(cell_text(cell) for cell in beyond):
+            cell = next(filter(cell_text, beyond))
+            raise ExcessError(
+                f"row {len(rows) + 1} has {cell_text(cell)!r} in a column without a name"
+            )
         rows.append(
             {name: line[place] if place < len(line) else None for name, place in at.items()}
         )
@@ -303,7 +307,7 @@ def table_columns(path: Path) -> set[str]:
                 with path.open(encoding="utf-8-sig") as file:
                     first = parse_json(file.readline(_LONGEST_LINE) or "{}")
                 return set(first) if isinstance(first, dict) else set()
-            return set(map(_text, next(_lines(path)[0], ()))) - {""}
+            return set(map(cell_text, next(_lines(path)[0], ()))) - {""}
     except BushingNoiseError:
         return set()
 
@@ -352,15 +356,6 @@ def _cell(value: object) -> Cell:
     return None if isinstance(plain, float) and math.isnan(plain) else plain
 
 
-def _finite(value: Cell) -> Cell:
-    """Return a value as programs read it: an infinite number is none."""
-    return None if isinstance(value, float) and math.isinf(value) else value
-
-
-def _text(cell: object) -> str:
-    return "" if cell is None else str(cell).strip()
-
-
 def _write_csv(
     path: Path, columns: Sequence[str], cells: Iterable[Sequence[Cell]], there: Path
 ) -> None:
@@ -375,103 +370,3 @@ def _write_csv(
         form = form._replace(encoding="utf-8", head=f"\ufeff{form.head}")
         with path.open("w", encoding=form.encoding, newline="") as file:
             write_csv(file, columns, cells, form)
-
-
-def _parquet_lines(path: Path) -> Iterator[Sequence[object]]:
-    from pyarrow import parquet
-
-    with parquet.ParquetFile(path) as file:
-        yield file.schema_arrow.names
-        _check_size(path, file.metadata.num_rows * file.metadata.num_columns)
-        table = file.read()
-    yield from zip(*(column.to_pylist() for column in table.columns), strict=True)
-
-
-def _write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    import pyarrow as pa
-    from pyarrow import parquet
-
-    cells = [list(map(_finite, row)) for row in rows]
-    arrays = {}
-    for place, column in enumerate(columns):
-        values = [row[place] for row in cells]
-        try:
-            arrays[column] = pa.array(values)
-        except (pa.ArrowInvalid, pa.ArrowTypeError):  # texts and numbers in one column
-            arrays[column] = pa.array([None if one is None else str(one) for one in values])
-    parquet.write_table(pa.table(arrays), path)
-
-
-def _sheet_names(path: Path) -> list[str]:
-    from openpyxl import load_workbook
-
-    try:
-        with reading(path, "workbook"), path.open("rb") as file:
-            check_inflation(path)
-            return list(load_workbook(file, read_only=True).sheetnames)
-    except BushingNoiseError:  # whoever reads it says so
-        return []
-
-
-def _sheet_lines(path: Path) -> Iterator[Sequence[object]]:
-    """Yield the rows of the first sheet, from the first that is no comment."""
-    from openpyxl import load_workbook
-
-    check_inflation(path)
-    with path.open("rb") as file:
-        book = load_workbook(file, read_only=True, data_only=True)
-        cells, begun = 0, False
-        for line in book.worksheets[0].iter_rows(max_row=_MOST_ROWS, values_only=True):
-            cells += 1 + len(line)  # a sheet may claim to hold any number
-            _check_size(path, cells)
-            first = next(filter(None, map(_text, line)), "")
-            begun = begun or (bool(first) and not first.startswith("#"))
-            if begun:
-                yield line
-
-
-def _write_workbook(
-    path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]], name: str
-) -> None:
-    """Write one sheet: its header frozen, numbers as numbers, no text ever a formula."""
-    from openpyxl import Workbook
-    from openpyxl.cell import WriteOnlyCell
-    from openpyxl.styles import Font
-    from openpyxl.utils import get_column_letter
-
-    lines = [list(map(finite_or_fixed, columns, row)) for row in rows]
-    if len(lines) >= _MOST_ROWS:
-        raise ParameterError(
-            f"{len(lines)} rows are more than an Excel sheet has ({_MOST_ROWS}); name a .csv or "
-            ".parquet"
-        )
-    book = Workbook(write_only=True)
-    title = "".join("_" if letter in r"[]:*?/\'" else letter for letter in readable(name))[:31]
-    sheet = book.create_sheet(title or "table")
-    sheet.freeze_panes = "A2"
-    for place, column in enumerate(columns):
-        longest = max(len(str(cell)) for cell in (column, *(line[place] for line in lines[:200])))
-        width = min(longest, _WIDEST) + 2
-        sheet.column_dimensions[get_column_letter(place + 1)].width = width
-
-    def cell(value: Cell, *, bold: bool = False) -> Any:
-        of_text: Any = WriteOnlyCell(sheet)
-        of_text.value = value[:_LONGEST_TEXT] if isinstance(value, str) else value
-        if isinstance(value, str):
-            of_text.data_type = "s"  # what begins like a formula is none
-        if bold:
-            of_text.font = Font(bold=True)
-        return of_text
-
-    sheet.append([cell(column, bold=True) for column in columns])
-    for line in lines:
-        sheet.append([cell(value) if isinstance(value, str) else value for value in line])
-    if columns:
-        sheet.auto_filter.ref = f"A1:{get_column_letter(len(columns))}{len(lines) + 1}"
-    book.properties.creator = "bushing-noise"
-    book.save(path)
-
-
-def _check_size(path: Path, n_cells: int) -> None:
-    if n_cells > _FEW_CELLS + _MOST_CELLS * path.stat().st_size:
-        raise ExcessError(f"claims {n_cells} cells, more than a file of its size holds")

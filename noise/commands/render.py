@@ -134,7 +134,7 @@ class _File(NamedTuple):
     sources: list[Source]
 
     def recordings(self, band: tuple[float, float] | None) -> list[Recording]:
-        from noise.audio.render import heard
+        from noise.audio.sound import heard
 
         made = [source.recording() for source in self.sources]
         return made if band is None else [heard(one, band) for one in made]
@@ -156,7 +156,7 @@ def _folder(options: Namespace, sources: list[Source]) -> Path | None:
 
 
 def _files(options: Namespace, sources: list[Source], folder: Path | None) -> list[_File]:
-    from noise.audio.render import audio_path
+    from noise.audio.audio_file import audio_path
 
     if folder is not None:
         return [_File(one.name, audio_path(folder / one.name), [one]) for one in sources]

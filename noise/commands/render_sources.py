@@ -129,7 +129,7 @@ def _recorded(path: Path, full_scale: PascalPerFullScale | None) -> list[Source]
 
 
 def _read(path: Path, full_scale: PascalPerFullScale | None, _: str) -> Recording:
-    from noise.audio.render import heard
+    from noise.audio.sound import heard
     from noise.recordings.files import open_blocks
 
     with open_blocks(path, full_scale=full_scale) as recording:
@@ -167,7 +167,7 @@ def _source(name: str, options: Namespace) -> Source:
 
     @cache
     def simulated(name: str) -> Recording:
-        from noise.audio.render import heard
+        from noise.audio.sound import heard
         from sim.run import simulate
 
         run = with_notes(simulate(**arguments), notes, arguments, name)

@@ -161,7 +161,7 @@ def _write_in_blocks(path: Path, arguments: Mapping[str, Any], notes: tuple[str,
 
 def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any]) -> None:
     """Write the table, and tell its last row."""
-    from noise.audio.sound_power_table import COLUMNS, sound_power_rows
+    from noise.audio.assessment import POWER_COLUMNS, sound_power_rows
     from sim.analysis.sound_power import motion_sound_power
 
     if arguments["rig"].measured:
@@ -172,7 +172,7 @@ def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any])
         arguments["rig"], simulated.motion, **{name: arguments[name] for name in given}
     )
     rows = sound_power_rows(power)
-    write_table(path, COLUMNS, rows)
+    write_table(path, POWER_COLUMNS, rows)
     total = rows[-1]["power_level_dba"]
     if total is None:
         say("the plate radiates no sound")

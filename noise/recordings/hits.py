@@ -22,6 +22,7 @@ from models.units import CHANNEL_UNITS, quantity_of_unit
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.files import MIN_SAMPLES
 from noise.recordings.formats import check_rate, formats
+from noise.recordings.formats.time_axis import even_step, whole_rate
 
 RESPONSES = ("acceleration", "pressure")
 """Kinds of channel taken for the response where none is named, in this order."""
@@ -207,14 +208,12 @@ def _in_order(path: Path, table: ForeignTable) -> tuple[NDArray[np.float64], str
 
 
 def _rate(path: Path, time: NDArray[np.float64]) -> float:
-    step = (time[-1] - time[0]) / (time.size - 1)
-    even = time[0] + step * np.arange(time.size)
-    if not step > 0.0 or np.abs(time - even).max() > _UNEVEN * step:
+    try:
+        _, step = even_step(time.size, lambda first, last: time[first:last], _UNEVEN)
+    except RecordingError:
         raise RecordingError(
             f"{path}: time does not rise evenly; expected time in s, force, response in this order"
-        )
-    rate = float(1.0 / step)
-    whole = round(rate)
-    rate = float(whole) if abs(whole - rate) <= _ROUNDING * rate else rate
+        ) from None
+    rate = whole_rate(1.0 / step, _ROUNDING)
     check_rate(rate, str(path))
     return rate

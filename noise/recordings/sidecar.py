@@ -114,7 +114,8 @@ def sidecar_of(recording: Path) -> Sidecar:
     path = find_sidecar(recording)
     if path is None:
         return Sidecar()
-    sidecar = read_sidecar(path)
+    with reading(path, "sidecar", error=RecordingError, largest=LARGEST_JSON):
+        sidecar = parse_sidecar(path.read_bytes(), str(path))
     if sidecar.checksum and sidecar.checksum != _checksum(recording):
         raise RecordingError(
             f"{path}: was written with other samples than those of {recording.name} (an "
@@ -140,32 +141,6 @@ def _checksum_of(recording: Path, _changed: int, _size: int) -> str:
         while block := file.read(1 << 20):
             found = zlib.crc32(block, found)
     return f"{found:08x}"
-
-
-def read_sidecar(path: Path) -> Sidecar:
-    """Read and check a sidecar.
-
-    Parameters
-    ----------
-    path : Path
-        The JSON file itself.
-
-    Raises
-    ------
-    RecordingError
-        It cannot be read, or says something that cannot be used.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = Path(folder) / "run07.json"
-    ...     _ = path.write_text('{"conditions": {"interference_mm": 0.25}}')
-    ...     read_sidecar(path).condition.interference
-    0.00025
-    """
-    with reading(path, "sidecar", error=RecordingError, largest=LARGEST_JSON):
-        return parse_sidecar(path.read_bytes(), str(path))
 
 
 def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:

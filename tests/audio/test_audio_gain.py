@@ -18,7 +18,8 @@ from noise.audio.gain import (
     matched_full_scale,
     true_peak,
 )
-from noise.audio.render import FullScale, joined, measure, render
+from noise.audio.render import FullScale, measure, render
+from noise.audio.sound import joined
 from noise.recordings.wav import wav_bytes
 
 RATE = 48000

@@ -9,8 +9,7 @@ from hypothesis import given, settings, strategies as st
 
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.audio.render import heard
-from noise.audio.sound import in_band
+from noise.audio.sound import heard, in_band
 from noise.cli import main
 from noise.recordings import write_recording
 

@@ -20,7 +20,7 @@ from noise.recordings.sidecar import (
     Sidecar,
     find_sidecar,
     parse_sidecar,
-    read_sidecar,
+    sidecar_of,
     sidecar_text,
 )
 
@@ -173,7 +173,7 @@ def test_the_sidecar_is_the_file_of_the_same_stem(tmp_path):
     sidecar = tmp_path / "a_FS129.9dB(PK).00.json"
     sidecar.write_bytes(b"\xef\xbb\xbf" + b'{"calibrated": false}')
     assert find_sidecar(recording) == sidecar
-    assert read_sidecar(sidecar).calibrated is False
+    assert sidecar_of(recording).calibrated is False
 
 
 finite = st.floats(allow_nan=False, allow_infinity=False, width=32)

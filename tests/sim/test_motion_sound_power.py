@@ -13,7 +13,7 @@ from models.radiation.sound_power import radiated_spectrum
 from models.rig_file import load_material_rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import plate_modes
-from noise.audio.sound_power_table import COLUMNS, TOTAL, sound_power_rows
+from noise.audio.assessment import POWER_COLUMNS, TOTAL, sound_power_rows
 from sim.analysis.sound_power import motion_sound_power
 from sim.run import simulate
 
@@ -82,7 +82,7 @@ def test_twice_the_torque_is_four_times_the_power():
 def test_a_constant_torque_is_silent_and_its_table_is_empty():
     power = power_of(2214.0, lambda time: np.full(time.size, 8.0))
     rows = sound_power_rows(power)
-    assert {row[name] for row in rows for name in COLUMNS[1:]} == {None}
+    assert {row[name] for row in rows for name in POWER_COLUMNS[1:]} == {None}
 
 
 @pytest.mark.slow

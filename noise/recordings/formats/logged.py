@@ -21,37 +21,25 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.condition import Condition
+from models.condition import CONDITION, Condition
 from models.errors import RecordingError
 from models.recording import Channel
-from models.units import CHANNEL_UNITS, kind_of_unit, known_units, quantity_of_unit, split_unit
+from models.units import CHANNEL_UNITS, kind_of_unit, known_units, split_unit
 from noise.recordings.formats import RawRecording, check_rate
+from noise.recordings.formats.time_axis import SAME_RATE, Axis, Read, start_and_rate
 from noise.recordings.sidecar import Sidecar, parse_sidecar, sidecar_of
 
-NOT_STATED = None
-"""Of what a format, or a file, does not state."""
-
-CONDITIONS = (
-    "speed_rad_s", "interference_mm", "support_stiffness_Nm_rad", "material", "temperature_C",
-)  # fmt: skip
+CONDITIONS = (*(one.key for one in CONDITION.values()), "material")
 """Properties of a file that are its operating condition, named as in a sidecar."""
 
-Read = Callable[[int, int], NDArray[np.generic]]
-"""From first and last sample (exclusive) to these samples."""
-
-SAME_RATE = 1e-6
-"""Share by which rates may differ that are the same."""
-
-_JITTER = 0.05  # of a step, by which time stamps may miss their place
 _OFF = 0.1  # of a step, by which a channel may miss the samples of another
-_CONTRADICTION = 1e-3  # share by which two statements of one rate differ
 _COMMON = 0.5  # share of the longest channel that all must have in common
 _NAMED = 3  # of the channels that are left out, so many are named
 _UNCLEAR = {
@@ -63,30 +51,7 @@ _UNCLEAR = {
 PACKING = ("scale_factor", "add_offset", *_UNCLEAR)
 """Attributes by which numbers are packed, or may be."""
 
-_BLOCK = 1 << 16  # samples a channel
 _OURS = re.compile(rf"({'|'.join(CHANNEL_UNITS)})(_([2-9]|[1-9]\d{{1,3}}))?")
-_TIME = re.compile(r"time|zeit|temps|tiempo|tempo|timestamps?|t", re.IGNORECASE)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Axis:
-    """What the samples of a channel stand over, as one place in a file states it.
-
-    Parameters
-    ----------
-    start, step : float or None
-        Of the first sample, and from one to the next [unit].
-    times : callable or None
-        Reads the place of each sample [unit].
-    unit, quantity : str or None
-        Such as "ms" and "time".
-    """
-
-    start: float | None
-    step: float | None
-    times: Read | None
-    unit: str | None
-    quantity: str | None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -188,6 +153,7 @@ def describe_channels(
 
     Examples
     --------
+    >>> from noise.recordings.formats.time_axis import NOT_STATED, Axis
     >>> x = np.ones(400)
     >>> clock = Axis(start=0.0, step=0.02, times=NOT_STATED, unit="ms", quantity=NOT_STATED)
     >>> arm = LoggedChannel(
@@ -206,7 +172,7 @@ def describe_channels(
     for channel in logged:
         try:
             kind, value = _kind(channel)
-            start, rate = _time(channel, steps)
+            start, rate = start_and_rate(channel.axes, channel.n_samples, steps)
         except RecordingError as error:
             # Of many channels those that ought to be ours are named first.
             ours = bool(kind_of_unit(_unit(channel)) or _own_name(channel.name))
@@ -266,105 +232,6 @@ def describe_channels(
 def _listed(reasons: Sequence[str]) -> str:
     more = len(reasons) - _NAMED
     return "; ".join(reasons[:_NAMED]) + (f"; and {more} more" if more > 0 else "")
-
-
-# --- the axis ------------------------------------------------------------------------------------
-
-
-def is_time(name: str, unit: str | None) -> bool:
-    """Whether a channel holds time stamps, by its name and its unit.
-
-    Examples
-    --------
-    >>> is_time("Time (ms)", NOT_STATED), is_time("t", "s"), is_time("T", "degC")
-    (True, True, False)
-    """
-    named = _TIME.fullmatch(split_unit(name)[0].strip()) is not None
-    return named and (not unit or _time_unit(unit) is not None)
-
-
-def _time_unit(unit: str) -> float | None:
-    """Value of a unit of time [s], as in "ms" or "hours since 2024-01-01"; None for any other."""
-    found = quantity_of_unit(unit.partition(" since ")[0])
-    return found[1] if found is not None and found[0] == "time" else None
-
-
-def _time(
-    channel: LoggedChannel, steps: dict[Axis, tuple[float, float]]
-) -> tuple[float | None, float]:
-    """Start [s] and sampling rate [Hz] of a channel; time stamps that many share are read once."""
-    start, rates = None, []
-    for axis in channel.axes:
-        second = _second(axis)
-        if axis.times is not NOT_STATED:
-            if axis not in steps:
-                steps[axis] = even_step(channel.n_samples, axis.times)
-            first, step = steps[axis]
-            start = second * first
-            rates.append(1.0 / (second * step))
-        elif axis.start is not NOT_STATED:
-            start = second * axis.start
-        if axis.step is not NOT_STATED:
-            if not 0.0 < axis.step < math.inf:
-                raise RecordingError(f"has a step in time of {axis.step:g}")
-            rates.append(1.0 / (second * axis.step))
-    if not rates:
-        raise RecordingError("states no sampling rate")
-    if max(rates) - min(rates) > _CONTRADICTION * max(rates):
-        both = " and ".join(f"{rate:.6g}" for rate in rates)
-        raise RecordingError(f"states two sampling rates, {both} Hz")
-    return start, _whole(rates[0])
-
-
-def _second(axis: Axis) -> float:
-    """Value of the unit of an axis [s]; refused where it is no time."""
-    if axis.unit:
-        second = _time_unit(axis.unit)
-        if second is None:
-            over = f"{axis.quantity} " if axis.quantity else ""
-            raise RecordingError(f"stands over {over}in {axis.unit!r}, expected time")
-        return second
-    words = re.split(r"[\W_]+", axis.quantity or "time")
-    if not any(_TIME.fullmatch(word) for word in words):
-        raise RecordingError(f"stands over {axis.quantity!r}, expected time")
-    return 1.0
-
-
-def even_step(n: int, read: Read) -> tuple[float, float]:
-    """Return the first of `n` time stamps and their step, which must be even.
-
-    Raises
-    ------
-    RecordingError
-        A time stamp misses its place by more than a twentieth of a step.
-
-    Examples
-    --------
-    >>> t = 0.5 + np.arange(480) / 48e3
-    >>> start, step = even_step(480, lambda a, b: t[a:b])
-    >>> start, round(1.0 / step)
-    (0.5, 48000)
-    """
-    if n < 2:
-        raise RecordingError(f"has {n} time stamps, expected at least 2")
-    start, end = float(read(0, 1)[0]), float(read(n - 1, n)[0])
-    step = (end - start) / (n - 1)
-    if not 0.0 < step < math.inf:
-        raise RecordingError("has a time that does not rise")
-    for begin in range(0, n, _BLOCK):
-        stop = min(n, begin + _BLOCK)
-        place = start + step * np.arange(begin, stop)
-        off = np.abs(np.asarray(read(begin, stop), dtype=np.float64) - place)
-        if not off.max() <= _JITTER * step:
-            at = begin + int(np.argmax(~(off <= _JITTER * step)))
-            raise RecordingError(f"has a time that does not rise evenly (sample {at})")
-    return start, step
-
-
-def _whole(rate: float) -> float:
-    """Bring a sampling rate to a whole number: loggers store the step with few digits."""
-    whole = float(round(rate))
-    return whole if abs(whole - rate) < SAME_RATE * rate else rate
 
 
 def _together(path: Path, rows: list[Row], notes: list[str]) -> tuple[list[Row], int]:
@@ -463,7 +330,7 @@ def factor_and_offset(packing: Mapping[str, object] | None) -> tuple[float, floa
 
     Examples
     --------
-    >>> factor_and_offset({"scale_factor": 0.5}), factor_and_offset(NOT_STATED)
+    >>> factor_and_offset({"scale_factor": 0.5}), factor_and_offset(None)
     ((0.5, 0.0), (1.0, 0.0))
     """
     stated = _numbers(packing)

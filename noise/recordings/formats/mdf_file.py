@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from models.errors import RecordingError
 from noise.recordings.formats import Format
-from noise.recordings.formats.logged import NOT_STATED, Axis, LoggedChannel
+from noise.recordings.formats.logged import LoggedChannel
+from noise.recordings.formats.time_axis import NOT_STATED, Axis
 
 _HEAD = 64  # bytes before the first block
 _UNFINISHED = slice(60, 64)  # of the head: flags of what was still to be done

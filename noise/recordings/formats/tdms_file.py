@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from models.errors import RecordingError
 from models.units import split_unit
 from noise.recordings.formats import Format
-from noise.recordings.formats.logged import NOT_STATED, Axis, LoggedChannel, Read, is_time
+from noise.recordings.formats.logged import LoggedChannel
+from noise.recordings.formats.time_axis import NOT_STATED, Axis, Read, is_time
 
 _BIG_ENDIAN = 1 << 6  # in the table of contents, which itself is little-endian
 _VERSIONS = (4712, 4713)

@@ -16,7 +16,8 @@ from models.transfer_functions.uff import (
     read_uff_functions,
 )  # fmt: skip
 from noise.recordings.formats import Format
-from noise.recordings.formats.logged import NOT_STATED, Axis, LoggedChannel
+from noise.recordings.formats.logged import LoggedChannel
+from noise.recordings.formats.time_axis import NOT_STATED, Axis
 
 
 @contextmanager

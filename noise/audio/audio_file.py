@@ -1,0 +1,118 @@
+"""Sound as a WAV file for listening, with a sidecar; both whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import math
+import zlib
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.errors import ParameterError
+from models.recording import Recording
+from noise.audio.gain import least_full_scale
+from noise.audio.sound import pressure_channel
+from noise.base.files import atomic
+from noise.recordings.sidecar import sidecar_text
+from noise.recordings.wav import BITS, largest_sample, wav_bytes, with_full_scale
+
+
+def write_audio(
+    path: str | Path,
+    samples: NDArray[np.float64],
+    rate: int,
+    *,
+    full_scale: float,
+    bits: int = 24,
+    recording: Recording,
+    dither: np.random.Generator | None = None,
+    about: Mapping[str, object] | None = None,
+) -> Path:
+    """Write sound as a WAV file for listening, with a sidecar; both whole or not at all.
+
+    Parameters
+    ----------
+    path : path-like
+        ``squeal`` and ``squeal.wav`` are the same; parent folders are made.
+    samples : ndarray, shape (n_samples,)
+        As `noise.audio.sound.audible` gives them.
+    rate : int
+        Sampling rate [Hz].
+    full_scale : float
+        Value of a full-scale sample, in the unit of `samples`.
+    bits : int
+        One of `noise.recordings.wav.BITS`; 32 is floating point, full scale being 1.
+    recording : Recording
+        Where the sound comes from: its condition, microphone and calibration go into the sidecar.
+    dither : numpy.random.Generator, optional
+        Of the dither of integer samples; none by default.
+    about : mapping of str to object, optional
+        What else the sidecar says, as JSON has it.
+
+    Returns
+    -------
+    Path
+        The WAV file. `noise.recordings.read_recording` reads it back calibrated, if the recording
+        was.
+
+    Raises
+    ------
+    ParameterError
+        A sample would clip, or the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from models.recording import Channel
+    >>> from noise.recordings import read_recording
+    >>> run = Recording(np.full((1, 480), 0.25), 48e3, (Channel("pressure"),))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_audio(Path(folder) / "tone", run["pressure"], 48000, full_scale=2.0,
+    ...                        recording=run)
+    ...     float(read_recording(path)["pressure"].max())
+    0.25
+    """
+    target = audio_path(Path(path))
+    if bits not in BITS:
+        raise ParameterError(f"{target}: samples of {bits} bit; there are 16, 24 and 32 (float)")
+    if not 0.0 < full_scale < math.inf:
+        raise ParameterError(f"{target}: full scale is {full_scale!r}, expected a positive number")
+    if not np.abs(samples).max(initial=0.0) <= full_scale * largest_sample(bits):
+        raise ParameterError(
+            f"{target}: full scale {full_scale:g} would clip; the smallest that does not is "
+            f"{least_full_scale(samples, bits):g}"
+        )
+    channel = replace(pressure_channel(recording), name="pressure")
+    content = json.loads(
+        sidecar_text(replace(recording, samples=np.empty((1, 0)), channels=(channel,)))
+    )
+    if recording.calibrated and bits < 32:
+        content["channels"][0]["scale"] = full_scale
+    elif recording.calibrated:
+        # Floating-point samples whose channels are named would be read as pascals; these are
+        # fractions of full scale, and the file's description says what that is.
+        del content["calibrated"]
+        content["audio"] = content.pop("channels")[0] | {"scale": full_scale}
+    description = with_full_scale(full_scale) if recording.calibrated else ""
+    data = wav_bytes(samples / full_scale, rate, bits, description=description, dither=dither)
+    content["wav_crc32"] = f"{zlib.crc32(data):08x}"
+    text = json.dumps(content | dict(about or {}), indent=1) + "\n"
+    with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
+        wav.write_bytes(data)
+        sidecar.write_text(text, encoding="utf-8")
+    return target
+
+
+def audio_path(path: Path) -> Path:
+    """Return the path with the ending ``.wav``, added where it is missing.
+
+    Examples
+    --------
+    >>> audio_path(Path("run0.5")).name, audio_path(Path("run.WAV")).name
+    ('run0.5.wav', 'run.WAV')
+    """
+    return path if path.suffix.lower() == ".wav" else path.with_name(path.name + ".wav")

@@ -1,0 +1,164 @@
+"""The axis of a logger's channel: time, in any unit of it, in even steps.
+
+A spectrum, samples over an angle, and time stamps that do not rise evenly are no recordings.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.errors import RecordingError
+from models.units import quantity_of_unit, split_unit
+
+NOT_STATED = None
+"""Of what a format, or a file, does not state."""
+
+Read = Callable[[int, int], NDArray[np.generic]]
+"""From first and last sample (exclusive) to these samples."""
+
+SAME_RATE = 1e-6
+"""Share by which rates may differ that are the same."""
+
+_JITTER = 0.05  # of a step, by which time stamps may miss their place
+_CONTRADICTION = 1e-3  # share by which two statements of one rate differ
+_BLOCK = 1 << 16  # samples a channel
+_TIME = re.compile(r"time|zeit|temps|tiempo|tempo|timestamps?|t", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Axis:
+    """What the samples of a channel stand over, as one place in a file states it.
+
+    Parameters
+    ----------
+    start, step : float or None
+        Of the first sample, and from one to the next [unit].
+    times : callable or None
+        Reads the place of each sample [unit].
+    unit, quantity : str or None
+        Such as "ms" and "time".
+    """
+
+    start: float | None
+    step: float | None
+    times: Read | None
+    unit: str | None
+    quantity: str | None
+
+
+def is_time(name: str, unit: str | None) -> bool:
+    """Whether a channel holds time stamps, by its name and its unit.
+
+    Examples
+    --------
+    >>> is_time("Time (ms)", NOT_STATED), is_time("t", "s"), is_time("T", "degC")
+    (True, True, False)
+    """
+    named = _TIME.fullmatch(split_unit(name)[0].strip()) is not None
+    return named and (not unit or _time_unit(unit) is not None)
+
+
+def _time_unit(unit: str) -> float | None:
+    """Value of a unit of time [s], as in "ms" or "hours since 2024-01-01"; None for any other."""
+    found = quantity_of_unit(unit.partition(" since ")[0])
+    return found[1] if found is not None and found[0] == "time" else None
+
+
+def start_and_rate(
+    axes: Sequence[Axis], n_samples: int, steps: dict[Axis, tuple[float, float]]
+) -> tuple[float | None, float]:
+    """Return start [s] and sampling rate [Hz] of a channel, of which several axes are stated.
+
+    Parameters
+    ----------
+    axes : sequence of Axis
+        The last one that states a start has the last word on it.
+    n_samples : int
+    steps : dict
+        Filled with the time stamps that were read, which many channels may share.
+
+    Raises
+    ------
+    RecordingError
+        They do not stand over time, state no rate or contradict each other.
+    """
+    start, rates = None, []
+    for axis in axes:
+        second = _second(axis)
+        if axis.times is not NOT_STATED:
+            if axis not in steps:
+                steps[axis] = even_step(n_samples, axis.times)
+            first, step = steps[axis]
+            start = second * first
+            rates.append(1.0 / (second * step))
+        elif axis.start is not NOT_STATED:
+            start = second * axis.start
+        if axis.step is not NOT_STATED:
+            if not 0.0 < axis.step < math.inf:
+                raise RecordingError(f"has a step in time of {axis.step:g}")
+            rates.append(1.0 / (second * axis.step))
+    if not rates:
+        raise RecordingError("states no sampling rate")
+    if max(rates) - min(rates) > _CONTRADICTION * max(rates):
+        both = " and ".join(f"{rate:.6g}" for rate in rates)
+        raise RecordingError(f"states two sampling rates, {both} Hz")
+    return start, whole_rate(rates[0])
+
+
+def _second(axis: Axis) -> float:
+    """Value of the unit of an axis [s]; refused where it is no time."""
+    if axis.unit:
+        second = _time_unit(axis.unit)
+        if second is None:
+            over = f"{axis.quantity} " if axis.quantity else ""
+            raise RecordingError(f"stands over {over}in {axis.unit!r}, expected time")
+        return second
+    words = re.split(r"[\W_]+", axis.quantity or "time")
+    if not any(_TIME.fullmatch(word) for word in words):
+        raise RecordingError(f"stands over {axis.quantity!r}, expected time")
+    return 1.0
+
+
+def even_step(n: int, read: Read, jitter: float = _JITTER) -> tuple[float, float]:
+    """Return the first of `n` time stamps and their step, which must be even.
+
+    Each may miss its place by a share `jitter` of a step.
+
+    Raises
+    ------
+    RecordingError
+        A time stamp misses its place by more.
+
+    Examples
+    --------
+    >>> t = 0.5 + np.arange(480) / 48e3
+    >>> start, step = even_step(480, lambda a, b: t[a:b])
+    >>> start, round(1.0 / step)
+    (0.5, 48000)
+    """
+    if n < 2:
+        raise RecordingError(f"has {n} time stamps, expected at least 2")
+    start, end = float(read(0, 1)[0]), float(read(n - 1, n)[0])
+    step = (end - start) / (n - 1)
+    if not 0.0 < step < math.inf:
+        raise RecordingError("has a time that does not rise")
+    for begin in range(0, n, _BLOCK):
+        stop = min(n, begin + _BLOCK)
+        place = start + step * np.arange(begin, stop)
+        off = np.abs(np.asarray(read(begin, stop), dtype=np.float64) - place)
+        if not off.max() <= jitter * step:
+            at = begin + int(np.argmax(~(off <= jitter * step)))
+            raise RecordingError(f"has a time that does not rise evenly (sample {at})")
+    return start, step
+
+
+def whole_rate(rate: float, same: float = SAME_RATE) -> float:
+    """Bring a sampling rate [Hz] to a whole number: loggers store the step with few digits."""
+    whole = float(round(rate))
+    return whole if abs(whole - rate) <= same * rate else rate
