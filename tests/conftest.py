@@ -33,12 +33,3 @@ def browser():
 
     with chromium() as started:
         yield started
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _cache_of_its_own(tmp_path_factory):
-    """Neither use what the user's diagnoses have kept, nor leave anything there."""
-    with pytest.MonkeyPatch.context() as patch:
-        folder = tmp_path_factory.mktemp("cache")
-        patch.setattr("noise.diagnosis.causes.local_cases._folder", lambda: folder)
-        yield

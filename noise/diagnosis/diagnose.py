@@ -26,7 +26,7 @@ from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import Posterior, load_posterior
 from noise.diagnosis.causes.stage_nulls import StageNulls, load_stage_nulls
 from noise.diagnosis.causes.unseen import channel_costs
-from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
+from noise.diagnosis.causes.verdict import UNUSUAL, equivalent_pairs, next_measurement
 from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, StageFinding
 from noise.diagnosis.first_answer import FirstAnswer, first_answer
 from noise.diagnosis.gap.distance import Gap
@@ -120,23 +120,14 @@ def diagnose_case(
         answer = _stated(case, first, first, nulls, library)
         answer = replace(answer, notes=(*answer.notes, *_unasked(case, library)))
     else:
-        from noise.diagnosis.causes.hypotheses import local_answer
         from noise.diagnosis.fit.fits import add_fits  # loads the classifier; no part of a quick
-        from noise.diagnosis.fit.judge import judge, untold  # answer
+        from noise.diagnosis.fit.judge import fit_notes, judge  # answer
 
-        told = ""
-        if first.verdict:
-            tell("simulating this rig with each likely cause")
-            hypotheses, told = local_answer(
-                case, first.table, posterior, first.hypotheses,
-                library=library, seed=seed,
-            )  # fmt: skip
-            first = first.with_hypotheses(hypotheses)
         stages = stage_findings(first.table, nulls, first.flat)
         judged = judge(case, first, stages, library, seed, tell)
         answer = _stated(case, first, judged, nulls, library)
         answer = add_fits(case, answer, judged, posterior, seed, tell)
-        answer = replace(answer, notes=(*answer.notes, *filter(None, [told, *untold(judged)])))
+        answer = replace(answer, notes=(*answer.notes, *fit_notes(judged)))
     return replace(answer, seconds=time.perf_counter() - started)
 
 
@@ -171,7 +162,9 @@ def _stated(
         ),
         probabilities=probabilities,
         parameters={},
-        next_measurement=next_measurement(verdict, probabilities, _kinds(case), place.stage),
+        next_measurement=next_measurement(
+            verdict, probabilities, _kinds(case), place.stage, differs=first.gap.p_value <= UNUSUAL
+        ),
         held_out=(),
         gap=first.gap.distance,
         floor=1.0,

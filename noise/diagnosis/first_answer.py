@@ -30,7 +30,9 @@ from numpy.typing import NDArray
 from models.rig import Rig
 from models.sensors import Sensors
 from models.units import CHANNEL_UNITS
+from noise.diagnosis.causes.bench_nulls import as_seldom, null_log_odds
 from noise.diagnosis.causes.joint import Hypothesis, joint_probabilities, marginals, with_none
+from noise.diagnosis.causes.posterior import CAUSES, Posterior
 from noise.diagnosis.causes.unseen import unseen_causes
 from noise.diagnosis.causes.verdict import UNUSUAL, likeliest, needs_explaining
 from noise.diagnosis.evidence.bands import USABLE
@@ -47,7 +49,6 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from models.rig import Rig
     from noise.diagnosis.case import Case
-    from noise.diagnosis.causes.posterior import Posterior
 
 _KINDS = ("torque", "acceleration", "pressure")
 
@@ -365,16 +366,21 @@ def first_answer(
     again = {name: p for name, p in probabilities.items() if name in known}
     probabilities |= dict.fromkeys(again, 0.0)
     probabilities["parameters"] = max([probabilities["parameters"], *again.values()])
-    unlearned = (
-        *unlearned_sensors(case.rig.sensors, case.recordings),
-        *poor_responses(case.rig, case.recordings),
-    )
+    rough = unlearned_sensors(case.rig.sensors, case.recordings)
+    poor = poor_responses(case.rig, case.recordings)
+    chance = gap.p_value if poor else None
+    if rough:
+        tell("simulating this bench without a cause")
+        nulls = null_log_odds(case, table, posterior, library, seed)
+        none = CAUSES.index("none")
+        own = as_seldom(posterior.log_odds(table)[none], nulls[:, none], len(case.recordings))
+        chance = max(own, chance or 0.0)
     hypotheses = joint_probabilities(probabilities)
-    if unlearned and gap.p_value > UNUSUAL:
+    if chance is not None and chance > UNUSUAL:
         hypotheses = with_none(hypotheses, _WITHIN_REPEATS)
     flat = flat_channels(case.recordings, lambda one: comparison.simulated(Model(), one, seed))
-    answer = FirstAnswer(comparison, gap, {}, probabilities, (), (), unlearned, flat)
+    answer = FirstAnswer(comparison, gap, {}, probabilities, (), (), (*rough, *poor), flat)
     answer = answer.with_hypotheses(hypotheses)
-    if not needs_explaining(probabilities["none"], posterior.alarm, gap, learned=not unlearned):
+    if not needs_explaining(probabilities["none"], posterior.alarm, gap, chance):
         return replace(answer, verdict=())
     return replace(answer, suspected=tuple(n for n, p in again.items() if p >= _SUSPECTED))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
@@ -20,16 +22,23 @@ def test_an_interval_holds_its_share(before, kept):
     assert (share is None) == (interval is None)
     if share is not None:
         low, high = interval
-        assert low <= 1.0 <= high
-        assert share <= high
+        assert low <= share <= high <= 1.0
 
 
 def test_more_recordings_make_an_interval_narrower():
     few, many = (
-        closed_interval(Scores(np.full(n, 25.0), np.full(n, 20.0), np.full(n, 1.0)))
+        closed_interval(Scores(np.full(n, 25.0), np.full(n, 20.0), np.full(n, 9.0)))
         for n in (1, 16)
     )
-    assert many[1] - many[0] < few[1] - few[0]
+    assert 0.0 < many[1] - many[0] < few[1] - few[0]
+
+
+def test_both_ends_of_an_interval_follow_what_the_fit_leaves():
+    before = np.full(3, 36.0)
+    ends = [closed_interval(Scores(before, before, np.full(3, left))) for left in (30.0, 16.0, 4.0)]
+    assert sorted(ends) == ends
+    for (_, high), (low, _) in itertools.pairwise(ends):
+        assert high < low
 
 
 def test_nothing_closes_where_there_is_no_gap():

@@ -29,7 +29,7 @@ RUN = Recording(
 )
 LINES = np.arange(40.0, 10_001.0, 5.0)
 PLAIN = load_material_rig("fluorocarbon-thesis")
-NONE = Scatter(0.0, 0.0, 0.0)
+NONE = Scatter(0.0, 0.0, 0.0, 0.0)
 
 
 def _poorly_measured():

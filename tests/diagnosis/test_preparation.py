@@ -12,7 +12,7 @@ from models.sensors import Sensor, Sensors
 from noise.diagnosis.evidence.path_summary import path_summary
 from noise.diagnosis.preparation.measured_speed import at_measured_speeds
 from noise.diagnosis.preparation.prepare import converter_step, prepared, with_seen_sensors
-from noise.diagnosis.preparation.sensor_noise import LOUDEST, estimated_noise
+from noise.diagnosis.preparation.sensor_noise import estimated_noise
 from noise.diagnosis.preparation.settled_part import settled_parts, shortest, start_of
 from sim.acquisition import Acquisition
 from tests.helpers.small_rigs import RIG
@@ -183,17 +183,20 @@ def test_noise_is_found_between_slips(times, step, slips, kind):
     assert found == pytest.approx(level, rel=0.25)
 
 
-def test_a_hiss_that_is_no_sensors_stays_a_difference():
-    quiet, loud = USUAL["pressure"], 2.0 * LOUDEST * USUAL["pressure"]
+def test_a_sensor_is_as_noisy_as_all_recordings_are_unless_the_rig_file_states_less():
+    quiet, loud = USUAL["pressure"], 16.0 * USUAL["pressure"]
     one_loud = [
         through(np.zeros(24_000), "pressure", x, seed=i) for i, x in enumerate((loud, quiet, quiet))
     ]
     seen, _ = with_seen_sensors(RIG, one_loud)
     assert seen.sensors.of("pressure").noise == pytest.approx(quiet, rel=0.15)
     all_loud = [through(np.zeros(24_000), "pressure", loud, seed=i) for i in range(3)]
-    seen, notes = with_seen_sensors(RIG, all_loud)
-    assert seen.sensors.of("pressure").noise is None
-    assert any("taken for a difference" in note for note in notes)
+    seen, _ = with_seen_sensors(RIG, all_loud)
+    assert seen.sensors.of("pressure").noise == pytest.approx(loud, rel=0.15)
+    stated = replace(RIG, sensors=Sensors({"pressure": Sensor(noise=quiet)}))
+    seen, (note,) = with_seen_sensors(stated, all_loud)
+    assert seen.sensors.of("pressure").noise == quiet
+    assert "more white noise than [sensors] of the rig file states: pressure" in note
 
 
 def test_what_a_rig_file_states_of_a_sensor_stays():

@@ -177,6 +177,7 @@ def test_whole_conditions_are_held_out(at):
         assert sorted(fitted + held) == list(range(len(at)))
         assert not {at[i] for i in fitted} & {at[i] for i in held}
         assert len({at[i] for i in held}) <= 0.5 * len(set(at))
+        assert any(abs(at[i].speed or 0.0) == max(abs(c.speed or 0.0) for c in at) for i in held)
 
 
 def test_repeats_are_halved_and_one_recording_is_both():

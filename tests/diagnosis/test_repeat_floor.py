@@ -25,7 +25,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*is missing from the simulated"
 
 RIG = load_material_rig("fluorocarbon-thesis")
 AT = [Condition(speed=v, interference=0.279e-3, support_stiffness=3745.0) for v in (1.0, 2.5)]
-EXACT = Scatter(0.0, 0.0, 0.0)
+EXACT = Scatter(0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.fixture(scope="module")

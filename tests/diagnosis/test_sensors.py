@@ -39,7 +39,7 @@ bits = 9
 antialias_hz = 4000
 """
 
-EXACT = Scatter(0.0, 0.0, 0.0)
+EXACT = Scatter(0.0, 0.0, 0.0, 0.0)
 CONDITIONS = ((1.0, 2214.0), (2.0, 2214.0), (1.0, 3745.0))
 
 
@@ -168,10 +168,11 @@ def test_good_sensors_are_those_the_causes_were_learned_with():
 
 
 def test_models_that_have_not_seen_such_sensors_raise_no_alarm_alone():
-    likely, unlikely = (Gap(1.0, p, np.ones(1)) for p in (0.4, 0.003))
-    assert needs_explaining(0.001, 0.05, likely)
-    assert not needs_explaining(0.001, 0.05, likely, learned=False)
-    assert needs_explaining(0.001, 0.05, unlikely, learned=False)
+    small, large = Gap(1.0, 0.4, np.ones(1)), Gap(6.0, 0.001, np.ones(1))
+    assert needs_explaining(0.001, 0.05, small)
+    assert not needs_explaining(0.001, 0.05, small, chance=0.4)
+    assert needs_explaining(0.001, 0.05, small, chance=0.003)
+    assert needs_explaining(0.001, 0.05, large, chance=0.4)
 
 
 def test_volts_are_identified_and_diagnosed_as_torque_and_angle(tmp_path):

@@ -189,7 +189,8 @@ def _phase(name: str) -> str:
 
 def _conditions(table: CaseTable, nulls: StageNulls, strongest: NDArray[np.int64]) -> str:
     """In which conditions it shows, if only fast or only slow ones."""
-    speed = np.array([c.speed for c in table.conditions], dtype=np.float64)
+    turned = np.array([c.speed for c in table.conditions], dtype=np.float64)
+    speed = np.abs(turned)
     if np.unique(speed).size < 3:
         return "all"
     z = np.abs(deviations(table, nulls.names, nulls.scale)[:, strongest])
@@ -200,8 +201,10 @@ def _conditions(table: CaseTable, nulls: StageNulls, strongest: NDArray[np.int64
     fast, slow = size[speed >= middle].mean(), size[speed < middle]
     if not slow.size or not np.isfinite(fast):
         return "all"
+    ways = ((">=", "<"), ("<=", ">"))[int(np.all(turned <= 0.0))]
+    limit = -middle if np.all(turned <= 0.0) else middle
     if fast > 2.0 * slow.mean():
-        return f"speed_rad_s >= {middle:g}"
+        return f"speed_rad_s {ways[0]} {limit:g}"
     if slow.mean() > 2.0 * fast:
-        return f"speed_rad_s < {middle:g}"
+        return f"speed_rad_s {ways[1]} {limit:g}"
     return "all"

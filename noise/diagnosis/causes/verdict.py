@@ -21,12 +21,12 @@ RARE = 0.002
 """Probability of a gap between repeats that is hardly ever met; assumed."""
 
 UNUSUAL = 0.05
-"""Probability of a gap between repeats that has to be small for an alarm of models that have not
-seen such sensors; the customary level, assumed."""
+"""Probability without a cause of what has to be seldom for an alarm of models that have not seen
+such sensors or responses; the customary level, assumed."""
 
 
 def needs_explaining(
-    none: float, alarm: float, gap: Gap | None = None, *, learned: bool = True
+    none: float, alarm: float, gap: Gap | None = None, chance: float | None = None
 ) -> bool:
     """Tell whether there is something to explain.
 
@@ -38,18 +38,24 @@ def needs_explaining(
         Below which there is something to explain [-].
     gap : Gap, optional
         Against simulated repeats; one that these hardly ever have needs explaining as well.
-    learned : bool
-        Whether the probabilities were learned with sensors such as these; where they were not,
-        there is nothing to explain unless the gap says so.
+    chance : float, optional
+        How often such an answer is given on this bench where nothing is the matter [-]; asked for
+        where the probabilities were not learned with such a bench.
 
     Examples
     --------
     >>> needs_explaining(0.6, 0.05), needs_explaining(0.01, 0.05)
     (False, True)
+    >>> needs_explaining(0.01, 0.05, chance=0.3)
+    False
     """
-    if gap is not None and not learned and gap.p_value > UNUSUAL:
-        return False
-    return none < alarm or (gap is not None and _is_beyond(gap))
+    if gap is not None and _is_beyond(gap):
+        return True
+    return none < alarm and (chance is None or chance <= UNUSUAL)
+
+
+NAMED = 0.5
+"""Probability from which on an effect is in a verdict [-]: it is likelier than not."""
 
 
 def likeliest(
@@ -58,7 +64,8 @@ def likeliest(
     """Return the causes of the likeliest hypothesis, the likeliest of them first.
 
     An effect that many sets share is likelier than any of these: it is weighed with all of them
-    against the hypotheses that are no set of effects.
+    against the hypotheses that are no set of effects. What is less likely than not is not named,
+    and where that is so of all of it, the cause is unknown.
 
     Parameters
     ----------
@@ -69,10 +76,12 @@ def likeliest(
 
     Examples
     --------
-    >>> likely = {frozenset({"clipping", "mains_hum"}): 0.3, frozenset({"mains_hum"}): 0.25,
-    ...           frozenset({"unknown"}): 0.45}
+    >>> likely = {frozenset({"clipping", "mains_hum"}): 0.5, frozenset({"mains_hum"}): 0.15,
+    ...           frozenset({"unknown"}): 0.35}
     >>> likeliest(likely), likeliest(likely, [frozenset({"mains_hum"})])
     (('mains_hum', 'clipping'), ('mains_hum',))
+    >>> likeliest({frozenset({"clipping"}): 0.4, frozenset({"mains_hum"}): 0.35})
+    ('unknown',)
     """
     single = marginals(hypotheses)
     alone = [h for h in hypotheses if not h or h in ALONE]
@@ -82,8 +91,9 @@ def likeliest(
     if best is None or (
         apart is not None and hypotheses[apart] >= max(single[name] for name in best)
     ):
-        best = apart
-    return tuple(sorted(best or (), key=lambda name: (-single[name], name)))
+        return tuple(apart or ())
+    named = [name for name in best if single[name] >= NAMED]
+    return tuple(sorted(named, key=lambda name: (-single[name], name))) or ("unknown",)
 
 
 def _is_beyond(gap: Gap) -> bool:
@@ -192,6 +202,8 @@ def next_measurement(
     probabilities: Mapping[str, float],
     kinds: Collection[str],
     stage: str = "friction",
+    *,
+    differs: bool = False,
 ) -> str:
     """Say what would make the answer surer.
 
@@ -204,6 +216,8 @@ def next_measurement(
         Of the channels that were recorded.
     stage : str
         That differs most.
+    differs : bool
+        Whether the gap is larger than that of repeats.
 
     Examples
     --------
@@ -211,6 +225,8 @@ def next_measurement(
     'record the torque between bushing and clamp beside what there is'
     """
     if not verdict:
+        if differs:
+            return "each condition once more: what its two recordings share is no chance"
         return "none: repeats of one condition differ as much as recording and simulation do"
     for kind, what in _MISSING.items():
         if kind not in kinds:

@@ -53,7 +53,7 @@ class CaseTable:
         [unit of the number].
     conditions : tuple of Condition
     rate : float
-        Sampling rate of the recordings [Hz].
+        Sampling rate of the recordings, the middle one where they differ [Hz].
     bench : mapping of str to float
         As `noise.diagnosis.evidence.bench_context.bench_context` gives it.
     """
@@ -150,10 +150,11 @@ class NominalNumbers:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
         key = (*condition_key(recording), recording.channel_names)
         if key not in self._kept:
+            # Conditions share no repeat's rig: it would err in all of them alike.
+            seeds = np.random.SeedSequence([self.seed, len(self._kept)]).generate_state(N_REPEATS)
             repeats = nominal_repeats(
-                recording, self.rig, self.transfer_functions,
-                [self.seed + i for i in range(N_REPEATS)], library=self.library,
-            )  # fmt: skip
+                recording, self.rig, self.transfer_functions, seeds.tolist(), library=self.library
+            )
             transfer_functions = self.transfer_functions.whole(recording)
             alike = [same_channels(repeat, recording) for repeat in repeats]
             self._kept[key] = _moments([summary(x, self.rig, transfer_functions) for x in alike])
@@ -202,7 +203,7 @@ def case_table(
         table(means),
         table(spreads),
         tuple(recording.condition for recording in recordings),
-        recordings[0].rate,
+        float(np.median([recording.rate for recording in recordings])),
         bench_context(rig, recordings),
     )
 
@@ -225,21 +226,44 @@ def same_channels(repeat: Recording, recording: Recording) -> Recording:
     )
 
 
-def _moments(repeats: list[Numbers]) -> tuple[Numbers, Numbers]:
+def _moments(repeats: Sequence[Numbers]) -> tuple[Numbers, Numbers]:
     names = list(dict.fromkeys(name for numbers in repeats for name in numbers))
     values = np.array([[numbers.get(name, math.nan) for name in names] for numbers in repeats])
+    mean, spread = column_moments(values)
+    known = np.isfinite(mean)
+    names = [name for name, it_is in zip(names, known.tolist(), strict=True) if it_is]
+    return (
+        dict(zip(names, mean[known].tolist(), strict=True)),
+        dict(zip(names, spread[known].tolist(), strict=True)),
+    )
+
+
+def column_moments(
+    values: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return mean and standard deviation of each column over what is known of it.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n, n_columns)
+        [unit of each column]
+
+    Returns
+    -------
+    mean, spread : ndarray, shape (n_columns,)
+        NaN where nothing is known, and of the spread where one row alone is [unit of the column].
+
+    Examples
+    --------
+    >>> column_moments(np.array([[1.0, np.nan], [3.0, 5.0]]))
+    (array([2., 5.]), array([1.41421356,        nan]))
+    """
     known = np.isfinite(values)
     count = known.sum(axis=0)
     mean = np.where(known, values, 0.0).sum(axis=0) / np.maximum(count, 1)
     square = np.where(known, values - mean, 0.0) ** 2
     spread = np.sqrt(square.sum(axis=0) / np.maximum(count - 1, 1))
-    spread[count < 2] = math.nan
-    found = count > 0
-    names = [name for name, it_is in zip(names, found.tolist(), strict=True) if it_is]
-    return (
-        dict(zip(names, mean[found].tolist(), strict=True)),
-        dict(zip(names, spread[found].tolist(), strict=True)),
-    )
+    return np.where(count > 0, mean, math.nan), np.where(count > 1, spread, math.nan)
 
 
 def _named(kind: str, numbers: Numbers) -> Numbers:

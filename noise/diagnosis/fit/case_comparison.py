@@ -302,7 +302,7 @@ class CaseComparison:
             key = (repr(model), condition_key(template))
             if key not in self._numbers:
                 run = same_channels(
-                    self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0)), template
+                    self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0, 0.0)), template
                 )
                 found = summary(run, self.rig, self.runs.transfer_functions.whole(template))
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])

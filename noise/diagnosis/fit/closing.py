@@ -1,10 +1,8 @@
 """Share of a gap that a fit closes, with its interval.
 
-A share is that of what can be closed: a gap of one floor is none. Beside the recordings, of which
-there are few, three things make it unsure. What is left after the fit is as unsure as the floor is;
-so is the floor itself, below which a model of the right form comes as often as it stays above; and
-the forms that were tried are not the one that the rig has, which would close the rest. So the
-interval is for what the effect closes, of which the fit has shown a part.
+A share is that of what can be closed: a gap of one floor is none, and closing all of it is 1.
+Beside the recordings, of which there are few, what is left after the fit is unsure, by as much as
+one recording's distance is where nothing is left to explain.
 """
 
 from __future__ import annotations
@@ -14,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from noise.base import SURE_90
 from noise.diagnosis.gap.distance import closed_fraction
 
 CLOSABLE = 0.5
@@ -100,10 +97,11 @@ def closed_interval(scores: Scores, seed: int = 0) -> tuple[float, float] | None
     --------
     >>> sure = Scores(np.full(4, 400.0), np.full(4, 300.0), np.ones(4))
     >>> low, high = closed_interval(sure)
-    >>> 0.95 < low < 1.0 < high < 1.05
+    >>> 0.95 < low < high == 1.0
     True
     """
-    if closed_share(scores.before, scores.after) is None:
+    share = closed_share(scores.before, scores.after)
+    if share is None:
         return None
     rng = np.random.default_rng(seed)
     n = len(scores.before)
@@ -115,7 +113,5 @@ def closed_interval(scores: Scores, seed: int = 0) -> tuple[float, float] | None
             gap = rms(scores.before)
         left = rms(scores.after[place]) + _FLOOR_SPREAD / np.sqrt(n) * rng.standard_normal()
         found.append(closed_fraction(gap, max(left, 1.0)))
-    low = float(np.percentile(found, _LEVEL[0]))
-    gap = rms(scores.before)
-    lowest = 1.0 - SURE_90 * _FLOOR_SPREAD / float(np.sqrt(n))
-    return min(low, 1.0), closed_fraction(gap, lowest)
+    low, high = np.percentile(found, _LEVEL).tolist()
+    return min(low, share), max(high, share)

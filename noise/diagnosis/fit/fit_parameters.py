@@ -71,19 +71,24 @@ class Fitted:
 def split(conditions: Sequence[Condition]) -> tuple[list[int], list[int]]:
     """Which recordings are fitted to, and which are held out: whole conditions, about two fifths.
 
+    The fastest is among those held out, and the slowest where there are several: what closes there
+    is foretold and not only filled in.
+
     Examples
     --------
     >>> from models.condition import Condition
     >>> at = [Condition(speed=v) for v in (1.0, 2.0, 2.0, 3.0, 4.0)]
     >>> split(at)
-    ([0, 3, 4], [1, 2])
+    ([0, 1, 2, 3], [4])
     """
     different = list(dict.fromkeys(conditions))
     if len(different) == 1:
         half = max(1, len(conditions) // 2)
         return list(range(half)), list(range(half, len(conditions))) or [0]
-    in_order = sorted(different, key=lambda c: (c.interference or 0.0, c.speed or 0.0))
-    out = set(in_order[1::3] if len(in_order) < 5 else in_order[1::5] + in_order[3::5])
+    by_speed = sorted(different, key=lambda c: (abs(c.speed or 0.0), c.interference or 0.0))
+    out = set(by_speed[::-2][: max(1, 2 * len(different) // 5)])
+    if len(out) > 1:  # the slowest in the place of the slowest of these
+        out = {*by_speed[::-2][: len(out) - 1], by_speed[0]}
     held = [i for i, c in enumerate(conditions) if c in out]
     fitted = [i for i, c in enumerate(conditions) if c not in out]
     return fitted, held

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from models.errors import ParameterError
 from noise.diagnosis.causes.joint import Hypothesis, marginals, normalised
 from noise.diagnosis.causes.verdict import ALONE
 from noise.diagnosis.findings import SHOWN_IN, StageFinding
@@ -68,6 +69,8 @@ class CaseFits:
         Squared distance of each recording from the rig as its file has it, and with parameters
         alone, in squared floors [-].
     of : mapping of frozenset of str to HypothesisFit
+    impossible : mapping of frozenset of str to str
+        Sets of effects that cannot be simulated, and why.
     odds : ClosingOdds
         That say what fits tell.
     """
@@ -79,6 +82,7 @@ class CaseFits:
     before: NDArray[np.float64]
     recalibrated: NDArray[np.float64]
     of: Mapping[Hypothesis, HypothesisFit]
+    impossible: Mapping[Hypothesis, str] = field(default_factory=dict)
     odds: ClosingOdds = field(default_factory=load_closing_odds)
 
     def held_out(self, squared: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -113,23 +117,19 @@ class CaseFits:
         parts = [fit.squared for names, fit in self.of.items() if names < hypothesis]
         return min((self.of[hypothesis].squared, *parts), key=rms)
 
-    def is_mute(self, hypothesis: Hypothesis) -> bool:
-        """Tell whether effects change nothing: the rig file has no way for them to be heard."""
-        return np.array_equal(self.of[hypothesis].squared, self.recalibrated)
-
     def closes(self, hypothesis: Hypothesis) -> bool:
-        """Tell whether a fit closes some of what parameters leave, or there is nothing to close.
+        """Tell whether a fit closes some of what parameters leave of recordings held out.
 
-        Either on recordings that no fit has seen, or on all of them: held-out ones are few, and an
-        effect may show in the others alone. Effects that the model cannot let be heard are not
-        judged by their fit.
+        Where these have nothing to close, all recordings tell, in which an effect may still show.
+        What changes nothing closes nothing.
         """
-        if self.is_mute(hypothesis):
-            return True
         after = self.least(hypothesis)
-        looks = ((self.recalibrated, after), map(self.held_out, (self.recalibrated, after)))
-        open_ones = [(x, y) for x, y in (map(rms, look) for look in looks) if x >= 1.0 + CLOSABLE]
-        return not open_ones or max(closed_of(*both) for both in open_ones) >= self.odds.enough
+        looks = [tuple(map(self.held_out, (self.recalibrated, after))), (self.recalibrated, after)]
+        looks = [(rms(left), rms(now)) for left, now in looks]
+        left, now = next((one for one in looks if one[0] >= 1.0 + CLOSABLE), looks[1])
+        if left < 1.0 + CLOSABLE:
+            return now < left
+        return closed_of(left, now) >= self.odds.enough
 
 
 def fit_hypotheses(
@@ -162,10 +162,13 @@ def fit_hypotheses(
         tell(f"fitting {' and '.join(names)}")
         parts = [fit for fewer, fit in fits.of.items() if fewer < hypothesis]
         part = max(parts, key=lambda fit: (len(fit.names), -rms(fit.squared)), default=None)
-        fitted = fit_effect(
-            fits.comparison, fits.fitted_to, names, fits.alone.model, seed,
-            begun=None if part is None else part.fitted.model,
-        )  # fmt: skip
+        try:
+            fitted = fit_effect(
+                fits.comparison, fits.fitted_to, names, fits.alone.model, seed,
+                begun=None if part is None else part.fitted.model,
+            )  # fmt: skip
+        except ParameterError as error:
+            return replace(fits, impossible={**fits.impossible, hypothesis: str(error)})
         after = fits.comparison.squared(fitted.model, range(len(fits.before)))
         # A model that breaks down on recordings that it has not seen closes nothing there.
         after = np.where(np.isfinite(after), after, np.maximum(fits.before, fits.recalibrated))
@@ -175,7 +178,8 @@ def fit_hypotheses(
         fits = with_fit(fits, frozenset({name}))
     for _ in range(_MOST):
         now = updated(hypotheses, fits, stages)
-        unfitted = {h: p for h, p in now.items() if h not in fits.of and h not in _NO_FIT}
+        done = {*fits.of, *fits.impossible, *_NO_FIT}
+        unfitted = {h: p for h, p in now.items() if h not in done}
         next_one = max(unfitted, key=lambda hypothesis: unfitted[hypothesis], default=frozenset())
         if sum(unfitted.values()) < 1.0 - _ENOUGH or unfitted[next_one] < _LIKELY:
             break
@@ -237,7 +241,7 @@ def updated(
             return odds.of_none(gap)
         if hypothesis == {"parameters"}:
             return odds.of_parameters(gap, left)
-        if hypothesis == {"unknown"} or (hypothesis in fits.of and fits.is_mute(hypothesis)):
+        if hypothesis == {"unknown"}:
             return 0.0
         if hypothesis not in gaps:  # more beside what closes can close no more than that leaves
             fewer = [other for other in gaps if other < hypothesis]

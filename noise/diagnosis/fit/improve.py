@@ -347,15 +347,19 @@ def improved_rig(
                 yield _SIMPLER, one
 
     for batch in ([alone, *others[:1]], *([one] for one in others[1:])):
-        tried = [(rms(comparison.squared(one.model, held)) / ease, one.model)
-                 for ease, one in offered(batch)]  # fmt: skip
-        tried.sort(key=lambda entry: entry[0])
-        again = []
-        for _, model in tried[:_AGAIN]:
-            with suppress(ParameterError):  # it breaks down in one of its repeats
+        tried: list[tuple[float, Model]] = []
+        with suppress(ParameterError):  # none of it can be simulated
+            tried += [
+                (rms(comparison.squared(one.model, fitted_to)) / ease, one.model)
+                for ease, one in offered(batch)
+            ]
+        # Those held out choose none: what they are off by would be too small.
+        for _, model in sorted(tried, key=lambda entry: entry[0])[:_AGAIN]:
+            try:
                 own, fitted = fit_again(comparison, fitted_to, model)
-                again.append((rms(own.squared(fitted.model, held)), own, fitted))
-        for after, own, fitted in sorted(again, key=lambda entry: entry[0]):
+            except ParameterError:  # it breaks down in one of its repeats
+                continue
+            after = rms(own.squared(fitted.model, held))
             made = _made(case, comparison, fitted.model) if after <= CLOSED else None
             if made is None:
                 continue

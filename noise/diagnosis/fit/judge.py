@@ -114,8 +114,8 @@ def _with_unseen(
     )
 
 
-def untold(judged: Judged) -> list[str]:
-    """Say what probabilities are given, and of what is named without its fit telling anything.
+def fit_notes(judged: Judged) -> list[str]:
+    """Say what probabilities are given, and what could not be fitted.
 
     Parameters
     ----------
@@ -126,16 +126,16 @@ def untold(judged: Judged) -> list[str]:
     list of str
         One line each.
     """
-    fits, named = judged.fits, frozenset(judged.verdict)
     found = []
     if judged.among:
         found.append(
             "among the causes that the program brings there is nothing to explain: the "
             f"probabilities are of {joined(judged.among)} and of no gap, as if there were no other"
         )
-    if fits is not None and named in fits.of and fits.is_mute(named):
-        found.append(
-            f"the model of the rig file has no way for {' and '.join(judged.verdict)} to be heard: "
-            "it is named by the signs of it alone, and no fit has confirmed it"
-        )
+    if judged.fits is not None:
+        found += [
+            f"{' and '.join(sorted(names))} was not fitted, since no model of it can be simulated: "
+            f"{why}"
+            for names, why in judged.fits.impossible.items()
+        ]
     return found

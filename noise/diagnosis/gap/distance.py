@@ -9,7 +9,9 @@ once: 1.0 is the distance at which there is nothing to explain.
 Whether a gap could be chance is asked by exchange: a recording that is a repeat might as well have
 been any of the others. Each in turn takes its place, in every condition on its own, and the share
 of exchanges that lie as far out is the p-value, whatever the distribution and however few the
-repeats (Phipson & Smyth 2010, Stat. Appl. Genet. Mol. Biol. 9, 39).
+repeats (Phipson & Smyth 2010, Stat. Appl. Genet. Mol. Biol. 9, 39). Of a few repeats of one
+condition there are few exchanges; what lies farther out than all of them is as seldom as the tail
+of their distances says.
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import t as students_t
 
 from noise.diagnosis.gap.signature import GROUPS, KINDS, group_of
 
@@ -109,9 +112,13 @@ class Reference:
         float
             In squared floors [-].
         """
+        return _squared(deviation) / self.unit
+
+    @property
+    def unit(self) -> float:
+        """Mean squared distance of repeats, in which distances are given [-]."""
         # one repeat in a hundred falls into another regime, and must not set the unit
-        usual = np.minimum(self.null, _UNUSUAL * np.median(self.null))
-        return _squared(deviation) / float(np.mean(usual))
+        return float(np.mean(np.minimum(self.null, _UNUSUAL * np.median(self.null))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,16 +212,35 @@ def gap_of(
     """
     squared = np.array([r.squared(s) for s, r in zip(signatures, references, strict=True)])
     rng = np.random.default_rng(seed)
-    statistic, draws = 0.0, np.zeros(n_draws)
+    statistic, draws, farthest = 0.0, np.zeros(n_draws), True
     for shared in {id(r): r for r in references}.values():
         own = [s for s, r in zip(signatures, references, strict=True) if r is shared]
         exchanged = _exchanged(np.array(own), shared.repeats, rng)
         statistic += exchanged[0]
         draws += rng.choice(exchanged, n_draws)
+        farthest = farthest and exchanged[0] >= exchanged.max()
     # ties, the case itself among them, count as being as far out
     as_far = int(np.sum(draws >= statistic - 1e-9 * abs(statistic)))
     p_value = (1.0 + as_far) / (n_draws + 1.0)
+    if farthest:  # no exchange lies farther out, so that their number alone would set the value
+        p_value = min(p_value, max(_tail(squared, references), 1.0 / (n_draws + 1.0)))
     return Gap(float(np.sqrt(np.mean(squared))), p_value, np.sqrt(squared))
+
+
+def _tail(squared: NDArray[np.float64], references: Sequence[Reference]) -> float:
+    """Probability of so large distances by the scatter of those that the repeats have [-].
+
+    Distances of repeats are about log-normal; recordings of a condition share its error.
+    """
+    away, variance, freedom = 0.0, 0.0, math.inf
+    for shared in {id(r): r for r in references}.values():
+        own = np.array([0.5 * math.log(x) for x, r in zip(squared, references, strict=True)
+                        if r is shared])  # fmt: skip
+        null = 0.5 * np.log(shared.null / shared.unit)
+        away += float(np.sum(own - null.mean()))
+        variance += own.size**2 * float(null.var(ddof=1)) * (1.0 + 1.0 / null.size)
+        freedom = min(freedom, null.size - 1.0)
+    return float(students_t.sf(away / math.sqrt(variance + 1e-12), freedom))
 
 
 def with_least_scatter(

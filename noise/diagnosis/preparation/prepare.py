@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from models.sensors import Sensor
 from models.units import CHANNEL_UNITS
 from noise.diagnosis.preparation.measured_speed import at_measured_speeds
-from noise.diagnosis.preparation.sensor_noise import LOUDEST, estimated_noise
+from noise.diagnosis.preparation.sensor_noise import estimated_noise
 from noise.diagnosis.preparation.settled_part import settled_parts
 from sim.acquisition import Acquisition, decimate
 
@@ -109,6 +109,9 @@ def _step(x: NDArray[np.float64]) -> float:
     return 0.0
 
 
+_EXCEEDED = 1.5
+"""Noise over that which is stated, from which the recordings have more [-]; assumed."""
+
 _BITS = 24
 """Of the converter that a step is written as; its range is never reached."""
 
@@ -149,21 +152,24 @@ def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, t
         if not sensor.step and (step := converter_step(recordings, kind)):
             sensor = _in_steps(sensor, step)
             steps.append(f"{kind} {step:.2g} {unit}")
-        if sensor.noise is None:
-            level = estimated_noise(recordings, kind, sensor.step)
-            if level is None:
-                untold.append(kind)
-            elif level > LOUDEST * usual[kind] and not rig.sensors.noise_from_recordings:
-                louder.append(f"{kind} {level:.2g} {unit}")
-            else:
-                sensor = replace(sensor, noise=level)
-                told.append(f"{kind} {level:.2g} {unit}")
+        level = estimated_noise(recordings, kind, sensor.step)
+        if sensor.noise is not None:
+            if level is not None and level > _EXCEEDED * math.hypot(
+                sensor.noise, 0.3 * sensor.step
+            ):
+                louder.append(f"{kind} {level:.2g} {unit} (stated {sensor.noise:.2g})")
+        elif level is None:
+            untold.append(kind)
+        else:
+            sensor = replace(sensor, noise=level)
+            told.append(f"{kind} {level:.2g} {unit}")
         found[kind] = sensor
     notes = []
     if told:
         notes.append(
             f"noise of the sensors (white, RMS), by the recordings: {', '.join(told)}; a hiss of "
-            "the room that is in all recordings counts as theirs"
+            "the room that is in all recordings counts as theirs, unless [sensors] of the rig file "
+            "states less"
         )
     if steps:
         notes.append(f"steps of the converter, by the recordings: {', '.join(steps)}")
@@ -174,10 +180,7 @@ def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, t
             "the rig file can replace"
         )
     if louder:
-        notes.append(
-            f"more white noise than usual sensors have, taken for a difference from the rig file: "
-            f"{', '.join(louder)}; if it is the sensors' own, state it under [sensors]"
-        )
+        notes.append(f"more white noise than [sensors] of the rig file states: {', '.join(louder)}")
     return replace(rig, sensors=replace(rig.sensors, by_kind=found)), tuple(notes)
 
 

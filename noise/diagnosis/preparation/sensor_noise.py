@@ -4,9 +4,10 @@ A recording has no silence, but high above what the rig sounds at there is littl
 for a few milliseconds between slips: of all short segments the quietest, in the quietest bands, in
 the quietest recordings. What bands and conditions share there is white and the sensor's.
 
-What is given up: hiss that fills all recordings alike and is no louder than a poor sensor's counts
-as the sensor's, so that white background noise is missed up to `LOUDEST` times the noise of good
-sensors. Louder, coloured, and louder in some recordings than in others it is no sensor's, and stays
+A sensor is not equally noisy in all recordings, so that its noise is the median of theirs.
+
+What is given up: white noise that fills all recordings alike counts as the sensor's, however loud.
+Coloured noise, and such as is louder in some recordings than in others, is no sensor's, and stays
 what the simulation lacks. A noise well below the step of the converter cannot be told, and changes
 little there.
 """
@@ -28,11 +29,6 @@ if TYPE_CHECKING:
     from models.recording import Recording
 
 
-LOUDEST = 8.0
-"""Noise over that of the good sensors of `sim.acquisition`, beyond which it is no sensor's [-]; for
-a torque about three times the rounding of the thesis's converter."""
-
-
 _LENGTH = 128
 """Of a segment [samples]; a few milliseconds; assumed."""
 
@@ -49,9 +45,10 @@ the squares of their correlations."""
 _FEWEST = 20
 """Segments to tell it from; assumed."""
 
-_ALIKE, _ALIKE_CONDITIONS = 1.5, 1.8
-"""White noise is the floor of two bands, and of two conditions where there are two, since repeats
-sound alike: so many times the power of the lower at most [-]; assumed."""
+_ALIKE, _ALIKE_RECORDINGS = 1.5, 2.5
+"""White noise is the floor of two bands, and of recordings of two conditions where there are two,
+since repeats sound alike: so many times the power of the lower at most [-]; assumed. From one
+recording to the next the noise of a sensor may be half as large again."""
 
 _ABOVE_STEP = 0.4
 """Of a converter's step, below which white noise cannot be told from its rounding [-]; assumed."""
@@ -83,19 +80,19 @@ def estimated_noise(recordings: Sequence[Recording], kind: str, step: float = 0.
     >>> round(estimated_noise([run], "torque"), 3)
     0.02
     """
-    floors: dict[Condition, list[float]] = {}
+    floors: list[tuple[float, Condition]] = []
     for recording in recordings:
         row = recording.first(kind)
         found = None if row is None else _floors(recording.samples[row], recording.rate)
         if found is not None:
             lower, higher = found
             white = higher <= _ALIKE * lower
-            power = lower + higher if white else np.inf
-            floors.setdefault(recording.condition, []).append(power)
-    levels = np.sort([min(of_condition) for of_condition in floors.values()])[:2]
-    if not levels.size or not levels[-1] <= _ALIKE_CONDITIONS * levels[0] < np.inf:
+            floors.append((0.5 * (lower + higher) if white else np.inf, recording.condition))
+    quietest = min((power for power, _ in floors), default=np.inf)
+    alike = [(power, at) for power, at in floors if power <= _ALIKE_RECORDINGS * quietest < np.inf]
+    if len({at for _, at in alike}) < min(len({at for _, at in floors}), 2) or not alike:
         return None
-    level = float(np.sqrt(0.5 * levels.mean()))
+    level = float(np.sqrt(np.median([power for power, _ in alike])))
     if level < _ABOVE_STEP * step:
         return None
     return float(np.sqrt(max(level**2 - step**2 / 12.0, 0.0)))

@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-_EXACT = Scatter(0.0, 0.0, 0.0)
+_EXACT = Scatter(0.0, 0.0, 0.0, 0.0)
 
 _COARSE = 2e-5
 """Error of a step of runs without scatter [-]: they are compared with each other; assumed."""

@@ -45,11 +45,14 @@ class Scatter:
         Of the clamp's inertia, the support's stiffness and the speed; assumed [-].
     gain : float
         Of the sensors' sensitivities; assumed [-].
+    noise : float
+        Of the sensors' noise, where it is known; assumed [-].
     """
 
     bushing: float = 0.02
     structure: float = 0.004
     gain: float = 0.01
+    noise: float = 0.1
 
     def structure_factor(self, rng: np.random.Generator) -> float:
         """Draw by what a value of the structure differs in one run [-]."""
@@ -288,7 +291,7 @@ def record(
     Recording
     """
     scatter = scatter or Scatter()
-    acquisition = Acquisition(rate=rate).over(sensors or Sensors())
+    acquisition = Acquisition(rate=rate).over(_scattered(sensors or Sensors(), scatter, rng))
     rows = []
     for name in CHANNELS:
         sensor = acquisition.sensors.of(name)
@@ -296,3 +299,16 @@ def record(
         gain = 1.0 if name == "angle" else 1.0 + scatter.gain * rng.normal()
         rows.append(digitise(gain * x, name, acquisition, rng))
     return Recording(np.stack(rows), rate, tuple(Channel(name) for name in CHANNELS), condition)
+
+
+def _scattered(sensors: Sensors, scatter: Scatter, rng: np.random.Generator) -> Sensors:
+    """Return sensors as noisy as one run finds them."""
+    factors = np.exp(scatter.noise * rng.spawn(1)[0].standard_normal(len(CHANNELS))).tolist()
+    factor = dict(zip(CHANNELS, factors, strict=True))
+    by_kind = {
+        kind: replace(sensor, noise=sensor.noise * factor.get(kind, 1.0))
+        if sensor.noise
+        else sensor
+        for kind, sensor in sensors.by_kind.items()
+    }
+    return replace(sensors, by_kind=by_kind)

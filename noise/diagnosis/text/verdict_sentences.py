@@ -10,6 +10,7 @@ import math
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.findings import SHOWN_IN, SURE
+from noise.diagnosis.text.agreement_sentences import AGREES
 from noise.diagnosis.text.found import PHASES, finding_of, parameter_name, stage_of_effect
 from noise.diagnosis.text.words import cause_of, chance, frequency, joined, p_number, percent
 
@@ -48,7 +49,7 @@ def headline(diagnosis: Diagnosis) -> str:
     if diagnosis.bench:
         return "Not this rig as it is described"
     if not diagnosis.verdict:
-        return "No gap"
+        return "No cause to name" if differs(diagnosis) else "No gap"
     if not is_named(diagnosis):
         return f"Something differs{_in_stage(diagnosis)}"
     if diagnosis.verdict == ("unknown",):
@@ -129,8 +130,25 @@ def _in_stage(diagnosis: Diagnosis) -> str:
     return f" in {place.stage}" if place is not None and place.p_value <= SURE else ""
 
 
+def differs(diagnosis: Diagnosis) -> bool:
+    """Tell whether a gap is larger than that of repeats, whatever is said of causes.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> differs(Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 2.4, 1.0, 2e-4, 1.0))
+    True
+    """
+    return diagnosis.p_value <= SURE or diagnosis.gap > AGREES
+
+
 def _no_gap(diagnosis: Diagnosis) -> str:
     agreed = "Recordings and simulation differ no more than repeats do: there is nothing to explain"
+    if differs(diagnosis):
+        agreed = (
+            "Recordings and simulation differ by more than simulated repeats do, but not as any "
+            "cause would have it"
+        )
     known = []
     if math.isfinite(diagnosis.gap) and math.isfinite(diagnosis.floor):
         known.append(f"gap {diagnosis.gap:.2g}, floor {diagnosis.floor:.2g}")
@@ -192,7 +210,8 @@ def _unknown(diagnosis: Diagnosis) -> str:
 def _unlikely(diagnosis: Diagnosis) -> str:
     """Say what may be the cause where none is likely, or where its stage does not differ."""
     chances = {name: p for name, p in diagnosis.probabilities.items() if name != "none"}
-    ranked = sorted(chances, key=lambda name: (name not in diagnosis.verdict, -chances[name]))
+    named = () if diagnosis.verdict == ("unknown",) else diagnosis.verdict
+    ranked = sorted(chances, key=lambda name: (name not in named, -chances[name]))
     n = max(_CANDIDATES, len(diagnosis.verdict))
     listed = [f"{_MAY_BE.get(name) or cause_of(name).name} ({percent(chances[name])})"
               for name in ranked[:n]]  # fmt: skip
