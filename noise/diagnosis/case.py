@@ -400,6 +400,8 @@ class Case:
         Channels that are dead, and left out, or clip, one line each.
     misplaced : str
         Which channel holds the torque in its place, told before anything was cut; empty if none.
+    estimated_noise : tuple of str
+        Kinds of channel whose noise the rig file does not state and the recordings show.
     """
 
     rig: Rig
@@ -409,6 +411,7 @@ class Case:
     notes: tuple[str, ...] = ()
     faults: tuple[str, ...] = ()
     misplaced: str = ""
+    estimated_noise: tuple[str, ...] = ()
 
 
 def read_case(paths: Sequence[Path], rig: Rig) -> Case:
@@ -457,9 +460,16 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
     ready = prepared(rig, recordings)
     refused += [(names[i], reason) for i, reason in ready.left_out.items()]
     kept = tuple(name for i, name in enumerate(names) if i not in ready.left_out)
-    return Case(
-        ready.rig, kept, ready.recordings, tuple(refused), ready.notes, tuple(faults), misplaced
+    stated, seen = rig.sensors, ready.rig.sensors
+    estimated = tuple(
+        kind
+        for kind, sensor in seen.by_kind.items()
+        if stated.of(kind).noise is None and sensor.noise is not None
     )
+    return Case(
+        ready.rig, kept, ready.recordings, tuple(refused), ready.notes, tuple(faults), misplaced,
+        estimated,
+    )  # fmt: skip
 
 
 def usable(recording: Recording, rig: Rig) -> Recording:

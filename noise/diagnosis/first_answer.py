@@ -194,10 +194,9 @@ def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tupl
     filtered: dict[float, list[str]] = {}
     for kind in dict.fromkeys(c.kind for r in recordings for c in r.channels if c.kind in usual):
         sensor = sensors.of(kind)
-        level = _level(usual[kind] if sensor.noise is None else sensor.noise, sensor.step)
-        most = _level(NOISIEST * usual[kind], THESIS_CONVERTER.of(kind).step)
         rows = [(r, row) for r in recordings if (row := r.first(kind)) is not None]
-        if level > most:
+        if _is_rough(sensors, kind):
+            level, most = _levels(sensors, kind)
             rough.append(f"{kind} {level:.2g} {CHANNEL_UNITS[kind]} (at most {most:.2g})")
         if sensor.full_scale is not None:
             end = sensor.full_scale - 1.5 * sensor.step
@@ -245,6 +244,18 @@ def poor_responses(rig: Rig, recordings: Sequence[Recording]) -> tuple[str, ...]
         "what they are off by looks like a gain error or another plate, so nothing is named within "
         "what repeats differ by; more hits, and harder ones, would tell",
     )
+
+
+def _is_rough(sensors: Sensors, kind: str) -> bool:
+    level, most = _levels(sensors, kind)
+    return level > most
+
+
+def _levels(sensors: Sensors, kind: str) -> tuple[float, float]:
+    """Noise and rounding of a sensor, and the most that was learned with [unit of the channel]."""
+    sensor, usual = sensors.of(kind), Acquisition().noise[kind]
+    level = _level(usual if sensor.noise is None else sensor.noise, sensor.step)
+    return level, _level(NOISIEST * usual, THESIS_CONVERTER.of(kind).step)
 
 
 def _level(noise: float, step: float) -> float:
@@ -368,6 +379,8 @@ def first_answer(
     probabilities["parameters"] = max([probabilities["parameters"], *again.values()])
     rough = unlearned_sensors(case.rig.sensors, case.recordings)
     poor = poor_responses(case.rig, case.recordings)
+    if any(_is_rough(case.rig.sensors, kind) for kind in case.estimated_noise):
+        probabilities["background_noise"] = 0.0  # nothing tells it from the sensors' own
     chance = gap.p_value if poor else None
     if rough:
         tell("simulating this bench without a cause")
@@ -376,11 +389,12 @@ def first_answer(
         own = as_seldom(posterior.log_odds(table)[none], nulls[:, none], len(case.recordings))
         chance = max(own, chance or 0.0)
     hypotheses = joint_probabilities(probabilities)
-    if chance is not None and chance > UNUSUAL:
+    needs = needs_explaining(probabilities["none"], posterior.alarm, gap, chance)
+    if chance is not None and chance > UNUSUAL and not needs:
         hypotheses = with_none(hypotheses, _WITHIN_REPEATS)
     flat = flat_channels(case.recordings, lambda one: comparison.simulated(Model(), one, seed))
     answer = FirstAnswer(comparison, gap, {}, probabilities, (), (), (*rough, *poor), flat)
     answer = answer.with_hypotheses(hypotheses)
-    if not needs_explaining(probabilities["none"], posterior.alarm, gap, chance):
+    if not needs:
         return replace(answer, verdict=())
     return replace(answer, suspected=tuple(n for n, p in again.items() if p >= _SUSPECTED))

@@ -53,6 +53,16 @@ def test_the_order_of_recordings_does_not_count(order, seed):
     assert one == pytest.approx(other, rel=1e-5, abs=1e-5)
 
 
+def test_a_rig_that_turns_backwards_is_the_same_case():
+    measured = np.random.default_rng(3).normal(size=(5, 3))
+    speeds = np.array([1.0, 2.0, 2.0, 3.0, 5.0])
+    one, other = (
+        evidence(table_of(NAMES, measured, speeds=list(way * speeds)), NAMES, SCALE)
+        for way in (1.0, -1.0)
+    )
+    assert np.array_equal(one, other)
+
+
 def test_the_order_of_columns_does_not_count():
     measured = np.random.default_rng(0).normal(size=(4, 3))
     one = evidence(table_of(NAMES, measured), NAMES, SCALE)

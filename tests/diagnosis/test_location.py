@@ -88,6 +88,8 @@ def test_what_shows_at_speed_alone_is_said_to(nulls):
     assert locate(fast, nulls).conditions == "speed_rad_s >= 3"
     slow = table_of(NAMES, measured, speeds=[5.0, 4.0, 2.0, 1.0])
     assert locate(slow, nulls).conditions == "speed_rad_s < 3"
+    backwards = table_of(NAMES, measured, speeds=[-1.0, -2.0, -4.0, -5.0])
+    assert locate(backwards, nulls).conditions == "speed_rad_s <= -3"
 
 
 def test_the_null_is_the_largest_of_each_case_in_order():

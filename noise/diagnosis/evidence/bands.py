@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.spectra import segment_spectra
-from noise.diagnosis.evidence.channel_kernel import band_power_sums
 
 BAND_EDGES = np.array([
     30.0, 60.0, 120.0, 180.0, 260.0, 350.0, 500.0, 700.0, 1000.0, 1400.0, 2000.0, 2800.0, 4000.0,
@@ -44,9 +43,8 @@ def band_levels(x: NDArray[np.float64], rate: float) -> dict[str, float]:
     'band_6'
     """
     spectra, bands = segment_spectra(x, segment_frequency(rate)[0]), band_bins(rate)
-    sums = np.empty((len(spectra), len(bands.numbers)))
-    band_power_sums(spectra, bands.first, bands.last, sums)
-    power = sums.mean(axis=0) / (bands.last - bands.first)
+    sums = band_sums(powers(spectra).mean(axis=0), bands.first, bands.last)
+    power = sums / (bands.last - bands.first)
     return {
         f"band_{i}": level
         for i, level in zip(bands.numbers, (0.5 * np.log(power + 1e-14)).tolist(), strict=True)
@@ -76,6 +74,44 @@ def segment_frequency(rate: float) -> tuple[int, NDArray[np.float64]]:
     """
     length = 2048 if rate < 40e3 else 4096
     return length, np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64)
+
+
+def powers(spectra: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Power of each line of spectra [unit^2].
+
+    Examples
+    --------
+    >>> powers(np.array([3.0 + 4.0j]))
+    array([25.])
+    """
+    return np.asarray(spectra.real**2 + spectra.imag**2)
+
+
+def band_sums(
+    values: NDArray[np.float64], first: NDArray[np.int64], last: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Sum the last axis over bands.
+
+    Parameters
+    ----------
+    values : ndarray, shape (..., n_bins)
+        [any unit]
+    first, last : ndarray of int, shape (n_bands,)
+        First bin of each band, and first after it.
+
+    Returns
+    -------
+    ndarray, shape (..., n_bands)
+        [unit of the values]
+
+    Examples
+    --------
+    >>> band_sums(np.arange(5.0), np.array([0, 2]), np.array([2, 5]))
+    array([1., 9.])
+    """
+    return np.stack(
+        [values[..., a:b].sum(axis=-1) for a, b in zip(first, last, strict=True)], axis=-1
+    )
 
 
 class Bands(NamedTuple):

@@ -13,14 +13,7 @@ from numpy.typing import NDArray
 from scipy.fft import rfft
 
 from features.kernels.spectra import segment_spectra
-from noise.diagnosis.evidence.bands import bins_between
-from noise.diagnosis.evidence.channel_kernel import (
-    describe_distribution,
-    detrend_and_window,
-    line_ratios,
-    power_quantiles,
-    thin_out,
-)
+from noise.diagnosis.evidence.bands import bins_between, powers
 
 Numbers = dict[str, float]
 
@@ -62,25 +55,24 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     >>> clipped["top"] > channel_summary(sound, 30e3)["top"]
     True
     """
-    found = np.empty(12)
-    describe_distribution(x, found)
-    top, bottom, mean, deviation, third, n_top, n_bottom, n_flat, *stays = found.tolist()
-    spread, median = deviation + 1e-12, quantile(x, 0.5)
+    top, bottom, mean = float(x.max()), float(x.min()), float(x.mean())
+    median = float(quantile(x, 0.5))
+    away, span = x - mean, top - bottom + 1e-12
+    spread = math.sqrt(float(away @ away) / x.size) + 1e-12
     numbers = {
-        "top": _log_share(n_top),
-        "bottom": _log_share(n_bottom),
+        "top": _log_share(x > top - 0.02 * span),
+        "bottom": _log_share(x < bottom + 0.02 * span),
         "crest": math.log(max(top - mean, mean - bottom, 1e-12) / spread),
         "asymmetry": math.log((top - median + 1e-12) / (median - bottom + 1e-12)),
-        "skewness": third / spread**3,
-        "flat": _log_share(n_flat),
-        "dwell_top": _dwell(*stays[:2]),
-        "dwell_bottom": _dwell(*stays[2:]),
+        "skewness": float(np.mean(away**3)) / spread**3,
+        "flat": _log_share(np.abs(np.diff(x)) < 1e-3 * span),
+        "dwell_top": _dwell(x > top - 0.05 * span),
+        "dwell_bottom": _dwell(x < bottom + 0.05 * span),
         "offset": mean / spread,
     }
     spectra = segment_spectra(x, _FLOOR_LENGTH)
     inside, *bands = _floor_bins(rate)
-    quiet = np.empty(inside.stop - inside.start)
-    power_quantiles(spectra, inside.start, _QUIET, np.empty(len(spectra)), quiet)
+    quiet = quantile(powers(spectra[:, inside]), _QUIET)
     for i, band in enumerate(bands):
         numbers[f"floor_{i}"] = 0.5 * math.log(float(quiet[band].mean()) + 1e-16)
     return numbers
@@ -118,17 +110,12 @@ def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     """
     # Harmonics lie in the lowest bins; of the others no power is asked.
     every = max(1, int(rate / _HUM_RATE))
-    n = x.size // every - 1
-    slow, windowed = np.empty(n), np.empty(n)
-    thin_out(x, every, slow)
-    detrend_and_window(slow, hanning(n), windowed)
+    slow = _thinned(x, every)
+    n = slow.size
     lines, first, last = _hum_lines(rate / every / n)
-    spectrum = rfft(windowed)[: int(lines.max()) + 13]
-    power = spectrum.real**2 + spectrum.imag**2
+    power = powers(rfft(_detrended(slow) * hanning(n))[: int(lines.max()) + 13])
     best = first + int(np.argmax(power[first : last + 1]))
-    ratios = np.empty(lines.size + 1)
-    line_ratios(power, np.append(lines, best), ratios, np.empty(16))
-    logarithms = np.log(ratios)
+    logarithms = np.log([_line_ratio(power, line) for line in [*lines.tolist(), best]])
     numbers: Numbers = {}
     for mains, of_mains in zip(_MAINS, logarithms[:-1].reshape(len(_MAINS), -1), strict=True):
         numbers[f"hum_{mains}"] = float(of_mains[0])
@@ -137,6 +124,32 @@ def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     numbers["hum_best"] = float(logarithms[-1])
     numbers["hum_level"] = 0.5 * math.log(16.0 * float(power[best]) / n**2 + 1e-14)
     return numbers
+
+
+def _thinned(x: NDArray[np.float64], every: int) -> NDArray[np.float64]:
+    """Average a signal over triangles that overlap by half."""
+    blocks = x[: x.size // every * every].reshape(-1, every)
+    rise = (np.arange(every) + 0.5) / every**2
+    return np.asarray((blocks @ rise)[:-1] + (blocks @ rise[::-1])[1:])
+
+
+def _detrended(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    away = np.arange(x.size) - 0.5 * (x.size - 1)
+    centred = x - x.mean()
+    return np.asarray(centred - away * float(away @ centred) / max(float(away @ away), 1e-300))
+
+
+def _line_ratio(power: NDArray[np.float64], line: int) -> float:
+    """Power of a line over the median of what lies 5 to 12 bins beside it [-].
+
+    The line is the largest of five; 1 where the spectrum ends before.
+    """
+    if line + 13 > power.size:
+        return 1.0
+    below = power[max(line - 12, 1) : max(line - 4, 1)]
+    beside = np.concatenate([below, power[line + 5 : line + 13]])
+    most = float(power[max(line - 2, 0) : line + 3].max())
+    return (most + 1e-30) / (float(quantile(beside, 0.5)) + 1e-30)
 
 
 @lru_cache(maxsize=16)
@@ -170,38 +183,38 @@ def hanning(n: int) -> NDArray[np.float64]:
     return window
 
 
-def _log_share(share: float) -> float:
-    return math.log(share + 1e-4)
+def _log_share(those: NDArray[np.bool_]) -> float:
+    return math.log(np.count_nonzero(those) / max(those.size, 1) + 1e-4)
 
 
-def _dwell(samples: float, stays: float) -> float:
+def _dwell(there: NDArray[np.bool_]) -> float:
     """Logarithm of the mean length of a stay in samples [-]."""
-    return math.log(max(samples, 1.0) / max(stays, 1.0))
+    entries = np.count_nonzero(there[1:] & ~there[:-1])
+    return math.log(max(np.count_nonzero(there), 1) / max(entries, 1))
 
 
-def quantile(x: NDArray[np.float64], share: float) -> float:
-    """Quantile, linear between values, as of `numpy.quantile` without its checks.
+def quantile(x: NDArray[np.float64], share: float) -> NDArray[np.float64]:
+    """Quantile along the first axis, as of `numpy.quantile` without its checks.
 
     Parameters
     ----------
-    x : ndarray, shape (n,)
+    x : ndarray, shape (n, ...)
         [any unit], no NaN.
     share : float
         From 0 to 1 [-].
 
     Returns
     -------
-    float
-        [unit of the values]
+    ndarray, shape (...)
+        Linear between values [unit of the values].
 
     Examples
     --------
-    >>> quantile(np.array([3.0, 1.0, 2.0, 9.0]), 0.5)
+    >>> float(quantile(np.array([3.0, 1.0, 2.0, 9.0]), 0.5))
     2.5
     """
-    place = share * (x.size - 1)
+    place = share * (len(x) - 1)
     low = int(place)
-    high = min(low + 1, x.size - 1)
-    parted = np.partition(x, (low, high))
-    below, above = float(parted[low]), float(parted[high])
-    return below + (place - low) * (above - below)
+    high = min(low + 1, len(x) - 1)
+    parted = np.partition(x, (low, high), axis=0)
+    return np.asarray(parted[low] + (place - low) * (parted[high] - parted[low]))

@@ -33,15 +33,7 @@ from numpy.typing import NDArray
 
 from features.kernels.slips import in_intervals, slip_intervals
 from models.rig import Fit
-from noise.diagnosis.evidence.channel_kernel import describe_distribution
-from noise.diagnosis.evidence.contact_kernel import (
-    describe_rows,
-    describe_slips,
-    gather_rings,
-    gather_slipping,
-    gather_sticking,
-    mean_cycle,
-)
+from noise.diagnosis.evidence.channel_summary import quantile
 
 if TYPE_CHECKING:
     from models.rig import Fit
@@ -86,16 +78,16 @@ def cycle_shape(
         return {}
     rate = found.rate
     before, after = (np.array([round(t * rate) for t in times]) for times in (_BEFORE, _AFTER))
-    sums = np.empty((before.size + after.size, 3))
-    mean_cycle(
-        found.torque, found.sliding_speed, found.shaft_speed, starts, ends, before, after, sums
-    )
-    names = [f"before_{i}" for i in range(before.size)] + [f"after_{i}" for i in range(after.size)]
+    # Where another slip is, a time does not count.
+    earlier, later = np.append(0, ends[:-1]), np.append(starts[1:], found.torque.size)
+    places = {f"before_{i}": (starts - by)[starts - by > earlier] for i, by in enumerate(before)}
+    places |= {f"after_{i}": (ends + by)[ends + by < later] for i, by in enumerate(after)}
     numbers: dict[str, float] = {}
-    for name, (count, torque, crept) in zip(names, sums.tolist(), strict=True):
-        if count >= _SLIP_SUMMARY_FEWEST:
-            numbers[f"{name}_torque"] = torque / count / fit.critical_torque
-            numbers[f"{name}_creep"] = crept / count
+    for name, at in places.items():
+        if at.size >= _SLIP_SUMMARY_FEWEST:
+            crept = found.sliding_speed[at] / np.maximum(np.abs(found.shaft_speed[at]), 0.05)
+            numbers[f"{name}_torque"] = float(found.torque[at].mean()) / fit.critical_torque
+            numbers[f"{name}_creep"] = float(crept.mean())
     return numbers | _ringing(found, starts, ends)
 
 
@@ -113,12 +105,14 @@ def _ringing(
     first, last = first[long], last[long]
     if first.size < _SLIP_SUMMARY_FEWEST:
         return {}
-    rows, sums = np.empty((4, found.torque.size)), np.empty(4)
-    signals = (found.sliding_speed, found.by_stiffness, found.by_damping, found.by_clamp)
-    n = gather_rings(signals, first, last, rows, sums)
-    rings = rows[:, :n]
+    signals = np.stack([
+        found.sliding_speed, found.by_stiffness, found.by_damping, found.by_clamp
+    ])  # fmt: skip
+    sticks = [signals[:, a:b] for a, b in zip(first.tolist(), last.tolist(), strict=True)]
+    sums = np.sum([x.sum(axis=1) for x in sticks], axis=0)
+    rings = np.concatenate([x - x.mean(axis=1, keepdims=True) for x in sticks], axis=1)
     products = rings @ rings.T
-    spreads = np.sqrt(np.diag(products) / n)  # their means are 0
+    spreads = np.sqrt(np.diag(products) / rings.shape[1])  # their means are 0
     numbers = {
         "slow_stiffness": float(sums[0] / (sums[1] + 1e-9)),
         "ring": math.log(float(spreads[1]) + 1e-3),
@@ -167,26 +161,34 @@ def torque_by_speed(
     dict of str to float
         Torques over the kinetic one of the rig file [-].
     """
-    n, n_classes = slipping.size, _SPEED_EDGES.size - 1
-    rows, target, classes = np.empty((n, 4)), np.empty(n), np.empty((2, n_classes, 3))
-    m = gather_slipping(
-        found.sliding_speed, found.friction_torque / fit.kinetic_torque, slipping, _FITTED,
-        _SPEED_EDGES, rows, target, classes,
-    )  # fmt: skip
+    sliding = found.sliding_speed
+    faster = (np.append(sliding[1:], sliding[-1]) > np.append(sliding[0], sliding[:-1]))[slipping]
+    speed, torque = sliding[slipping], found.friction_torque[slipping] / fit.kinetic_torque
     numbers: dict[str, float] = {}
-    for name, row in zip(("up", "down"), classes.tolist(), strict=True):
-        for i, (count, total, square) in enumerate(row, start=1):
-            enough = count >= _FEWEST_SAMPLES
-            numbers[f"law_{name}_{i}"] = total / count if enough else math.nan
+    for name, way in (("up", faster), ("down", ~faster)):
+        for i, here in enumerate(_classed(torque[way], speed[way], _SPEED_EDGES), start=1):
+            enough = here.size >= _FEWEST_SAMPLES
+            numbers[f"law_{name}_{i}"] = float(here.mean()) if enough else math.nan
             if name == "down":
-                numbers[f"law_spread_{i}"] = math.sqrt(square / count) if count > 20 else math.nan
+                numbers[f"law_spread_{i}"] = float(here.std()) if here.size > 20 else math.nan
+    inside = (speed > _FITTED[0]) & (speed < _FITTED[1])
+    m = np.count_nonzero(inside)
     if m > _ENOUGH:
-        a, b = rows[:m], target[:m]
+        b, v = torque[inside], speed[inside] / _FITTED[1] - 0.5
+        a = np.stack([np.ones(m), v, v * v - 1.0 / 12.0, faster[inside] - 0.5], axis=1)
         x = np.linalg.solve(a.T @ a + 1e-6 * m * np.eye(4), a.T @ b)
         names = ("law_level", "law_slope", "law_bend", "law_loop")
         numbers |= dict(zip(names, x.tolist(), strict=True))
         numbers["law_left"] = float(np.std(b - a @ x))
     return numbers
+
+
+def _classed(
+    values: NDArray[np.float64], by: NDArray[np.float64], edges: NDArray[np.float64]
+) -> list[NDArray[np.float64]]:
+    """Values of each class that something else lies in."""
+    place = np.searchsorted(edges, by, side="right")
+    return [values[place == i] for i in range(1, edges.size)]
 
 
 Numbers = dict[str, float]
@@ -288,25 +290,23 @@ def _stick(
     found: Reconstruction, fit: Fit, near: NDArray[np.bool_], speed: float
 ) -> tuple[int, Numbers]:
     """Count the samples in stick, and summarise them."""
-    n = found.torque.size
-    rows, target = np.empty((n, len(_EXPLANATIONS))), np.empty(n)
-    classes, winding = np.empty((2, _TORQUE_EDGES.size - 1, 2)), np.empty((3, 3))
-    m = gather_sticking(
-        (
-            found.torque, found.friction_torque, found.torque_rate,
-            found.shaft_speed, found.sliding_speed, found.clamp_speed,
-        ),
-        (found.by_stiffness, found.by_damping, found.by_clamp),
-        near, (speed, _slow(speed), fit.critical_torque, fit.kinetic_torque),
-        _TORQUE_EDGES, rows, target, classes, winding,
-    )  # fmt: skip
+    stick = ~near & (np.abs(found.sliding_speed) < _slow(speed))
+    m, b, shaft = int(np.count_nonzero(stick)), found.sliding_speed[stick], found.shaft_speed[stick]
+    ratio = found.friction_torque[stick] / fit.critical_torque
+    rate = found.torque_rate[stick]
+    rising = rate > 0.0
     numbers: Numbers = {}
-    for name, row in zip(("up", "down"), classes.tolist(), strict=True):
-        for i, (count, total) in enumerate(row, start=1):
-            numbers[f"creep_{name}_{i}"] = total / count if count >= _FEWEST else math.nan
+    for name, way in (("up", rising), ("down", ~rising)):
+        for i, here in enumerate(_classed(b[way], ratio[way], _TORQUE_EDGES), start=1):
+            enough = here.size >= _FEWEST
+            numbers[f"creep_{name}_{i}"] = float(here.mean()) / speed if enough else math.nan
     if m < 200:
         return m, numbers
-    a, b, names = rows[:m], target[:m], _EXPLANATIONS
+    by_stiffness, names = found.by_stiffness[stick], _EXPLANATIONS
+    a = np.stack([
+        shaft, by_stiffness, by_stiffness * (found.torque[stick] / fit.kinetic_torque - 1.0),
+        found.by_damping[stick], found.by_clamp[stick], shaft * np.clip(ratio, 0.0, 1.2) ** 6,
+    ], axis=1)  # fmt: skip
     if not found.by_clamp.any():
         # All of the shaft's speed winds the elastomer: another speed is another stiffness.
         kept = [i for i, name in enumerate(names) if name not in ("speed", "clamp")]
@@ -318,9 +318,14 @@ def _stick(
     left = b - a @ x
     numbers["stick_left"] = float(left.std()) / speed
     numbers["stick_explained"] = 1.0 - float(left.var()) / max(float(b.var()), 1e-12)
-    for name, (count, work, square) in zip(("all", "late", "early"), winding.tolist(), strict=True):
-        if count > 60:
-            numbers[f"stiffness_{name}"] = work / (square * fit.elastomer_stiffness)
+    wound = shaft - found.clamp_speed[stick]
+    late, early = rising & (ratio > 0.85), rising & (ratio < 0.7)
+    for name, those in (("all", np.ones(m, bool)), ("late", late), ("early", early)):
+        if np.count_nonzero(those) > 60:
+            u = wound[those]
+            numbers[f"stiffness_{name}"] = float(rate[those] @ u) / (
+                float(u @ u) * fit.elastomer_stiffness
+            )
     return m, numbers
 
 
@@ -343,39 +348,36 @@ def _cycles(
         return {}
     rate, near = found.rate, int(_NEAR_PEAK * found.rate)
     critical, kinetic = fit.critical_torque, fit.kinetic_torque
-    slips = np.empty((4, n_slips))
-    describe_slips(
-        found.torque, found.friction_torque, found.sliding_speed, starts, ends, near,
-        np.empty(found.torque.size), slips,
-    )  # fmt: skip
+    friction = found.friction_torque
+    slips = np.array([
+        (
+            friction[max(a - near, 0) : a + 2].max() / critical,
+            found.torque[a : b + near].min() / kinetic,
+            found.sliding_speed[a:b].max(),
+            float(quantile(friction[a:b], 0.5)) / kinetic,
+        )
+        for a, b in zip(starts.tolist(), ends.tolist(), strict=True)
+    ]).T  # fmt: skip
     peak, trough, fastest, sliding = slips
-    peak /= critical
-    trough /= kinetic
-    sliding /= kinetic
     time = starts / rate
     interval, duration = np.diff(time), (ends - starts) / rate
     stuck = np.maximum(starts[1:] - ends[:-1], 1) / rate
-    whole, between = np.empty((5, 6)), np.empty((2, 6))
-    describe_rows(np.stack([*slips, duration]), np.empty(n_slips), whole)
-    describe_rows(np.stack([interval, stuck]), np.empty(n_slips - 1), between)
-    of_peak, of_trough, of_fastest, of_sliding, of_duration = whole.tolist()
-    of_interval, of_stuck = between.tolist()
     numbers = {
-        "peak": of_peak[4],
-        "peak_spread": of_peak[1],
-        "peak_range": of_peak[5] - of_peak[3],
-        "peak_least": of_peak[2],
-        "trough": of_trough[4],
-        "trough_spread": of_trough[1],
-        "fastest": of_fastest[4],
-        "fastest_spread": of_fastest[1],
-        "kinetic": of_sliding[4],
-        "kinetic_spread": of_sliding[1],
-        "interval": math.log(of_interval[4]),
-        "interval_spread": of_interval[1] / of_interval[0],
-        "duration": math.log(of_duration[4]),
-        "duration_spread": of_duration[1] / of_duration[0],
-        "time_stuck": math.log(of_stuck[4]),
+        "peak": _middle(peak),
+        "peak_spread": float(peak.std()),
+        "peak_range": float(quantile(peak, 0.9) - quantile(peak, 0.1)),
+        "peak_least": float(peak.min()),
+        "trough": _middle(trough),
+        "trough_spread": float(trough.std()),
+        "fastest": _middle(fastest),
+        "fastest_spread": float(fastest.std()),
+        "kinetic": _middle(sliding),
+        "kinetic_spread": float(sliding.std()),
+        "interval": math.log(_middle(interval)),
+        "interval_spread": float(interval.std() / interval.mean()),
+        "duration": math.log(_middle(duration)),
+        "duration_spread": float(duration.std() / duration.mean()),
+        "time_stuck": math.log(_middle(stuck)),
         "fastest_drift": _slope(time, fastest) * float(time.std()),
     }
     if n_slips >= 8:
@@ -404,9 +406,8 @@ def _torque(found: Reconstruction, fit: Fit) -> Numbers:
     block = int(0.02 * found.rate)
     passed = np.cumsum(torque)
     slow = (passed[block:] - passed[:-block]) / block
-    distribution = np.empty(12)
-    describe_distribution(torque, distribution)
-    highest, lowest, mean, spread, third = distribution[:5].tolist()
+    mean, spread = float(torque.mean()), float(torque.std())
+    third = float(np.mean((torque - mean) ** 3))
     return {
         "mean": mean / kinetic,
         "spread": spread / kinetic,
@@ -415,8 +416,8 @@ def _torque(found: Reconstruction, fit: Fit) -> Numbers:
         "early_drift": float(q[1] - q[0]),
         "quarters": float(q.std()),
         "slow": float(slow.std()) / kinetic,
-        "highest": highest / critical,
-        "lowest": lowest / kinetic,
+        "highest": float(torque.max()) / critical,
+        "lowest": float(torque.min()) / kinetic,
         "friction_highest": float(found.friction_torque.max()) / critical,
         "skewness": third / (spread**3 + 1e-9),
     }
@@ -424,6 +425,10 @@ def _torque(found: Reconstruction, fit: Fit) -> Numbers:
 
 def _mean(x: NDArray[np.float64]) -> float:
     return float(x.mean()) if x.size >= _FEWEST else math.nan
+
+
+def _middle(x: NDArray[np.float64]) -> float:
+    return float(quantile(x, 0.5))
 
 
 def _slope(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:

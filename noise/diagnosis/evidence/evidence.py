@@ -162,7 +162,7 @@ def evidence(
     away = measured - nominal
     expected = np.sqrt(_pooled(scatter) ** 2 + scale**2)
     z = away / expected
-    speed = np.abs([c.speed for c in table.conditions])
+    speed = np.abs(np.array([c.speed for c in table.conditions], dtype=np.float64))
     fast, slow = speed >= np.median(speed), speed <= np.median(speed)
     size = np.where(np.isfinite(z), np.abs(z), -1.0)
     largest = np.take_along_axis(z, size.argmax(axis=0)[None], axis=0)[0]

@@ -15,10 +15,15 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from features.kernels.spectra import segment_spectra
-from noise.diagnosis.evidence.bands import USABLE, band_bins, bins_between, segment_frequency
-from noise.diagnosis.evidence.channel_kernel import band_power_sums
+from noise.diagnosis.evidence.bands import (
+    USABLE,
+    band_bins,
+    band_sums,
+    bins_between,
+    powers,
+    segment_frequency,
+)
 from noise.diagnosis.evidence.channel_summary import quantile
-from noise.diagnosis.evidence.path_kernel import cross_powers, quarter_moments
 
 Numbers = dict[str, float]
 
@@ -81,13 +86,12 @@ def path_summary(
     ends = slice(int(_LEAD * rate), predicted.size - int(_TAIL * rate))
     p, m = predicted[ends], measured[ends]
     residual = m - p
-    size, frequency = segment_frequency(rate)
+    size = segment_frequency(rate)[0]
     if p.size < size:
         return {}, residual
     of_p, of_m = segment_spectra(p, size), segment_spectra(m, size)
-    powers, pm = np.empty((3, frequency.size)), np.empty(frequency.size, np.complex128)
-    cross_powers(of_p, of_m, powers, pm)
-    pp, mm, left = powers
+    pp, mm, left = (powers(x).mean(axis=0) for x in (of_p, of_m, of_m - of_p))
+    pm = (of_p.conj() * of_m).mean(axis=0)
     numbers = _by_band(pp, mm, pm, left, rate)
     numbers |= _transfer(size, pp, mm, pm, rate)
     numbers |= _by_time(p, m, residual)
@@ -120,9 +124,8 @@ def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: 
     if one.size < size:
         return {}
     x, y = segment_spectra(one, size), segment_spectra(other, size)
-    powers, xy = np.empty((3, x.shape[1])), np.empty(x.shape[1], np.complex128)
-    cross_powers(x, y, powers, xy)
-    coherence = (xy.real**2 + xy.imag**2) / (powers[0] * powers[1] + 1e-30)
+    shared = powers((x.conj() * y).mean(axis=0))
+    coherence = shared / (powers(x).mean(axis=0) * powers(y).mean(axis=0) + 1e-30)
     return {
         f"common_{i}": math.log(float(coherence[inside].mean()) + 1e-9)
         for i, band in enumerate(_CROSS_BANDS)
@@ -260,17 +263,14 @@ def _by_time(
     p: NDArray[np.float64], m: NDArray[np.float64], residual: NDArray[np.float64]
 ) -> Numbers:
     """Size and drift of the residual over the quarters of a recording."""
-    found = np.empty((3, 6))
-    for row, x in zip(found, (residual, m, p), strict=True):
-        quarter_moments(x, row)
-    of_residual, of_m, of_p = found[:, 2:] + 1e-12
+    of_residual, of_m, of_p = (
+        x[: x.size // 4 * 4].reshape(4, -1).std(axis=1) + 1e-12 for x in (residual, m, p)
+    )
     of_gain = of_m / of_p
-    (left, *_), (whole, *_) = found[:2].tolist()
-    kurtosis = (found[:, 1] / (found[:, 0] ** 2 + 1e-30) + 1e-9).tolist()
     return {
-        "residual": math.log(math.sqrt(left) / (math.sqrt(whole) + 1e-12) + 1e-9),
-        "residual_kurtosis": math.log(kurtosis[0]),
-        "kurtosis": math.log(kurtosis[1] / kurtosis[2]),
+        "residual": math.log(float(residual.std()) / (float(m.std()) + 1e-12) + 1e-9),
+        "residual_kurtosis": math.log(_kurtosis(residual)),
+        "kurtosis": math.log(_kurtosis(m) / _kurtosis(p)),
         "residual_drift": math.log(of_residual[3] / of_residual[0]),
         "residual_quarters": float(of_residual.std() / of_residual.mean()),
         "gain_drift": math.log(of_gain[3] / of_gain[0]),
@@ -282,14 +282,12 @@ def _impacts(residual: NDArray[np.float64], rate: float, slips: NDArray[np.float
     spectra = segment_spectra(residual, _SHORT)
     bins = [_bins(band, _SHORT, rate) for band in (_LOW, (_LOW[1], min(_HIGHEST, USABLE * rate)))]
     first, last = np.array([[inside.start, inside.stop] for inside in bins]).T
-    powers = np.empty((len(spectra), 2))
-    band_power_sums(spectra, first, last, powers)
-    low, high = np.ascontiguousarray(powers.T)
+    low, high = band_sums(powers(spectra), first, last).T
     numbers = {
-        "high_floor": _half_log(quantile(high, 0.1)),
-        "high_most": _half_log(quantile(high, 0.98)),
+        "high_floor": _half_log(float(quantile(high, 0.1))),
+        "high_most": _half_log(float(quantile(high, 0.98))),
         "high_mean": _half_log(float(high.mean())),
-        "low_floor": _half_log(quantile(low, 0.1)),
+        "low_floor": _half_log(float(quantile(low, 0.1))),
     }
     if slips.size > 3:
         middle = (np.arange(high.size) + 1) * (_SHORT // 2) / rate

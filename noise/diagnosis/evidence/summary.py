@@ -86,9 +86,8 @@ def summary(
         What a missing channel would tell is missing [unit of the number].
     """
     condition, rate = known_condition(recording.condition), recording.rate
-    # Arrays of the one kind that loops are compiled for.
     signal = {
-        kind: np.require(recording.samples[row], np.float64, ["C", "W"])
+        kind: recording.samples[row]
         for kind in ("torque", *_OUTPUTS, "angle")
         if (row := recording.first(kind)) is not None
     }

@@ -124,9 +124,9 @@ class CaseFits:
         What changes nothing closes nothing.
         """
         after = self.least(hypothesis)
-        looks = [tuple(map(self.held_out, (self.recalibrated, after))), (self.recalibrated, after)]
-        looks = [(rms(left), rms(now)) for left, now in looks]
-        left, now = next((one for one in looks if one[0] >= 1.0 + CLOSABLE), looks[1])
+        left, now = (rms(self.held_out(x)) for x in (self.recalibrated, after))
+        if left < 1.0 + CLOSABLE:
+            left, now = rms(self.recalibrated), rms(after)
         if left < 1.0 + CLOSABLE:
             return now < left
         return closed_of(left, now) >= self.odds.enough

@@ -4,7 +4,7 @@ A recording has no silence, but high above what the rig sounds at there is littl
 for a few milliseconds between slips: of all short segments the quietest, in the quietest bands, in
 the quietest recordings. What bands and conditions share there is white and the sensor's.
 
-A sensor is not equally noisy in all recordings, so that its noise is the median of theirs.
+A sensor is not equally noisy in all recordings, so that its noise is a middle of theirs.
 
 What is given up: white noise that fills all recordings alike counts as the sensor's, however loud.
 Coloured noise, and such as is louder in some recordings than in others, is no sensor's, and stays
@@ -25,7 +25,6 @@ from features.kernels.spectra import segment_spectra
 from noise.diagnosis.evidence.bands import USABLE
 
 if TYPE_CHECKING:
-    from models.condition import Condition
     from models.recording import Recording
 
 
@@ -46,9 +45,13 @@ _FEWEST = 20
 """Segments to tell it from; assumed."""
 
 _ALIKE, _ALIKE_RECORDINGS = 1.5, 2.5
-"""White noise is the floor of two bands, and of recordings of two conditions where there are two,
-since repeats sound alike: so many times the power of the lower at most [-]; assumed. From one
-recording to the next the noise of a sensor may be half as large again."""
+"""White noise is the floor of two bands, and of two recordings where there are two: so many times
+the power of the lower at most [-]; assumed. From one recording to the next the noise of a sensor
+may be half as large again."""
+
+_MIDDLE = 1.0 / 3.0
+"""Quantile of the recordings' floors that is the noise: in the louder ones signals may reach into
+the floor; assumed."""
 
 _ABOVE_STEP = 0.4
 """Of a converter's step, below which white noise cannot be told from its rounding [-]; assumed."""
@@ -80,19 +83,19 @@ def estimated_noise(recordings: Sequence[Recording], kind: str, step: float = 0.
     >>> round(estimated_noise([run], "torque"), 3)
     0.02
     """
-    floors: list[tuple[float, Condition]] = []
+    floors = []
     for recording in recordings:
         row = recording.first(kind)
         found = None if row is None else _floors(recording.samples[row], recording.rate)
         if found is not None:
             lower, higher = found
             white = higher <= _ALIKE * lower
-            floors.append((0.5 * (lower + higher) if white else np.inf, recording.condition))
-    quietest = min((power for power, _ in floors), default=np.inf)
-    alike = [(power, at) for power, at in floors if power <= _ALIKE_RECORDINGS * quietest < np.inf]
-    if len({at for _, at in alike}) < min(len({at for _, at in floors}), 2) or not alike:
+            floors.append(0.5 * (lower + higher) if white else np.inf)
+    quietest = min(floors, default=np.inf)
+    alike = [power for power in floors if power <= _ALIKE_RECORDINGS * quietest < np.inf]
+    if len(alike) < min(len(floors), 2) or not alike:
         return None
-    level = float(np.sqrt(np.median([power for power, _ in alike])))
+    level = float(np.sqrt(np.quantile(alike, _MIDDLE)))
     if level < _ABOVE_STEP * step:
         return None
     return float(np.sqrt(max(level**2 - step**2 / 12.0, 0.0)))

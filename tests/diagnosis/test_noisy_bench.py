@@ -1,0 +1,69 @@
+"""A bench whose sensors are noisy: their noise is no cause, and a cause is seen all the same."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from noise.diagnosis.causes.bench_nulls import as_seldom
+from noise.diagnosis.gap.distance import gap_of, reference
+from noise.diagnosis.gap.signature import NAMES
+from noise.diagnosis.run import diagnose
+from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
+from sim.acquisition import Acquisition
+from tests.helpers.small_rigs import RIG_FILE, at, run, write_case
+
+TIMES = {"torque": 12.0, "acceleration": 20.0, "pressure": 5.0, "angle": 20.0}
+CREEPING = ("partial_slip", {"form": "mindlin", "share": 0.8})
+
+
+def noisy(recording, seed):
+    rng, samples = np.random.default_rng(seed), recording.samples.copy()
+    for row, channel in zip(samples, recording.channels, strict=True):
+        level = TIMES[channel.kind] * Acquisition().noise[channel.kind]
+        row += level * np.exp(0.1 * rng.standard_normal()) * rng.standard_normal(row.size)
+    return replace(recording, samples=samples)
+
+
+def test_noise_of_sensors_that_nobody_states_is_no_cause(tmp_path):
+    runs = [noisy(run(at(v), seed=30 + i), i) for i, v in enumerate((1.0, 1.6, 1.6, 2.5))]
+    found = diagnose(*write_case(tmp_path, runs), quick=True)
+    assert found.verdict == ()
+    assert found.probabilities["background_noise"] == 0.0
+    assert headline(found) == "No gap"
+
+
+def test_one_recording_through_noisy_sensors_can_have_a_cause(tmp_path):
+    loud = noisy(run(at(1.0), CREEPING, seed=3, seconds=0.6), 5)
+    stated = "\n[sensors]\nnoise = { torque = 0.06, acceleration = 0.4, pressure = 4e-3 }\n"
+    found = diagnose(*write_case(tmp_path, [loud], RIG_FILE + stated), quick=True)
+    assert found.p_value < 0.05  # with twelve repeats their exchange alone gives 0.08 at least
+    assert found.verdict != ()
+
+
+@pytest.mark.parametrize(("n", "times"), [(1, 60), (3, 12)])
+def test_p_values_of_repeats_are_even_and_those_of_others_fall_below_any_threshold(n, times):
+    rng, p = np.random.default_rng(0), []
+    for _ in range(times):
+        known = reference(list(rng.normal(size=(12, len(NAMES)))))
+        p.append(gap_of(list(rng.normal(size=(n, len(NAMES)))), [known] * n).p_value)
+    assert np.mean(np.array(p) < 0.05) <= 0.12
+    assert 0.25 < np.median(p) < 0.75
+    far = gap_of(list(rng.normal(6.0, 1.0, (n, len(NAMES)))), [known] * n)
+    assert far.p_value < 0.002
+
+
+def test_how_seldom_an_answer_is_follows_from_ranks_and_of_one_recording_from_their_tail():
+    nulls = np.random.default_rng(1).normal(size=200)
+    assert as_seldom(nulls.min() - 1.0, nulls, 4) == pytest.approx(1.0 / 201.0)
+    assert as_seldom(-2.0, nulls, 1) > as_seldom(-2.0, nulls, 4)
+    assert as_seldom(-30.0, nulls, 1) < 0.01
+
+
+def test_a_gap_above_its_floor_is_never_said_to_be_no_more_than_repeats(tmp_path):
+    runs = [run(at(v), seed=i) for i, v in enumerate((1.0, 2.0))]
+    quiet = diagnose(*write_case(tmp_path, runs), quick=True)
+    large = replace(quiet, verdict=(), gap=2.4, p_value=2e-4)
+    assert headline(large) == "No cause to name"
+    assert "by more than simulated repeats do" in verdict_sentence(large)
+    assert "no more than repeats do" in verdict_sentence(replace(large, gap=1.1, p_value=0.4))
