@@ -189,8 +189,8 @@ def _log_share(those: NDArray[np.bool_]) -> float:
 
 def _dwell(there: NDArray[np.bool_]) -> float:
     """Logarithm of the mean length of a stay in samples [-]."""
-    entries = np.count_nonzero(there[1:] & ~there[:-1])
-    return math.log(max(np.count_nonzero(there), 1) / max(entries, 1))
+    entries = int(np.count_nonzero(there[1:] & ~there[:-1]))
+    return math.log(max(int(np.count_nonzero(there)), 1) / max(entries, 1))
 
 
 def quantile(x: NDArray[np.float64], share: float) -> NDArray[np.float64]:
