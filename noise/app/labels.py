@@ -23,7 +23,7 @@ from noise.base.labels import LABELS
 from noise.batch import Done, Job, JournalReader
 from noise.labels.corrections import common_time, place, track, version, with_corrected_rows
 from noise.labels.labelling import Labelling
-from noise.labels.rows import said_rows
+from noise.labels.rows import human_rows
 from noise.labels.table import (
     ASSUMED,
     COLUMNS,
@@ -292,12 +292,14 @@ def measured_rows(job: Job, segments: Sequence[Correction], before: Sequence[Row
         [(one.channel, one.start, one.end, one.label) for one in some] for some in (segments, new)
     )
     try:
-        measured = said_rows(job.path, job.name, drawn, new=changed)
+        measured = human_rows(job.path, job.name, drawn, new=changed)
         known = any(row.get("calibrated") is True for row in before)
         if known and not all(row["calibrated"] for row in measured):
             # `label` was told a calibration that the file does not have.
             scale = full_scale_of(before)
-            measured = [] if scale is None else said_rows(job.path, job.name, drawn, scale, changed)
+            measured = (
+                [] if scale is None else human_rows(job.path, job.name, drawn, scale, changed)
+            )
     except (BushingNoiseError, OSError):  # the correction counts without numbers, too
         return []
     if len(measured) == len(segments):

@@ -148,14 +148,14 @@ def _windows_of(path: Path, blocks: RecordingBlocks) -> Iterator[dict[str, objec
     """Yield the rows of the windows of one channel or of all that a recording names."""
     from features.windows.table import HOP, LENGTH
     from models.errors import ParameterError
-    from noise.labels.windows import FEATURE_NAMES, Pages, can_be_described
+    from noise.labels.windows import FEATURE_NAMES, WindowPages, has_window_channel
 
-    if not can_be_described(blocks):
+    if not has_window_channel(blocks):
         raise ParameterError(
             f"{path}: has no channel of pressure, acceleration or torque sampled at 1000 Hz or "
             "more, so that no window can be described"
         )
-    for page in Pages(blocks):
+    for page in WindowPages(blocks):
         for i, values in enumerate(page.features.tolist(), start=page.first):
             end = min(i * HOP + LENGTH, blocks.n_samples / blocks.rate)
             named = dict(zip(FEATURE_NAMES, values, strict=True))

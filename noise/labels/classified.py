@@ -20,7 +20,7 @@ from models.recording import REFERENCE_PRESSURE
 from noise.base.labels import LABELS
 from noise.classifier import Classifier
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
-from noise.labels.windows import FEATURE_NAMES, FRAMES_A_HOP, KeptFrames, Pages, columns_of
+from noise.labels.windows import FEATURE_NAMES, WindowPages, columns_of, joined_frames
 
 _SILENT_LEVEL = 10.0
 """Calibrated sound below it is silence [dB re 20 uPa]: below any microphone's own noise."""
@@ -45,18 +45,16 @@ class Classified:
     ----------
     probabilities : ndarray, shape (n_windows, n_labels)
         [-]; what is silent is ``none``.
-    telling : ndarray of float32, shape (n_windows, n_features)
+    of_frequency : ndarray of float32, shape (n_windows, n_features)
         By `FREQUENCY_NAMES` [unit of each feature].
-    level, cells
-        As `noise.labels.windows.Described` has them.
-    frames : KeptFrames
-        The same frames.
+    level, frames, cells
+        As `noise.labels.windows.WindowFeatures` has them.
     """
 
     probabilities: NDArray[np.float64]
-    telling: NDArray[np.float32]
+    of_frequency: NDArray[np.float32]
     level: NDArray[np.float32]
-    frames: KeptFrames
+    frames: NDArray[np.float32]
     cells: CellLevels
 
 
@@ -66,26 +64,25 @@ def classified(blocks: RecordingBlocks, classifier: Classifier) -> Classified:
     Parameters
     ----------
     blocks : RecordingBlocks
-        As for `noise.labels.windows.describe`.
+        As for `noise.labels.windows.window_features`.
     classifier : Classifier
 
     Returns
     -------
     Classified
     """
-    asked = columns_of(classifier)
-    probabilities, telling, levels, frames = [], [], [], KeptFrames()
-    pages = Pages(blocks)
+    columns = columns_of(classifier)
+    probabilities, of_frequency, shown = [], [], []
+    pages = WindowPages(blocks)
     for page in pages:
-        probabilities.append(classifier.predict_proba(page.features[:, asked]))
-        telling.append(page.features[:, TELLING])
-        levels.append(page.level)
-        frames.put(page.first * FRAMES_A_HOP, page.frames)
+        probabilities.append(classifier.predict_proba(page.features[:, columns]))
+        of_frequency.append(page.features[:, FREQUENCY_COLUMNS])
+        shown.append(page._replace(features=page.features[:0]))
     found = Classified(
         np.concatenate(probabilities),
-        np.concatenate(telling),
-        np.concatenate(levels),
-        frames,
+        np.concatenate(of_frequency),
+        np.concatenate([page.level for page in shown]),
+        joined_frames(shown),
         pages.cells,
     )
     if at_a_condition(blocks):
@@ -129,18 +126,18 @@ def _silent_windows(blocks: RecordingBlocks, found: Classified) -> NDArray[np.bo
     return silent
 
 
-_WANTED = (
+_OF_FREQUENCY = (
     "high_period_strength", "high_period_rate", "period_strength", "period_rate", "high_blow_rate",
     "fundamental", "line_frequency", "line_count",
 )  # fmt: skip
 
 FREQUENCY_NAMES = (
-    *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in _WANTED),
+    *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in _OF_FREQUENCY),
     "torque_fundamental", "torque_line_frequency",
 )  # fmt: skip
 """Features of windows by which the frequency is told; of `FEATURE_NAMES`."""
 
-TELLING = [FEATURE_NAMES.index(name) for name in FREQUENCY_NAMES]
+FREQUENCY_COLUMNS = [FEATURE_NAMES.index(name) for name in FREQUENCY_NAMES]
 """Their columns among the others."""
 
 _PERIODIC = 0.3

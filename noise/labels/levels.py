@@ -1,4 +1,3 @@
-# mypy: allow-untyped-decorators
 """Levels of any part of a recording, and of each of its segments over the background.
 
 Unweighted levels are put together from sums over cells of 10 ms, while the recording is read once.
@@ -18,13 +17,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from features.kernels.levels import weighted_levels
 from features.sound_quality import SHORTEST, SOUND_QUALITY_RATE, loudness_n5
 from models.blocks import RecordingBlocks
-from models.compilation import COMPILED
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.sound import resampled
 from noise.base.labels import NAMED
@@ -96,9 +93,16 @@ class CellLevels:
         first, last = np.searchsorted(self.edges[:-1], (begin, end)).tolist()
         if first == last:
             return
-        part = np.ascontiguousarray(samples)
-        into = (self._mean, self._peak, self._square)
-        _sum_cells(part, self.edges[first : last + 1] - start, first, *into)
+        edges = self.edges[first : last + 1] - start
+        sizes, starts = np.diff(edges), edges[:-1] - edges[0]
+        part = samples[edges[0] : edges[-1]]
+        # Shares of the peak are squared: those of the values themselves may overflow.
+        mean = np.add.reduceat(part, starts) / sizes
+        part = part - np.repeat(mean, sizes)
+        peak = np.maximum.reduceat(np.abs(part), starts)
+        part /= np.repeat(np.where(peak > 0.0, peak, 1.0), sizes)
+        self._mean[first:last], self._peak[first:last] = mean, peak
+        self._square[first:last] = np.add.reduceat(np.square(part, out=part), starts)
 
     def rms_db(self, first: int, last: int) -> float | None:
         """Root mean square about the mean of cells `first` up to `last` [dB re the unit].
@@ -116,34 +120,6 @@ class CellLevels:
         square = self._square[first:last] * (self._peak[first:last] / peak) ** 2
         total = float(np.sum(square + sizes * (offset / peak) ** 2))
         return 20.0 * math.log10(peak) + 10.0 * math.log10(total / n) if total > 0.0 else None
-
-
-@njit(fastmath={"reassoc", "contract", "nnan", "nsz"}, cache=True, **COMPILED)
-def _sum_cells(
-    samples: NDArray[np.float64],
-    edges: NDArray[np.int64],
-    first: int,
-    mean: NDArray[np.float64],
-    peak: NDArray[np.float64],
-    square: NDArray[np.float64],
-) -> None:
-    """Fill in mean, peak about it, and the sum of squares re the peak, whose own may overflow."""
-    for cell in range(edges.size - 1):
-        part = samples[edges[cell] : edges[cell + 1]]
-        total = 0.0
-        for i in range(part.size):
-            total += part[i]
-        middle = total / part.size
-        largest = 0.0
-        for i in range(part.size):
-            largest = max(largest, abs(part[i] - middle))
-        sum_of_squares = 0.0
-        peak_or_one = largest if largest > 0.0 else 1.0
-        for i in range(part.size):
-            share = (part[i] - middle) / peak_or_one
-            sum_of_squares += share * share
-        mean[first + cell], peak[first + cell] = middle, largest
-        square[first + cell] = sum_of_squares
 
 
 def sound_levels(

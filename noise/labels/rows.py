@@ -21,11 +21,11 @@ from models.condition import Condition
 from models.recording import Recording
 from noise.base.labels import NAMED
 from noise.inference import Inference, Interval
-from noise.labels.classified import TELLING, segment_frequency
+from noise.labels.classified import FREQUENCY_COLUMNS, segment_frequency
 from noise.labels.levels import sound_levels, with_weighted_levels
 from noise.labels.segments import Segment
 from noise.labels.table import ASSUMED, COLUMNS, CONDITIONS, HUMAN, assumes_material
-from noise.labels.windows import can_be_described, describe, tracks
+from noise.labels.windows import has_window_channel, tracks, window_features
 from noise.recordings.files import names_channels, open_blocks
 from noise.recordings.meaning import PascalPerFullScale
 from noise.recordings.rotation import agrees, as_logged
@@ -295,7 +295,7 @@ LONGEST_MEASURED = 120.0
 """No more is measured while a person waits [s]: of a longer recording what is new alone."""
 
 
-def said_rows(
+def human_rows(
     path: Path,
     name: str,
     segments: Sequence[tuple[str, float, float, str]],
@@ -340,7 +340,7 @@ def said_rows(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     run = Recording(tone[None], 16_000.0, (Channel("pressure"),))
     ...     path = write_recording(Path(folder) / "run07", run)
-    ...     (row,) = said_rows(path, "run07.wav", [("all", 0.5, 1.5, "squeal")])
+    ...     (row,) = human_rows(path, "run07.wav", [("all", 0.5, 1.5, "squeal")])
     >>> round(row["frequency_hz"], -1), row["level_db"], row["label_source"], row["p_squeal"]
     (800.0, 90.97, 'human', None)
     """
@@ -381,9 +381,9 @@ def _measured(
             continue
         blocks = RecordingBlocks.of(track.cut(first, last))
         level = level_dbfs = frequency = None
-        if can_be_described(blocks):
-            found = describe(blocks)
-            frequency = segment_frequency(found.features[:, TELLING], label)
+        if has_window_channel(blocks):
+            found = window_features(blocks)
+            frequency = segment_frequency(found.features[:, FREQUENCY_COLUMNS], label)
             row = blocks.first("pressure")
             if row is not None:
                 level, level_dbfs = sound_levels(

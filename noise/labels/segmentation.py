@@ -11,7 +11,6 @@ sum of squares between its two sides, the classical change of mean.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +18,6 @@ from numpy.typing import NDArray
 from features.windows.blocks import FRAME_RATE, RATE
 from features.windows.frames import FRAME, FRAME_COLUMNS
 from features.windows.table import HOP
-
-if TYPE_CHECKING:
-    from noise.labels.windows import KeptFrames
-
 
 NOISES = 3
 """The first labels are the noises."""
@@ -241,14 +236,12 @@ def clearest(probabilities: NDArray[np.float64], group: NDArray[np.intp]) -> NDA
     return np.asarray(sums / taken[:, None])
 
 
-def change_points(
-    frames: NDArray[np.float32] | KeptFrames, changes: NDArray[np.intp]
-) -> NDArray[np.float64]:
+def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDArray[np.float64]:
     """Find when each change between two windows happens.
 
     Parameters
     ----------
-    frames : KeptFrames or ndarray of float32, shape (n_frames, n_columns)
+    frames : ndarray of float32, shape (n_frames, n_columns)
         As `features.windows.table.WindowTable` has them.
     changes : ndarray of int, shape (n_changes,)
         Window after which each change is; rising.
@@ -275,9 +268,7 @@ def change_points(
     return np.array(times)
 
 
-def _change(
-    frames: NDArray[np.float32] | KeptFrames, middle: float, low: float, high: float
-) -> float:
+def _change(frames: NDArray[np.float32], middle: float, low: float, high: float) -> float:
     first = max(0, round((max(low, middle - _CONTEXT) - _LEAD) * FRAME_RATE))
     last = min(len(frames), round((min(high, middle + _CONTEXT) - _LEAD) * FRAME_RATE))
     allowed = np.arange(

@@ -18,7 +18,7 @@ from noise.classifier import Classifier
 from noise.labels.classified import Classified, at_a_condition, classified, segment_frequency
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
 from noise.labels.segmentation import change_points, labelled_stretches
-from noise.labels.windows import can_be_described, tracks
+from noise.labels.windows import has_window_channel, tracks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -207,7 +207,7 @@ def file_label(segments: list[Segment]) -> Segment:
 
 
 def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> list[Segment]:
-    if not can_be_described(blocks):
+    if not has_window_channel(blocks):
         return [_nothing_to_tell(blocks, channel)]
     found = classified(blocks, classifier)
     thresholds = None if at_a_condition(blocks) else classifier.thresholds
@@ -240,7 +240,7 @@ def _segment(
         end=float(edges[1]),
         label=label,
         probabilities=dict(zip(LABELS, probabilities.tolist(), strict=True)),
-        frequency=segment_frequency(found.telling[slice(*windows)], label),
+        frequency=segment_frequency(found.of_frequency[slice(*windows)], label),
         level=level,
         level_dbfs=level_dbfs,
     )

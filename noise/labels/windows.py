@@ -1,4 +1,4 @@
-"""A recording described window by window, reading each of its samples once.
+"""Features of a recording, window by window, reading each of its samples once.
 
 Blocks lie on a grid that begins with the recording, and pages hold three of them; so the same
 numbers come out whether the recording is in memory or read from its file, and whoever takes a page
@@ -8,9 +8,8 @@ at a time needs no more memory for a longer one.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from tempfile import SpooledTemporaryFile
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +28,7 @@ from features.windows.table import (
     window_count,
 )
 from models.blocks import RecordingBlocks
-from models.errors import ParameterError, RecordingError
+from models.errors import ParameterError
 from noise.classifier.model import Classifier
 from noise.labels.levels import CellLevels
 
@@ -75,8 +74,8 @@ def columns_of(classifier: Classifier) -> list[int]:
 
 
 @dataclass(frozen=True, eq=False)
-class Described:
-    """What is known of a recording for labelling it.
+class WindowFeatures:
+    """Features of all windows of a recording, and its frames and levels.
 
     Parameters
     ----------
@@ -96,7 +95,7 @@ class Described:
     cells: CellLevels
 
 
-def can_be_described(blocks: RecordingBlocks) -> bool:
+def has_window_channel(blocks: RecordingBlocks) -> bool:
     """Whether a recording has a channel that noises show in, sampled fast enough."""
     return blocks.rate >= _LEAST_RATE and any(blocks.first(kind) is not None for kind in _KINDS)
 
@@ -117,8 +116,8 @@ def tracks(blocks: RecordingBlocks, *, per_track: bool) -> Iterator[tuple[str, R
         yield "all", blocks
 
 
-def describe(blocks: RecordingBlocks) -> Described:
-    """Describe all windows of a recording.
+def window_features(blocks: RecordingBlocks) -> WindowFeatures:
+    """Compute the features of all windows of a recording.
 
     Parameters
     ----------
@@ -127,26 +126,27 @@ def describe(blocks: RecordingBlocks) -> Described:
 
     Returns
     -------
-    Described
+    WindowFeatures
 
     Examples
     --------
     >>> from models.recording import Channel, Recording
     >>> from models.blocks import RecordingBlocks
     >>> hiss = np.random.default_rng(0).normal(size=(1, 48_000))
-    >>> found = describe(RecordingBlocks.of(Recording(hiss, 48e3, (Channel("pressure"),))))
+    >>> found = window_features(RecordingBlocks.of(Recording(hiss, 48e3, (Channel("pressure"),))))
     >>> found.features.shape == (3, len(FEATURE_NAMES)), found.frames.shape[0]
     (True, 97)
     """
-    described = Pages(blocks)
+    pages = WindowPages(blocks)
     # Filled page by page: a list of pages and what it is put together to would take twice as much.
-    table = np.empty((described.count, len(FEATURE_NAMES)), dtype=np.float32)
-    levels, frames = [], KeptFrames()
-    for page in described:
+    table = np.empty((pages.count, len(FEATURE_NAMES)), dtype=np.float32)
+    found = []
+    for page in pages:
         table[page.first : page.first + len(page.features)] = page.features
-        levels.append(page.level)
-        frames.put(page.first * FRAMES_A_HOP, page.frames)
-    return Described(table, np.concatenate(levels), frames[:], described.cells)
+        found.append(page._replace(features=page.features[:0]))
+    return WindowFeatures(
+        table, np.concatenate([page.level for page in found]), joined_frames(found), pages.cells
+    )
 
 
 class Page(NamedTuple):
@@ -157,8 +157,8 @@ class Page(NamedTuple):
     first : int
         Window that it begins with.
     features, level, frames : ndarray
-        As `Described` has them; the frames from those of its first window on, as far as its last
-        one reaches.
+        As `WindowFeatures` has them; the frames from those of its first window on, as far as its
+        last one reaches.
     """
 
     first: int
@@ -167,80 +167,78 @@ class Page(NamedTuple):
     frames: NDArray[np.float32]
 
 
-class Pages:
-    """A recording described page by page, once.
+def joined_frames(pages: Sequence[Page]) -> NDArray[np.float32]:
+    """Put the frames of pages together; where two have the same frame, the later one's is taken.
+
+    Returns
+    -------
+    ndarray of float32, shape (n_frames, n_columns)
+        In the [unit] of each column.
+    """
+    starts = [page.first * FRAMES_A_HOP for page in pages]
+    ends = [*starts[1:], starts[-1] + len(pages[-1].frames)]
+    return np.concatenate(
+        [page.frames[: end - start] for page, start, end in zip(pages, starts, ends, strict=True)]
+    )
+
+
+class WindowPages:
+    """Windows of a recording page by page, each sample of which is read once.
 
     Parameters
     ----------
     blocks : RecordingBlocks
-        As for `describe`.
+        As for `window_features`.
 
     Examples
     --------
     >>> from models.recording import Channel, Recording
     >>> from models.blocks import RecordingBlocks
     >>> hiss = np.random.default_rng(0).normal(size=(1, 480_000))
-    >>> pages = Pages(RecordingBlocks.of(Recording(hiss, 48e3, (Channel("pressure"),))))
+    >>> pages = WindowPages(RecordingBlocks.of(Recording(hiss, 48e3, (Channel("pressure"),))))
     >>> pages.count, sum(len(page.features) for page in pages)
     (39, 39)
     """
 
+    count: int
+    """Number of windows."""
+
+    cells: CellLevels
+    """Levels of the channel listened to, complete after the last page."""
+
     def __init__(self, blocks: RecordingBlocks) -> None:
         rows = {kind: blocks.first(kind) for kind in _KINDS}
-        self._blocks = blocks
         self._channels = {kind: row for kind, row in rows.items() if row is not None}
-        self._heard = next(iter(self._channels.values()))
+        self._main = next(iter(self._channels.values()))
         acoustic = [row for kind, row in self._channels.items() if kind in ACOUSTIC_KINDS]
-        self._reader = _Reader(blocks, sorted({self._heard, *acoustic}), self._heard)
-
-    @property
-    def count(self) -> int:
-        """Number of windows."""
-        return self._reader.count
-
-    @property
-    def cells(self) -> CellLevels:
-        """Levels of the channel listened to, complete after the last page."""
-        return self._reader.cells
+        self._blocks, self._rows = blocks, sorted({self._main, *acoustic})
+        rate = blocks.rate
+        self._useful = block_length(blocks.n_samples / rate)
+        self._n = max(1, round(blocks.n_samples * RATE / rate))
+        self._limit = min(WORKING_LIMIT, USABLE_SHARE * rate)
+        self._resampled: dict[int, dict[int, Block]] = {}
+        self.count = window_count(self._n)
+        self.cells = CellLevels(rate, blocks.n_samples)
 
     def __iter__(self) -> Iterator[Page]:
-        for first, windows in self._reader.pages():
-            own = self._reader.page(self._heard, first, windows)
+        a_page = round(_BLOCKS_A_PAGE * self._useful / HOP)
+        for first in range(0, self.count, a_page):
+            windows = min(a_page, self.count - first)
+            own = self._table(self._main, first, windows)
             parts = []
             for row in map(self._channels.get, ACOUSTIC_KINDS):
                 if row is None:
                     parts.append(np.full((windows, len(WINDOW_NAMES)), np.nan, dtype=np.float32))
-                elif row == self._heard:
-                    parts.append(own.features)
                 else:
-                    parts.append(self._reader.page(row, first, windows).features)
+                    table = own if row == self._main else self._table(row, first, windows)
+                    parts.append(table.features)
             parts.append(_torque(self._blocks, self._channels.get("torque"), first, windows))
             features = np.concatenate(parts, axis=1, dtype=np.float32)
             features[~np.isfinite(features)] = np.nan
             yield Page(first, features, own.level, own.frames)
 
-
-class _Reader:
-    """Blocks and pages of some channels, one after the other."""
-
-    def __init__(self, blocks: RecordingBlocks, rows: list[int], heard: int) -> None:
-        self._blocks, self._rows, self._heard = blocks, rows, heard
-        rate = blocks.rate
-        self._useful = block_length(blocks.n_samples / rate)
-        self._n = max(1, round(blocks.n_samples * RATE / rate))
-        self.count = window_count(self._n)
-        self._limit = min(WORKING_LIMIT, USABLE_SHARE * rate)
-        self._held: dict[int, dict[int, Block]] = {}
-        self.cells = CellLevels(rate, blocks.n_samples)
-
-    def pages(self) -> Iterator[tuple[int, int]]:
-        """Yield the first window of each page and their number."""
-        a_page = round(_BLOCKS_A_PAGE * self._useful / HOP)
-        for first in range(0, self.count, a_page):
-            yield first, min(a_page, self.count - first)
-
-    def page(self, row: int, first: int, windows: int) -> WindowTable:
-        """Describe a page of a channel."""
+    def _table(self, row: int, first: int, windows: int) -> WindowTable:
+        """Features of a page of a channel."""
         number = round(first * HOP) // self._useful
         start = number * self._useful * RATE
         size = min(self._n - start, round(((windows - 1) * HOP + LENGTH) * RATE))
@@ -266,21 +264,21 @@ class _Reader:
 
     def _block(self, number: int) -> dict[int, Block]:
         """Return one block of all channels; the last few are kept."""
-        if number not in self._held:
-            for old in [old for old in self._held if old < number - _BLOCKS_A_PAGE]:
-                del self._held[old]
+        if number not in self._resampled:
+            for old in [old for old in self._resampled if old < number - _BLOCKS_A_PAGE]:
+                del self._resampled[old]
             rate, n = self._blocks.rate, self._blocks.n_samples
             start = round((number * self._useful - MARGIN) * rate)
             length = round((self._useful + 2.0 * MARGIN) * rate)
             held = self._blocks.read(max(start, 0), min(start + length, n))
             begin = round(number * self._useful * rate)
             end = round((number + 1) * self._useful * rate)
-            self.cells.add(begin, end, held[self._heard], max(start, 0))
-            self._held[number] = {
+            self.cells.add(begin, end, held[self._main], max(start, 0))
+            self._resampled[number] = {
                 row: resampled_block(self._framed(held[row], start, length), rate, self._useful)
                 for row in self._rows
             }
-        return self._held[number]
+        return self._resampled[number]
 
     def _framed(self, samples: NDArray[np.float64], start: int, length: int) -> NDArray[np.float64]:
         """Put what there is of a block into zeros, faded where the recording begins and ends."""
@@ -315,57 +313,3 @@ def _torque(
         except ParameterError:  # too short to be described
             continue
     return out
-
-
-_IN_MEMORY = 8 << 20
-"""What is kept without a file [byte]: a quarter of an hour."""
-
-
-class KeptFrames:
-    """Rows of one length that are put and had by their numbers.
-
-    Examples
-    --------
-    >>> kept = KeptFrames()
-    >>> kept.put(0, np.zeros((4, 2), dtype=np.float32))
-    >>> kept.put(3, np.ones((2, 2), dtype=np.float32))
-    >>> len(kept), kept[2:4].tolist()
-    (5, [[0.0, 0.0], [1.0, 1.0]])
-    """
-
-    def __init__(self) -> None:
-        self._file = SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115  # goes with this
-        self._columns = self._count = 0
-
-    def __len__(self) -> int:
-        return self._count
-
-    def put(self, first: int, rows: NDArray[np.float32]) -> None:
-        """Put rows from number `first` on, in place of those that are there.
-
-        Parameters
-        ----------
-        first : int
-            At most the number of rows.
-        rows : ndarray of float32, shape (n, n_columns)
-            As `features.windows.table.WindowTable` has them [unit of each column].
-
-        Raises
-        ------
-        RecordingError
-            There is no room for them.
-        """
-        self._columns = rows.shape[1]
-        try:
-            self._file.seek(4 * self._columns * first)
-            self._file.write(np.ascontiguousarray(rows).tobytes())
-        except OSError as error:
-            reason = error.strerror or error
-            raise RecordingError(f"a temporary file cannot be written ({reason})") from error
-        self._count = first + len(rows)
-
-    def __getitem__(self, part: slice) -> NDArray[np.float32]:
-        first, last, _ = part.indices(self._count)
-        self._file.seek(4 * self._columns * first)
-        content = self._file.read(4 * self._columns * max(0, last - first))
-        return np.frombuffer(content, dtype=np.float32).reshape(-1, self._columns)

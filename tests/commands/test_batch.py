@@ -20,7 +20,7 @@ from models.recording import Channel, Recording
 from noise.classifier import load_classifier
 from noise.cli import main
 from noise.labels.table import COLUMNS, LabelTable, read_label_table, result_lines
-from noise.labels.windows import FEATURE_NAMES, describe
+from noise.labels.windows import FEATURE_NAMES, window_features
 from noise.recordings import read_recording, write_recording
 
 
@@ -68,7 +68,7 @@ def test_windows_are_listed_as_the_classifier_is_given_them(runs, capsys):
     assert [first[name] for name in ("channel", "start_s", "end_s")] == ["all", "0.0", "0.1"]
     given = load_classifier().feature_names
     recording = RecordingBlocks.of(read_recording(Path("runs/a.wav")))
-    values = describe(recording).features[:, [FEATURE_NAMES.index(name) for name in given]]
+    values = window_features(recording).features[:, [FEATURE_NAMES.index(name) for name in given]]
     listed = np.array([float(first[name] or "nan") for name in given], dtype=np.float32)
     assert listed.tobytes() == values[0].tobytes()
     assert np.isfinite(listed).any()

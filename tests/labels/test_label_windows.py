@@ -13,7 +13,7 @@ from models.blocks import RecordingBlocks
 from models.recording import Channel, Recording
 from noise.labels.levels import CellLevels
 from noise.labels.segmentation import change_points, labelled_stretches, viterbi_path
-from noise.labels.windows import FEATURE_NAMES, describe
+from noise.labels.windows import FEATURE_NAMES, window_features
 from noise.recordings import files as blocks_module
 from noise.recordings.files import open_blocks
 from noise.training.draws import coloured_noise
@@ -25,7 +25,7 @@ def recording(*rows, rate=48_000.0, names=("pressure", "acceleration", "torque")
 
 
 def described(samples, rate):
-    return describe(RecordingBlocks.of(recording(samples, rate=rate)))
+    return window_features(RecordingBlocks.of(recording(samples, rate=rate)))
 
 
 def noise(seconds, rate=48_000, seed=0):
@@ -132,14 +132,14 @@ def test_from_a_file_in_blocks_comes_the_same_as_from_memory(tmp_path, monkeypat
     soundfile.write(tmp_path / "long.wav", samples, 22_050, subtype="FLOAT")
     whole = described(samples.astype(np.float64), 22_050.0)
     with open_blocks(tmp_path / "long.wav") as blocks:
-        parts = describe(blocks)
+        parts = window_features(blocks)
     assert parts.features.tobytes() == whole.features.tobytes()
     assert parts.frames.tobytes() == whole.frames.tobytes()
 
 
 def test_channels_that_are_not_there_have_no_features():
     sound = noise(1.0, 30_000)
-    both = describe(RecordingBlocks.of(recording(sound, 2.0 * sound, rate=30e3)))
+    both = window_features(RecordingBlocks.of(recording(sound, 2.0 * sound, rate=30e3)))
     alone = described(sound, 30e3)
     pressure = [name.startswith("pressure_") for name in FEATURE_NAMES]
     torque = [name.startswith("torque_") for name in FEATURE_NAMES]

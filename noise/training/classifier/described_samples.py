@@ -40,7 +40,7 @@ from models.blocks import RecordingBlocks
 from models.condition import Condition
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.labels.windows import describe
+from noise.labels.windows import window_features
 from noise.training.classifier.augmentation.backgrounds import quiet
 from noise.training.classifier.augmentation.recorder import augmented, recorded
 from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, background_sound
@@ -582,7 +582,7 @@ def draw_sample(
 
 def describe_drawn(drawn: Drawn) -> Sample:
     """Describe the windows of a drawn recording in which its label holds and something sounds."""
-    found = describe(RecordingBlocks.of(drawn.recording))
+    found = window_features(RecordingBlocks.of(drawn.recording))
     start = np.arange(len(found.features)) * HOP
     outside = np.maximum(drawn.span[0] - start, 0.0) + np.maximum(
         np.minimum(start + LENGTH, drawn.recording.duration) - drawn.span[1], 0.0

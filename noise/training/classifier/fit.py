@@ -47,7 +47,7 @@ from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.processes import ending_with_this
 from noise.classifier.model import Classifier
 from noise.labels.segmentation import clearest
-from noise.labels.windows import FEATURE_NAMES, columns_of, describe
+from noise.labels.windows import FEATURE_NAMES, columns_of, window_features
 from noise.recordings import read_recording
 from noise.training.classifier.cross_fitting import grown, left_out_scores, named, with_trees_of
 from noise.training.classifier.described_samples import Sample, draw_sample
@@ -126,7 +126,7 @@ def describe_folder(folder: Path) -> RealSounds:
         if label is None or any(word in row["file"] for word in _FRICTION):
             continue
         blocks = RecordingBlocks.of(read_recording(folder / row["file"]))
-        found = describe(blocks.track(0))
+        found = window_features(blocks.track(0))
         loud = found.level > found.level.max() - _QUIET_DB
         source = _source(row["source"], row["licence"])
         samples.append(_sample(found.features[loud], label, source))

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from models.blocks import RecordingBlocks
 from noise.base.labels import LABELS
 from noise.labels.segmentation import NOISES
-from noise.labels.windows import can_be_described, describe
+from noise.labels.windows import has_window_channel, window_features
 
 if TYPE_CHECKING:
     from noise.training.classifier.own_recordings import OwnWindow
@@ -72,8 +72,8 @@ def own_samples(windows: Iterable[OwnWindow]) -> tuple[list[OwnSample], list[str
     refused: dict[str, str] = {}
     for window in windows:
         blocks = RecordingBlocks.of(window.recording)
-        if can_be_described(blocks):
-            features = describe(blocks).features
+        if has_window_channel(blocks):
+            features = window_features(blocks).features
             if np.isfinite(features).any():
                 samples.append(OwnSample(features, window.label, window.name))
                 continue
