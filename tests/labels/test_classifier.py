@@ -6,8 +6,8 @@ from sklearn.ensemble import HistGradientBoostingClassifier
 
 from models.errors import ParameterError
 from noise.classifier import LABELS, load_classifier
-from noise.classifier.model import Calibration, at_sensitivity
-from noise.labels.segmentation import QUIET, clearest, labelled_stretches
+from noise.classifier.model import at_sensitivity
+from noise.labels.segmentation import QUIET, labelled_stretches
 from noise.training.classifier.operating_point import (
     FALSE_NAMES_AN_HOUR,
     false_names,
@@ -50,21 +50,6 @@ def test_a_saved_classifier_gives_the_same_bytes_of_probabilities(tmp_path):
     features = np.stack([0.1 * np.arange(n), np.full(n, np.nan)]).astype(np.float32)
     again = load_classifier(tmp_path / "copy.npz").predict_proba(features)
     assert again.tobytes() == shipped.predict_proba(features).tobytes()
-
-
-def test_probabilities_sum_to_one_whatever_is_missing():
-    classifier = load_classifier()
-    n = len(classifier.feature_names)
-    features = np.stack([np.full(n, np.nan), np.full(n, np.inf)]).astype(np.float32)
-    p = classifier.predict_proba(features)
-    assert p.shape == (2, len(LABELS))
-    assert p.sum(axis=1) == pytest.approx([1.0, 1.0])
-
-
-def test_a_calibration_of_even_weights_moves_no_vote_past_another():
-    votes = np.random.default_rng(1).dirichlet(np.ones(5), 50)
-    calibrated = Calibration(2.5, (1.0,) * 5)(votes)
-    assert np.array_equal(calibrated.argmax(axis=1), votes.argmax(axis=1))
 
 
 def test_calibrated_probabilities_are_as_often_right_as_they_say():
@@ -115,18 +100,6 @@ def test_a_window_half_in_a_noise_does_not_name_the_silence_beside_it():
     assert heard[0, 3] == 1.0
 
 
-def test_a_short_creak_counts_where_it_is_clearest():
-    creak, other = [0.9, 0.0, 0.0, 0.0, 0.1], [0.0, 0.0, 0.0, 0.0, 1.0]
-    p = np.array([other, creak, creak, other, other, other, other, other])
-    assert clearest(p, np.zeros(8, dtype=int))[0, 0] == pytest.approx(0.9)
-
-
-def test_what_may_be_creak_or_squeal_is_unknown():
-    either = np.tile([0.45, 0.0, 0.45, 0.0, 0.1], (6, 1))
-    _, names, _ = labelled_stretches(either, [0.6, 0.6, 0.6])
-    assert [LABELS[name] for name in names] == ["unknown"]
-
-
 @pytest.mark.parametrize("content", [b"", b"no zip", b"PK\x03\x04garbage"])
 def test_a_file_that_is_no_classifier_is_refused_in_one_line(tmp_path, content):
     path = tmp_path / "model.npz"
@@ -134,11 +107,6 @@ def test_a_file_that_is_no_classifier_is_refused_in_one_line(tmp_path, content):
     with pytest.raises(ParameterError, match=r"model\.npz") as refused:
         load_classifier(path)
     assert "\n" not in str(refused.value)
-
-
-def test_a_classifier_that_is_not_there_is_refused(tmp_path):
-    with pytest.raises(ParameterError, match="no such file"):
-        load_classifier(tmp_path / "nothing.npz")
 
 
 def test_trees_that_never_end_are_refused(tmp_path):

@@ -14,9 +14,9 @@ from noise.base.files import export_paths
 from noise.base.tables import write_table
 from noise.classifier import LABELS
 from noise.cli import main
-from noise.labels.conditions import MAP_COLUMNS, conditions_map, map_rows
+from noise.labels.conditions import conditions_map
 from noise.labels.table import COLUMNS, read_label_table
-from noise.labels.tracks import label_track, write_label_tracks
+from noise.labels.tracks import write_label_tracks
 from noise.pictures.maps import plot_conditions
 
 
@@ -78,11 +78,6 @@ def test_what_is_no_label_table_is_refused_with_the_reason(tmp_path, name, conte
         read_label_table(tmp_path / name)
 
 
-def test_a_table_that_is_not_there_makes_the_call_wrong(tmp_path):
-    with pytest.raises(ParameterError, match="there is no such file"):
-        read_label_table(tmp_path / "nowhere.csv")
-
-
 def test_each_recording_has_a_label_track(tmp_path):
     written = write_label_tracks(tmp_path, TABLE)
     names = [path.relative_to(tmp_path).as_posix() for path in written]
@@ -91,33 +86,9 @@ def test_each_recording_has_a_label_track(tmp_path):
     assert track == "0.000000\t1.500000\tsqueal\n1.500000\t2.000000\tnone\n"
 
 
-def test_tracks_of_a_stereo_file_are_told_apart():
-    assert label_track([row(channel="2")]).endswith("\ttrack 2: creak\n")
-
-
-def test_the_map_counts_by_condition():
-    places = conditions_map(TABLE)
-    found = [(p.support_stiffness and p.support_stiffness.low, p.label) for p in places]
-    assert found == [(2214.0, "creak"), (math.inf, "squeal"), (None, "unknown")]
-    assert places[1].segments["none"] == places[1].segments["squeal"] == 1
-    assert places[1].recordings == {"day1/b.wav"}
-    assert all(tuple(r) == MAP_COLUMNS for r in map_rows(places))
-
-
-def test_a_place_is_named_by_its_longest_noise_and_silence_only_where_there_is_none():
-    rows = [row(label="none", end_s=9.0), row(label="squawk", end_s=0.5), row(end_s=0.25)]
-    (place,) = conditions_map(rows)
-    assert place.label == "squawk"
-    assert conditions_map(rows[:1])[0].label == "none"
-
-
 def test_jitter_of_the_logged_speed_does_not_split_a_place_but_a_step_does():
     rows = [row(speed=v) for v in (4.97, 5.0, 5.02, -5.01, 6.0, 12.0)]
     assert [sum(p.segments.values()) for p in conditions_map(rows)] == [4, 1, 1]
-
-
-def test_materials_are_kept_apart():
-    assert len(conditions_map([row(), row(material="fluorocarbon")])) == 2
 
 
 number = st.one_of(st.none(), st.floats(0.0, 1e6), st.just(math.inf))
@@ -170,28 +141,6 @@ def test_a_map_and_tracks_come_from_a_table_without_labelling(tmp_path, capsys, 
         assert [r["label"] for r in csv.DictReader(file)] == ["creak", "squeal", "unknown"]
     assert Path("m/map.png").read_bytes()[:4] == b"\x89PNG"
     assert Path("tracks/day1/b.txt").is_file()
-
-
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        (["t.csv"], "say what to make of it"),
-        (["nowhere.csv", "--map", "m.png"], "nowhere.csv: there is no such file"),
-        (["t.csv", "--map", "m.txt"], "a picture ends in"),
-        (["t.csv", "--map", "m.png", "--out", "m.csv"], "give one of them another name"),
-        (["t.csv", "--map", "t.csv/m.png"], "is a file, not a folder"),
-        (["t.csv", "--audacity", "t.csv"], "is a file, not a folder"),
-        (["t.csv", "--audacity", "one.txt"], "name a folder"),
-    ],
-)
-def test_exports_that_cannot_be_made_are_refused(tmp_path, capsys, monkeypatch, given, said):
-    monkeypatch.chdir(tmp_path)
-    write_table("t.csv", COLUMNS, TABLE)
-    assert main(["label", *given]) == 2
-    out, err = capsys.readouterr()
-    assert said in err
-    assert out == ""
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["t.csv"]
 
 
 def test_a_table_without_labels_has_no_map(tmp_path, capsys, monkeypatch):

@@ -8,11 +8,9 @@ from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from noise.audio.assessment import assess
 from noise.classifier import load_classifier
-from noise.labels.labelling import label
-from noise.labels.levels import background_level, with_weighted_levels
+from noise.labels.levels import with_weighted_levels
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, label_recording
-from noise.recordings import write_recording
 from sim.run import simulate
 
 CLASSIFIER = load_classifier()
@@ -95,17 +93,3 @@ def test_digital_silence_is_no_background(squeal, silence, calibrated):
     assert gated[-1]["snr_dba"] == pytest.approx(amid[-1]["snr_dba"], abs=0.2)
     alone = rows_of(recorded(np.concatenate([silence, squeal]), calibrated=calibrated))
     assert all(row["snr_dba"] is None for row in alone)
-
-
-def test_the_background_is_exceeded_nine_tenths_of_the_time():
-    levels = np.random.default_rng(1).permutation(np.arange(1000.0))
-    assert np.mean(levels > background_level(levels)) == pytest.approx(0.9, abs=0.002)
-
-
-def test_levels_do_not_depend_on_how_much_is_read_at_once(squeal, tmp_path, monkeypatch):
-    sound = np.concatenate([noise(3.0, 0.01), squeal, noise(3.0, 0.01)])
-    path = write_recording(tmp_path / "run", recorded(sound))
-    whole = label(path)
-    monkeypatch.setattr("noise.recordings.files._LARGE", 0)
-    monkeypatch.setattr("noise.recordings.files._CHUNK", 8 * RATE // 3)
-    assert label(path) == whole

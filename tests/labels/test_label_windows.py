@@ -12,7 +12,7 @@ from features.windows.table import WINDOW_NAMES, window_count
 from models.blocks import RecordingBlocks
 from models.recording import Channel, Recording
 from noise.labels.levels import CellLevels
-from noise.labels.segmentation import change_points, labelled_stretches, viterbi_path
+from noise.labels.segmentation import change_points, viterbi_path
 from noise.labels.windows import FEATURE_NAMES, window_features
 from noise.recordings import files as blocks_module
 from noise.recordings.files import open_blocks
@@ -76,24 +76,6 @@ def test_features_do_not_depend_on_the_gain():
     one, other = described(samples, 48e3), described(1e-4 * samples, 48e3)
     assert np.allclose(one.features, other.features, rtol=1e-3, atol=1e-3, equal_nan=True)
     assert one.level - other.level == pytest.approx(80.0, abs=0.01)
-
-
-def test_rumble_below_100_hz_is_not_seen(reference):
-    samples = noise(2.0)
-    rumble = 100.0 * np.sin(2 * np.pi * 37.0 * np.arange(samples.size) / 48e3)
-    one, other = described(samples, 48e3), described(samples + rumble, 48e3)
-    for name in ("line_frequency", "line_share", "band_1", "high_period_rate", "flatness"):
-        column = FEATURE_NAMES.index(f"pressure_{name}")
-        expected = one.features[1:-2, column]
-        assert other.features[1:-2, column] == pytest.approx(expected, abs=0.3), name
-
-
-def test_windows_are_a_weighted():
-    time = np.arange(96_000) / 48e3
-    tones = np.sin(2 * np.pi * 250.0 * time) + np.sin(2 * np.pi * 1000.0 * time)
-    found = described(tones, 48e3).features[3]
-    bands = [found[FEATURE_NAMES.index(f"pressure_band_{i}")] for i in (2, 6)]
-    assert bands[1] - bands[0] == pytest.approx(8.6, abs=0.5)
 
 
 def test_a_tone_is_found_under_a_stronger_rumble():
@@ -168,13 +150,6 @@ def test_a_short_doubt_is_no_segment_but_a_long_one_is():
     assert course.tolist() == [0] * 4 + [1] * 4 + [0] * 4
 
 
-def test_a_noise_amid_silence_is_no_longer_than_it_is_heard():
-    none, squawk = [0.0, 0.0, 0.0, 1.0, 0.0], [0.0, 0.6, 0.0, 0.15, 0.25]
-    p = np.array([none] * 6 + [squawk] * 6 + [none] * 8)
-    edges, names, _ = labelled_stretches(p, [0.5] * 3)
-    assert (edges.tolist(), names.tolist()) == ([0, 6, 12, 20], [3, 1, 3])
-
-
 def test_levels_of_what_has_no_square_are_levels_all_the_same():
     samples = 1e200 * np.sin(np.arange(1000))
     cells = CellLevels(1000.0, 1000)
@@ -201,8 +176,3 @@ def test_a_recording_brought_back_to_48_khz_is_described_as_it_was_stored(stored
     assert np.array_equal(np.isnan(a), np.isnan(b))
     known = np.isfinite(a)
     assert np.median(np.abs(a - b)[known]) < 0.01
-
-
-def test_a_full_recording_is_described_as_far_as_it_reaches():
-    assert np.isfinite(described(tone_in_noise(96_000), 48_000).features[:, TOP]).all()
-    assert np.isnan(described(tone_in_noise(48_000, 24_000), 24_000).features[:, TOP]).all()

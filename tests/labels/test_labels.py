@@ -15,11 +15,9 @@ from features.kernels.levels import a_weighted_level
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
-from noise.batch.work import refusal
 from noise.classifier import LABELS, load_classifier
 from noise.cli import main
 from noise.labels.classified import FREQUENCY_NAMES, segment_frequency
-from noise.labels.labelling import Labelling
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, file_label, label_recording
 from noise.labels.table import COLUMNS
@@ -40,19 +38,16 @@ def squeal():
     return simulate(rig, 10.0, support_stiffness=3745.0, seconds=2.0).recording["pressure"]
 
 
-def test_segments_cover_a_recording_without_gap_or_overlap(squeal):
-    quiet = 1e-9 * np.ones(45_000)
+def test_a_squeal_between_silences_is_found_where_it_is(squeal):
+    quiet = np.zeros(45_000)
     segments = label_recording(sound(quiet, squeal, quiet), CLASSIFIER)
-    assert segments[0].start == 0.0
-    assert segments[-1].end == pytest.approx(5.0)
+    assert (segments[0].start, segments[-1].end) == (0.0, pytest.approx(5.0))
     for one, following in itertools.pairwise(segments):
         assert one.end == following.start
         assert one.label != following.label
-
-
-def test_a_squeal_between_silences_is_found_where_it_is(squeal):
-    quiet = np.zeros(45_000)
-    found = file_label(label_recording(sound(quiet, squeal, quiet), CLASSIFIER))
+    assert segments[0].label == "none"
+    assert segments[0].level is segments[0].level_dbfs is None
+    found = file_label(segments)
     assert found.label == "squeal"
     assert found.start == pytest.approx(1.5, abs=0.05)
     assert found.end == pytest.approx(3.5, abs=0.05)
@@ -84,28 +79,23 @@ def test_noises_begin_and_end_where_they_were_put_to_50_ms(
         assert found.end == pytest.approx(begin + length, abs=0.05)
 
 
-@pytest.mark.parametrize("calibrated", [True, False])
-def test_digital_silence_is_none_and_has_no_level(calibrated):
-    (segment,) = label_recording(sound(np.zeros(30_000), calibrated=calibrated), CLASSIFIER)
-    assert segment.label == "none"
-    assert segment.level is None
-    assert segment.level_dbfs is None
-
-
-def test_a_pascal_of_sine_is_94_db():
-    tone = math.sqrt(2.0) * np.sin(2 * np.pi * 1000.0 * np.arange(30_000) / 30e3)
-    (segment,) = label_recording(sound(tone), CLASSIFIER)
-    assert segment.level == pytest.approx(93.98, abs=0.01)
-
-
-def test_an_uncalibrated_level_is_relative_to_full_scale():
+def test_levels_are_re_20_upa_or_full_scale():
     tone = 0.1 * math.sqrt(2.0) * np.sin(2 * np.pi * 1000.0 * np.arange(30_000) / 30e3)
-    (segment,) = label_recording(sound(tone, calibrated=False), CLASSIFIER)
-    assert segment.level is None
-    assert segment.level_dbfs == pytest.approx(-20.0, abs=0.01)
+    for calibrated, level in ((True, pytest.approx(73.98, abs=0.01)), (False, None)):
+        (segment,) = label_recording(sound(tone, calibrated=calibrated), CLASSIFIER)
+        assert segment.level == level
+        assert segment.level_dbfs == pytest.approx(-20.0, abs=0.01)
 
 
-@pytest.mark.parametrize("n", [16, 100, 1000, 15_000, 15_001, 16_900, 31_234])
+def test_what_no_noise_can_be_told_from_is_unknown():
+    slow = sound(np.random.default_rng(0).normal(size=400), rate=350.0)
+    angle = Recording(np.linspace(0.0, 5.0, 30_000)[None], 30e3, (Channel("angle"),))
+    for recording in (slow, angle):
+        (segment,) = label_recording(recording, CLASSIFIER)
+        assert (segment.label, segment.frequency) == ("unknown", None)
+
+
+@pytest.mark.parametrize("n", [16, 1000, 15_001, 31_234])
 def test_recordings_of_any_length_are_labelled_to_their_end(n):
     noise = np.random.default_rng(0).normal(size=n)
     segments = label_recording(sound(noise), CLASSIFIER)
@@ -154,26 +144,6 @@ def test_a_speed_is_written_as_it_was_logged_where_the_angle_agrees(stated, give
     assert row["speed_rad_s_source"] == "logged"
     told = "speed 3 rad/s is that of the channel angle; 3.1 was logged"
     assert row["note"] == (told if stated == 3.1 else None)
-
-
-def test_a_refused_file_has_a_row_with_the_reason():
-    (cells,) = refusal(Labelling(), "bad.wav", "empty").rows
-    row = dict(zip(COLUMNS, cells, strict=True))
-    assert (row["file"], row["error"], row["label"]) == ("bad.wav", "empty", None)
-
-
-@pytest.mark.parametrize("rate", [1.0, 2.0, 200.0, 350.0])
-def test_what_is_sampled_too_slowly_to_tell_is_unknown(rate):
-    noise = np.random.default_rng(0).normal(size=400)
-    (segment,) = label_recording(sound(noise, rate=rate), CLASSIFIER)
-    assert segment.label == "unknown"
-
-
-def test_channels_that_carry_no_noise_are_unknown():
-    angle = Recording(np.linspace(0.0, 5.0, 30_000)[None], 30e3, (Channel("angle"),))
-    (segment,) = label_recording(angle, CLASSIFIER)
-    assert segment.label == "unknown"
-    assert segment.frequency is None
 
 
 def test_rumble_is_not_taken_for_the_tone():

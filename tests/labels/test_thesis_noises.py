@@ -61,12 +61,6 @@ def test_creak_fills_the_bands_from_the_slip_frequency_to_12_5_khz(runs):
     assert highest[0] > 10.0 * highest[1]
 
 
-def test_torque_of_a_creak_has_little_above_2_khz(runs):
-    torque = spectrum(runs["creak"], "torque")
-    above = torque.density[torque.frequency > 2000.0].sum()
-    assert above < 1e-3 * torque.density[torque.frequency > 20.0].sum()
-
-
 @pytest.mark.parametrize("channel", ["acceleration", "pressure"])
 def test_creak_is_largest_right_after_a_slip(runs, channel):
     run = runs["creak"]
@@ -100,12 +94,6 @@ def test_squeal_has_one_predominant_peak_at_the_elastomers_mode_in_all_three_sig
     assert all(found.strongest_share > 0.9 for found in peaks)
     assert np.ptp([found.frequency[0] for found in peaks]) < 2.0
     assert 900.0 < peaks[0].frequency[0] < 1150.0
-
-
-def test_silence_of_pdms_has_no_oscillation_in_torque_or_acceleration(runs):
-    run = runs["none"]
-    assert run.motion.torque.std() < 1e-6 * run.motion.torque.mean()
-    assert lines(run, "acceleration").frequency.size == 0
 
 
 @pytest.mark.parametrize("interference", [0.254e-3, 0.381e-3])

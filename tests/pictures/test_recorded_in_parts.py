@@ -65,15 +65,6 @@ def test_orders_are_those_of_the_recording_in_memory(run_up, monkeypatch):
     assert np.nanmax(parts.level) == pytest.approx(np.nanmax(whole.level), abs=0.5)
 
 
-@pytest.mark.usefixtures("long")
-def test_the_picture_has_the_same_axes(run_up):
-    labels = [
-        [axes.get_xlabel() for axes in plot_recording(of).axes if axes.get_xlabel()]
-        for of in (run_up, RecordingBlocks.of(run_up).part(0, round(5.0 * RATE)))
-    ]
-    assert labels[0] == labels[1] == ["Time [s]", "Speed of the shaft, magnitude [rad/s]"]
-
-
 def slow(*kinds):
     samples = np.random.default_rng(1).normal(size=(len(kinds), 1000))
     return Recording(samples, 100.0, tuple(map(Channel, kinds)), name="slow")
@@ -90,10 +81,3 @@ def test_sound_sampled_too_slowly_for_a_line_of_its_spectrogram_is_not_drawn():
 def test_a_recording_of_any_name_is_drawn(run_up, name):
     figure = plot_recording(replace(run_up, name=name))
     figure.savefig(BytesIO())
-
-
-def test_one_channel_is_read_as_all_of_them_are(run_up, monkeypatch):
-    monkeypatch.setattr("models.blocks._PIECE", 1_000)
-    blocks = RecordingBlocks.of(run_up)
-    found = blocks.track(1).part(500, 9_000).read(100, 20_000)
-    np.testing.assert_array_equal(found, run_up.samples[1:2, 600:9_000])

@@ -19,28 +19,6 @@ def found():
     return screen(["fluorocarbon", "PDMS"], use)
 
 
-_APART = 2.0
-"""Between words that are read as two, on either side [px]."""
-
-
-def box(figure, artist):
-    return artist.get_window_extent(figure._get_renderer()).padded(_APART)
-
-
-def test_with_one_interference_no_words_of_the_axes_touch(found):
-    figure = plot_screen(found.maps[0])
-    figure.draw_without_rendering()
-    left = figure.axes[0], figure.axes[2]
-    words = [tick for panel in left for tick in panel.get_yticklabels()]
-    words += [panel.yaxis.label for panel in left]
-    words += [figure._supylabel, figure._suptitle]
-    words += [panel._left_title for panel in figure.axes] + [figure.legends[0]]
-    boxes = [box(figure, one) for one in words if getattr(one, "get_text", lambda: "x")()]
-    assert len(boxes) >= 5
-    for i, one in enumerate(boxes):
-        assert not any(one.overlaps(other) for other in boxes[i + 1 :])
-
-
 def test_lines_look_in_the_key_as_they_do_in_the_map(found):
     figure = plot_screen(found.maps[0])
     legend = figure.legends[0]
