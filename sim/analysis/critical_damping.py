@@ -22,12 +22,17 @@ if TYPE_CHECKING:
 
 __all__ = ["critical_damping", "largest_sticking", "with_damping"]
 
+_LEAST = 1e-9
+"""Of a fit [Nm s/rad]."""
+
 _STEP = 0.01
 """Of the search for a bracket [Nm s/rad]."""
 
 
 def with_damping(rig: Rig, damping: float) -> Rig:
     """Return the rig with another damping c_E [Nm s/rad] for all fits and supports.
+
+    None at all, where a search begins, is as little as a fit can have.
 
     Examples
     --------
@@ -36,6 +41,7 @@ def with_damping(rig: Rig, damping: float) -> Rig:
     >>> sorted({c for fit in rig.fits for c in fit.damping.values()})
     [0.05]
     """
+    damping = max(damping, _LEAST)
     return replace(rig, fits=tuple(replace(fit, damping={math.inf: damping}) for fit in rig.fits))
 
 

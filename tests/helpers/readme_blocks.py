@@ -1,4 +1,4 @@
-"""The blocks of the README, and a walk through them as somebody takes it who pastes one by one."""
+"""The blocks of the README and of the pages beside the code, and a walk through them."""
 
 import contextlib
 import io
@@ -9,7 +9,22 @@ from typing import NamedTuple
 
 from noise.cli import main
 
-README = Path(__file__).parents[2] / "README.md"
+ROOT = Path(__file__).parents[2]
+
+README = ROOT / "README.md"
+
+PAGES = [
+    ROOT / folder / "README.md"
+    for folder in (
+        "models",
+        "sim",
+        *(
+            f"noise/{one}"
+            for one in ("app", "audio", "diagnosis", "labels", "recordings", "screening")
+        ),
+    )
+]
+"""Reference pages, each with blocks that run from an empty folder of its own."""
 
 OUTPUTS = ("--out", "--plot", "--plots", "--map", "--modes", "--sound-power", "--audacity")
 
@@ -37,9 +52,9 @@ class Said(NamedTuple):
     err: str
 
 
-def readme(title=None):
-    """Text of the README, or of one of its sections, from the heading to the next."""
-    text = README.read_text(encoding="utf-8")
+def readme(title=None, page=README):
+    """Text of a page, or of one of its sections, from the heading to the next."""
+    text = page.read_text(encoding="utf-8")
     if title is None:
         return text
     return text.partition(f"\n## {title}\n")[2].partition("\n## ")[0]
@@ -72,11 +87,11 @@ SERVING = ("open",)
 """Commands that go on until they are stopped: they have tests of their own."""
 
 
-def walk(folder, dear=()):
-    """Do all blocks in a folder, but the commands named, and what needs their output."""
+def walk(folder, dear=(), page=README):
+    """Run all blocks of a page in a folder, but the commands named, and what needs their output."""
     said, lacking = [], set()
     with contextlib.chdir(folder):
-        for block in blocks(readme()):
+        for block in blocks(readme(page=page)):
             if block.kind == "commands":
                 for line in block.commands:
                     if line[0] in (*dear, *SERVING) or _needs(line[1:], lacking):
