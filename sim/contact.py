@@ -141,7 +141,7 @@ def call_law(
     """Call a law's compiled function with arrays, by `LAW_SIGNATURE`; returns its torque [Nm]."""
     arrays = coefficients, contact, state, state_rates
     function = _c_function(law, ctypes.c_double, ctypes.c_double)
-    return function(sliding_speed, *(array.ctypes.data for array in arrays))
+    return float(function(sliding_speed, *(array.ctypes.data for array in arrays)))
 
 
 @lru_cache(maxsize=64)
