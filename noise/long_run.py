@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import os
     from pathlib import Path
 
-    from sim.long_run import BlockRun
+    from sim.blocks import BlockRun
 
 __all__ = ["write_run"]
 
@@ -27,7 +27,7 @@ def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...
     path : path-like
         ``run07`` and ``run07.wav`` are the same; parent folders are made.
     run : BlockRun
-        Of `sim.long_run.simulate_blocks`; a WAV file holds 4 GiB, 2.4 h at 30 kHz.
+        Of `sim.blocks.simulate_blocks`; a WAV file holds 4 GiB, 2.4 h at 30 kHz.
     notes : tuple of str
         For the sidecar, which also says so where nothing ever slips.
 
@@ -47,7 +47,7 @@ def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...
     >>> from pathlib import Path
     >>> from models.rig_file import load_material_rig
     >>> from noise.recordings import read_recording
-    >>> from sim.long_run import simulate_blocks
+    >>> from sim.blocks import simulate_blocks
     >>> run = simulate_blocks(load_material_rig("PDMS"), 5.0, seconds=0.2)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     read_recording(write_run(Path(folder) / "run07", run)).duration

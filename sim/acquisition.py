@@ -34,11 +34,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = [
-    "CONVERTER_GAIN", "THESIS_CONVERTER", "Acquisition", "analogue_filter", "anti_alias_filter",
-    "decimate", "decimate_sensed", "digitise", "sample",
-]  # fmt: skip
-
 CONVERTER_GAIN = {
     "torque": 82.0,
     "acceleration": 781.4,

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from models.rig import Rig
 
-__all__ = ["LumpedBushing", "lumped_bushing", "packed_systems"]
-
 
 @dataclass(frozen=True)
 class LumpedBushing:

@@ -3,38 +3,35 @@
 from __future__ import annotations
 
 import math
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import ParameterError
+from models.schema import remarks
 from models.show import short_repr
 from sim.bushing import lumped_bushing
-from sim.effect_blocks import begun, drive_block
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import friction_law
-from sim.motion_limits import blaming_the_unusual, refuse_fast, refuse_overflow
 from sim.parameters import resolve
+from sim.solvers.contact_rates import N_MOTION
 from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook
-from sim.solvers.contact_state import N_MOTION
 from sim.solvers.stick_slip import advance_stick_slip, rest_state
 from sim.solvers.stick_slip_kernel import DIRECTION
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from models.rig import Rig
+    from sim.bushing import LumpedBushing
     from sim.effects.effect import ActiveEffect
     from sim.shaft import ShaftMotion
 
-__all__ = [
-    "STICK_SPEED_SHARE", "Motion", "MotionSolver", "contact_hooks", "motion_blocks",
-    "simulate_motion", "steps_beyond",
-]  # fmt: skip
 
 STICK_SPEED_SHARE = 0.05
 """The contact counts as stuck while it slides slower than this share of the shaft's speed."""
@@ -172,70 +169,6 @@ def simulate_motion(
         return solver.advance(drive, n)
 
 
-def motion_blocks(
-    rig: Rig,
-    shaft: ShaftMotion,
-    *,
-    interference: float,
-    support_stiffness: float,
-    n_samples: int,
-    rate: float,
-    block: int,
-    effects: Sequence[ActiveEffect] = (),
-    rng: np.random.Generator | None = None,
-    seed: int = 0,
-) -> Iterator[Motion]:
-    """Simulate the rig from rest, block by block, each going on where the one before ended.
-
-    Parameters
-    ----------
-    rig, shaft, interference, support_stiffness, rate, rng
-        As for `simulate_motion`.
-    n_samples, block : int
-        Of the run, and of a block; the last one may be shorter.
-    effects : sequence of ActiveEffect
-        Those of drive and friction act; none that needs the whole run at once.
-    seed : int
-        Of effects of the drive that scatter.
-
-    Yields
-    ------
-    Motion
-        Joined they are what `simulate_motion` gives, to rounding.
-
-    Raises
-    ------
-    ParameterError
-        As `simulate_motion`.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> from sim.shaft import ConstantSpeed
-    >>> blocks = motion_blocks(
-    ...     load_material_rig("fluorocarbon-thesis"), ConstantSpeed(1.0), interference=0.279e-3,
-    ...     support_stiffness=3745.0, n_samples=2500, rate=30e3, block=1000,
-    ... )
-    >>> [block.torque.size for block in blocks]
-    [1000, 1000, 500]
-    """
-    starts = range(0, n_samples, block)
-    with blaming_the_unusual(rig):
-        solver = MotionSolver(
-            rig, interference, support_stiffness, rate, effects, rng or np.random.default_rng(0),
-            start_speed=float(shaft.speed(np.zeros(1))[0]),
-            top_speed=shaft.top_speed(n_samples / rate), tolerance=None,
-        )  # fmt: skip
-    beyond, memories = steps_beyond(rate), begun(effects, seed)
-    for start in starts:
-        n = min(block, n_samples - start)
-        even = _drive(shaft, start, n + beyond, rate)
-        drive, memories = drive_block(even, n, rate, effects, memories)
-        with blaming_the_unusual(rig):
-            motion = solver.advance(drive, n)
-        yield motion
-
-
 def steps_beyond(rate: float) -> int:
     """Return by how many samples at a rate [Hz] the solver's steps may reach beyond a block.
 
@@ -366,3 +299,115 @@ def contact_hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> 
 def _friction(law: str, effects: Sequence[ActiveEffect]) -> str:
     names = [active.effect.name for active in effects if active.effect.contact is not None]
     return f"friction law {law!r}" + (f" with {', '.join(names)}" if names else "")
+
+
+_FASTEST_SLIP = 60.0
+"""Sliding speeds exceed the shaft's by about so much [rad/s]; the thesis has 45 (Figure 6.7)."""
+
+_FASTEST_RATE = 3e7
+"""That the solver of contacts follows in a bearable time [1/s]."""
+
+
+@contextmanager
+def blaming_the_unusual(rig: Rig) -> Iterator[None]:
+    """Let a refusal begin with what of the rig lies outside the usual, most likely its cause.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> with blaming_the_unusual(load_material_rig("PDMS").changed(critical_torque="x1000")):
+    ...     raise ParameterError("no step is short enough")
+    Traceback (most recent call last):
+    models.errors.ParameterError: critical_torque_Nm = 3000 is outside the usual ...
+    """
+    try:
+        yield
+    except ParameterError as error:
+        unusual = "; ".join(remarks(rig))
+        if not unusual:
+            raise
+        raise ParameterError(f"{unusual}; no motion can be computed: {error}") from None
+
+
+def refuse_fast(
+    system: LumpedBushing,
+    rig: Rig,
+    kinetic_torque: float,
+    law: Mapping[str, float],
+    top_speed: float,
+) -> None:
+    """Refuse what no bearable number of steps follows, by an estimate of the fastest rate.
+
+    Parameters
+    ----------
+    system : LumpedBushing
+    rig : Rig
+    kinetic_torque : float
+        [Nm]
+    law : mapping of str to float
+        Parameters of the friction law, as `sim.parameters.Parameter` declares their units.
+    top_speed : float
+        Of the shaft [rad/s].
+
+    Raises
+    ------
+    ParameterError
+        Some part of the motion is faster than the solver follows.
+    """
+    contact = law.get("contact_stiffness_per_torque", 0.0)
+    damping = system.elastomer_damping
+    damping += law.get("contact_damping_per_torque", 0.0) * kinetic_torque
+    sliding = top_speed + _FASTEST_SLIP
+    stiffness = contact * kinetic_torque + system.elastomer_stiffness
+    renewal = law.get("renewal_angle", 0.0)
+    renewal += law.get("renewal_angle_per_torque", 0.0) * kinetic_torque
+    rates = [
+        math.sqrt(stiffness / system.elastomer_inertia),
+        damping / system.elastomer_inertia,
+        contact * sliding,
+        sliding / renewal if renewal else 0.0,
+    ]
+    if not system.clamp_is_fixed:
+        stiffness = system.elastomer_stiffness + system.support_stiffness
+        rates += [
+            math.sqrt(stiffness / system.clamp_inertia),
+            (damping + system.support_damping) / system.clamp_inertia,
+        ]
+    fastest = max(rates)
+    if fastest > _FASTEST_RATE:
+        raise ParameterError(
+            f"{_what(system, rig, top_speed)}: some part moves {fastest:.3g} times a second, which "
+            f"no step of this solver follows; make it softer, heavier or less damped"
+        )
+
+
+def refuse_overflow(
+    states: NDArray[np.float64], system: LumpedBushing, rig: Rig, top_speed: float
+) -> None:
+    """Refuse a motion whose end is not finite.
+
+    Parameters
+    ----------
+    states : ndarray, shape (n, n_states)
+        Angles [rad] and speeds [rad/s].
+    system : LumpedBushing
+    rig : Rig
+    top_speed : float
+        Of the shaft [rad/s].
+
+    Raises
+    ------
+    ParameterError
+        The last of the states is not finite.
+    """
+    if not np.isfinite(states[-1]).all():
+        raise ParameterError(f"{_what(system, rig, top_speed)}: the motion grows without bound")
+
+
+def _what(system: LumpedBushing, rig: Rig, top_speed: float) -> str:
+    return (
+        f"with speeds up to {top_speed:g} rad/s, friction {rig.friction}, inertia "
+        f"{system.elastomer_inertia:g} and {system.clamp_inertia:g} kg m2, stiffness "
+        f"{system.elastomer_stiffness:g} and {system.support_stiffness:g} Nm/rad, damping "
+        f"{system.elastomer_damping:g} and {system.support_damping:g} Nm s/rad"
+    )

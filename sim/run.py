@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.drawing import BLUE, ORANGE, axes_or_new, thinned
 from models.errors import ParameterError
 from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
@@ -18,6 +20,7 @@ from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.pipeline import (
+    SIMULATION,
     Plan,
     apply_sensor_effects,
     radiate_motion,
@@ -26,7 +29,6 @@ from sim.pipeline import (
 )
 from sim.shaft import ConstantSpeed, ShaftMotion
 from sim.temperature import at_temperature
-from sim.timing import SIMULATION
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,10 +40,9 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
     from sim.motion import Motion
 
-__all__ = ["LONGEST_RUN", "Run", "plan_run", "sensor_channels", "simulate"]
 
 LONGEST_RUN = 600.0
-"""[s]; the whole run is held in memory. `sim.long_run` has no such limit."""
+"""[s]; the whole run is held in memory. `sim.blocks` has no such limit."""
 
 
 @short_repr
@@ -105,8 +106,6 @@ class Run:
         >>> run.plot(Figure().subplots()).get_title("left")
         'PDMS, 0.279 mm, 2214 Nm/rad, 5 rad/s'
         """
-        from sim.run_display import draw_torques
-
         return draw_torques(self, ax, start=start, end=end)
 
 
@@ -143,7 +142,7 @@ def simulate(
         the rig's.
     settling : float, optional
         How long the rig has run before the recording starts [s]; by default that of
-        `sim.timing.SIMULATION` at constant speed, else none.
+        `sim.pipeline.SIMULATION` at constant speed, else none.
     library : mapping of str to Effect, optional
         Effects that the rig's can be found among; by default `sim.effects.EFFECTS`.
     rng : numpy.random.Generator, optional
@@ -214,7 +213,6 @@ def plan_run(
     rate: float,
     settling: float | None,
     library: Mapping[str, Effect] | None,
-    in_blocks: bool = False,
 ) -> Plan:
     """Check what is asked of a run, and plan it.
 
@@ -224,13 +222,11 @@ def plan_run(
         As for `simulate`.
     rate : float
         Of the recording [Hz].
-    in_blocks : bool
-        Whether it may be longer than what is held in memory.
 
     Returns
     -------
     Plan
-        At a multiple of `rate`, as `sim.timing.SIMULATION` has it.
+        At a multiple of `rate`, as `sim.pipeline.SIMULATION` has it.
 
     Raises
     ------
@@ -253,8 +249,7 @@ def plan_run(
         raise ParameterError(f"shaft = {shaft!r}: give a speed in rad/s, or a motion of sim.shaft")
     if settling is None:
         settling = SIMULATION.settling if isinstance(shaft, ConstantSpeed) else 0.0
-    held = min(seconds, 1.0) if in_blocks else seconds
-    _check(held, settling, rate, interference, temperature)
+    _check(seconds, settling, rate, interference, temperature)
     rig = at_temperature(rig, temperature)
     return Plan(
         rig=rig,
@@ -297,3 +292,62 @@ def _check(
         raise ParameterError(
             f"interference = {1e3 * interference:g} mm must be above 0 and below 10"
         )
+
+
+_SHOWN = 0.1
+"""A run is drawn from so long before its end [s]: slips can still be told apart."""
+
+
+Curve = tuple["NDArray[np.float64]", str, str, float]
+"""Values, colour, label (empty for none) and line width."""
+
+
+def torque_curves(motion: Motion, part: slice) -> list[Curve]:
+    """Return the torques of a part of a motion, the more important one later and so on top.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
+    >>> [label for _, _, label, _ in torque_curves(run.motion, slice(0, 10))]
+    ['contact', 'elastomer']
+    """
+    return [
+        (motion.friction_torque[part], ORANGE, "contact", 0.9),
+        (motion.torque[part], BLUE, "elastomer", 1.3),
+    ]
+
+
+def draw_torques(
+    run: Run, ax: Axes | None = None, *, start: float | None = None, end: float | None = None
+) -> Axes:
+    """Draw the torques over time; parameters and errors are those of `Run.plot`.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
+    >>> draw_torques(run, Figure().subplots(), start=0.02).get_ylabel()
+    'Torque [Nm]'
+    """
+    motion = run.motion
+    lasting = motion.torque.size / motion.rate
+    end = lasting if end is None else end
+    start = max(0.0, end - _SHOWN) if start is None else start
+    part = slice(math.ceil(max(0.0, start) * motion.rate), round(end * motion.rate))
+    if not motion.torque[part].size:
+        raise ParameterError(
+            f"start = {start:g} s and end = {end:g} s hold nothing of a run of {lasting:g} s"
+        )
+    time = np.arange(motion.torque.size)[part] / motion.rate
+    with axes_or_new(ax) as axes:
+        for values, colour, label, width in torque_curves(motion, part):
+            axes.plot(*thinned(time, values), color=colour, linewidth=width, label=label)
+        axes.set_xlabel("Time [s]")
+        axes.set_ylabel("Torque [Nm]")
+        axes.set_title(", ".join(run.recording.condition.words), loc="left")
+        axes.legend(loc="best")
+    return axes

@@ -13,8 +13,6 @@ from models.errors import ParameterError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["ConstantSpeed", "LoggedSpeed", "Oscillation", "ShaftMotion", "SpeedRamp"]
-
 
 @runtime_checkable
 class ShaftMotion(Protocol):

@@ -19,7 +19,7 @@ from models.rig import LawSpec
 from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED
 from sim.effects.effect import Effect, Stage
 from sim.friction import friction_law
-from sim.friction.shared.bristle import FASTEST
+from sim.friction.shared import FASTEST
 from sim.parameters import Parameter, resolve
 
 if TYPE_CHECKING:
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from models.bushing import TemperatureDependence
     from models.rig import Fit, Rig
     from sim.effects.effect import Values
-
-__all__ = ["FRICTION_SHIFT", "at_temperature"]
 
 _SLOWEST = 0.25
 """Speed below which the bell's factor is held, the slowest the rig turned at (5.1.2) [rad/s]; it is

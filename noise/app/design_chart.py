@@ -26,7 +26,7 @@ from noise.screening.parts.robustness import DESIGN_VARIABLES
 from noise.screening.parts.variation import UsePoint
 
 if TYPE_CHECKING:
-    from sim.live_setting import Setting
+    from sim.blocks import Setting
 
 
 _LEAST, _MOST = 0.05, 200.0

@@ -20,8 +20,7 @@ from models.radiation.impulse_responses import ImpulseResponses
 from models.rig_file import load_material_rig
 from noise.app.worker_process import WorkerProcess
 from noise.batch import one_thread
-from sim.live import LiveRun
-from sim.live_setting import Setting, paths_key, paths_of
+from sim.blocks import BlockEngine, Setting, paths_key, paths_of
 from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
@@ -151,7 +150,7 @@ REFUSED = 0xFFFFFFFF
 
 @dataclass(eq=False)
 class _Run:
-    live: LiveRun
+    live: BlockEngine
     paths: LiveTransferPaths
     serial: int
     refused: int = -1
@@ -176,7 +175,7 @@ class Player:
             The setting cannot be used.
         """
         paths = LiveTransferPaths(self.beside)
-        live = LiveRun(setting, rate=RATE, n=BLOCK, paths=paths)
+        live = BlockEngine(setting, n=BLOCK, kinds=("pressure", "torque"), paths=paths)
         self._runs[number] = _Run(live, paths, serial)
 
     def stop(self, number: int) -> None:
@@ -231,8 +230,8 @@ class Player:
         if run.paths.refusal and run.refused != run.serial:
             why += refusal(run.serial, run.paths.refusal)
             run.refused = run.serial
-        pressure = made.pressure.astype("<f4")
-        torque = made.torque[::TORQUE_STEP].astype("<f4")
+        pressure = made.samples["pressure"].astype("<f4")
+        torque = made.samples["torque"][::TORQUE_STEP].astype("<f4")
         took = 1e3 * (time.perf_counter() - started)
         sizes = pressure.size, torque.size
         header = HEADER.pack(run.sequence, run.serial, *sizes, took, made.speed)

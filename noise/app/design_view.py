@@ -16,7 +16,7 @@ from noise.app.design_player import BLOCK, RATE, TORQUE_STEP
 from noise.app.design_sound import LiveSounds
 from noise.app.gate import body
 from noise.app.worker_process import WorkerProcess
-from sim.live import LOOKAHEAD
+from sim.blocks import LOOKAHEAD
 
 if TYPE_CHECKING:
     from starlette.requests import Request

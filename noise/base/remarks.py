@@ -158,8 +158,8 @@ def effect_remarks(rig: Rig, library: Mapping[str, Effect]) -> list[str]:
     >>> effect_remarks(load_material_rig("fluorocarbon"), EFFECTS)
     []
     """
-    from sim.acting import can_act
     from sim.effects.effect import activated
+    from sim.rig_effects import can_act
 
     return [
         f"effect {active.effect.name} cannot act on friction law {rig.friction.name} and changes "
@@ -186,7 +186,7 @@ def constant_remark(rigs: Iterable[Rig], what: str) -> str:
     >>> constant_remark([load_material_rig("PDMS")], "critical speeds")
     ''
     """
-    from sim.constant_version import irregular_effects
+    from sim.rig_effects import irregular_effects
 
     left_out = dict.fromkeys(spec.name for rig in rigs for spec in irregular_effects(rig))
     if not left_out:

@@ -145,8 +145,8 @@ def given_options(options: Namespace) -> dict[str, Any]:
 
 def is_long(arguments: Mapping[str, Any]) -> bool:
     """Whether a run is better written in blocks than held in memory."""
+    from sim.blocks import whole_run_effects
     from sim.effects.effect import activated
-    from sim.long_run import whole_run_effects
     from sim.run import LONGEST_RUN
 
     effects = activated(arguments["rig"].effects, arguments["library"])

@@ -149,7 +149,7 @@ def _write_or_tell(path: Path | None, recording: Recording) -> None:
 def _write_in_blocks(path: Path, arguments: Mapping[str, Any], notes: tuple[str, ...]) -> int:
     from noise.base.remarks import NEVER_SLIPS
     from noise.long_run import write_run
-    from sim.long_run import simulate_blocks
+    from sim.blocks import simulate_blocks
 
     made = simulate_blocks(**arguments)
     written = write_run(path, made, notes)

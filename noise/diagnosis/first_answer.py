@@ -42,8 +42,8 @@ from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.gap.distance import Gap
 from noise.diagnosis.simulated.model_runs import Model
 from sim.acquisition import THESIS_CONVERTER, Acquisition
-from sim.constant_version import constant_version
 from sim.effects.effect import Effect
+from sim.rig_effects import constant_version
 
 if TYPE_CHECKING:
     from models.recording import Recording

@@ -23,7 +23,7 @@ from noise.pictures.figure import KINDS, new_figure
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import motion_slips
-from sim.run_display import torque_curves
+from sim.run import torque_curves
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,8 +35,7 @@ if TYPE_CHECKING:
     from models.condition import Condition
     from models.recording import Recording
     from sim.motion import Motion
-    from sim.run import Run
-    from sim.run_display import Curve
+    from sim.run import Curve, Run
 
 _CYCLES = 6
 _SHORTEST, _LONGEST = 2e-3, 0.1

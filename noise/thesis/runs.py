@@ -25,8 +25,8 @@ from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import Slips, find_slips, motion_slips
-from sim.constant_version import constant_version
 from sim.motion import Motion, simulate_motion
+from sim.rig_effects import constant_version
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
 

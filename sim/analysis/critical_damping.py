@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from models.rig import Rig
 
-__all__ = ["critical_damping", "largest_sticking", "with_damping"]
-
 _LEAST = 1e-9
 """Of a fit [Nm s/rad]."""
 

@@ -8,7 +8,7 @@ measured and of simulated rigs alike: a design is free of either only beyond. Th
 mode dies slowly: in 0.2 s an oscillation
 that is about to die out still looks alive. Speeds are tried from the fastest down, so that what
 lies below both critical speeds costs nothing. All runs are those of the rig's constant version
-(`sim.constant_version`).
+(`sim.rig_effects`).
 """
 
 from __future__ import annotations
@@ -20,25 +20,16 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from sim.analysis.regime import Regime, friction_regime
-from sim.constant_version import constant_version
 from sim.motion import simulate_motion
+from sim.pipeline import REGIME_RATE
+from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
-from sim.timing import REGIME_RATE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from models.rig import Rig
     from sim.motion import Motion
-
-__all__ = [
-    "SPEEDS",
-    "CriticalSpeeds",
-    "critical_speeds",
-    "falls_below",
-    "motion_from_rest",
-    "regime_at",
-]
 
 SPEEDS = tuple(0.25 * i for i in range(1, 53))
 """From 0.25 to 13 rad/s, the range of the measurements."""

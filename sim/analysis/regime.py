@@ -26,11 +26,6 @@ from sim.analysis.slips import LEAST_SUDDEN, motion_slips
 if TYPE_CHECKING:
     from sim.motion import Motion
 
-__all__ = [
-    "LEAST_OSCILLATION", "Regime", "SlidingWatch", "friction_regime", "never_slips",
-    "regime_measures",
-]  # fmt: skip
-
 LEAST_OSCILLATION = 0.01
 """The torque oscillates if its standard deviation exceeds this share of its mean."""
 

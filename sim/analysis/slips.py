@@ -40,8 +40,6 @@ if TYPE_CHECKING:
 
     from sim.motion import Motion
 
-__all__ = ["LEAST_SUDDEN", "Slips", "find_slips", "motion_slips"]
-
 LEAST_SUDDEN = 0.06
 """Stick-slip: the torque falls suddenly by more than this share of all its falls. Over the cells of
 Tables 5.1 and 5.2 few speeds lie near: most stick-slip above 0.2, all that grazes below 0.025."""
@@ -171,7 +169,7 @@ def motion_slips(motion: Motion) -> Slips:
     Examples
     --------
     >>> from models.rig_file import load_material_rig
-    >>> from sim.constant_version import constant_version
+    >>> from sim.rig_effects import constant_version
     >>> from sim.run import simulate
     >>> rig = constant_version(load_material_rig("fluorocarbon"))
     >>> found = motion_slips(simulate(rig, 2.5).motion)

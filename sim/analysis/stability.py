@@ -32,16 +32,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba import float64, int64, njit, types
 
-from models.compilation import PART
+from models.compilation import COMPILED, PART
 from sim.bushing import packed_systems
-from sim.constant_version import constant_version
 from sim.contact import (
     CRITICAL,
     KINETIC,
     N_CONTACT,
+    N_CONTEXT,
     SHAFT_INERTIA,
+    SHAFT_SPEED,
+    SLIDING_SPEED,
+    STICK_TIME,
     STIFFNESS,
+    TIME,
+    TORQUE,
+    TWIST,
     address_of,
+    call_hook_at,
     call_law_at,
 )  # fmt: skip
 from sim.effects import EFFECTS
@@ -49,6 +56,7 @@ from sim.effects.effect import activated
 from sim.friction import friction_law
 from sim.motion import contact_hooks
 from sim.parameters import resolve
+from sim.rig_effects import constant_version
 from sim.temperature import FRICTION_SHIFT
 
 if TYPE_CHECKING:
@@ -60,7 +68,6 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
     from sim.solvers.contact_solver import Hook
 
-__all__ = ["Stability", "steady_sliding"]
 
 _MOMENTS = 48
 """Of steady sliding, over which effects with a state are averaged."""
@@ -171,8 +178,6 @@ def _contacts(
     contacts[:, :, CRITICAL], contacts[:, :, KINETIC] = systems[:, 6], systems[:, 7]
     contacts[:, :, STIFFNESS] = systems[:, 2]
     contacts[:, :, SHAFT_INERTIA] = math.inf
-    if hooks:  # else it needs not be compiled
-        from sim.analysis.mean_contacts import average_contacts
     for hook in hooks:
         follows = hook.function is FRICTION_SHIFT.contact  # its state is that of the speed
         if hook.n_states and not follows:
@@ -294,3 +299,87 @@ def _linearised(law, c, rest, systems, speeds, contacts, matrices) -> None:
             a[2, 3] = 1.0
             a[3, 0], a[3, 1] = k_e / j_c, c_e / j_c
             a[3, 2], a[3, 3] = -(k_e + k_b) / j_c, -(c_e + c_b) / j_c
+
+
+_LONG = 1.0
+"""Steady sliding over which effects with a state are averaged [s]."""
+
+_VECTOR = float64[::1]
+_MATRIX = float64[:, ::1]
+
+
+def average_contacts(
+    hook: Hook, moments: int, speed: NDArray[np.float64], contacts: NDArray[np.float64]
+) -> None:
+    """Replace each contact by the mean over the last half of steady sliding.
+
+    Parameters
+    ----------
+    hook : Hook
+        The effect.
+    moments : int
+        At which it acts.
+    speed : ndarray, shape (n,)
+        Of the shaft [rad/s].
+    contacts : ndarray, shape (n, N_CONTACT)
+        By `sim.contact` [units of `sim.contact`]; changed in place.
+
+    Examples
+    --------
+    >>> from sim.contact import KINETIC
+    >>> from sim.effects import EFFECTS
+    >>> from sim.solvers.contact_solver import Hook
+    >>> weaker = Hook(EFFECTS["velocity_weakening"].contact, np.array([0.5, 1.0, 0.0]), 0)
+    >>> contacts = np.array([[10.7, 8.0, 665.0, 0.0, 0.0, np.inf, 0.0]])
+    >>> average_contacts(weaker, 1, np.array([2.0]), contacts)
+    >>> bool(contacts[0, KINETIC] < 8.0)
+    True
+    """
+    compiled: Any = _average
+    compiled(
+        address_of(hook.function), hook.values, moments, speed,
+        np.zeros((4, hook.n_states)), np.zeros(N_CONTEXT), np.zeros((2, contacts.shape[1])),
+        contacts,
+    )  # fmt: skip
+
+
+@njit(cache=True, **COMPILED)  # when the first effect needs it
+def _average(hook, values, moments, speeds, states, context, work, contacts) -> None:
+    state, rates, moved, rates_moved = states[0], states[1], states[2], states[3]
+    contact, mean = work[0], work[1]
+    step = _LONG / moments
+    first = moments // 2
+    for run in range(speeds.size):
+        given = contacts[run]
+        for i in range(state.size):
+            state[i] = 0.0
+        for i in range(given.size):
+            mean[i] = 0.0
+        context[SHAFT_SPEED] = context[SLIDING_SPEED] = speeds[run]
+        context[TORQUE] = given[KINETIC]
+        context[TWIST] = given[KINETIC] / given[STIFFNESS]
+        for moment in range(moments):
+            context[TIME] = context[STICK_TIME] = moment * step
+            # Each state on its own, by its exponential: heat flows at rates far above the steps.
+            for i in range(state.size):
+                rates[i] = rates_moved[i] = 0.0
+                moved[i] = state[i] + 1e-6
+            for i in range(given.size):
+                contact[i] = given[i]
+            call_hook_at(
+                hook, context.ctypes, values.ctypes, moved.ctypes, rates_moved.ctypes,
+                contact.ctypes,
+            )  # fmt: skip
+            for i in range(given.size):
+                contact[i] = given[i]
+            call_hook_at(
+                hook, context.ctypes, values.ctypes, state.ctypes, rates.ctypes, contact.ctypes
+            )
+            for i in range(state.size):
+                decay = min((rates_moved[i] - rates[i]) * 1e6 * step, 0.0)
+                state[i] += step * rates[i] * (math.expm1(decay) / decay if decay else 1.0)
+            if moment >= first:
+                for i in range(given.size):
+                    mean[i] += contact[i] / (moments - first)
+        for i in range(given.size):
+            given[i] = mean[i]

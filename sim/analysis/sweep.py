@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
     from sim.motion import Motion
 
-__all__ = ["FEATURES", "Sweep", "motion_features", "sweep"]
-
 FEATURES = {
     "slip_count": "Slips",
     "slip_frequency": "Slip frequency [Hz]",

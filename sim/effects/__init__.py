@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from sim.effects.declared import what_is_wrong
 from sim.effects.effect import Effect
-from sim.registry import Library
+from sim.parameters import Library
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

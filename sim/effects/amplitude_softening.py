@@ -26,8 +26,6 @@ from sim.contact import ELASTOMER_TORQUE, HOOK_SIGNATURE, STIFFNESS, TWIST
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
-__all__ = ["EFFECT"]
-
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def _contact(context, values, state, state_rates, contact):

@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
-from sim.channels import channel_level
+from sim.chain import channel_level
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sim.effects.effect import Memory, Signals, Values
-
-__all__ = ["EFFECT"]
 
 _LOWEST, _HIGHEST = 20.0, 20e3
 """Band that levels are those of [Hz]."""

@@ -45,8 +45,6 @@ if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import Values
 
-__all__ = ["EFFECT"]
-
 _SECOND = 4.0 / 3.0
 """Frequency of the second mode of a pair over the first: 6000 over 4500 Hz."""
 

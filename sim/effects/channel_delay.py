@@ -32,7 +32,7 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 from scipy.signal import lfilter
 
-from sim.channels import change_channels, channel_shares
+from sim.chain import change_channels, channel_shares
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sim.effects.effect import Signals, Values
-
-__all__ = ["EFFECT"]
 
 _DEGREE = 5
 

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
-from sim.channels import change_channels, channel_shares
+from sim.chain import change_channels, channel_shares
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sim.effects.effect import Signals, Values
-
-__all__ = ["EFFECT"]
 
 
 def _sensors(

@@ -50,8 +50,6 @@ if TYPE_CHECKING:
 
     from sim.effects.effect import Values
 
-__all__ = ["EFFECT"]
-
 _FORMS = ("normal", "uniform", "correlated")
 _N_DRAWS = 4096
 _HEADER = 1

@@ -12,8 +12,6 @@ from sim.parameters import Parameter
 if TYPE_CHECKING:
     from sim.effects.effect import Effect
 
-__all__ = ["what_is_wrong"]
-
 _FUNCTIONS = (
     "drive", "contact", "pack", "force", "chain", "sensors",
 )  # fmt: skip

@@ -9,15 +9,20 @@ effect is the plain model to rounding.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from copy import deepcopy
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from models.errors import ParameterError
 from models.show import short_repr
 from sim.parameters import resolve
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -26,11 +31,12 @@ if TYPE_CHECKING:
     from sim.motion import Motion
     from sim.parameters import Parameter
 
-__all__ = ["ActiveEffect", "Effect", "Stage"]
 
 Values = Mapping[str, float]
 Signals = dict[str, "NDArray[np.float64]"]
 Memory = dict[str, Any]
+Memories = dict[str, Memory]
+"""What effects keep from block to block, by their names."""
 
 DriveFunction = Callable[["NDArray[np.float64]", float, str, Values, Any], "NDArray[np.float64]"]
 ForceFunction = Callable[["Motion", str, Values], "NDArray[np.float64]"]
@@ -88,7 +94,7 @@ class Effect:
         one block has the entry ``whole``. Else they act on runs in one block alone.
     irregular : bool
         Whether it does nothing but make one slip differ from the next by chance, so that the rig
-        has a version without (`sim.constant_version.constant_version`).
+        has a version without (`sim.rig_effects.constant_version`).
     """
 
     name: str
@@ -196,3 +202,78 @@ def _condition_effect(name: str) -> Effect | None:
     from sim.temperature import FRICTION_SHIFT  # itself an effect
 
     return FRICTION_SHIFT if name == FRICTION_SHIFT.name else None
+
+
+def begun(effects: Sequence[ActiveEffect], seed: int) -> Memories:
+    """Return the memory, by name, that each effect begins with; each has its own random numbers."""
+    names = [active.effect.name for active in effects if active.effect.in_blocks]
+    return {name: {"rng": np.random.default_rng([seed, *name.encode()])} for name in names}
+
+
+def drive_block(
+    even: NDArray[np.float64],
+    n: int,
+    rate: float,
+    effects: Sequence[ActiveEffect],
+    memories: Memories,
+) -> tuple[NDArray[np.float64], Memories]:
+    """Speed of the shaft over a block as effects make it [rad/s], and what they keep of it.
+
+    Parameters
+    ----------
+    even : ndarray, shape (m,)
+        Speed as it is set [rad/s].
+    n : int
+        Samples of this block; those beyond are seen now, and come again.
+    rate : float
+        [Hz]
+    effects : sequence of ActiveEffect
+    memories : dict of str to dict
+        What they kept of the block before, by name; they stay as they are.
+
+    Examples
+    --------
+    >>> from sim.effects import EFFECTS
+    >>> uneven = [EFFECTS["speed_fluctuation"].active({"frequency": 10.0})]
+    >>> start = begun(uneven, 0)
+    >>> first, kept = drive_block(np.full(9, 5.0), 6, 100.0, uneven, start)
+    >>> second, _ = drive_block(np.full(6, 5.0), 6, 100.0, uneven, kept)
+    >>> bool(np.allclose(first[6:], second[:3]))
+    True
+    """
+    kept = deepcopy(memories)
+    for active in effects:
+        if active.effect.drive is None:
+            continue
+        memory = kept.get(active.effect.name, {})
+        blocks = [active.driven(even[:n], rate, memory)]
+        if even.size > n:
+            blocks.append(active.driven(even[n:], rate, deepcopy(memory)))
+        even = np.concatenate(blocks)
+    return even, kept
+
+
+def sensors_block(
+    signals: Signals, rate: float, effects: Sequence[ActiveEffect], memories: Memories
+) -> tuple[Signals, Memories]:
+    """Signals of a block as effects on sensors change them, and what these keep of it.
+
+    Parameters
+    ----------
+    signals : dict of str to ndarray, shape (n,)
+    rate, effects, memories
+        As of `drive_block`.
+
+    Examples
+    --------
+    >>> from sim.effects import EFFECTS
+    >>> hum = [EFFECTS["mains_hum"].active({"form": "sine", "pressure_level": 94.0})]
+    >>> start = begun(hum, 0)
+    >>> read, kept = sensors_block({"pressure": np.zeros(960)}, 48e3, hum, start)
+    >>> round(float(read["pressure"].std()), 2), sorted(kept["mains_hum"])
+    (1.0, ['pressure', 'rng'])
+    """
+    kept = deepcopy(memories)
+    for active in effects:
+        signals = active.sensed(signals, rate, kept.get(active.effect.name, {}))
+    return signals, kept

@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
     from sim.effects.effect import Values
 
-__all__ = ["EFFECT"]
-
 _FORMS = ("half_space", "lumped", "two_layer", "linear_with_floor")
 
 _STEEL_EFFUSIVITY = 14.9 / math.sqrt(3.95e-6)

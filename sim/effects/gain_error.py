@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import butter, lfilter, lfilter_zi
 
-from sim.channels import change_channels, channel_shares
+from sim.chain import change_channels, channel_shares
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sim.effects.effect import Signals, Values
-
-__all__ = ["EFFECT"]
 
 
 def _sensors(

@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.channels import channel_level
+from sim.chain import channel_level
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sim.effects.effect import Memory, Signals, Values
-
-__all__ = ["EFFECT"]
 
 _ODD = (1, 3, 5, 7, 9)
 

@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import bilinear, lfilter, lfilter_zi
 
-from sim.channels import change_channels, channel_shares
+from sim.chain import change_channels, channel_shares
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sim.effects.effect import Signals, Values
-
-__all__ = ["EFFECT"]
 
 _SECOND = 2.3
 """Frequency of the rocking over that of the first mode; assumed."""

@@ -30,8 +30,6 @@ from sim.contact import CREEP, CRITICAL, HOOK_SIGNATURE, SHAFT_SPEED, TORQUE
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
-__all__ = ["EFFECT"]
-
 _MOST = 0.999
 """Of r, so that the creep rises with a slope that the integration can follow."""
 

@@ -41,8 +41,6 @@ if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import Values
 
-__all__ = ["EFFECT"]
-
 _HIGHEST = 16e3
 """[Hz], as for the plate's own modes."""
 

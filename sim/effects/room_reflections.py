@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import Values
 
-__all__ = ["EFFECT"]
-
 _SOURCE_HEIGHT = 0.9
 """Of the rig on its bench over the floor [m]; assumed."""
 

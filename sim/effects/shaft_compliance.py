@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
     from sim.effects.effect import Values
 
-__all__ = ["EFFECT"]
-
 _FORMS = ("linear", "stiffening", "quadratic_damping")
 
 _HIGHEST = 2.0 * math.pi * 8e3

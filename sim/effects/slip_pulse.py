@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
     from sim.motion import Motion
 
-__all__ = ["EFFECT", "torque_drops"]
-
 _REFERENCE_DROP = 6.94
 """T_crit - T_kin at 0.381 mm, from the peak sliding speed of Figure 6.7 [Nm]."""
 

@@ -40,8 +40,6 @@ if TYPE_CHECKING:
 
     from sim.effects.effect import Memory, Values
 
-__all__ = ["EFFECT"]
-
 _HARMONICS = 4
 
 

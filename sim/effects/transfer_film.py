@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
     from sim.effects.effect import Values
 
-__all__ = ["EFFECT"]
-
 _FORMS = ("exponential", "linear", "logistic")
 
 _BAND = 250.0, 1500.0

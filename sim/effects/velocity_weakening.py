@@ -23,8 +23,6 @@ from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
-__all__ = ["EFFECT"]
-
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def _contact(context, values, state, state_rates, contact):  # noqa: ARG001

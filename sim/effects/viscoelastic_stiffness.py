@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 
     from sim.effects.effect import Values
 
-__all__ = ["EFFECT"]
-
 _BRANCHES = {"one_branch": 1, "two_branches": 2, "fractional": 4}
 _MOST_BRANCHES = max(_BRANCHES.values())
 _SHORTEST = 20e-6

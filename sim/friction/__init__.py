@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from sim.registry import Library
+from sim.parameters import Library
 
 if TYPE_CHECKING:
     from sim.friction.law import FrictionLaw

@@ -8,7 +8,7 @@ r"""Static friction that grows with the time of contact, exponentially.
 
 The growth is that of the strengthening laws reviewed by Baumberger and Caroli (2006), in the form
 that saturates. z is the shear of the contact, phi its age [s]; w is that of
-`sim.friction.shared.bristle`, whose bound the rate of renewal observes as well. The contact is that
+`sim.friction.shared`, whose bound the rate of renewal observes as well. The contact is that
 of Dupont et al. (2002): alpha is zero up to x = 0.7 and rises smoothly to one at x = 1, so that
 below 70 % of its strength the contact truly sticks and ages with the clock, and slip alone renews
 it. Bristles that creep at any load would lose their age before they break.
@@ -26,10 +26,8 @@ from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import BRISTLE_PARAMETERS, FASTEST, shear_speed
+from sim.friction.shared import BRISTLE_PARAMETERS, FASTEST, shear_speed
 from sim.parameters import Parameter
-
-__all__ = ["LAW"]
 
 _LONG_REST = 1.0
 """Age of the contact at the start [s]."""

@@ -8,7 +8,7 @@ r"""A population of bonds that form, stretch and break.
 
 Schallamach (1963); Braun and Peyrard (2008). n is the share of the contact that is bonded, u the
 mean stretch of its bonds [rad], t_r the time in which bonds form; what is not bonded rubs with a
-torque T_r, through the bristles of `sim.friction.shared.bristle` (z, w). New bonds are unstretched,
+torque T_r, through the bristles of `sim.friction.shared` (z, w). New bonds are unstretched,
 so that u' = v - u (1 - n) / (n t_r); with the stretch of all bonds together, m, as the state
 nothing divides by n. The time of spontaneous rupture, t_s = t_r exp(T_crit / (K u_0)), is given
 through T_crit: the torque of a fully bonded contact at which bonds break as fast as they form. K,
@@ -26,10 +26,8 @@ from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import FASTEST, shear_speed
+from sim.friction.shared import FASTEST, shear_speed
 from sim.parameters import Parameter
-
-__all__ = ["LAW"]
 
 _FEWEST_BONDS = 1e-9
 

@@ -28,10 +28,8 @@ from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import BRISTLE_PARAMETERS
+from sim.friction.shared import BRISTLE_PARAMETERS
 from sim.parameters import Parameter
-
-__all__ = ["LAW"]
 
 _LONG_REST = 1.0
 """Age of the contact at the start [s]."""

@@ -9,6 +9,4 @@ from __future__ import annotations
 
 from sim.friction.law import FrictionLaw
 
-__all__ = ["LAW"]
-
 LAW = FrictionLaw(name="coulomb", tolerance=1e-7)

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from sim.parameters import Parameter
 
-__all__ = ["FrictionLaw"]
-
 
 @dataclass(frozen=True)
 class FrictionLaw:

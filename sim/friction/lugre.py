@@ -19,8 +19,6 @@ from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
 from sim.parameters import Parameter
 
-__all__ = ["LAW"]
-
 _PARAMETERS = {
     "contact_stiffness_per_torque": Parameter(
         1700.0, "1/rad", 1.0, 1e5, "K / T_kin: stiffness of the bristles"

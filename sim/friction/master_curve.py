@@ -8,7 +8,7 @@ Grosch (1963) found friction of rubber at all temperatures on one bell over log(
 (2001) derives the bell from the losses in the rubber. v_p is the speed of most friction at the
 temperature that the material is given at; at another `sim.temperature` moves it to v_p / a_T. The
 peak is p_1 T_crit, the floor on both sides p_0 T_kin; the contact is that of
-`sim.friction.shared.bristle`, its stiffness going with the floor. Below its speed friction rises
+`sim.friction.shared`, its stiffness going with the floor. Below its speed friction rises
 with speed and sliding is stable, above it falls: a low glass temperature moves the peak beyond the
 rig's speeds, and that is why silicone is silent there.
 
@@ -26,15 +26,13 @@ from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed
+from sim.friction.shared import BRISTLE_PARAMETERS, shear_speed
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
-
-__all__ = ["LAW"]
 
 _LEAST_SPEED = 1e-30
 """Whose logarithm stands in for that of rest [rad/s]."""

@@ -10,7 +10,7 @@ thresholds s_i g / 16 are spread evenly between 1 - spread and 1 + spread about 
 contact gives way element by element while it is loaded, and remembers where it was turned back.
 alpha rises smoothly from zero at x = 0.5 to one at x = 1: an element that yields at once would cost
 the solver its order. The elements do not pull at each other. w is that of
-`sim.friction.shared.bristle`.
+`sim.friction.shared`.
 
 Limits: steady sliding gives T = g(v); slow loading from rest is nearly the sum of elements that
 each hold up to their threshold, linear at first and settling at T_crit beyond
@@ -26,10 +26,8 @@ from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed
+from sim.friction.shared import BRISTLE_PARAMETERS, shear_speed
 from sim.parameters import Parameter
-
-__all__ = ["LAW", "N_ELEMENTS"]
 
 N_ELEMENTS = 16
 

@@ -7,7 +7,7 @@ r"""Rate-and-state friction: strength by the age of the contact, and by speed di
 
 After Dieterich (1979) and Ruina (1983), with Dieterich's law of ageing; their logarithm of the age,
 which has no bound, is replaced by a share that saturates at T_crit. phi is the age of the contact
-[s], s the speed at which it slips, a the direct effect; w is that of `sim.friction.shared.bristle`,
+[s], s the speed at which it slips, a the direct effect; w is that of `sim.friction.shared`,
 whose bound the rate |s|/D observes as well. Slip alone renews the contact, not its elastic shear,
 as in the original, whose speed is that of slip; `contact_with_memory` counts both and has no direct
 effect.
@@ -25,10 +25,8 @@ from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import BRISTLE_PARAMETERS, FASTEST, shear_speed
+from sim.friction.shared import BRISTLE_PARAMETERS, FASTEST, shear_speed
 from sim.parameters import Parameter
-
-__all__ = ["LAW"]
 
 _LONG_REST = 1.0
 """Age of the contact at the start [s], long against the ageing time of a rubber."""

@@ -5,7 +5,7 @@ r"""Friction that falls with speed over one or two scales, as a Gaussian.
         f(x) = e^{-x^2}
 
 Bo and Pavelescu (1982), exponent two: flat at rest, steepest at 0.7 of its speed, and over soon
-after. The elastic contact and what the scales share are those of `sim.friction.shared.stribeck`.
+after. The elastic contact and what the scales share are those of `sim.friction.shared`.
 
 Limits: steady sliding gives T = g(v), which is T_crit at rest and T_kin at high speed; equal
 torques give a constant friction; s = 0 is one scale, LuGre without its viscous part, and so is
@@ -20,9 +20,7 @@ from numba import njit
 
 from sim.contact import LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.stribeck import STRIBECK_PARAMETERS, stribeck_torque
-
-__all__ = ["LAW"]
+from sim.friction.shared import STRIBECK_PARAMETERS, stribeck_torque
 
 
 @njit(LAW_SIGNATURE, cache=True, error_model="numpy")

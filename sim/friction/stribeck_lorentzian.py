@@ -5,7 +5,7 @@ r"""Friction that falls with speed over one or two scales, as a Lorentzian.
         f(x) = 1 / (1 + x^2)
 
 Hess and Soom (1990): flat at rest, with a tail that still weakens at many times its speed. The
-elastic contact and what the scales share are those of `sim.friction.shared.stribeck`.
+elastic contact and what the scales share are those of `sim.friction.shared`.
 
 Limits: steady sliding gives T = g(v), which is T_crit at rest and falls to T_kin as 1/v^2; equal
 torques give a constant friction; s = 0 is one scale, and so is v_1 = v_2 with any s.
@@ -17,9 +17,7 @@ from numba import njit
 
 from sim.contact import LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.stribeck import STRIBECK_PARAMETERS, stribeck_torque
-
-__all__ = ["LAW"]
+from sim.friction.shared import STRIBECK_PARAMETERS, stribeck_torque
 
 
 @njit(LAW_SIGNATURE, cache=True, error_model="numpy")

@@ -4,7 +4,7 @@ r"""Friction that rises in proportion to speed, on an elastic contact.
     T = K z + \sigma \dot z + T_{kin} v / v_0, \qquad g = T_{kin}
 
 The textbook's sum of Coulomb and viscous friction, whose jump at rest the elastic contact of Dahl
-(1968), with the shear z of `sim.friction.shared.bristle`, makes smooth. There is no strength beyond
+(1968), with the shear z of `sim.friction.shared`, makes smooth. There is no strength beyond
 T_kin: T_crit has no part in it.
 
 Limits: steady sliding gives T = T_kin (1 + v / v_0) along v; v_0 -> infinity gives constant
@@ -17,10 +17,8 @@ from numba import njit
 
 from sim.contact import KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed
+from sim.friction.shared import BRISTLE_PARAMETERS, shear_speed
 from sim.parameters import Parameter
-
-__all__ = ["LAW"]
 
 _PARAMETERS = {
     **BRISTLE_PARAMETERS,

@@ -16,9 +16,8 @@ from numba import float64, int64, njit, types
 
 from models.compilation import COMPILED, PART
 from sim.contact import CRITICAL, KINETIC, STICKS
-from sim.solvers import contact_state as at
-from sim.solvers.contact_rates import contact_rates
-from sim.solvers.contact_state import (
+from sim.solvers import contact_rates as at
+from sim.solvers.contact_rates import (
     N_LAG,
     N_STAGES,
     Bushing,
@@ -26,6 +25,7 @@ from sim.solvers.contact_state import (
     Hooks,
     Limits,
     Rows,
+    contact_rates,
 )
 from sim.solvers.tsitouras import (
     NODES,
@@ -36,8 +36,6 @@ from sim.solvers.tsitouras import (
     value_between,
     vertex,
 )
-
-__all__ = ["run_contact"]
 
 _GRACE = 2e-3
 """Time that is granted to what has just begun [s]."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from models.errors import ParameterError
 from sim.contact import N_CONTACT, N_CONTEXT, address_of
-from sim.solvers.contact_state import (
+from sim.solvers.contact_rates import (
     ANGLE,
     DONE,
     ERROR,
@@ -45,11 +45,6 @@ from sim.solvers.contact_state import (
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-__all__ = [
-    "LONGEST_STEP", "ContactRun", "Hook", "contact_record", "hooks_record", "n_variables",
-    "solve_contact",
-]  # fmt: skip
 
 LONGEST_STEP = 1e-4
 """Whatever the error says: an effect may act at any time [s]."""

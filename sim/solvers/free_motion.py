@@ -23,17 +23,6 @@ from models.errors import ParameterError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = [
-    "ORDER",
-    "SLIP",
-    "STICK",
-    "extended",
-    "fill_matrices",
-    "fill_series",
-    "order_for",
-    "parts_of_a_step",
-]
-
 ORDER = 17
 """Most terms of the series: 0.7^18 / 18! is below rounding."""
 

@@ -18,8 +18,6 @@ from sim.solvers.stick_slip_kernel import N_STATE, step_through
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["advance_stick_slip", "rest_state", "solve_stick_slip"]
-
 
 def rest_state(shaft_speed: float) -> NDArray[np.float64]:
     """State for `advance_stick_slip` to start from: at rest, the surfaces sticking.

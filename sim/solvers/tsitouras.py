@@ -18,19 +18,7 @@ import numpy as np
 from numba import njit
 
 from models.compilation import PART
-from sim.solvers.contact_state import N_MOTION, N_STAGES
-
-__all__ = [
-    "ERROR",
-    "NODES",
-    "STAGES",
-    "factor_of_step",
-    "fill_between",
-    "fill_stage",
-    "step_error",
-    "value_between",
-    "vertex",
-]
+from sim.solvers.contact_rates import N_MOTION, N_STAGES
 
 NODES = np.array([0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0, 1.0])
 """Of the stages, in shares of the step."""

@@ -22,14 +22,11 @@ from numba import float64, njit
 
 from models.compilation import COMPILED, PART
 from sim.contact import CRITICAL, KINETIC
-from sim.solvers.contact_rates import contact_rates
-from sim.solvers.contact_state import N_STAGES, SHORTEST_STEP
+from sim.solvers.contact_rates import N_STAGES, SHORTEST_STEP, contact_rates
 from sim.solvers.tsitouras import ERROR, NODES, factor_of_step, fill_between, fill_stage
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-__all__ = ["Chain", "run_suspension", "torque_gain"]
 
 _FIRST_STEP = 1e-6
 """[s]"""

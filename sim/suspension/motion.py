@@ -20,22 +20,21 @@ from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import friction_law
-from sim.motion import Motion, contact_hooks
-from sim.motion_limits import blaming_the_unusual, refuse_fast
+from sim.motion import Motion, blaming_the_unusual, contact_hooks, refuse_fast
 from sim.parameters import resolve
-from sim.solvers.contact_solver import (
-    LONGEST_STEP,
-    contact_record,
-    hooks_record,
-    n_variables,
-)
-from sim.solvers.contact_state import (
+from sim.solvers.contact_rates import (
     N_LAG,
     N_MOTION,
     N_STAGES,
     Drive,
     Limits,
     empty_rows,
+)
+from sim.solvers.contact_solver import (
+    LONGEST_STEP,
+    contact_record,
+    hooks_record,
+    n_variables,
 )
 
 if TYPE_CHECKING:
@@ -47,8 +46,6 @@ if TYPE_CHECKING:
     from models.suspension import Suspension, TorsionChain
     from sim.effects.effect import ActiveEffect
     from sim.shaft import ShaftMotion
-
-__all__ = ["SuspensionMotion", "simulate_suspension", "solve_chain"]
 
 _STRONGEST = 1e9
 """Shear stress that no spring steel bears: 1.7 GPa in tension, over the root of 3 [Pa]."""

@@ -19,11 +19,10 @@ from models.recording import Channel, Recording
 from sim.acquisition import Acquisition, sample
 from sim.analysis.regime import never_slips
 from sim.chain import changed_chain
-from sim.pipeline import apply_sensor_effects, radiate_motion, sensor_signals
+from sim.pipeline import SIMULATION, apply_sensor_effects, radiate_motion, sensor_signals
 from sim.run import plan_run
 from sim.suspension.kernel import torque_gain
 from sim.suspension.motion import simulate_suspension
-from sim.timing import SIMULATION
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -33,8 +32,6 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
     from sim.shaft import ShaftMotion
     from sim.suspension.motion import SuspensionMotion
-
-__all__ = ["LONGEST_SUSPENSION_RUN", "SuspensionRun", "run_suspension"]
 
 LONGEST_SUSPENSION_RUN = 20.0
 """All that moves is held in memory [s]."""

@@ -18,11 +18,11 @@ from scipy.integrate import solve_ivp
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
-from sim.constant_version import constant_version
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import LAWS
 from sim.motion import simulate_motion
+from sim.rig_effects import constant_version
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
 from sim.solvers.stick_slip import solve_stick_slip

@@ -18,7 +18,7 @@ import numpy as np
 from models.rig_file import load_material_rig
 from noise.long_run import write_run
 from sim.analysis.sweep import motion_features, sweep as run_sweep
-from sim.long_run import simulate_blocks
+from sim.blocks import simulate_blocks
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 

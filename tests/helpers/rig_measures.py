@@ -16,8 +16,8 @@ from scipy.signal import butter, find_peaks, hilbert, sosfiltfilt
 from features.kernels.harmonics import strongest_period
 from features.kernels.spectra import autospectrum, spectral_shape
 from sim.analysis.slips import motion_slips
-from sim.constant_version import constant_version
 from sim.motion import simulate_motion
+from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
 
 LONG, TIGHT = 2214.0, 0.381e-3

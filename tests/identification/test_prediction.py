@@ -8,8 +8,8 @@ from models.rig_file import load_material_rig
 from noise.identification.excerpts import excerpts_of
 from noise.identification.law_model import foretold, friction_of
 from sim.bushing import lumped_bushing
-from sim.constant_version import constant_version
 from sim.motion import simulate_motion
+from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
 from tests.identification.test_bushing_fit import recorded
 

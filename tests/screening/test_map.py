@@ -17,7 +17,7 @@ from noise.screening.map.point import evaluate_point
 from noise.screening.screen import screen
 from noise.screening.tables.summary import summary_lines
 from sim.analysis.critical_speeds import critical_speeds
-from sim.constant_version import constant_version
+from sim.rig_effects import constant_version
 from sim.run import simulate
 from sim.shaft import Oscillation
 

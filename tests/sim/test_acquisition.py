@@ -19,7 +19,7 @@ from sim.acquisition import (
     digitise,
     sample,
 )  # fmt: skip
-from sim.long_run import simulate_blocks
+from sim.blocks import simulate_blocks
 from sim.run import simulate
 
 QUIET = Acquisition(noise={})

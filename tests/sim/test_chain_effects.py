@@ -13,10 +13,10 @@ from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.acquisition import Acquisition
+from sim.blocks import simulate_blocks
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage, activated
-from sim.long_run import simulate_blocks
 from sim.parameters import Parameter
 from sim.run import simulate
 from tests.helpers.chain_paths import RATE, changed

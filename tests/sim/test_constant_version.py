@@ -12,8 +12,8 @@ from models.rig_file import load_material_rig
 from noise.noise_definition import label_by_physics
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.slips import motion_slips
-from sim.constant_version import constant_version
 from sim.motion import simulate_motion
+from sim.rig_effects import constant_version
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
 from tests.helpers.rig_measures import creak_measures

@@ -14,7 +14,7 @@ from sim.contact import CRITICAL, KINETIC, N_CONTACT, address_of, call_law, call
 from sim.friction import LAWS, friction_law
 from sim.friction.bond_population import LAW as BONDS
 from sim.friction.maxwell_slip import N_ELEMENTS
-from sim.friction.shared.bristle import FASTEST, shear_speed
+from sim.friction.shared import FASTEST, shear_speed
 from sim.parameters import resolve
 from sim.solvers.contact_solver import solve_contact
 

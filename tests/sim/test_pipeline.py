@@ -11,6 +11,9 @@ from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from noise.diagnosis.simulated.repeats import plan_repeat
 from sim.pipeline import (
+    DIAGNOSIS,
+    SCREENING,
+    SIMULATION,
     apply_sensor_effects,
     pulse_force,
     radiate_motion,
@@ -18,7 +21,6 @@ from sim.pipeline import (
     sensor_signals,
 )
 from sim.run import plan_run, simulate
-from sim.timing import DIAGNOSIS, SCREENING, SIMULATION
 
 RIG = replace(load_material_rig("fluorocarbon"), effects=(LawSpec("slip_pulse"),))
 AT = {"interference": 0.381e-3, "support_stiffness": 2214.0}

@@ -15,8 +15,8 @@ from sim.analysis.critical_speeds import SPEEDS, motion_from_rest
 from sim.analysis.regime import LEAST_OSCILLATION, Regime, friction_regime, regime_measures
 from sim.analysis.slips import LEAST_SUDDEN, find_slips, motion_slips
 from sim.bushing import lumped_bushing
-from sim.constant_version import constant_version
 from sim.motion import simulate_motion
+from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
 from sim.solvers.stick_slip import solve_stick_slip
 

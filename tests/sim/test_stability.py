@@ -10,10 +10,10 @@ from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.analysis.critical_speeds import critical_speeds
 from sim.analysis.stability import steady_sliding
-from sim.constant_version import constant_version
 from sim.effects import EFFECTS
 from sim.friction import LAWS
 from sim.motion import simulate_motion
+from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
 
 THESIS = load_material_rig("fluorocarbon-thesis")

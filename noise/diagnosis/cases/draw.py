@@ -39,11 +39,10 @@ from noise.diagnosis.simulated.repeats import (
 from sim.acquisition import Acquisition, decimate, digitise
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
-from sim.constant_version import irregular_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, activated
-from sim.pipeline import apply_sensor_effects, radiate_motion, sensor_signals
-from sim.timing import LEARNING
+from sim.pipeline import LEARNING, apply_sensor_effects, radiate_motion, sensor_signals
+from sim.rig_effects import irregular_effects
 
 SHARED = 4
 """Cases of one rig."""

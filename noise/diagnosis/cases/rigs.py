@@ -14,10 +14,10 @@ from models.rig_file import load_material_rig
 from models.sensors import Sensors
 from noise.diagnosis.cases.benches import Bench, draw_bench
 from noise.diagnosis.cases.laws import MATERIALS, draw_law, scaled_law
-from sim.constant_version import constant_version
 from sim.motion import simulate_motion
+from sim.pipeline import DIAGNOSIS, REGIME_RATE
+from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
-from sim.timing import DIAGNOSIS, REGIME_RATE
 
 OFFSETS = (
     "elastomer_stiffness", "critical_torque", "kinetic_torque", "damping", "elastomer_inertia",

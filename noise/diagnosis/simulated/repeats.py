@@ -26,10 +26,16 @@ from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import changed_chain
 from sim.effects.effect import ActiveEffect, activated
 from sim.motion import Motion
-from sim.pipeline import Plan, apply_sensor_effects, radiate_motion, run_motion, sensor_signals
+from sim.pipeline import (
+    DIAGNOSIS,
+    Plan,
+    apply_sensor_effects,
+    radiate_motion,
+    run_motion,
+    sensor_signals,
+)
 from sim.shaft import ConstantSpeed
 from sim.temperature import at_temperature
-from sim.timing import DIAGNOSIS
 
 
 @dataclass(frozen=True)
@@ -201,7 +207,7 @@ def repeat_motion(plan: Plan, rng: np.random.Generator, tolerance: float | None 
     rng : numpy.random.Generator
         As of `run_motion`.
     tolerance : float, optional
-        As of `run_motion`, by default that of `sim.timing.DIAGNOSIS` [-].
+        As of `run_motion`, by default that of `sim.pipeline.DIAGNOSIS` [-].
     """
     return run_motion(plan, rng, tolerance=tolerance or DIAGNOSIS.tolerance)
 

@@ -6,7 +6,7 @@ a screen judges designs by the same names as recordings are labelled with, and d
 classifier's errors. The rig runs from rest, and is judged once it has settled: after 0.6 s if the
 vibration then neither grows nor dies, else after 1.5 s; some creaks set in that late. The solver's
 steps are as long as regimes and spectra allow, rather than single events. It is the rig's constant
-version (`sim.constant_version`), whose boundaries are sharp; what a listener hears of a point has
+version (`sim.rig_effects`), whose boundaries are sharp; what a listener hears of a point has
 the irregularity that the rig states.
 
 A bar on the road swings: it runs from one turning on, a whole cycle is heard, and names and regimes
@@ -36,14 +36,13 @@ from models.rig import Rig, damping_at
 from noise.noise_definition import NoiseCriteria, noise_criteria
 from sim.analysis.regime import LEAST_OSCILLATION, Regime
 from sim.analysis.slips import motion_slips
-from sim.constant_version import constant_version
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, activated
 from sim.motion import Motion
-from sim.pipeline import Plan, radiate_motion, run_motion
+from sim.pipeline import SCREENING, SCREENING_SLOW, Plan, Timing, radiate_motion, run_motion
+from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed, Oscillation
 from sim.temperature import at_temperature
-from sim.timing import SCREENING, SCREENING_SLOW, Timing
 
 if TYPE_CHECKING:
     from sim.motion import Motion

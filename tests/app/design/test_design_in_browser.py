@@ -8,7 +8,7 @@ import pytest
 from models.rig_file import load_rig
 from noise.app.design_player import RATE
 from sim.acquisition import Acquisition
-from sim.long_run import simulate_blocks
+from sim.blocks import simulate_blocks
 from tests.helpers.design_page import DESIGN, DesignPage
 
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]

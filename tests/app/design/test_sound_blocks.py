@@ -19,7 +19,7 @@ from noise.app.design_player import BLOCK, HEADER, RATE, REFUSED, Player
 from noise.app.design_sound import LiveSounds
 from noise.app.opened import open_paths
 from sim.acquisition import Acquisition
-from sim.long_run import simulate_blocks
+from sim.blocks import simulate_blocks
 from tests.helpers.opened_app import PATIENCE, opened_app
 
 BASES = bases_of(open_paths([]))

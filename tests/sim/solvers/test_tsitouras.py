@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from sim.solvers.contact_state import N_STAGES
+from sim.solvers.contact_rates import N_STAGES
 from sim.solvers.tsitouras import NODES, factor_of_step, fill_between, fill_stage, step_error
 
 BEGIN = np.array([1.0, 0.3, -0.5, 0.2])

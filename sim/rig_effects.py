@@ -7,6 +7,7 @@ changes, and which a law reads, is found by calling them.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,15 +24,17 @@ from sim.contact import (
     call_hook,
     call_law,
 )  # fmt: skip
+from sim.effects import EFFECTS
 from sim.friction import friction_law
 from sim.parameters import resolve
 
 if TYPE_CHECKING:
-    from models.rig import LawSpec
-    from sim.effects.effect import ActiveEffect
+    from collections.abc import Mapping
+
+    from models.rig import LawSpec, Rig
+    from sim.effects.effect import ActiveEffect, Effect
     from sim.friction.law import FrictionLaw
 
-__all__ = ["can_act"]
 
 _PROBES = 64
 """States of the contact that are tried."""
@@ -97,3 +100,36 @@ def _reads(law: FrictionLaw, friction: LawSpec, entry: int, rng: np.random.Gener
         if found[0] != found[1]:
             return True
     return False
+
+
+def constant_version(rig: Rig, library: Mapping[str, Effect] = EFFECTS) -> Rig:
+    """Return a rig without the effects by which one slip differs from the next by chance.
+
+    Parameters
+    ----------
+    rig : Rig
+    library : mapping of str to Effect
+        Effects that the rig's can be found among; one that is not there is kept.
+
+    Returns
+    -------
+    Rig
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> rig = load_material_rig("natural-rubber")
+    >>> [str(spec) for spec in rig.effects], constant_version(rig).effects
+    (['critical_torque_scatter:scatter=0.3'], ())
+    """
+    irregular = irregular_effects(rig, library)
+    if not irregular:
+        return rig
+    return replace(rig, effects=tuple(spec for spec in rig.effects if spec not in irregular))
+
+
+def irregular_effects(rig: Rig, library: Mapping[str, Effect] = EFFECTS) -> tuple[LawSpec, ...]:
+    """Return what the constant version of a rig is without."""
+    return tuple(
+        spec for spec in rig.effects if spec.name in library and library[spec.name].irregular
+    )

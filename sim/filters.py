@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+from scipy.fft import irfft, rfft
 from scipy.signal import sosfilt, upfirdn
 
 from sim.acquisition import analogue_filter, anti_alias_filter
@@ -18,45 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
-
-__all__ = ["AnalogueFilter", "Convolution", "Decimation", "LiveConvolution", "crossing"]
-
-
-class Convolution:
-    """Causal convolution of one signal with several impulse responses.
-
-    Parameters
-    ----------
-    responses : sequence of ndarray, shape (m,)
-        [unit of each output over that of the signal]
-
-    Examples
-    --------
-    >>> echo = Convolution([np.array([3.0, 1.0])])
-    >>> [echo(np.array(block))[0].round(9).tolist() for block in ([1.0, 0.0, 2.0], [0.0, 0.0])]
-    [[3.0, 1.0, 6.0], [2.0, 0.0]]
-    """
-
-    def __init__(self, responses: Sequence[NDArray[np.float64]]) -> None:
-        self._responses = [np.asarray(response) for response in responses]
-        self._tails = [np.zeros(response.size - 1) for response in self._responses]
-        self._spectra: dict[int, list[NDArray[np.complex128]]] = {}
-
-    def __call__(self, block: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-        """Return the next samples of each output, as many as `block` has."""
-        n = block.size
-        size = next_fast_len(n + max(tail.size for tail in self._tails), real=True)
-        if size not in self._spectra:
-            self._spectra = {size: [rfft(response, size) for response in self._responses]}
-        spectrum = rfft(block, size)
-        outputs = []
-        for i, response in enumerate(self._spectra[size]):
-            tail = self._tails[i]
-            full = irfft(spectrum * response, size)[: n + tail.size]
-            full[: tail.size] += tail
-            self._tails[i] = full[n:]
-            outputs.append(full[:n])
-        return outputs
 
 
 class AnalogueFilter:
@@ -157,8 +118,8 @@ def crossing(n: int) -> NDArray[np.float64]:
     return np.asarray(np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / n) ** 2)
 
 
-class LiveConvolution:
-    """Causal convolution of several signals, each with its impulse response; the sum comes out.
+class Convolution:
+    """Causal convolution of several signals, whose sums come out, one or more.
 
     Responses can be exchanged while it runs. They are cut into as many parts as they have blocks
     (uniformly partitioned overlap-save), so that a block costs what its length costs and not what
@@ -167,8 +128,8 @@ class LiveConvolution:
 
     Parameters
     ----------
-    responses : sequence of ndarray, shape (m,)
-        One a signal [unit of the output over that of the signal].
+    responses : sequence of sequence of ndarray, shape (m,)
+        For each output one a signal [unit of the output over that of the signal].
     block : int
         Samples of each block.
     longest : int
@@ -176,41 +137,43 @@ class LiveConvolution:
 
     Examples
     --------
-    >>> echo = LiveConvolution([np.array([3.0, 1.0])], block=2, longest=4)
-    >>> echo([np.array([1.0, 0.0])]).round(9), echo([np.array([2.0, 0.0])]).round(9)
-    (array([3., 1.]), array([6., 2.]))
+    >>> echo = Convolution([[np.array([3.0, 1.0])]], block=2, longest=4)
+    >>> [echo([np.array(block)]).round(9).tolist() for block in ([1.0, 0.0], [2.0, 0.0])]
+    [[[3.0, 1.0]], [[6.0, 2.0]]]
     """
 
-    def __init__(self, responses: Sequence[NDArray[np.float64]], block: int, longest: int) -> None:
+    def __init__(
+        self, responses: Sequence[Sequence[NDArray[np.float64]]], block: int, longest: int
+    ) -> None:
         self._block, self._parts = block, -(-longest // block)
-        self._before = np.zeros((len(responses), block))
-        self._seen = np.zeros((self._parts, len(responses), block + 1), dtype=np.complex128)
+        self._before = np.zeros((len(responses[0]), block))
+        self._seen = np.zeros((self._parts, len(responses[0]), block + 1), dtype=np.complex128)
         self._newest = 0
-        self._now = self._spectra(responses)
-        self._next: NDArray[np.complex128] | None = None
+        self._now = [self._spectra(own) for own in responses]
+        self._next: list[NDArray[np.complex128]] | None = None
 
-    def exchange(self, responses: Sequence[NDArray[np.float64]]) -> None:
-        """Let other responses, shape (m,) each and as many as before, take over within a block."""
-        self._next = self._spectra(responses)
+    def exchange(self, responses: Sequence[Sequence[NDArray[np.float64]]]) -> None:
+        """Let other responses, as many as before, take over within a block."""
+        self._next = [self._spectra(own) for own in responses]
 
     def __call__(self, signals: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """Return the next samples, shape (block,), for a block of each signal."""
+        """Return the next samples, shape (n_outputs, block), for a block of each signal."""
         blocks = np.stack(list(signals))
         self._newest = (self._newest - 1) % self._parts
         self._seen[self._newest] = rfft(np.hstack([self._before, blocks]))
         self._before = blocks
-        made = self._through(self._now)
+        made = np.stack([self._through(own) for own in self._now])
         if self._next is not None:
-            made += crossing(self._block) * (self._through(self._next) - made)
+            coming = np.stack([self._through(own) for own in self._next])
+            made += crossing(self._block) * (coming - made)
             self._now, self._next = self._next, None
         return made
 
     def _through(self, spectra: NDArray[np.complex128]) -> NDArray[np.float64]:
-        n, first = len(spectra), self._newest
-        straight = min(n, self._parts - first)
-        total = _sum_of_products(self._seen[first : first + straight], spectra[:straight])
-        if straight < n:
-            total += _sum_of_products(self._seen[: n - straight], spectra[straight:])
+        order = (self._newest + np.arange(len(spectra))) % self._parts
+        total = np.zeros(self._block + 1, dtype=np.complex128)
+        for part, own in zip(order, spectra, strict=True):
+            total += np.einsum("jk,jk->k", self._seen[part], own)
         return np.asarray(irfft(total)[self._block :])
 
     def _spectra(self, responses: Sequence[NDArray[np.float64]]) -> NDArray[np.complex128]:
@@ -222,9 +185,3 @@ class LiveConvolution:
             row[: kept.size] = kept
         by_part = cut.reshape(len(responses), parts, self._block).transpose(1, 0, 2)
         return np.asarray(rfft(by_part, 2 * self._block))
-
-
-def _sum_of_products(
-    a: NDArray[np.complex128], b: NDArray[np.complex128]
-) -> NDArray[np.complex128]:
-    return np.asarray(np.einsum("ijk,ijk->k", a, b))

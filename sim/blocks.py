@@ -1,0 +1,564 @@
+"""A run of the rig block by block: long recordings, and a rig that is changed while it turns.
+
+Solver, structure, plate and filters carry their state from block to block, so what does not change
+is the run that `sim.run.simulate` gives, without holding it. Three things differ: each channel's
+noise is a stream of its own, effects that scatter draw other numbers, and the filter of the
+decimation sees the signal before the first and after the last sample where the other extends it by
+a line (10 samples at either end).
+
+A change takes effect over one block: speeds go from one to the other, what moves goes on from where
+it is in the rig as it was and as it is now, and the torques cross over; so do the impulse responses
+from torque to sound. Nothing jumps, so nothing clicks.
+
+The sound lags behind the motion by a look-ahead, in which a slip shows how far the torque falls: an
+effect that makes a force of the motion sees so much of what is to come, where a whole run shows it
+all. Effects of drive and sensors that need a run as a whole cannot act here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.condition import Condition
+from models.errors import ParameterError
+from models.radiation.impulse_responses import ImpulseResponses
+from models.radiation.rig_response import first_mode_damping, impulse_responses
+from models.recording import Channel
+from models.rig import Rig
+from sim.acquisition import Acquisition, digitise
+from sim.analysis.regime import SlidingWatch
+from sim.chain import changed_chain
+from sim.effects.effect import (
+    ActiveEffect,
+    Effect,
+    Memories,
+    Signals,
+    begun,
+    drive_block,
+    sensors_block,
+)
+from sim.filters import AnalogueFilter, Convolution, Decimation, crossing
+from sim.motion import Motion, MotionSolver, blaming_the_unusual, steps_beyond
+from sim.pipeline import SIMULATION, Plan, pulse_force
+from sim.run import plan_run, sensor_channels
+from sim.shaft import ShaftMotion
+from sim.temperature import at_temperature
+
+KINDS = ("torque", "acceleration", "pressure", "angle")
+"""Channels of a recording, in the order of their noise."""
+
+LOOKAHEAD = 0.005
+"""By which the sound lags behind the motion where a rig is changed [s]."""
+
+_MARGIN = 0.5
+"""Of the motion, to both sides of a block of a recording, that a force is made of [s]."""
+
+_SEEN = 0.2
+"""Of the motion before a block, where a rig is changed [s]."""
+
+_LONGEST_RESPONSE = 3.0
+"""From torque to sound [s]."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What can be changed while a rig turns.
+
+    Parameters
+    ----------
+    rig : Rig
+    shaft : ShaftMotion
+        Of a kind that can be compared. Its clock goes on where only its numbers change, and starts
+        anew where it is of another kind.
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    temperature : float
+        [degree Celsius]
+    """
+
+    rig: Rig
+    shaft: ShaftMotion
+    interference: float
+    support_stiffness: float
+    temperature: float = 23.0
+
+    def moves_as(self, other: Setting) -> bool:
+        """Whether nothing but the motion of the shaft differs."""
+        return replace(self, shaft=other.shaft) == other
+
+
+PathsOf = Callable[[Setting], ImpulseResponses | None]
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """What came next.
+
+    Parameters
+    ----------
+    samples : dict of str to ndarray, shape (n,)
+        By kind of channel, as recorded [unit of the channel].
+    speed : float
+        Of the shaft at the end [rad/s].
+    """
+
+    samples: Signals
+    speed: float
+
+
+@dataclass(frozen=True, eq=False)
+class BlockRun:
+    """A recording that is computed while it is read.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    channels : tuple of Channel
+    condition : Condition
+    n_samples : int
+        Of all blocks together.
+    blocks : iterator of ndarray, shape (n_channels, n)
+        In the units of the channels [unit]; can be run through once.
+    watch : SlidingWatch
+        Of the contact; knows as much of the run as has been read of the blocks.
+    """
+
+    rate: float
+    channels: tuple[Channel, ...]
+    condition: Condition
+    n_samples: int
+    blocks: Iterator[NDArray[np.float64]]
+    watch: SlidingWatch
+
+
+def simulate_blocks(
+    rig: Rig,
+    shaft: ShaftMotion | float,
+    *,
+    interference: float = 0.279e-3,
+    support_stiffness: float = 2214.0,
+    temperature: float = 23.0,
+    seconds: float = 1.0,
+    acquisition: Acquisition | None = None,
+    settling: float | None = None,
+    library: Mapping[str, Effect] | None = None,
+    rng: np.random.Generator | None = None,
+    block_seconds: float = 0.5,
+) -> BlockRun:
+    """Simulate one run of the rig, block by block.
+
+    Parameters
+    ----------
+    block_seconds : float
+        Length of a block [s]; the memory that is needed grows with it.
+    rig, shaft, interference, support_stiffness, temperature, seconds, acquisition, settling
+        As for `sim.run.simulate`; `seconds` is not bounded.
+    library, rng
+        As for `sim.run.simulate`.
+
+    Returns
+    -------
+    BlockRun
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used, or an effect needs the whole run at once.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> run = simulate_blocks(load_material_rig("PDMS"), 5.0, seconds=0.5, block_seconds=0.2)
+    >>> run.n_samples, sum(block.shape[1] for block in run.blocks)
+    (15000, 15000)
+    """
+    if not 0.0 < block_seconds < math.inf or not seconds < math.inf:
+        raise ParameterError(
+            f"seconds = {seconds:g} and block_seconds = {block_seconds:g} must be above 0, finite"
+        )
+    acquisition = acquisition or Acquisition()
+    plan = plan_run(
+        rig, shaft, interference=interference, support_stiffness=support_stiffness,
+        temperature=temperature, seconds=min(seconds, 1.0), rate=acquisition.rate,
+        settling=settling, library=library,
+    )  # fmt: skip
+    names = whole_run_effects(plan.effects)
+    if names:
+        raise ParameterError(
+            f"effect {', '.join(names)}: acts on a run as a whole, so it cannot act on one that "
+            "is computed in blocks; make the run shorter, or leave the effect out"
+        )
+    forced = any(active.effect.force is not None for active in plan.effects)
+    n_samples, watch = round(seconds * acquisition.rate), SlidingWatch()
+    engine = BlockEngine(
+        Setting(rig, plan.shaft, interference, support_stiffness, temperature),
+        acquisition=acquisition,
+        n=max(2, round(block_seconds * acquisition.rate)),
+        library=library,
+        rng=rng,
+        settling=settling,
+        lasting=seconds + plan.n_settling / plan.rate,
+        ahead=_MARGIN if forced else 0.0,
+        back=_MARGIN,
+        watch=watch,
+    )
+
+    def blocks() -> Iterator[NDArray[np.float64]]:
+        left = n_samples
+        while left > 0:
+            samples = np.stack(list(engine.block().samples.values()))[:, :left]
+            left -= samples.shape[1]
+            yield samples
+
+    channels = sensor_channels(rig)
+    return BlockRun(acquisition.rate, channels, plan.condition, n_samples, blocks(), watch)
+
+
+def whole_run_effects(effects: Sequence[ActiveEffect]) -> list[str]:
+    """Names of the effects that need the whole run at once."""
+    return [active.effect.name for active in effects if active.effect.needs_whole_run]
+
+
+class BlockEngine:
+    """One run of the rig that goes on as long as it is asked to, also while it is changed.
+
+    Parameters
+    ----------
+    setting : Setting
+        That it starts with; a shaft of constant speed has turned for a while, as in a recording.
+    acquisition : Acquisition, optional
+        As for `sim.run.simulate`; by default at 48 kHz.
+    n : int
+        Samples of a block.
+    kinds : tuple of str
+        Channels that are asked for, of `KINDS`.
+    library, rng, settling
+        As for `sim.run.simulate`.
+    lasting : float
+        How long the shaft turns [s], for its top speed.
+    ahead, back : float
+        Of the motion after and before a block, that effects which make a force see [s].
+    paths : callable, optional
+        From setting to impulse responses, at the rate of the computation, or to None while they are
+        not known, for which those before stay; by default they are computed at once.
+    watch : SlidingWatch, optional
+        Sees the motion of the contact, as far as it is recorded.
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.shaft import ConstantSpeed
+    >>> setting = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
+    >>> run = BlockEngine(setting)
+    >>> run.block().samples["pressure"].shape
+    (960,)
+    >>> faster = replace(setting, shaft=ConstantSpeed(6.0))
+    >>> round(run.block(faster).speed, 1), round(run.block().speed, 1)
+    (6.0, 6.0)
+    """
+
+    def __init__(
+        self,
+        setting: Setting,
+        *,
+        acquisition: Acquisition | None = None,
+        n: int = 960,
+        kinds: tuple[str, ...] = KINDS,
+        library: Mapping[str, Effect] | None = None,
+        rng: np.random.Generator | None = None,
+        settling: float | None = None,
+        lasting: float = math.inf,
+        ahead: float = LOOKAHEAD,
+        back: float = _SEEN,
+        paths: PathsOf | None = None,
+        watch: SlidingWatch | None = None,
+    ) -> None:
+        self._acquisition = (acquisition or Acquisition(48e3)).over(setting.rig.sensors)
+        factor = SIMULATION.decimation(self._acquisition.rate)
+        self._rate, self._n, self._block = factor * self._acquisition.rate, n, factor * n
+        self._kinds, self._library, self._lasting, self._watch = kinds, library, lasting, watch
+        noise_rng, self._effect_rng = (rng or np.random.default_rng(0)).spawn(2)
+        self._noise = dict(zip(KINDS, noise_rng.spawn(len(KINDS)), strict=True))
+        self._chain_rng, block_rng = self._effect_rng.spawn(2)
+        self._seed = int(block_rng.integers(2**31))
+        self._setting = setting
+        self._plan = plan_of(setting, self._acquisition.rate, library, settling)
+        self._n_settling = self._plan.n_settling
+        self._solver = self._solver_of(self._plan, float(setting.shaft.speed(np.zeros(1))[0]))
+        self._driving: Memories = {}  # what effects of the drive keep, and those of the sensors
+        self._sensing: Memories = {}
+        self._sensed_by = self._plan.effects
+        self._time = 0  # of the shaft's clock, in samples of the computation
+        self._seen = round(back * self._rate)
+        self._paths = paths or self._known_paths
+        self._known: tuple[tuple[object, ...], ImpulseResponses] | None = None
+        self._responses = self._paths(setting) or self._known_paths(setting)
+        self._convolution = Convolution(
+            self._impulse_responses(self._responses), self._block,
+            round(_LONGEST_RESPONSE * self._rate),
+        )  # fmt: skip
+        sensors = self._acquisition.sensors
+        self._filters = [
+            AnalogueFilter(sensors.of(kind).antialias, self._rate, self._n_settling)
+            for kind in kinds
+        ]
+        self._decimations = [Decimation(factor, self._n_settling) for _ in kinds]
+        self._ready = np.zeros((len(kinds), 0))
+        self._held = self._advance(max(1, round(ahead * self._rate)))
+        self._sent = 0  # samples that have gone out: of `held`, and of the run
+        self._position = 0
+        self._first_torque, self._start_angle = float(self._held.torque[0]), 0.0
+
+    @property
+    def setting(self) -> Setting:
+        """As it is now."""
+        return self._setting
+
+    def block(self, setting: Setting | None = None) -> Block:
+        """Return the next samples, in which another setting takes over if one is given.
+
+        Raises
+        ------
+        ParameterError
+            If the setting cannot be used, or the friction not be followed; the run can go on as it
+            was.
+        """
+        change = setting is not None and setting != self._setting
+        while self._ready.shape[1] < self._n:
+            motion = self._changed(setting) if change and setting else self._advance(self._block)
+            change = False
+            self._send(motion)
+        values, self._ready = self._ready[:, : self._n], self._ready[:, self._n :]
+        samples = {}
+        for kind, row in zip(self._kinds, values, strict=True):
+            signal = row - self._start_angle if kind == "angle" else row
+            samples[kind] = digitise(signal, kind, self._acquisition, self._noise[kind])
+        return Block(samples, float(self._held.shaft_speed[-1]))
+
+    def _send(self, motion: Motion) -> None:
+        """Send a block that is known by the next one of motion to the sensors, and sample it."""
+        drop = max(0, self._sent - self._seen)
+        self._held = self._held.since(drop).followed_by(motion)
+        start = self._sent - drop
+        self._sent = start + self._block
+        part = self._held.part(start, self._sent)
+        first = self._n_settling - self._position  # of what is recorded
+        self._position += self._block
+        if 0 <= first < self._block:
+            self._start_angle = float(part.shaft_angle[first])
+        if self._watch is not None:
+            self._watch.see(part.since(max(0, first)))
+        responses = self._paths(self._setting)
+        if responses is not None and responses is not self._responses:
+            self._responses = responses
+            self._convolution.exchange(self._impulse_responses(responses))
+        sound = self._convolution([part.torque - self._first_torque, self._force(start)])
+        signals = {"torque": part.torque, "angle": part.shaft_angle}
+        signals |= dict(zip(self._sounds, sound, strict=True))
+        signals = self._sensed({kind: signals[kind] for kind in self._kinds}, max(0, first))
+        rows = [
+            decimate(low_pass(signals[kind]))
+            for kind, low_pass, decimate in zip(
+                self._kinds, self._filters, self._decimations, strict=True
+            )
+        ]
+        self._ready = np.hstack([self._ready, np.stack(rows)])
+
+    @property
+    def _sounds(self) -> list[str]:
+        return [kind for kind in ("acceleration", "pressure") if kind in self._kinds]
+
+    def _impulse_responses(self, paths: ImpulseResponses) -> list[list[NDArray[np.float64]]]:
+        """From torque and force, one row of what is to be computed each."""
+        by_kind = {
+            "acceleration": [paths.torque_to_acceleration, paths.pulse_to_acceleration],
+            "pressure": [paths.torque_to_pressure, paths.pulse_to_pressure],
+        }
+        return [by_kind[kind] for kind in self._sounds]
+
+    def _known_paths(self, setting: Setting) -> ImpulseResponses:
+        """Impulse responses of a setting; those of the last one are known."""
+        if self._known is not None and setting is self._setting:
+            return self._known[1]
+        key = paths_key(setting)
+        if self._known is None or self._known[0] != key:
+            rate = self._acquisition.rate
+            rng = deepcopy(self._chain_rng)
+            self._known = key, paths_of(setting, rate, library=self._library, rng=rng)
+        return self._known[1]
+
+    def _force(self, start: int) -> NDArray[np.float64]:
+        """Force of the effects over a block of what is held [N]."""
+        if all(active.effect.force is None for active in self._plan.effects):
+            return np.zeros(self._block)
+        return pulse_force(_ended(self._held), self._plan.effects)[start : start + self._block]
+
+    def _sensed(self, signals: Signals, first: int) -> Signals:
+        """Signals of a block as effects on sensors change them; effects that differ cross over."""
+        effects, before = self._plan.effects, self._sensed_by
+        if first >= self._block or not (effects or before):
+            return signals
+        recorded = {kind: signal[first:] for kind, signal in signals.items()}
+        memories = begun(effects, self._seed) | self._sensing
+        made, kept = sensors_block(recorded, self._rate, effects, memories)
+        if before != effects:
+            memories = begun(before, self._seed) | self._sensing
+            old, _ = sensors_block(recorded, self._rate, before, memories)
+            coming = crossing(self._block - first)
+            made = {name: old[name] + coming * (made[name] - old[name]) for name in made}
+        self._sensed_by = effects
+        self._sensing = _of(effects, kept)
+        return {kind: np.concatenate([signals[kind][:first], made[kind]]) for kind in signals}
+
+    def _advance(self, n: int) -> Motion:
+        even = self._drive(self._setting.shaft, n + steps_beyond(self._rate))
+        drive, driving = self._uneven(even, n, self._plan.effects)
+        with blaming_the_unusual(self._plan.rig):
+            motion = self._solver.advance(drive, n)
+        self._time += n
+        self._driving = driving
+        return motion
+
+    def _changed(self, setting: Setting) -> Motion:
+        """Motion of a block in which a setting takes over."""
+        before, n, beyond = self._setting, self._block, steps_beyond(self._rate)
+        restarted = type(setting.shaft) is not type(before.shaft)
+        plan = plan_of(setting, self._acquisition.rate, self._library)
+        coming = np.concatenate([crossing(n), np.ones(beyond)])
+        old = self._drive(before.shaft, n + beyond)
+        new = self._drive(setting.shaft, n + beyond, 0 if restarted else self._time)
+        even = old + coming * (new - old)
+        drive, driving = self._uneven(even, n, plan.effects)
+        if plan.effects != self._plan.effects:
+            uneven, _ = self._uneven(even, n, self._plan.effects)
+            drive = uneven + coming * (drive - uneven)
+        solver = self._solver_of(plan, float(drive[0]))
+        solver.go_on_from(self._solver, float(drive[0]))
+        with blaming_the_unusual(plan.rig):
+            motion = solver.advance(drive, n)
+        if not setting.moves_as(before):
+            motion = _crossed(self._solver.advance(drive, n), motion)
+        self._setting, self._plan, self._solver = setting, plan, solver
+        self._driving = driving
+        self._time = n if restarted else self._time + n
+        return motion
+
+    def _drive(self, shaft: ShaftMotion, n: int, first: int | None = None) -> NDArray[np.float64]:
+        first = self._time if first is None else first
+        return shaft.speed(np.arange(first, first + n, dtype=np.float64) * (1.0 / self._rate))
+
+    def _uneven(
+        self, even: NDArray[np.float64], n: int, effects: Sequence[ActiveEffect]
+    ) -> tuple[NDArray[np.float64], Memories]:
+        memories = begun(effects, self._seed) | self._driving
+        driven, kept = drive_block(even, n, self._rate, effects, memories)
+        return driven, _of(effects, kept)
+
+    def _solver_of(self, plan: Plan, start_speed: float) -> MotionSolver:
+        with blaming_the_unusual(plan.rig):
+            return MotionSolver(
+                plan.rig, plan.interference, plan.support_stiffness, plan.rate, plan.effects,
+                deepcopy(self._effect_rng), start_speed=start_speed,
+                top_speed=plan.shaft.top_speed(self._lasting), tolerance=None,
+            )  # fmt: skip
+
+
+def plan_of(
+    setting: Setting,
+    rate: float,
+    library: Mapping[str, Effect] | None = None,
+    settling: float | None = None,
+) -> Plan:
+    """Plan the run of a setting at a sampling rate [Hz], of effects those that act on blocks."""
+    plan = plan_run(
+        setting.rig,
+        setting.shaft,
+        interference=setting.interference,
+        support_stiffness=setting.support_stiffness,
+        temperature=setting.temperature,
+        seconds=max(1.0, 2.0 / rate),
+        rate=rate,
+        settling=settling,
+        library=library,
+    )
+    kept = [active for active in plan.effects if not active.effect.needs_whole_run]
+    return replace(plan, effects=kept)
+
+
+def paths_of(
+    setting: Setting,
+    rate: float,
+    *,
+    library: Mapping[str, Effect] | None = None,
+    rng: np.random.Generator | None = None,
+) -> ImpulseResponses:
+    """Impulse responses of a setting for a sampling rate [Hz], as the rig's effects change them."""
+    plan = plan_of(setting, rate, library)
+    paths = impulse_responses(plan.rig, plan.interference, plan.support_stiffness, plan.rate)
+    return changed_chain(
+        paths, plan.effects, rng or np.random.default_rng(0).spawn(2)[1].spawn(1)[0]
+    )
+
+
+def paths_key(setting: Setting) -> tuple[object, ...]:
+    """All that the impulse responses depend on: two settings of one key share them.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.shaft import ConstantSpeed
+    >>> one = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
+    >>> looser = replace(one, rig=one.rig.changed(kinetic_torque="x0.5"), shaft=ConstantSpeed(1.0))
+    >>> damped = replace(one, rig=one.rig.changed(damping="x2"))
+    >>> paths_key(one) == paths_key(looser), paths_key(one) == paths_key(damped)
+    (True, False)
+    """
+    rig = at_temperature(setting.rig, setting.temperature)
+    support = setting.support_stiffness
+    return (
+        rig.beams,
+        rig.plate,
+        rig.microphone,
+        rig.clamp_inertia,
+        rig.measured,
+        support,
+        0.0 if math.isinf(support) else first_mode_damping(rig, setting.interference, support),
+        rig.effects,
+    )
+
+
+def _of(effects: Sequence[ActiveEffect], memories: Memories) -> Memories:
+    names = {active.effect.name for active in effects}
+    return {name: memory for name, memory in memories.items() if name in names}
+
+
+def _crossed(old: Motion, new: Motion) -> Motion:
+    coming = crossing(new.torque.size)
+    names = [field.name for field in fields(Motion) if field.name != "rate"]
+    crossed = {}
+    for name in names:
+        before = getattr(old, name)
+        crossed[name] = before + coming * (getattr(new, name) - before)
+    return Motion(new.rate, **crossed)
+
+
+def _ended(held: Motion) -> Motion:
+    """Return a motion whose last fall of the torque is over, for what waits to count it."""
+    last = held.part(held.torque.size - 1)
+    way = -1.0 if last.shaft_speed[0] < 0.0 else 1.0
+    risen = last.torque + way * float(np.ptp(held.torque))
+    return held.followed_by(replace(last, torque=risen))

@@ -1,1 +1,0 @@
-"""Parts that several friction laws have in common."""

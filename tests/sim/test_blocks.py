@@ -1,0 +1,315 @@
+"""Runs in blocks: the recording that one block gives, in little memory, also while it changes."""
+
+import math
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import resample_poly
+
+from features.kernels.levels import sound_levels
+from models.condition import FIXED, Condition
+from models.errors import ParameterError
+from models.recording import Channel
+from models.rig import LawSpec
+from models.rig_file import load_material_rig
+from models.transfer_functions.filtering import convolve
+from noise.long_run import write_run
+from noise.recordings import read_recording
+from noise.recordings.writing import write_blocks
+from sim.acquisition import Acquisition
+from sim.blocks import BlockEngine, Setting, simulate_blocks
+from sim.effects import EFFECTS
+from sim.filters import Convolution, Decimation
+from sim.friction import LAWS
+from sim.run import simulate
+from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
+
+THESIS, MEMORY, PDMS = map(load_material_rig, ("fluorocarbon-thesis", "fluorocarbon", "PDMS"))
+QUIET = Acquisition(noise={})
+RATE = 48e3
+INAUDIBLE = 0.8e-3 * 8
+"""What the microphone's noise never reaches [Pa]."""
+
+
+def joined(run):
+    return np.concatenate(list(run.blocks), axis=1)
+
+
+def setting(rig=PDMS, shaft=5.0, support=2214.0, effect=None, **given):
+    if effect is not None:
+        rig = replace(rig, effects=(LawSpec(effect, given),))
+    return Setting(rig, shaft if not isinstance(shaft, float) else ConstantSpeed(shaft), 0.279e-3,
+                   support)  # fmt: skip
+
+
+def sound(run, n, *changes):
+    blocks = [run.block(change) for change in changes] + [run.block() for _ in range(n)]
+    return np.concatenate([block.samples["pressure"] for block in blocks])
+
+
+def highest(pressure):
+    """Largest part of a sound between 8 kHz and the end, where a click is heard before all else."""
+    spectrum = np.fft.rfft(pressure)
+    spectrum[: round(8e3 * pressure.size / RATE)] = 0.0
+    return np.abs(np.fft.irfft(spectrum, pressure.size)).max()
+
+
+@pytest.mark.parametrize("block_seconds", [0.11, 0.3])
+@pytest.mark.parametrize(
+    ("rig", "shaft", "support"),
+    [
+        (THESIS, 1.0, 3745.0),
+        (THESIS, Oscillation(0.26, 5.0), 2214.0),
+        (THESIS, SpeedRamp(0.0, 8.0, 0.6), 2214.0),
+        (MEMORY, 2.5, 2214.0),
+        (MEMORY, 1.0, FIXED),
+        (replace(THESIS, effects=(LawSpec("static_ageing"), LawSpec("shaft_compliance"))), -2.0,
+         2214.0),
+    ],
+)  # fmt: skip
+def test_recordings_joined_are_one_recording(rig, shaft, support, block_seconds):
+    how = {"support_stiffness": support, "seconds": 0.7, "acquisition": QUIET}
+    one = simulate(rig, shaft, **how).recording
+    run = simulate_blocks(rig, shaft, block_seconds=block_seconds, **how)
+    samples = joined(run)
+    assert (run.channels, run.condition, run.rate) == (one.channels, one.condition, one.rate)
+    assert samples.shape == one.samples.shape == (4, run.n_samples)
+    # Ten samples at the ends differ by the filter's edges; a slip there is counted later or not.
+    inner = slice(12, -600)
+    for row, expected in zip(samples, one.samples, strict=True):
+        assert np.abs(row - expected)[inner].max() < 1e-9 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize(
+    "of", [setting(MEMORY), setting(MEMORY, 10.0, 3745.0), setting(THESIS, -1.0, math.inf)]
+)
+def test_a_rig_that_may_be_changed_but_is_not_gives_that_recording_too(of):
+    run = BlockEngine(of)
+    blocks = [run.block().samples for _ in range(30)]
+    whole = simulate_blocks(
+        of.rig, of.shaft, support_stiffness=of.support_stiffness, seconds=0.5,
+        acquisition=Acquisition(RATE),
+    )  # fmt: skip
+    for row, channel in zip(joined(whole), whole.channels, strict=True):
+        live = np.concatenate([block[channel.name] for block in blocks])[: row.size]
+        np.testing.assert_allclose(live, row, atol=1e-6 * np.abs(row).max())
+
+
+def test_noise_does_not_depend_on_the_blocks():
+    noisy = [joined(simulate_blocks(THESIS, 2.0, seconds=0.4, block_seconds=b)) for b in (0.1, 1.0)]
+    assert np.abs(noisy[0] - noisy[1]).max(axis=1) == pytest.approx(0.0, abs=1e-8)
+    quiet = joined(simulate_blocks(THESIS, 2.0, seconds=0.4, acquisition=QUIET))
+    spread = np.std(noisy[0] - quiet, axis=1)
+    assert spread == pytest.approx([0.005, 0.02, 0.8e-3, 1e-4], rel=0.05)
+
+
+def test_effects_of_drive_and_sensors_act_alike_whatever_the_blocks():
+    specs = LawSpec("speed_fluctuation", {"frequency": 20.0}), LawSpec("mains_hum", {})
+    rig, quiet = replace(PDMS, effects=specs), {"seconds": 0.5, "acquisition": QUIET}
+    short, long = (
+        joined(simulate_blocks(rig, 5.0, block_seconds=block, **quiet)) for block in (0.04, 0.5)
+    )
+    np.testing.assert_allclose(short, long, rtol=1e-6, atol=1e-7)
+    plain = joined(simulate_blocks(replace(rig, effects=()), 5.0, **quiet))
+    swing = short[3] - plain[3]  # of the angle: amplitude 0.02 * 5 rad/s over 2 pi 20 Hz
+    assert np.ptp(swing) == pytest.approx(2 * 0.1 / (2 * np.pi * 20.0), rel=1e-2)
+    assert np.std(short[1] - plain[1]) > 0.4  # the hum on the acceleration
+
+
+def test_effects_that_need_the_whole_run_are_refused_by_name():
+    clipped = replace(THESIS, effects=(LawSpec("clipping", {}),))
+    with pytest.raises(ParameterError, match="clipping: acts on a run as a whole"):
+        simulate_blocks(clipped, 2.0, seconds=0.4)
+
+
+@pytest.mark.parametrize("block", [7, 100, 1000])
+def test_convolution_in_blocks_is_convolution(block):
+    rng = np.random.default_rng(0)
+    signals = rng.standard_normal((2, 1000))
+    responses = [[rng.standard_normal(n) for n in lengths] for lengths in ((1, 300), (250, 4))]
+    stream = Convolution(responses, block, 300)
+    filled = np.pad(signals, ((0, 0), (0, -1000 % block)))
+    parts = [stream(filled[:, i : i + block]) for i in range(0, 1000, block)]
+    got = np.hstack(parts)[:, :1000]
+    for row, own in zip(got, responses, strict=True):
+        expected = sum(convolve(signal, one) for signal, one in zip(signals, own, strict=True))
+        assert row == pytest.approx(expected, abs=1e-10)
+
+
+@pytest.mark.parametrize("factor", [1, 2, 3, 8])
+@pytest.mark.parametrize("block", [7, 6000])
+def test_decimation_in_blocks_is_that_of_the_whole_signal(factor, block):
+    signal = np.random.default_rng(0).standard_normal(6000).cumsum()
+    stream = Decimation(factor, skip=600)
+    got = np.concatenate([stream(signal[i : i + block]) for i in range(0, 6000, block)])
+    expected = resample_poly(signal, 1, factor, padtype="line") if factor > 1 else signal
+    expected = expected[600 // factor :]
+    assert got.size > expected.size - 15
+    assert got == pytest.approx(expected[: got.size], abs=1e-10)
+
+
+def test_a_long_run_is_written_as_any_recording(tmp_path):
+    path = write_run(tmp_path / "deep" / "run07", simulate_blocks(MEMORY, 5.0, seconds=0.3))
+    back = read_recording(path)
+    assert path == tmp_path / "deep" / "run07.wav"
+    direct = joined(simulate_blocks(MEMORY, 5.0, seconds=0.3))
+    assert np.array_equal(back.samples, direct.astype(np.float32))
+    assert back.condition.speed == 5.0
+
+
+def test_a_run_that_fails_on_its_way_leaves_no_file(tmp_path):
+    def failing():
+        yield np.zeros((1, 100))
+        raise ParameterError("the motion grows without bound")
+
+    how = {"rate": 30e3, "channels": (Channel("torque"),), "condition": Condition()}
+    for blocks, wrong in (
+        (failing(), "without bound"),
+        (iter([np.zeros((1, 100))]), "100 samples arrived, expected 200"),
+        (iter([np.full((1, 200), np.nan)]), "'torque' holds samples that are not finite"),
+    ):
+        with pytest.raises(ParameterError, match=wrong):
+            write_blocks(tmp_path / "run", blocks, n_samples=200, **how)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the process's peak from /proc")
+def test_memory_stays_below_300_MB_and_does_not_grow(tmp_path):  # noqa: N802
+    code = f"""
+from pathlib import Path
+from models.rig_file import load_material_rig
+from noise.long_run import write_run
+from sim.blocks import simulate_blocks
+for seconds in (20.0, 90.0):
+    write_run({str(tmp_path / "run")!r}, simulate_blocks(load_material_rig("fluorocarbon"), 2.5,
+              seconds=seconds))
+    print(int(Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0]) / 1024)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    short, long = map(float, done.stdout.split())
+    assert long < 300.0
+    assert long < short + 10.0
+
+
+def test_a_change_ends_where_a_run_begins_that_was_never_changed():
+    """Steady sliding forgets how it came about."""
+    of = setting()
+    run = BlockEngine(of)
+    other = replace(of, rig=of.rig.changed(kinetic_torque="x0.8"), shaft=ConstantSpeed(3.0))
+    sound(run, 40, other)
+    torque = run.block().samples["torque"]
+    fresh = BlockEngine(other).block().samples["torque"]
+    assert torque.mean() == pytest.approx(fresh.mean(), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"shaft": ConstantSpeed(9.0)},
+        {"shaft": Oscillation(0.2, 2.0)},
+        {"interference": 0.2e-3},
+        {"support_stiffness": 3745.0},
+        {"support_stiffness": math.inf},
+        {"temperature": 60.0},
+        {"rig": PDMS.changed(damping="x3", elastomer_stiffness="x0.6")},
+        {"rig": PDMS.changed(kinetic_torque="x0.5", critical_torque="x0.5")},
+    ],
+)
+def test_no_change_clicks(change):
+    run = BlockEngine(setting())
+    before = sound(run, 10)
+    assert highest(sound(run, 10, replace(setting(), **change))) <= max(
+        1.3 * highest(before), INAUDIBLE
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "after"),
+    [
+        ("mains_hum", {"pressure_level": 60.0}, {"pressure_level": 90.0}),
+        ("mains_hum", {"form": "sine"}, {"form": "harmonics"}),
+        ("speed_fluctuation", {"depth": 0.01}, {"depth": 0.2}),
+        ("speed_fluctuation", {"form": "sine"}, {"form": "random"}),
+    ],
+)
+def test_no_change_of_drive_or_sensors_clicks(name, before, after):
+    run = BlockEngine(setting())
+    changes = [setting(effect=name, **before), setting(effect=name, **after), setting()]
+    sounds = [sound(run, 11), *(sound(run, 10, change) for change in changes)]
+    between = np.hanning(sounds[1].size)  # or a sound that ends louder than it began would click
+    loudest = highest(between * sound(BlockEngine(changes[1]), 11))
+    assert max(highest(between * one) for one in sounds[1:]) <= max(1.3 * loudest, INAUDIBLE)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_one_law_takes_over_from_another(law):
+    of = setting(MEMORY, 3.0)
+    run = BlockEngine(of)
+    other = replace(of, rig=replace(of.rig, friction=LawSpec(law)))
+    sounds = np.concatenate([sound(run, 5), sound(run, 15, other), sound(run, 15, of)])
+    assert np.isfinite(sounds).all()
+    assert np.std(sounds[-4800:]) == pytest.approx(np.std(sound(BlockEngine(of), 5)), rel=0.6)
+
+
+def test_effects_come_and_go_and_those_of_whole_runs_are_left_out():
+    of = setting(MEMORY, 3.0)
+    run = BlockEngine(of)
+    for name in EFFECTS:
+        effects = (*(one for one in of.rig.effects if one.name != name), LawSpec(name))
+        assert np.isfinite(
+            sound(run, 1, replace(of, rig=replace(of.rig, effects=effects)), of)
+        ).all()
+
+
+@pytest.mark.parametrize("form", EFFECTS["speed_fluctuation"].forms)
+def test_a_shaft_fluctuates_block_by_block_as_it_does_over_the_whole(form):
+    active = EFFECTS["speed_fluctuation"].active({"form": form, "frequency": 7.0})
+    even, memory = np.linspace(1.0, 6.0, 2000), {"rng": np.random.default_rng(3)}
+    whole = active.driven(even, 1e3, {"rng": np.random.default_rng(3)})
+    pieces = [active.driven(piece, 1e3, memory) for piece in np.split(even, [500, 501, 1200])]
+    if form == "random":  # of other numbers, but without a jump
+        assert np.abs(np.diff(np.concatenate(pieces) / even)).max() < 0.02
+    else:
+        np.testing.assert_allclose(np.concatenate(pieces), whole, rtol=1e-12)
+
+
+@pytest.mark.parametrize("form", EFFECTS["background_noise"].forms)
+def test_the_background_is_that_of_a_recording_and_has_no_seams(form):
+    of = setting(effect="background_noise", form=form, pressure_level=70.0)
+    live = sound(BlockEngine(of, kinds=("pressure",)), 300)
+    recorded = simulate(of.rig, of.shaft, seconds=6.0, acquisition=Acquisition(RATE)).recording
+    in_blocks, whole = (sound_levels(one, RATE) for one in (live, recorded["pressure"]))
+    assert in_blocks.level_a == pytest.approx(whole.level_a, abs=0.5)
+    bands = [band for band in in_blocks.third_octaves if 200.0 <= float(band) <= 16e3]
+    for band in bands:
+        assert in_blocks.third_octaves[band] == pytest.approx(whole.third_octaves[band], abs=1.0)
+
+
+def test_the_hum_is_one_line_whatever_the_blocks():
+    of = setting(effect="mains_hum", form="sine", frequency=55.0, pressure_level=80.0)
+    hum = sound(BlockEngine(of, kinds=("pressure",)), 220)[-4 * int(RATE) :]
+    lines = np.abs(np.fft.rfft(hum)) / hum.size * 2**0.5
+    assert 20.0 * np.log10(lines[220] / 2e-5) == pytest.approx(80.0, abs=0.05)
+    assert np.delete(lines, 220).max() < 1e-3 * lines[220]
+
+
+def test_a_run_up_begins_its_clock_anew():
+    run = BlockEngine(setting(MEMORY, 1.0))
+    run.block(setting(MEMORY, SpeedRamp(0.0, 10.0, 1.0)))
+    for _ in range(48):
+        last = run.block()
+    assert last.speed == pytest.approx(9.8, abs=0.3)
+
+
+def test_a_setting_that_cannot_be_leaves_the_run_as_it_was():
+    of = setting(MEMORY)
+    run, untouched = BlockEngine(of), BlockEngine(of)
+    sound(run, 3), sound(untouched, 3)
+    for wrong in ({"interference": 0.5}, {"support_stiffness": -1.0}):
+        with pytest.raises(ParameterError):
+            run.block(replace(of, **wrong))
+    np.testing.assert_array_equal(sound(run, 3), sound(untouched, 3))
