@@ -306,9 +306,9 @@ class BlockEngine:
         self._seen = round(back * self._rate)
         self._paths = paths or self._known_paths
         self._known: tuple[tuple[object, ...], ImpulseResponses] | None = None
-        self._responses = self._paths(setting) or self._known_paths(setting)
+        self.responses = self._paths(setting) or self._known_paths(setting)
         self._convolution = Convolution(
-            self._impulse_responses(self._responses), self._block,
+            self._impulse_responses(self.responses), self._block,
             round(_LONGEST_RESPONSE * self._rate),
         )  # fmt: skip
         sensors = self._acquisition.sensors
@@ -363,8 +363,8 @@ class BlockEngine:
         if self._watch is not None:
             self._watch.see(part.since(max(0, first)))
         responses = self._paths(self._setting)
-        if responses is not None and responses is not self._responses:
-            self._responses = responses
+        if responses is not None and responses is not self.responses:
+            self.responses = responses
             self._convolution.exchange(self._impulse_responses(responses))
         sound = self._convolution([part.torque - self._first_torque, self._force(start)])
         signals = {"torque": part.torque, "angle": part.shaft_angle}

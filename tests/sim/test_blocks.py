@@ -10,15 +10,15 @@ import pytest
 from scipy.signal import resample_poly
 
 from features.kernels.levels import sound_levels
-from models.condition import FIXED, Condition
+from models.condition import FIXED
 from models.errors import ParameterError
-from models.recording import Channel
+from models.recording import Channel, Recording
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from models.transfer_functions.filtering import convolve
 from noise.long_run import write_run
 from noise.recordings import read_recording
-from noise.recordings.writing import write_blocks
+from noise.recordings.wav import write_blocks
 from sim.acquisition import Acquisition
 from sim.blocks import BlockEngine, Setting, simulate_blocks
 from sim.effects import EFFECTS
@@ -165,14 +165,14 @@ def test_a_run_that_fails_on_its_way_leaves_no_file(tmp_path):
         yield np.zeros((1, 100))
         raise ParameterError("the motion grows without bound")
 
-    how = {"rate": 30e3, "channels": (Channel("torque"),), "condition": Condition()}
+    about = Recording(np.zeros((1, 0)), 30e3, (Channel("torque"),))
     for blocks, wrong in (
         (failing(), "without bound"),
         (iter([np.zeros((1, 100))]), "100 samples arrived, expected 200"),
         (iter([np.full((1, 200), np.nan)]), "'torque' holds samples that are not finite"),
     ):
         with pytest.raises(ParameterError, match=wrong):
-            write_blocks(tmp_path / "run", blocks, n_samples=200, **how)
+            write_blocks(tmp_path / "run", blocks, 200, about)
     assert list(tmp_path.iterdir()) == []
 
 

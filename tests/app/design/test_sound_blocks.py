@@ -91,7 +91,7 @@ def test_another_support_is_heard_once_its_response_is_known(player):
     run = player._runs[1].live
     heard(player, [None, None], first=i)
     np.testing.assert_array_equal(
-        run._found.torque_to_pressure, player.beside.newest[1].torque_to_pressure
+        run.responses.torque_to_pressure, player.beside.newest[1].torque_to_pressure
     )
 
 
