@@ -47,6 +47,10 @@ from .modal.modal_fit import (
 from .modal.modes import (
     Modes as Modes,
 )
+from .recording import (
+    feature_vector as feature_vector,
+    recording_features as recording_features,
+)
 from .sound_quality import (
     SoundQuality as SoundQuality,
     sound_quality_of as sound_quality_of,
@@ -55,10 +59,8 @@ from .table import (
     FEATURES as FEATURES,
     Feature as Feature,
     feature_names as feature_names,
-    feature_vector as feature_vector,
     features_of as features_of,
     recording_feature_names as recording_feature_names,
-    recording_features as recording_features,
 )
 from .transformer import (
     RecordingFeatures as RecordingFeatures,

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,12 +38,18 @@ from features.kernels.levels import (
     relative_db,
 )
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
-from features.kernels.slips import Pulses, TorqueSlips, torque_slips
+from features.kernels.modulation import Modulation, ShortTime, modulation, short_time
+from features.kernels.slips import (
+    Pulses,
+    TorqueSlips,
+    envelope_kurtosis,
+    pulse_band_from,
+    pulses_of,
+    squared,
+    torque_slips,
+)
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from features.kernels.modulation import Modulation, ShortTime
 
 ACOUSTIC_KINDS = ("pressure", "acceleration")
 """Kinds of channel that are described as noise."""
@@ -185,8 +191,6 @@ class Prepared:
     @cached_property
     def short_time(self) -> ShortTime:
         """Tones and levels of its short segments, and how they change from one to the next."""
-        from features.kernels.modulation import short_time
-
         x, rate = self.in_band
         return short_time(x, rate, low=self.low, high=self.limit)
 
@@ -198,8 +202,6 @@ class Prepared:
     @cached_property
     def pulses(self) -> Pulses:
         """Pulses and their rhythm."""
-        from features.kernels.slips import pulse_band_from, pulses_of
-
         high, rate = band_analytic(self.transform, pulse_band_from(self.limit), self.limit)
         start = self.transform.lead / self.rate
         return pulses_of(self.analytic[0], high, rate, start=start)
@@ -207,9 +209,6 @@ class Prepared:
     @cached_property
     def modulation(self) -> Modulation:
         """Modulation of the envelope."""
-        from features.kernels.modulation import modulation
-        from features.kernels.slips import squared
-
         analytic, rate = self.analytic
         return modulation(np.sqrt(squared(analytic)), rate)
 
@@ -278,8 +277,6 @@ class Prepared:
     def _top_band(self, low: float, high: float) -> TopBand:
         if high > usable_limit(self.rate):
             return TopBand(math.nan, math.nan)
-        from features.kernels.slips import envelope_kurtosis, squared
-
         top, _ = band_analytic(self.transform, low, high)
         power = squared(top)
         level = relative_db(0.5 * float(power.mean()), self.in_band_power)

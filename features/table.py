@@ -6,21 +6,17 @@ several discrete frequencies, squeal one that predominates, and a creak is impul
 the part from 150 Hz to 7 kHz, of a torque to its oscillation about the mean from 5 Hz to 7 kHz, so
 that neither the gain nor a drifting offset matters. A band is missing where the rate does not
 reach it, or where the signal is too short for four bins in it.
-
-A recording of 2^21 samples or more (44 s at 48 kHz) is described in equal pieces of at most 2^19,
-each by the same functions, and its features are those of the pieces put together.
 """
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Callable, Collection
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from features.kernels.conditioning import usable_limit
 from features.kernels.levels import (
@@ -30,19 +26,12 @@ from features.kernels.levels import (
     band_power,
     relative_db,
 )
-from features.prepared import ACOUSTIC_KINDS, Prepared, prepare
-from models.blocks import Read, RecordingBlocks, n_samples_of, reader_of
+from features.prepared import ACOUSTIC_KINDS, Prepared
 from models.errors import ParameterError
-from models.recording import Recording
-from models.rig import Rig
 from models.show import short_repr
 
 KINDS = (*ACOUSTIC_KINDS, "torque")
 """Kinds of channel that have features."""
-
-LONG, PIECE = 1 << 21, 1 << 19
-"""Samples of a channel from which on it is described in pieces, and the most in a piece: 44 s and
-11 s at 48 kHz."""
 
 THESIS_STICK_SLIP = "thesis, 5.1.1"
 THESIS_SPECTRA = "thesis, 5.2.1"
@@ -68,7 +57,7 @@ def _over_time(values: NDArray[np.float64], power: NDArray[np.float64]) -> float
     return float(values.mean())
 
 
-def _levels(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:  # noqa: ARG001
+def pooled_levels(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:  # noqa: ARG001
     """Level of the mean power, of levels; a piece without any counts as silent."""
     return 10.0 * math.log10(float(np.mean(np.nan_to_num(10.0 ** (0.1 * values)))))
 
@@ -185,7 +174,7 @@ BAND_FEATURES = (
         Feature(f"third_octave_{name}", "dB",
                 f"Level in the one-third octave at {name} Hz, re 20 uPa or 1 um/s2.",
                 "IEC 61260-1:2014", partial(_third_octave, name), silent=None, calibrated=True,
-                tolerance=_TENTH_DB, pooled=_levels)
+                tolerance=_TENTH_DB, pooled=pooled_levels)
         for name in NOMINAL_THIRD_OCTAVES
     ),
 )  # fmt: skip
@@ -256,7 +245,7 @@ SPECTRAL_FEATURES = (
             "ISO 1683", _level, silent=None, calibrated=True, tolerance=_TENTH_DB, pooled=None),
     Feature("level_a", "dB", "A-weighted level of the whole signal, re 20 uPa.",
             "IEC 61672-1:2013", _level_a, silent=None, calibrated=True, kinds=("pressure",),
-            tolerance=_TENTH_DB, pooled=_levels),
+            tolerance=_TENTH_DB, pooled=pooled_levels),
     Feature("hum_share", "1", "Share of the power below 7 kHz that lies below 150 Hz.",
             THIS, _hum, silent=None, tolerance=(0.0, 0.02), pooled=_hum_share),
     Feature("centroid", "Hz", "Mean frequency, weighted by power.",
@@ -447,53 +436,6 @@ def feature_names(kind: str) -> tuple[str, ...]:
     return tuple(feature.name for feature in features_of(kind))
 
 
-def feature_vector(
-    signal: ArrayLike,
-    rate: float,
-    kind: str,
-    *,
-    calibrated: bool = True,
-    stick_rate: float = math.nan,
-) -> dict[str, float]:
-    """All features of one channel.
-
-    Parameters
-    ----------
-    signal : array_like, shape (n_samples,)
-        In the channel's unit or, not calibrated, in fractions of full scale. 20 ms and more; what
-        needs longer to be told is NaN.
-    rate : float
-        Sampling rate [Hz]. Values of acoustic features do not depend on it from 16 kHz on, but
-        those of the top bands are NaN where it does not reach them.
-    kind : {"pressure", "acceleration", "torque"}
-    calibrated : bool
-        Whether the samples are in physical units; levels are NaN otherwise.
-    stick_rate : float
-        How fast a torque rises in true stick [N m/s], if known: k_EFF times the shaft's speed.
-
-    Returns
-    -------
-    dict of str to float
-        By name, as `feature_names` has them. NaN where a feature is undefined.
-
-    Raises
-    ------
-    ParameterError
-        A signal that can't be analysed, or a kind without features.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> t = np.arange(48000) / 48e3
-    >>> squeal = feature_vector(np.sin(2 * np.pi * 1046 * t), 48e3, "pressure")
-    >>> round(squeal["line_frequency"]), round(squeal["line_share"], 2), squeal["line_count"]
-    (1046, 1.0, 1.0)
-    """
-    features = features_of(kind)
-    prepared = prepare(signal, rate, kind, calibrated=calibrated, stick_rate=stick_rate)
-    return {feature.name: feature(prepared) for feature in features}
-
-
 def recording_feature_names() -> tuple[str, ...]:
     """Names in the order of `recording_features`.
 
@@ -507,129 +449,3 @@ def recording_feature_names() -> tuple[str, ...]:
     'pressure_level'
     """
     return tuple(f"{kind}_{name}" for kind in KINDS for name in feature_names(kind))
-
-
-def piece_count(n_samples: int) -> int:
-    """Pieces in which a channel of so many samples is described.
-
-    Examples
-    --------
-    >>> piece_count(48_000), piece_count(2**21)
-    (1, 4)
-    """
-    return -(-n_samples // PIECE) if n_samples >= LONG else 1
-
-
-def recording_features(
-    recording: Recording | RecordingBlocks,
-    *,
-    rig: Rig | None = None,
-    names: Collection[str] | None = None,
-) -> dict[str, float]:
-    """Features of the first channel of each kind in a recording.
-
-    Parameters
-    ----------
-    recording : Recording or RecordingBlocks
-        In memory, or one of which parts can be had, as `noise.recordings` opens. From
-        2^21 samples on it is described in pieces.
-    rig : Rig, optional
-        What the stiffness of the bushing is taken from; without it, the shipped rig with the
-        material that the recording names.
-    names : collection of str, optional
-        Those to compute, which saves the time of the others; all by default.
-
-    Returns
-    -------
-    dict of str to float
-        By name with the kind as prefix, as `recording_feature_names` has them. NaN for kinds that
-        the recording does not have.
-
-    Raises
-    ------
-    ParameterError
-        A channel that can't be analysed; the message names it.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from models.recording import Channel, Recording
-    >>> hiss = np.random.default_rng(1).normal(size=(1, 4800))
-    >>> found = recording_features(Recording(hiss, 48e3, (Channel("pressure"),)))
-    >>> found["pressure_line_count"], found["torque_slip_rate"]
-    (0.0, nan)
-    """
-    from features.kernels.slips import stick_rate_of
-
-    found: dict[str, float] = {}
-    for kind in KINDS:
-        wanted = {f"{kind}_{feature.name}": feature for feature in features_of(kind)}
-        if names is not None:
-            wanted = {name: feature for name, feature in wanted.items() if name in names}
-        row = recording.first(kind)
-        if row is None or not wanted:
-            found |= dict.fromkeys(wanted, math.nan)
-            continue
-        try:
-            stick_rate = stick_rate_of(recording, rig) if kind == "torque" else math.nan
-            values = _in_pieces(
-                reader_of(recording, row), n_samples_of(recording), [*wanted.values()],
-                rate=recording.rate, kind=kind, calibrated=recording.calibrated,
-                stick_rate=stick_rate,
-            )  # fmt: skip
-            found |= zip(wanted, values, strict=True)
-        except ParameterError as error:
-            channel = recording.channels[row].name
-            raise ParameterError(
-                f"recording {recording.name!r}, channel {channel!r}: {error}"
-            ) from error
-    return found
-
-
-def _in_pieces(
-    read: Read,
-    n_samples: int,
-    features: list[Feature],
-    *,
-    rate: float,
-    kind: str,
-    calibrated: bool,
-    stick_rate: float,
-) -> list[float]:
-    """Features of a channel, of a long one put together from those of its pieces."""
-    edges = np.linspace(0, n_samples, piece_count(n_samples) + 1).astype(int).tolist()
-    values, power, moments = [], [], []
-    for first, last in itertools.pairwise(edges):
-        x = read(first, last)
-        p = prepare(x, rate, kind, calibrated=calibrated, stick_rate=stick_rate, first=first)
-        values.append([feature(p) for feature in features])
-        power.append(0.0 if p.silent else p.rms**2 * p.in_band_power)
-        moments.append((p.mean, p.rms))
-    if len(values) == 1:
-        return values[0]
-    mean, rms = np.array(moments).T
-    whole = replace(
-        p, samples=np.empty(0), mean=float(mean.mean()),
-        rms=math.sqrt(float(np.mean(rms**2) + np.var(mean))),
-    )  # fmt: skip
-    weights = np.array(power) if any(power) else np.ones(len(power))
-    return [
-        feature(whole) if feature.pooled is None else _together(feature.pooled, column, weights)
-        for feature, column in zip(features, np.array(values).T, strict=True)
-    ]
-
-
-def _together(
-    pooled: Callable[[NDArray[np.float64], NDArray[np.float64]], float],
-    values: NDArray[np.float64],
-    power: NDArray[np.float64],
-) -> float:
-    """One value of those of all pieces; where a piece has none, it does not count."""
-    known = ~np.isnan(values)
-    if not known.any():
-        return math.nan
-    if pooled is _levels:
-        known[:] = True
-    elif power[known].any():
-        return pooled(values[known], power[known])
-    return pooled(values[known], np.ones(int(known.sum())))

@@ -18,7 +18,8 @@ from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.utils.validation import _check_feature_names_in, validate_data
 
 from features.kernels.conditioning import MIN_SAMPLES
-from features.table import KINDS, feature_names, recording_features
+from features.recording import recording_features
+from features.table import KINDS, feature_names
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.table import recording_feature_names, recording_features
+from features.recording import recording_features
+from features.table import recording_feature_names
 from models.rig_file import load_material_rig
 from noise.audio.audio_file import write_audio
 from noise.audio.gain import QUIETEST_FULL_SCALE, common_full_scale

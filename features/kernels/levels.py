@@ -13,7 +13,7 @@ sampling rate, by several decibels where a creak is strong.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from scipy import fft
 
 from features.kernels.conditioning import checked_signal
 from features.kernels.spectra import Spectrum, welch
+from models.blocks import Read
 from models.compilation import COMPILED
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
@@ -427,11 +428,7 @@ class WeightedLevels:
 
 
 def weighted_levels(
-    read: Callable[[int, int], NDArray[np.float64]],
-    n: int,
-    rate: float,
-    *,
-    reference: float = REFERENCE_PRESSURE,
+    read: Read, n: int, rate: float, *, reference: float = REFERENCE_PRESSURE
 ) -> WeightedLevels:
     """A-weighted levels of a sound that need not be in memory as a whole.
 
@@ -502,7 +499,7 @@ def a_weighted_level(
     return weighted_levels(_reader(x), x.size, rate, reference=reference).level_a
 
 
-def _reader(x: NDArray[np.float64]) -> Callable[[int, int], NDArray[np.float64]]:
+def _reader(x: NDArray[np.float64]) -> Read:
     return lambda first, last: x[first:last]
 
 
@@ -572,7 +569,7 @@ def a_weighted(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
 
 
 def _weighted_pieces(
-    read: Callable[[int, int], NDArray[np.float64]], n: int, rate: float
+    read: Read, n: int, rate: float
 ) -> Iterator[tuple[NDArray[np.float32], float]]:
     """Yield the weighted sound piece by piece, each with the unit it is in."""
     margin = min(n - 1, round(_MARGIN * rate))
@@ -612,9 +609,7 @@ def _cut(x: NDArray[np.float64], hop: int, gain: float, out: NDArray[np.float32]
             out[row, i] = gain * (part[i] - mean)
 
 
-def _continued(
-    read: Callable[[int, int], NDArray[np.float64]], n: int, first: int, last: int, margin: int
-) -> NDArray[np.float64]:
+def _continued(read: Read, n: int, first: int, last: int, margin: int) -> NDArray[np.float64]:
     """Return samples `first` up to `last`, turned about the ends for `margin` beyond them."""
     x = read(max(first, 0), min(last, n))
     before, after = max(0, -first), max(0, last - n)
@@ -628,11 +623,7 @@ def _continued(
 
 
 def fast_level_pieces(
-    read: Callable[[int, int], NDArray[np.float64]],
-    n: int,
-    rate: float,
-    *,
-    reference: float = REFERENCE_PRESSURE,
+    read: Read, n: int, rate: float, *, reference: float = REFERENCE_PRESSURE
 ) -> Iterator[NDArray[np.float64]]:
     """A-weighted `fast_levels` of a sound that need not be in memory as a whole.
 

@@ -7,13 +7,13 @@ power; one in which the speed changes much, as where a swing turns, belongs to n
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from features.kernels.conditioning import checked_signal
+from models.blocks import Read
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 from models.show import short_repr
@@ -109,7 +109,7 @@ def order_map(
 
 
 def order_map_of(
-    read: Callable[[int, int], NDArray[np.float64]],
+    read: Read,
     n_samples: int,
     rate: float,
     speed: NDArray[np.float64],

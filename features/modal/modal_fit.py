@@ -188,11 +188,12 @@ def _lasting(by_order: list[list[tuple[float, float]]]) -> list[Pole]:
                 chains.append([(frequency, ratio)])
                 going.append(chains[-1])
         alive = going
-    return [
-        Pole(*np.median(chain[len(chain) // 2 :], axis=0).tolist(), len(chain))
-        for chain in chains
-        if len(chain) >= LASTING
-    ]
+    lasting = []
+    for chain in chains:
+        if len(chain) >= LASTING:
+            frequency, ratio = np.median(chain[len(chain) // 2 :], axis=0).tolist()
+            lasting.append(Pole(frequency, ratio, len(chain)))
+    return lasting
 
 
 def _merged(known: list[Pole], new: list[Pole]) -> list[Pole]:

@@ -14,7 +14,7 @@ import csv
 import warnings
 from dataclasses import replace
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -254,16 +254,18 @@ def write_transfer_function(path: Path, transfer: TransferFunction) -> None:
     f, coherence = transfer.frequencies, transfer.coherence
     ending = path.suffix.lower()
     if ending == ".npz":
-        units = {"input_unit": transfer.input_unit, "output_unit": transfer.output_unit}
-        arrays = {"frequency_hz": f, "response": transfer.response, "coherence": coherence, **units}
+        arrays: dict[str, Any] = {"frequency_hz": f, "response": transfer.response}
+        arrays |= {"input_unit": transfer.input_unit, "output_unit": transfer.output_unit}
+        arrays["coherence"] = coherence
         np.savez(path, **{key: array for key, array in arrays.items() if array is not None})
     elif ending == ".csv":
         with path.open("w", encoding="utf-8", newline="") as file:
             write_transfer_function_csv(file, transfer)
     else:
-        units = (transfer.output_unit, transfer.input_unit)
+        output, per = transfer.output_unit, transfer.input_unit
+        response = transfer.response
         functions = [
-            UffFunction(FREQUENCY_RESPONSE, f, transfer.response, *units, "frequency response")
+            UffFunction(FREQUENCY_RESPONSE, f, response, output, per, "frequency response")
         ]
         if coherence is not None:
             functions.append(UffFunction(COHERENCE, f, coherence, "", "", "coherence"))
@@ -310,13 +312,15 @@ def _read_npz(path: Path) -> TransferFunction:
         ):
             raise ParameterError(f"{path}: {key} has type {array.dtype}; it must be {words}")
     coherence = held.get("coherence")
-    units = (held[key].reshape(()).item() for key in ("input_unit", "output_unit"))
+    units = [held[key].reshape(()).item() for key in ("input_unit", "output_unit")]
+    input_unit, output_unit = (u.decode() if isinstance(u, bytes) else str(u) for u in units)
     return TransferFunction(
         held["frequency_hz"].astype(np.float64),
         held["response"].astype(np.complex128),
         None if coherence is None else coherence.astype(np.float64),
-        *(unit.decode("utf-8", "replace") if isinstance(unit, bytes) else unit for unit in units),
-        name=str(path),
+        input_unit,
+        output_unit,
+        str(path),
     )
 
 

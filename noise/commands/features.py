@@ -119,7 +119,7 @@ class Featuring:
                 return _windows(path, name, blocks, stack.pop_all()), blocks.calibrated
         with open_blocks(path, full_scale=self.full_scale) as blocks:
             from features import recording_features
-            from features.table import piece_count
+            from features.recording import piece_count
 
             if (pieces := piece_count(blocks.n_samples)) > 1:
                 length = blocks.n_samples / pieces / blocks.rate

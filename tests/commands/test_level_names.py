@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from features.table import recording_features
+from features.recording import recording_features
 from models.recording import Channel, Recording
 from noise.app.opened import open_paths
 from noise.app.sounds import SoundCache, bands, level_course

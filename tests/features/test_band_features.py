@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from features.kernels.levels import NOMINAL_THIRD_OCTAVES, sound_levels
-from features.table import feature_vector
+from features.recording import feature_vector
 
 RATE = 48e3
 OCTAVES = tuple(f"third_octave_{name}" for name in NOMINAL_THIRD_OCTAVES)

@@ -9,15 +9,8 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import features
-from features.table import (
-    FEATURES,
-    KINDS,
-    feature_names,
-    feature_vector,
-    features_of,
-    recording_feature_names,
-    recording_features,
-)
+from features.recording import feature_vector, recording_features
+from features.table import FEATURES, KINDS, feature_names, features_of, recording_feature_names
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 

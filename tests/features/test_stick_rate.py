@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from features.kernels.slips import stick_rate_of
-from features.table import recording_features
+from features.recording import recording_features, stick_rate_of
 from features.transformer import RecordingFeatures
 from models.condition import Condition
 from models.recording import Channel, Recording

@@ -24,7 +24,8 @@ import numpy as np
 from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
-from features.table import recording_feature_names, recording_features
+from features.recording import recording_features
+from features.table import recording_feature_names
 from noise.inference.inputs import KINDS, QUANTITIES, of_channels, scaled, segment_features
 from noise.inference.model import Inference
 from noise.training.inference.population import draw_audible_run
