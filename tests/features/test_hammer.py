@@ -9,7 +9,6 @@ from features.modal.hammer import (
     Hit,
     check_hit,
     estimate_transfer_function,
-    remaining_response,
     windowed_hits,
 )
 from models.errors import ParameterError, RecordingError
@@ -99,16 +98,6 @@ def test_swapped_channels_are_named_so(sign):
 def test_times_in_milliseconds_taken_for_seconds_are_noticed():
     with pytest.raises(RecordingError, match=r"the blow lasts .* s; times must be in s"):
         check_hit(Hit(pulse(), ringing(), RATE / 1e3))
-
-
-@pytest.mark.parametrize("decay", [2.0, 10.0, 40.0])
-def test_what_is_left_of_a_response_is_measured(decay):
-    rng, t = np.random.default_rng(0), (np.arange(2000) - 100) / RATE
-    response = np.where(t > 0, np.exp(-decay * t) * np.sin(4000 * t), 0.0)
-    noisy = response + 0.02 * rng.standard_normal(2000)
-    force = pulse(at=100)
-    left = np.exp(-decay * t[-1] * 0.95)
-    assert remaining_response([Hit(force, noisy, RATE)]) == pytest.approx(left, rel=0.05, abs=0.01)
 
 
 def test_the_exponential_window_moves_poles_by_its_rate_and_nothing_else():

@@ -1,7 +1,5 @@
 """Recordings that are described in pieces have the features that they have as a whole."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,6 @@ import features.recording
 from features.recording import piece_count, recording_features
 from features.table import features_of
 from models.condition import Condition
-from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.recordings import write_recording
 from noise.recordings.files import open_blocks
@@ -64,13 +61,6 @@ def test_a_loud_stretch_counts_by_its_power(monkeypatch):
     for name in ("level", "level_a", "third_octave_1250", "crest", "hum_share", "line_frequency"):
         assert found[f"pressure_{name}"] == pytest.approx(whole[f"pressure_{name}"], abs=0.3), name
     assert found["pressure_kurtosis"] == pytest.approx(whole["pressure_kurtosis"], rel=0.05)
-
-
-def test_a_sample_that_is_no_number_is_named():
-    x = np.zeros((1, 1 << 21))
-    x[0, 1_500_000] = math.inf
-    with pytest.raises(ParameterError, match="sample 1500000 is inf"):
-        recording_features(Recording(x, RATE, (Channel("pressure"),)))
 
 
 def test_a_long_file_has_the_features_of_the_recording_in_memory(tmp_path, monkeypatch):

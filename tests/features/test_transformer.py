@@ -1,14 +1,11 @@
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
-from features import RecordingFeatures, feature_names, feature_vector, recording_features
+from features import RecordingFeatures, feature_names, feature_vector
 from models.errors import ParameterError
-from models.recording import Channel, Recording
 
 RATE = 16_000.0
 T = np.arange(3200) / RATE
@@ -30,21 +27,6 @@ def test_a_row_is_the_feature_vector_of_the_waveform():
     np.testing.assert_array_equal(transformer.transform(X), expected)
     names = [f"acceleration_{name}" for name in feature_names("acceleration")]
     assert transformer.get_feature_names_out().tolist() == names
-
-
-def test_recordings_bring_their_own_rate_length_and_channels():
-    both = (Channel("torque"), Channel("pressure"))
-    runs = [
-        Recording(np.stack([hiss(1), hiss(2)]), RATE, both),
-        Recording(hiss(3, 4800)[np.newaxis], 48e3, both[1:], calibrated=False),
-    ]
-    transformer = RecordingFeatures(("pressure", "torque"))
-    table = transformer.fit_transform(runs)
-    for row, run in zip(table, runs, strict=True):
-        expected = recording_features(run)
-        for name, value in zip(transformer.get_feature_names_out(), row, strict=True):
-            assert value == expected[name] or (math.isnan(value) and math.isnan(expected[name]))
-    assert np.isnan(table[1, len(feature_names("pressure")) :]).all()
 
 
 @pytest.mark.parametrize(

@@ -43,18 +43,6 @@ def test_readings_outside_are_carried_on_by_a_twentieth_and_refused_beyond(table
         assert table.of(readings)[1] == pytest.approx(expected, abs=1e-9)
 
 
-@given(
-    sensitivity=st.floats(-1e3, 1e3).filter(lambda x: abs(x) > 1e-3),
-    offset=st.floats(-10.0, 10.0),
-    value=st.floats(-1e3, 1e3),
-)
-def test_a_line_reads_offset_and_sensitivity_times_the_value(sensitivity, offset, value):
-    line = Calibration.line(sensitivity, offset)
-    reading = np.array([offset + sensitivity * value])
-    assert line.of(reading) == pytest.approx([value], abs=1e-6)
-    assert line.in_units_of(1e-3).of(1e3 * reading) == pytest.approx([value], abs=1e-6)
-
-
 def loaded(tmp_path, text, **files):
     for name, content in files.items():
         (tmp_path / f"{name}.csv").write_text(content, encoding="utf-8")

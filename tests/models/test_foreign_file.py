@@ -53,13 +53,6 @@ def test_a_socket_a_device_and_a_folder_are_refused(tmp_path, monkeypatch):
         check_plain_file(tmp_path, where="rig file x")
 
 
-def test_a_link_counts_as_what_it_leads_to(tmp_path):
-    (tmp_path / "here.npz").symlink_to(tmp_path / "there.npz")
-    assert refusal(tmp_path / "here.npz") == "there is no such file"
-    (tmp_path / "loop.npz").symlink_to(tmp_path / "loop.npz")
-    assert refusal(tmp_path / "loop.npz").startswith("cannot be read (")
-
-
 def test_a_file_that_is_too_large_is_not_opened(tmp_path):
     path = tmp_path / "rig.toml"
     with path.open("wb") as file:

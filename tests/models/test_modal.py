@@ -20,7 +20,7 @@ def _decibels(ratio):
 
 
 @pytest.mark.parametrize("natural", [50.0, 1000.0, 8000.0, 16000.0])
-@pytest.mark.parametrize("damping", [0.002, 0.015, 0.1])
+@pytest.mark.parametrize("damping", [0.002, 0.015, 0.1, 1.0, 30.0])
 def test_sampled_mode_follows_the_continuous_one_up_to_a_sixth_of_the_rate(natural, damping):
     frequency = np.concatenate([np.geomspace(10, 16e3, 200), natural * np.linspace(0.9, 1.1, 21)])
     frequency = frequency[frequency <= 16e3]
@@ -32,7 +32,7 @@ def test_sampled_mode_follows_the_continuous_one_up_to_a_sixth_of_the_rate(natur
     ):
         b, a = section(natural, damping, RATE)
         sampled = freqz(b, a, omega / RATE)[1]
-        assert np.max(np.abs(_decibels(sampled / continuous))) < 0.2
+        assert np.max(np.abs(_decibels(sampled / continuous))) < (0.2 if damping < 1 else 0.5)
 
 
 def test_impulse_response_and_frequency_response_describe_the_same_structure():
@@ -53,19 +53,6 @@ def test_impulse_response_and_frequency_response_describe_the_same_structure():
     continuous = model.frequency_response(frequency[band])
     scale = np.abs(continuous).max(axis=-1, keepdims=True)
     assert np.max(np.abs(sampled - continuous) / scale) < 0.03
-
-
-@settings(max_examples=60)
-@given(natural=st.floats(20.0, 9e3), damping=st.floats(1.0, 1e3))
-def test_an_overdamped_mode_follows_the_continuous_one_up_to_a_sixth_of_the_rate(natural, damping):
-    omega, omega_r = 2 * np.pi * np.geomspace(10, 16e3, 100), 2 * np.pi * natural
-    q = 1 / (omega_r**2 - omega**2 + 2j * damping * omega_r * omega)
-    for section, continuous in (
-        (acceleration_section, -(omega**2) * q),
-        (displacement_section, q),
-    ):
-        sampled = freqz(*section(natural, damping, RATE), omega / RATE)[1]
-        assert np.max(np.abs(_decibels(sampled / continuous))) < 0.5
 
 
 @settings(max_examples=15)

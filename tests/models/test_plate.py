@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import dataclasses
+import itertools
 import math
 
 import numpy as np
@@ -7,8 +9,14 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from models.bench import Microphone, Plate
-from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
+from models.errors import ParameterError
+from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED, rayleigh_integral
+from models.radiation.sound_power import (
+    radiated_power,
+    third_octave_power,
+)
 from models.structure.plate import plate_modes, pressure_response
+from models.structure.plate_ritz import ritz_modes
 
 RATE = 96e3
 
@@ -62,3 +70,202 @@ def test_pressure_is_rayleighs_integral_over_the_plates_acceleration():
     found = np.exp(-2j * np.pi / RATE * np.outer(frequency, samples)) @ response
     assert np.abs(found / expected) == pytest.approx(1, abs=0.05)
     assert np.angle(found / expected) == pytest.approx(0, abs=0.05)
+
+
+CANTILEVER = ("clamped", "free", "free", "free")
+BENCH = Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (0.0, 0.12), edges="free")
+
+
+def _square(edges, count, spare_degrees=14):
+    """Frequency parameters omega a^2 sqrt(rho h / D) of a square plate, rigid motions left out."""
+    edges = (edges,) * 4 if isinstance(edges, str) else edges
+    parameters = (
+        2 * np.pi * ritz_modes((1.0, 1.0), edges, 0.3, 1.0, 12.0, spare_degrees).frequencies
+    )
+    return parameters[parameters > 0][:count]
+
+
+@pytest.mark.parametrize(
+    ("edges", "converged"),
+    [
+        ("clamped", [35.9852, 73.3938, 73.3938]),
+        ("free", [13.468, 19.596, 24.270, 34.801]),
+        (CANTILEVER, [3.4710, 8.5065, 21.2846]),
+    ],
+)
+def test_square_plates_have_the_converged_frequency_parameters(edges, converged):
+    assert _square(edges, len(converged)) == pytest.approx(converged, rel=1e-4)
+
+
+def test_trial_functions_find_the_closed_form_of_simply_supported_edges():
+    exact = plate_modes(dataclasses.replace(BENCH, edges="simply_supported"), 6e3).frequencies
+    stiffness = BENCH.stiffness_per_mass
+    found = ritz_modes((0.9, 0.6), ("simply_supported",) * 4, 0.3, stiffness, 6e3).frequencies
+    assert found == pytest.approx(exact, rel=1e-8)
+
+
+@given(
+    st.lists(st.sampled_from(["free", "simply_supported", "clamped"]), min_size=4, max_size=4),
+    st.integers(0, 3),
+    st.floats(0.4, 2.5),
+)
+@settings(max_examples=25)
+def test_holding_an_edge_more_lowers_no_frequency(edges, held, ratio):
+    def lowest(edges):
+        return ritz_modes((ratio, 1.0), tuple(edges), 0.3, 1.0, 8.0).frequencies
+
+    more = [*edges[:held], "clamped", *edges[held + 1 :]]
+    looser, tighter = lowest(edges), lowest(more)
+    assert tighter.size <= looser.size
+    assert np.all(tighter >= looser[: tighter.size] * (1 - 1e-6) - 1e-6)
+
+
+@pytest.mark.parametrize("edges", ["simply_supported", "clamped", "free", CANTILEVER])
+def test_modes_are_orthogonal_with_their_modal_mass(edges):
+    modes = plate_modes(dataclasses.replace(BENCH, edges=edges), 2e3)
+    nodes, weight = np.polynomial.legendre.leggauss(60)
+    shapes = modes.on_grid(0.45 * nodes, 0.3 * nodes, slice(None)).reshape(3600, -1)
+    area = (np.outer(weight, weight) * 0.45 * 0.3).reshape(-1, 1)
+    masses = shapes.T @ (area * shapes) * BENCH.mass_per_area
+    assert masses == pytest.approx(modes.mass * np.eye(len(masses)), abs=1e-7 * modes.mass)
+
+
+@pytest.mark.parametrize("direction", ["x", "y"])
+@pytest.mark.parametrize("edges", ["simply_supported", "free"])
+def test_slopes_are_the_derivatives_of_shapes(edges, direction):
+    modes = plate_modes(dataclasses.replace(BENCH, edges=edges), 3e3)
+    step = 1e-6
+    dx, dy = (step, 0.0) if direction == "x" else (0.0, step)
+    pair = (modes.shape(0.1 + dx, 0.05 + dy) - modes.shape(0.1 - dx, 0.05 - dy)) / (2 * step)
+    assert modes.slope(0.1, 0.05, direction) == pytest.approx(pair, abs=1e-5)
+
+
+def test_a_free_plate_moves_as_a_whole_as_heavy_as_it_is():
+    modes = plate_modes(BENCH, 16e3)
+    rigid = modes.frequencies == 5.0
+    assert np.count_nonzero(rigid) == 3
+    assert modes.frequencies[3] > 40
+    acceleration = np.sum(modes.shape(0.0, 0.0)[rigid] ** 2) / modes.mass  # of the middle, for 1 N
+    assert acceleration == pytest.approx(1 / (7850 * 8e-3 * 0.9 * 0.6), rel=1e-9)
+
+
+def test_loss_factors_by_frequency_are_powers_between_entries():
+    table = ((300.0, 0.1), (1e3, 0.03))
+    modes = plate_modes(dataclasses.replace(BENCH, edges="clamped", loss_factor=table), 2e3)
+    inside = (modes.frequencies > 300.0) & (modes.frequencies < 1e3)
+    assert np.count_nonzero(inside) > 5
+    assert modes.damping_ratios[inside] == pytest.approx(15 / modes.frequencies[inside], rel=1e-9)
+    assert modes.damping_ratios[[0, -1]] == pytest.approx([0.05, 0.015], rel=1e-9)
+
+
+STEEL = Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (0.0, 0.12))
+
+
+def _one(modes, m, n):
+    return int(
+        np.flatnonzero((modes.products.along == m - 1) & (modes.products.across == n - 1))[0]
+    )
+
+
+def radiation_efficiency(modes, frequencies, mode=0):
+    """Of a mode by itself: its power over that of a piston of equal mean square velocity."""
+    alone = np.eye(modes.frequencies.size)[mode] + 0j
+    piston = AIR_DENSITY * SOUND_SPEED * modes.plate.length * modes.plate.width / 4
+    return np.array([radiated_power(modes, alone, f) / piston for f in frequencies])
+
+
+def _wavenumber(frequency):
+    return 2 * np.pi * frequency / SOUND_SPEED
+
+
+@pytest.mark.parametrize("ratio", [0.01, 0.03, 0.1])
+def test_first_mode_radiates_as_wallaces_limit_at_low_wavenumbers(ratio):
+    # Wallace 1972, for odd m and n, with his term of second order
+    a, b = STEEL.length, STEEL.width
+    k = ratio * np.pi * np.hypot(1 / a, 1 / b)
+    modes = plate_modes(STEEL, 500.0)
+    found = radiation_efficiency(modes, [k * SOUND_SPEED / (2 * np.pi)], _one(modes, 1, 1))
+    second = k**2 * a * b / 12 * ((1 - 8 / np.pi**2) * (a / b + b / a))
+    assert found == pytest.approx(32 * k**2 * a * b / np.pi**5 * (1 - second), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "edges", ["simply_supported", "clamped", ("clamped", "free", "free", "free")]
+)
+@pytest.mark.parametrize("frequency", [150.0, 1100.0, 2500.0])
+def test_power_is_the_intensity_of_rayleighs_integral_over_a_far_hemisphere(edges, frequency):
+    modes = plate_modes(dataclasses.replace(STEEL, edges=edges), 1e3)
+    rng = np.random.default_rng(3)
+    velocity = rng.normal(size=modes.frequencies.size) + 1j * rng.normal(
+        size=modes.frequencies.size
+    )
+    x, y = (side * ((np.arange(n) + 0.5) / n - 0.5) for side, n in ((0.9, 90), (0.6, 60)))
+    field = modes.on_grid(x, y, slice(None)) @ velocity * 0.01**2
+    cosine, weight = np.polynomial.legendre.leggauss(40)
+    cosine, weight = (cosine + 1) / 2, weight / 2
+    angle = np.arange(96) * 2 * np.pi / 96
+    k = _wavenumber(frequency)
+    total = 0.0
+    for c, w in zip(cosine, weight, strict=True):
+        k_x, k_y = (k * np.sqrt(1 - c**2) * turn(angle) for turn in (np.cos, np.sin))
+        far = np.einsum(
+            "xa,xy,ya->a", np.exp(1j * np.outer(x, k_x)), field, np.exp(1j * np.outer(y, k_y))
+        )
+        pressure = AIR_DENSITY * 2 * np.pi * frequency / (2 * np.pi) * far  # times distance
+        total += w * 2 * np.pi * np.mean(np.abs(pressure) ** 2) / (AIR_DENSITY * SOUND_SPEED)
+    assert radiated_power(modes, velocity, frequency) == pytest.approx(total, rel=0.01)
+
+
+def test_spectra_of_drives_scale_and_combine():
+    modes = plate_modes(STEEL, 2e3)
+    drives = modes.shape([0.2, -0.2], [0.1, 0.1]).T
+    apart = third_octave_power(
+        modes, drives, lambda f: np.array([[3.0], [-3.0]]) * np.ones(f.size), low=200, high=500
+    )
+    couple = third_octave_power(modes, drives[:, :1] - drives[:, 1:], low=200, high=500)
+    assert apart.level == pytest.approx(couple.level + 20 * np.log10(3), abs=1e-9)
+
+
+def test_bands_beyond_the_modes_are_refused():
+    modes = plate_modes(STEEL, 1e3)
+    with pytest.raises(ParameterError, match="reach beyond the plate's modes"):
+        third_octave_power(modes, modes.shape([0.1], [0.1]).T, high=4e3)
+    with pytest.raises(ParameterError, match="low must not be above high"):
+        third_octave_power(modes, modes.shape([0.1], [0.1]).T, low=900.0, high=400.0)
+
+
+def _spectrum(integral, distribution, frequency):
+    taps = integral.taps(distribution)
+    n = integral.delay + np.arange(taps.size)
+    return np.exp(-2j * np.pi * np.outer(frequency, n) / RATE) @ taps
+
+
+def _disc(radius, n_rings=60):
+    edges = radius * np.linspace(0, 1, n_rings + 1)
+    x, area = [], []
+    for inner, outer in itertools.pairwise(edges):
+        # on the axis only the ring's radius counts: its root mean square, and its exact area
+        x.append(np.sqrt((inner**2 + outer**2) / 2))
+        area.append(np.pi * (outer**2 - inner**2))
+    return np.array(x), np.zeros(n_rings), np.array(area)
+
+
+@pytest.mark.parametrize("height", [0.1, 0.5, 2.0])
+def test_circular_piston_sounds_on_its_axis_as_its_closed_form(height):
+    radius = 0.05
+    frequency = np.geomspace(100, 15e3, 60)
+    integral = rayleigh_integral(*_disc(radius), (0.0, 0.0, height), RATE)
+    k = 2 * np.pi * frequency / SOUND_SPEED
+    path = np.hypot(radius, height)
+    # per unit velocity: rho c (e^-ikz - e^-ikr); an acceleration of 1 is a velocity of 1/(i omega)
+    exact = (
+        AIR_DENSITY
+        * SOUND_SPEED
+        * (np.exp(-1j * k * height) - np.exp(-1j * k * path))
+        / (2j * np.pi * frequency)
+    )
+    ratio = _spectrum(integral, np.ones(60), frequency) / exact
+    audible = np.abs(exact) > 0.05 * np.abs(exact).max()
+    assert np.count_nonzero(audible) > 30
+    assert np.max(np.abs(20 * np.log10(np.abs(ratio[audible])))) < 0.2
+    assert np.max(np.abs(np.angle(ratio[audible]))) < 0.05

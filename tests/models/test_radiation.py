@@ -9,7 +9,7 @@ import pytest
 from models.bench import Beams, Microphone, Plate
 from models.condition import FIXED
 from models.errors import ParameterError
-from models.radiation.impulse_responses import radiate
+from models.radiation.impulse_responses import ImpulseResponses, radiate
 from models.radiation.rig_response import impulse_responses
 from models.rig import Fit, LawSpec, Rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
@@ -82,3 +82,33 @@ def test_anchors_off_the_plate_are_refused():
     narrow = dataclasses.replace(BENCH, plate=dataclasses.replace(BENCH.plate, length=0.4))
     with pytest.raises(ParameterError, match="off the plate"):
         impulse_responses(narrow, SQUEAKY, 2214.0, RATE)
+
+
+random = np.random.default_rng(11)
+CHAIN = ImpulseResponses(48e3, *random.normal(size=(4, 300)))
+
+
+@pytest.mark.parametrize("torque", [0.0, 8.0, -30.0])
+def test_a_steady_torque_is_silent(torque):
+    acceleration, pressure = radiate(CHAIN, np.full(1000, torque))
+    assert not np.any(acceleration)
+    assert not np.any(pressure)
+
+
+def test_torque_and_pulses_add_up():
+    torque, pulse = np.random.default_rng(6).normal(size=(2, 700))
+    both = radiate(CHAIN, torque, pulse)
+    torque_alone = radiate(CHAIN, torque, np.zeros(700))
+    pulse_alone = radiate(CHAIN, np.zeros(700), pulse)
+    for together, first, second in zip(both, torque_alone, pulse_alone, strict=True):
+        assert np.any(first)
+        assert np.any(second)
+        assert together == pytest.approx(first + second, abs=1e-9)
+
+
+def test_what_is_kept_between_signals_of_any_length_changes_nothing():
+    for n in (700, 1, 40, 3000, 700):
+        torque = np.random.default_rng(n).normal(size=n)
+        _, pressure = radiate(CHAIN, torque)
+        expected = np.convolve(torque - torque[0], CHAIN.torque_to_pressure)[:n]
+        assert pressure == pytest.approx(expected, abs=1e-9)
