@@ -25,14 +25,22 @@ from typing import Any, NamedTuple
 from models.bushing import HARDNESS, Sleeve, shore_modulus
 from models.errors import ParameterError
 from models.rig import Fit, LawSpec, Rig
-from models.schema import declared, did_you_mean, number, refuse_impossible
+from models.schema import Quantity, declared, did_you_mean, number, refuse_impossible
 
-_SLEEVE = {name: declared(Sleeve)[name].key for name in ("wall", "length", "youngs_modulus")}
-_FIT = {name: entry.key for name, entry in declared(Fit).items() if name != "interference"}
-_RIG = {
-    name: declared(Rig)[name].key
-    for name in ("elastomer_inertia", "clamp_inertia", "elastomer_damping_share")
-}
+
+def _numbers(kind: type, without: Iterable[str]) -> dict[str, str]:
+    """Long names of the quantities of a class, but for some, by short ones."""
+    entries = declared(kind).items()
+    return {
+        name: entry.key
+        for name, entry in entries
+        if isinstance(getattr(entry, "value", entry), Quantity) and name not in without
+    }
+
+
+_SLEEVE = _numbers(Sleeve, ("inner_radius", "poisson_ratio"))
+_FIT = _numbers(Fit, ("interference",))
+_RIG = _numbers(Rig, ("fastest_fitted",))
 _LONG = _FIT | _RIG | _SLEEVE
 """Long names, with units, by short ones."""
 

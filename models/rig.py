@@ -8,7 +8,7 @@ thesis's rig, and bushings from a wiper's to a lorry's spring eye.
 import itertools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Annotated, Any
 
 from models.bench import Beams, Microphone, Plate
@@ -427,9 +427,10 @@ def _between(left: Fit, right: Fit, t: float) -> Fit:
 
     supports = sorted({*left.damping, *right.damping})
     return Fit(
-        interference=mix(left.interference, right.interference),
-        elastomer_stiffness=mix(left.elastomer_stiffness, right.elastomer_stiffness),
-        critical_torque=mix(left.critical_torque, right.critical_torque),
-        kinetic_torque=mix(left.kinetic_torque, right.kinetic_torque),
         damping={k: mix(damping_at(left, k), damping_at(right, k)) for k in supports},
+        **{
+            each.name: mix(getattr(left, each.name), getattr(right, each.name))
+            for each in fields(Fit)
+            if each.name != "damping"
+        },
     )
