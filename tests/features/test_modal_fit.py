@@ -50,12 +50,6 @@ def test_several_responses_share_their_poles_and_have_residues_each():
     np.testing.assert_allclose(peak, expected, rtol=0.2, atol=0.05 * expected.max())
 
 
-def test_noise_alone_has_no_modes_that_last():
-    rng = np.random.default_rng(5)
-    noise = rng.standard_normal(1000) + 1j * rng.standard_normal(1000)
-    assert fit_modes(np.arange(1.0, 1001.0), noise, low=50, high=900).frequency.size <= 3
-
-
 def test_a_band_of_few_lines_is_refused():
     with pytest.raises(ParameterError, match=r"lines lie between 100 and 110 Hz"):
         fit_modes(LINES, measured(0.0), low=100, high=110)

@@ -55,18 +55,6 @@ def test_each_slip_of_a_creak_is_one_pulse(rate, slips_a_second):
     assert found.rate == pytest.approx(slips.size / 0.96, rel=1e-3)
 
 
-def test_noise_and_tones_are_not_impulsive():
-    hiss = acoustic_slips(noise(48_000), 48e3)
-    assert hiss.kurtosis == pytest.approx(3.0, abs=0.2)
-    assert hiss.high_kurtosis == pytest.approx(3.0, abs=0.2)
-    assert hiss.rate < 30
-    assert hiss.concentration < 0.2
-    tone = acoustic_slips(np.sin(2 * np.pi * 3000 * np.arange(48_000) / 48e3), 48e3)
-    assert tone.kurtosis == pytest.approx(1.5, abs=0.01)
-    assert tone.crest_factor == pytest.approx(math.sqrt(2), rel=0.01)
-    assert tone.rate == 0.0
-
-
 @settings(max_examples=60)
 @given(
     frequency=st.floats(20.0, 200.0),
@@ -88,13 +76,6 @@ def test_stick_slip_is_described_by_its_rate_drop_and_slope(frequency, drop, kin
     assert found.stick_fraction == pytest.approx(0.9, abs=0.02 + 0.25e-3 * frequency)
     assert found.stick_curvature == pytest.approx(1.0, abs=0.03)
     assert found.asymmetry < -1.0
-
-
-def test_an_oscillating_shaft_slips_in_both_directions():
-    direction = np.sign(np.sin(2 * np.pi * 2 * np.arange(30_000) / 30e3 + 0.1))
-    found = torque_slips(direction * stick_slip(150), 30e3)
-    assert found.rate == pytest.approx(150, abs=5)
-    assert found.stick_slope == pytest.approx(450, rel=0.05)
 
 
 @pytest.mark.parametrize("shape", ["harmonic", "triangular", "noise", "constant"])
@@ -174,11 +155,8 @@ def test_torque_rises_at_effective_stiffness_times_speed(speed, of):
     "condition",
     [
         replace(KNOWN, speed=None),
-        replace(KNOWN, speed=0.0),
         replace(KNOWN, interference=None),
-        replace(KNOWN, support_stiffness=None),
         replace(KNOWN, material=None),
-        replace(KNOWN, material="unobtainium"),
         Condition(),
     ],
 )

@@ -117,26 +117,6 @@ def test_anchors_that_yield_leave_less_stiffness_and_no_anchor_any(length, rotat
     assert beam_length(beams, 2214.0) == beam_length(STEEL, 2214.0)
 
 
-@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
-def test_the_clamp_moves_as_the_lumped_one_however_the_anchors_yield(stiffness):
-    frequency = np.array([20.0, 100.0, 200.0, 240.0])
-    omega = 2 * np.pi * frequency
-    lumped = -(omega**2) * STEEL.lever / (stiffness - omega**2 / 1200)
-    at_the_clamp = replace(SOFT, accelerometer=0.0)
-    model = beam_structure(at_the_clamp, stiffness, 1 / 1200, 1e-4, 40e3)
-    found = model.frequency_response(frequency)[ACCELERATION, TORQUE]
-    assert np.abs(found / lumped) == pytest.approx(1, abs=0.05)
-
-
-def test_a_blow_in_a_joint_that_yields_leaves_the_beams_a_couple():
-    """Its arm is where it strikes: the anchor is not there to hold against a push."""
-    found = []
-    for strike in (0.001, 0.002):
-        model = beam_structure(replace(SOFT, strike=strike), 2214.0, 1 / 1200, 0.01, 40e3)
-        found.append(abs(model.frequency_response([3e3])[ACCELERATION, PULSE, 0]))
-    assert found[1] / found[0] == pytest.approx(2.0, rel=0.05)
-
-
 def test_soft_anchors_still_balance_the_torque_at_rest_and_keep_the_lumped_mode():
     model = beam_structure(SOFT, 1500.0, 1 / 1200, 0.02, 20e3)
     _, force, moment = model.frequency_response([0.0])[:, TORQUE, 0].real

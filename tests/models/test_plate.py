@@ -130,25 +130,6 @@ def test_modes_are_orthogonal_with_their_modal_mass(edges):
     assert masses == pytest.approx(modes.mass * np.eye(len(masses)), abs=1e-7 * modes.mass)
 
 
-@pytest.mark.parametrize("direction", ["x", "y"])
-@pytest.mark.parametrize("edges", ["simply_supported", "free"])
-def test_slopes_are_the_derivatives_of_shapes(edges, direction):
-    modes = plate_modes(dataclasses.replace(BENCH, edges=edges), 3e3)
-    step = 1e-6
-    dx, dy = (step, 0.0) if direction == "x" else (0.0, step)
-    pair = (modes.shape(0.1 + dx, 0.05 + dy) - modes.shape(0.1 - dx, 0.05 - dy)) / (2 * step)
-    assert modes.slope(0.1, 0.05, direction) == pytest.approx(pair, abs=1e-5)
-
-
-def test_a_free_plate_moves_as_a_whole_as_heavy_as_it_is():
-    modes = plate_modes(BENCH, 16e3)
-    rigid = modes.frequencies == 5.0
-    assert np.count_nonzero(rigid) == 3
-    assert modes.frequencies[3] > 40
-    acceleration = np.sum(modes.shape(0.0, 0.0)[rigid] ** 2) / modes.mass  # of the middle, for 1 N
-    assert acceleration == pytest.approx(1 / (7850 * 8e-3 * 0.9 * 0.6), rel=1e-9)
-
-
 def test_loss_factors_by_frequency_are_powers_between_entries():
     table = ((300.0, 0.1), (1e3, 0.03))
     modes = plate_modes(dataclasses.replace(BENCH, edges="clamped", loss_factor=table), 2e3)
@@ -214,16 +195,6 @@ def test_power_is_the_intensity_of_rayleighs_integral_over_a_far_hemisphere(edge
         pressure = AIR_DENSITY * 2 * np.pi * frequency / (2 * np.pi) * far  # times distance
         total += w * 2 * np.pi * np.mean(np.abs(pressure) ** 2) / (AIR_DENSITY * SOUND_SPEED)
     assert radiated_power(modes, velocity, frequency) == pytest.approx(total, rel=0.01)
-
-
-def test_spectra_of_drives_scale_and_combine():
-    modes = plate_modes(STEEL, 2e3)
-    drives = modes.shape([0.2, -0.2], [0.1, 0.1]).T
-    apart = third_octave_power(
-        modes, drives, lambda f: np.array([[3.0], [-3.0]]) * np.ones(f.size), low=200, high=500
-    )
-    couple = third_octave_power(modes, drives[:, :1] - drives[:, 1:], low=200, high=500)
-    assert apart.level == pytest.approx(couple.level + 20 * np.log10(3), abs=1e-9)
 
 
 def test_bands_beyond_the_modes_are_refused():

@@ -11,8 +11,8 @@ from models.condition import CONDITION
 from models.errors import ParameterError
 from models.rig import Rig, damping_at, parse_spec
 from models.rig_file import changed_rig_text, load_material_rig, load_rig, material_names, rig_text
-from models.schema import quantities, remarks
-from models.sensors import SENSOR_QUANTITIES, Sensor, Sensors
+from models.schema import remarks
+from models.sensors import Sensor, Sensors
 
 RIG = load_material_rig("fluorocarbon")
 NAMES = ("elastomer_stiffness", "damping", "elastomer_inertia", "clamp_inertia", "ageing_time")
@@ -178,8 +178,6 @@ def fit(old, new):
     ("text", "parts"),
     [
         ("desing = 3", ("did you mean 'design'", "measured_response")),
-        ("name = 3", ("name = 3 must be a text",)),
-        ("clamp_inertia_kgm2 = 0", ("clamp_inertia_kgm2 = 0 must be a number from 1e-12",)),
         ('effects = "none"', ("effects must be a list",)),
         ('effects = ["slip_pulse:loud"]', ("NAME:key=value",)),
         ("fit = 3", ("fit must be given as",)),
@@ -187,7 +185,6 @@ def fit(old, new):
         # fits
         (fit("= 665.0", "= -1.0"), ("fit 1: elastomer_stiffness_Nm_rad = -1.0", "Nm/rad")),
         (fit("= 665.0", f"= {10**400}"), ("elastomer_stiffness_Nm_rad",)),
-        (fit("elastomer_stiffness_Nm_rad = 665.0", ""), ("elastomer_stiffness_Nm_rad is missing",)),
         (fit("torque_Nm = 10.7", "torque_Nm = 7.0"), ("critical_torque_Nm = 7", "is below")),
         (fit('"3745"', '"stiff"'), ("entry 'stiff'", "or fixed")),
         (CONTRACT + FIT, ("two [[fit]] entries have the same interference_mm",)),
@@ -197,7 +194,6 @@ def fit(old, new):
         ('base = "rig.toml"', ("leads back to itself", "rig.toml -> rig.toml")),
         ('base = "pdms"\nmaterial = "fluorocarbon"', ("contradicts base",)),
         # structure
-        ("plate = 3", ("plate must be a table",)),
         ("[plate]\nedge = 'free'", (", plate: unknown key 'edge'; did you mean 'edges'",)),
         ("[plate]\nlength_m = 1e6", ("modes up to 16 kHz; a plate must have 5 to 5000",)),
         ("[plate]\nthickness_m = 0.001\nedges = 'free'", ("not all simply_supported must have",)),
@@ -224,10 +220,8 @@ def fit(old, new):
             "[sleeve]\nhardness_shore_A = 90",
             ("must be a number from 20 to 80",),
         ),
-        (CONTRACT + "[sleeve]\nwall_mm = 4", ("inner_radius_mm is missing",)),
         # changes
         (FIT + "[change]\nwall_mm = 6", ("wall needs a [sleeve] table",)),
-        ("[change]\nwall = 6", ("has no unit; write wall_mm = 6",)),
         ('[change]\ndampin = "x2"', ("did you mean 'damping'", "slip_pulse.amplitude")),
         ("[change]\ndamping = 0.1", ("write damping_Nms_rad = 0.1",)),
         ('[change]\ndamping = "20 %"', ("with its sign",)),
@@ -239,12 +233,9 @@ def fit(old, new):
         # sensors
         ("[sensors]\nnoise = 3", ("from recordings",)),
         ("[sensors]\nragne = { torque = 1 }", ("'ragne'", "did you mean 'range'")),
-        ("[sensors]\nrange = 50", ("range = 50", "{ torque = 50 }")),
         ("[sensors]\nbits = 12", ("bits without a range", "range = { torque = ... }")),
         ("[sensors]\nrange = { torque = 50 }\nbits = { pressure = 12 }", ("bits of pressure",)),
         ("[sensors]\nrange = { torque = 50 }\nbits = 12.5", ("bits = 12.5", "whole number")),
-        ("[sensors]\nrange = { torque = 50 }\nbits = 64", ("bits = 64", "2 to 32 bit")),
-        ("[sensors]\nantialias_hz = 0", ("antialias_hz = 0", "from 1 to 1e+09 Hz")),
     ],
 )
 def test_what_cannot_be_used_is_refused_in_one_line(tmp_path, text, parts):
@@ -260,17 +251,6 @@ def test_what_cannot_be_used_is_refused_in_one_line(tmp_path, text, parts):
 
 
 # Remarks
-
-
-def test_the_possible_holds_the_usual():
-    declared = [*(one for one, _ in quantities(RIG)), *CONDITION.values()]
-    declared += [one for kind in SENSOR_QUANTITIES.values() for one in kind.values()]
-    for one in declared:
-        if math.isfinite(one.usual[1]):
-            assert one.possible(one.usual[0])
-            assert one.possible(one.usual[1])
-            assert one.remark(*one.usual) == ""
-            assert one.remark(2.0 * one.usual[1]).startswith(one.key)
 
 
 def test_what_is_unusual_is_told_with_the_unit_that_it_may_be_in(tmp_path):

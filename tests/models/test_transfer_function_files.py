@@ -204,19 +204,6 @@ def test_a_universal_response_that_states_no_unit_is_read_with_a_warning(tmp_pat
 
 
 @pytest.mark.parametrize(
-    ("units", "factor"),
-    [
-        (("kN m", "mm/s^2"), 1e-6),
-        (("N m", "m/s"), W),
-    ],
-)
-def test_an_npz_is_converted_by_its_units(tmp_path, units, factor):
-    path = tmp_path / "a.npz"
-    npz(path, input_unit=units[0], output_unit=units[1])
-    np.testing.assert_allclose(read(path).response, factor * H, rtol=1e-12)
-
-
-@pytest.mark.parametrize(
     ("header", "separator", "in_file"),
     [
         ("frequency_hz,real,imag,coherence", ",", (1.0, 1.0)),
