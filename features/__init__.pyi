@@ -1,6 +1,8 @@
 from .kernels.harmonics import (
     Harmonics as Harmonics,
+    PitchTrack as PitchTrack,
     analyse_harmonics as analyse_harmonics,
+    pitch_track as pitch_track,
 )
 from .kernels.levels import (
     NOMINAL_THIRD_OCTAVES as NOMINAL_THIRD_OCTAVES,
@@ -20,10 +22,6 @@ from .kernels.levels import (
 from .kernels.lines import (
     Lines as Lines,
     find_lines as find_lines,
-)
-from .kernels.pitch import (
-    PitchTrack as PitchTrack,
-    pitch_track as pitch_track,
 )
 from .kernels.slips import (
     Pulses as Pulses,

@@ -12,14 +12,12 @@ by their coherence.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
-if TYPE_CHECKING:
-    from models.transfer_functions.transfer_function import TransferFunction
+from models.transfer_functions.transfer_function import TransferFunction
 
 BLOCK = 2**18
 """Samples convolved at a time, which bounds the memory for long signals."""
@@ -103,7 +101,6 @@ def filter_period(
 
     Examples
     --------
-    >>> from models.transfer_functions.transfer_function import TransferFunction
     >>> double = TransferFunction(np.array([0.0, 4e3]), np.array([2.0 + 0j, 2.0 + 0j]))
     >>> filter_period(np.array([1.0, 0.0, 0.0, -1.0]), 8e3, double).round(9)
     array([ 2.,  0.,  0., -2.])
@@ -134,7 +131,6 @@ def filter_signal(
 
     Examples
     --------
-    >>> from models.transfer_functions.transfer_function import TransferFunction
     >>> double = TransferFunction(np.array([0.0, 4e3]), np.array([2.0 + 0j, 2.0 + 0j]))
     >>> bool(np.allclose(filter_signal(np.ones(100), 8e3, double), 2.0))
     True
@@ -184,7 +180,6 @@ def impulse_response(transfer: TransferFunction, rate: float, n: int) -> NDArray
 
     Examples
     --------
-    >>> from models.transfer_functions.transfer_function import TransferFunction
     >>> lines = np.arange(0.0, 1e4 + 1.0, 10.0)
     >>> mass = TransferFunction(lines, np.full(lines.size, 2.0 + 0j))
     >>> abs(impulse_response(mass, 48e3, 2400)[:3]).round()
@@ -218,7 +213,6 @@ def fill_between_lines(transfer: TransferFunction) -> TransferFunction:
 
     Examples
     --------
-    >>> from models.transfer_functions.transfer_function import TransferFunction
     >>> f = np.arange(10.0, 1001.0, 10.0)
     >>> fill_between_lines(TransferFunction(f, 1j * f)).spacing
     1.25

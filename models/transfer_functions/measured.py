@@ -26,7 +26,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,7 @@ from scipy.sparse.linalg import LinearOperator, cg
 from models.bench import HIGHEST_PLATE_FREQUENCY
 from models.condition import CONDITION, same_support
 from models.errors import ParameterError
+from models.radiation.impulse_responses import ImpulseResponses
 from models.schema import ReadBy
 from models.show import short_repr
 from models.transfer_functions.files import read_transfer_function
@@ -46,9 +47,6 @@ from models.transfer_functions.transfer_function import (
     trusted_band,
 )
 from models.units import same_unit
-
-if TYPE_CHECKING:
-    from models.radiation.impulse_responses import ImpulseResponses
 
 OUTSIDE = 1e-3
 """Weight of smallness outside the band, relative to the measured lines."""
@@ -283,8 +281,8 @@ def measured_with(
 
 
 def with_measured(
-    modelled: "ImpulseResponses", measured: tuple[MeasuredResponse, ...], support_stiffness: float
-) -> "ImpulseResponses":
+    modelled: ImpulseResponses, measured: tuple[MeasuredResponse, ...], support_stiffness: float
+) -> ImpulseResponses:
     """Put the measured responses of a support in place of the modelled ones.
 
     Parameters
@@ -308,7 +306,6 @@ def with_measured(
 
     Examples
     --------
-    >>> from models.radiation.impulse_responses import ImpulseResponses
     >>> import numpy as np
     >>> chain = ImpulseResponses(48e3, np.ones(9), np.ones(9), np.ones(9), np.ones(9))
     >>> with_measured(chain, (), 2214.0) is chain

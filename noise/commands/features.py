@@ -166,7 +166,7 @@ def _pitch(blocks: RecordingBlocks) -> dict[str, float]:
     """Pitch of the first pressure channel, of a long one piece by piece."""
     import numpy as np
 
-    from features.kernels.pitch import PitchTrack, pitch_track
+    from features.kernels.harmonics import PitchTrack, pitch_track
 
     row = blocks.first("pressure")
     if row is None:
