@@ -38,7 +38,7 @@ from features.kernels.levels import (
     relative_db,
 )
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
-from features.kernels.modulation import Modulation, ShortTime, modulation, short_time
+from features.kernels.modulation import Modulation, modulation, short_time
 from features.kernels.slips import (
     Pulses,
     TorqueSlips,
@@ -189,7 +189,7 @@ class Prepared:
         return spectral_shape(self.spectrum, low=self.low, high=self.limit)
 
     @cached_property
-    def short_time(self) -> ShortTime:
+    def short_time(self) -> dict[str, float]:
         """Tones and levels of its short segments, and how they change from one to the next."""
         x, rate = self.in_band
         return short_time(x, rate, low=self.low, high=self.limit)

@@ -11,7 +11,6 @@ where they run into each other.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -56,43 +55,7 @@ _NORMAL_CONSISTENT = 1.4826
 _TINY = float(np.finfo(np.float64).tiny)
 
 
-@dataclass(frozen=True)
-class ShortTime:
-    """Changes over the length of a signal, segments counting by their energy.
-
-    Parameters
-    ----------
-    tone_share : float
-        Mean share of the power in the strongest line of a segment, 0 to 1.
-    tone_count : float
-        Mean number of lines in a segment, within 20 dB of its strongest and 13 dB above its floor.
-    second_tone : float
-        Mean level of a segment's second line relative to its strongest [dB], at least -20.
-    periodicity : float
-        Mean autocorrelation of a segment at its fundamental's period, 0 to 1 [-].
-    fundamental_wander : float
-        Robust standard deviation of the fundamental [octave]; NaN unless four segments have one.
-    continuity : float
-        As `tone_share`, counting only tones that are still there (within a semitone) in the next
-        segment; NaN for a single one.
-    flux : float
-        Share of the power that changes its one-third octave between neighbouring segments; NaN
-        likewise.
-    level_variation : float
-        Standard deviation of the segments' levels [dB]; NaN likewise.
-    """
-
-    tone_share: float
-    tone_count: float
-    second_tone: float
-    periodicity: float
-    fundamental_wander: float
-    continuity: float
-    flux: float
-    level_variation: float
-
-
-def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) -> ShortTime:
+def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) -> dict[str, float]:
     """Describe how a signal changes between two frequencies.
 
     Parameters
@@ -106,15 +69,24 @@ def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) 
 
     Returns
     -------
-    ShortTime
+    dict of str to float
+        Over the length of the signal, segments counting by their energy: ``tone_share``, mean share
+        of the power in the strongest line of a segment [-]; ``tone_count``, lines within 20 dB of
+        the strongest and 13 dB above the floor; ``second_tone``, level of the second line relative
+        to the strongest, at least -20 [dB]; ``periodicity``, autocorrelation at the fundamental's
+        period [-]; ``fundamental_wander``, robust standard deviation of the fundamental [octave],
+        NaN unless four segments have one. And, NaN for a single segment: ``continuity``, as
+        ``tone_share``, counting only tones that are still there (within a semitone) in the next
+        one; ``flux``, share of the power that changes its one-third octave; ``level_variation``,
+        standard deviation of the levels [dB].
 
     Examples
     --------
     >>> import numpy as np
     >>> t = np.arange(16000) / 16e3
     >>> glide = short_time(np.sin(2 * np.pi * (2500 + 300 * t) * t), 16e3, low=150.0, high=7e3)
-    >>> round(glide.tone_share, 2), round(glide.continuity, 2), round(glide.tone_count, 2)
-    (1.0, 1.0, 1.0)
+    >>> [round(glide[name], 2) for name in ("tone_share", "continuity", "tone_count")]
+    [1.0, 1.0, 1.0]
     """
     length = max(16, 2 * round(0.5 * _SEGMENT * rate))
     segment = min(length, x.size)
@@ -143,16 +115,19 @@ def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) 
         flux = float(pairs @ moved)
         quietest = max(float(energy.max()) * 10.0 ** (0.1 * _QUIETEST_DB), _TINY)
         level_variation = float(np.std(10.0 * np.log10(np.maximum(energy, quietest))))
-    return ShortTime(
-        tone_share=float(weight @ share),
-        tone_count=float(weight @ count),
-        second_tone=float(weight @ second),
-        periodicity=float(weight @ strength),
-        fundamental_wander=_wander(frequency, strength, weight),
-        continuity=continuity,
-        flux=flux,
-        level_variation=level_variation,
-    )
+    means = {
+        "tone_share": share,
+        "tone_count": count,
+        "second_tone": second,
+        "periodicity": strength,
+    }
+    return {
+        **{name: float(weight @ values) for name, values in means.items()},
+        "fundamental_wander": _wander(frequency, strength, weight),
+        "continuity": continuity,
+        "flux": flux,
+        "level_variation": level_variation,
+    }
 
 
 def _strongest_tones(
