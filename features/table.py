@@ -26,6 +26,7 @@ from features.kernels.levels import (
     band_power,
     relative_db,
 )
+from features.kernels.spectra import weighted_median as _median
 from features.prepared import ACOUSTIC_KINDS, Prepared
 from models.errors import ParameterError
 from models.show import short_repr
@@ -44,13 +45,6 @@ THIS = "bushing-noise"
 def _by_power(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:
     """Mean weighted by power."""
     return float(np.average(values, weights=power))
-
-
-def _median(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:
-    """Median by power: of frequencies and numbers, which lie far apart where they differ."""
-    order = np.argsort(values)
-    reached = np.cumsum(power[order])
-    return float(values[order[np.searchsorted(reached, 0.5 * reached[-1])]])
 
 
 def _over_time(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:  # noqa: ARG001
@@ -113,7 +107,8 @@ class Feature:
 
     Examples
     --------
-    >>> from features.prepared import prepare
+    >>> from features.kernels.spectra import weighted_median as _median
+    from features.prepared import prepare
     >>> length = Feature("length", "s", "Duration.", "-", lambda p: p.samples.size / p.rate, None)
     >>> length(prepare([0.0] * 480, 48e3, "pressure"))
     0.01

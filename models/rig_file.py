@@ -8,7 +8,7 @@ constant critical and kinetic torque, damping split evenly, no effects, unless i
 Under the name of a shipped material it must say which friction law it means.
 
 The same file serves every command: what ``[design]`` and ``[tolerances]`` state is read where it is
-used. Keys and bounds are declared in `models.rig`.
+used. Keys and bounds are declared in `models.rig` and `models.bench`.
 """
 
 from __future__ import annotations

@@ -38,10 +38,10 @@ from features.kernels.lines import (
     RANGE_DB,
     Lines,
     find_lines,
-    interpolated,
     line_powers,
     line_resolution,
     noise_floor,
+    parabola_tops,
 )
 from features.kernels.spectra import Spectrum, welch
 from models.errors import ParameterError
@@ -145,12 +145,12 @@ def strongest_period(
     peaks = _maxima(normalised, first)
     if peaks.size == 0:
         return _NONE
-    heights = _heights(normalised, peaks)
+    places, heights = parabola_tops(normalised, peaks)
     highest_peak = float(heights.max())
     if not highest_peak > 0.0:
         return _NONE
     best = int(np.argmax(heights >= _NEARLY * highest_peak))
-    lag = float(interpolated(normalised, peaks[best : best + 1])[0]) / _OVERSAMPLING
+    lag = float(places[best]) / _OVERSAMPLING
     return Period(rate / lag, min(1.0, float(heights[best])))
 
 
@@ -232,14 +232,6 @@ def _maxima(values: NDArray[np.float64], first: int) -> NDArray[np.intp]:
     middle = values[first:-1]
     rising = (middle > values[first - 1 : -2]) & (middle >= values[first + 1 :])
     return np.flatnonzero(rising) + first
-
-
-def _heights(values: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np.float64]:
-    """Heights of the parabolas through local maxima."""
-    left, middle, right = values[peaks - 1], values[peaks], values[peaks + 1]
-    curvature = left - 2.0 * middle + right
-    safe = np.where(curvature < 0.0, curvature, -1.0)
-    return np.asarray(middle - np.where(curvature < 0.0, (left - right) ** 2 / (8.0 * safe), 0.0))
 
 
 LOWEST = 5.0

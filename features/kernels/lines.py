@@ -197,7 +197,7 @@ def find_lines(
     power = line_powers(spectrum, floor, f[peaks], spacing=_nearest_neighbour(f[peaks]))
     power = np.clip(power, 0.0, total)
     order = np.argsort(power)[::-1]
-    frequency = interpolated(level, peaks) * spacing
+    frequency = parabola_tops(level, peaks)[0] * spacing
     return Lines(frequency[order], power[order], above[peaks][order], total)
 
 
@@ -247,8 +247,10 @@ def line_powers(
     )
 
 
-def interpolated(values: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np.float64]:
-    """Position of local maxima between samples, from the parabola through three of them.
+def parabola_tops(
+    values: NDArray[np.float64], peaks: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places and heights of local maxima between samples, by the parabola through three of them.
 
     Parameters
     ----------
@@ -259,19 +261,21 @@ def interpolated(values: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArra
 
     Returns
     -------
-    ndarray, shape (n_peaks,)
-        [sample]
+    place, height : ndarray, shape (n_peaks,)
+        [sample] and [unit]
 
     Examples
     --------
     >>> import numpy as np
-    >>> interpolated(np.array([0.0, 2.0, 2.0, 0.0]), np.array([1])).tolist()
-    [1.5]
+    >>> parabola_tops(np.array([0.0, 2.0, 2.0, 0.0]), np.array([1]))
+    (array([1.5]), array([2.25]))
     """
     left, middle, right = values[peaks - 1], values[peaks], values[peaks + 1]
     curvature = left - 2.0 * middle + right
-    safe = np.where(curvature < 0.0, curvature, -1.0)
-    return np.asarray(peaks + np.where(curvature < 0.0, 0.5 * (left - right) / safe, 0.0))
+    bent = curvature < 0.0
+    safe = np.where(bent, curvature, -1.0)
+    place = peaks + np.where(bent, 0.5 * (left - right) / safe, 0.0)
+    return place, middle - np.where(bent, (left - right) ** 2 / (8.0 * safe), 0.0)
 
 
 def _chance_level(spectrum: Spectrum) -> float:

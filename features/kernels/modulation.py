@@ -19,7 +19,7 @@ from scipy import ndimage
 
 from features.kernels.conditioning import band_signal, forward
 from features.kernels.harmonics import strongest_period, track_periods
-from features.kernels.spectra import segment_powers
+from features.kernels.spectra import segment_powers, weighted_median
 
 _SEGMENT = 0.064
 """Length of a segment [s]."""
@@ -169,15 +169,9 @@ def _wander(
     if np.count_nonzero(voiced) < _LEAST_VOICED:
         return math.nan
     pitch, weight = np.log2(frequency[voiced]), weight[voiced]
-    return _NORMAL_CONSISTENT * _weighted_median(
-        np.abs(pitch - _weighted_median(pitch, weight)), weight
+    return _NORMAL_CONSISTENT * weighted_median(
+        np.abs(pitch - weighted_median(pitch, weight)), weight
     )
-
-
-def _weighted_median(values: NDArray[np.float64], weight: NDArray[np.float64]) -> float:
-    order = np.argsort(values)
-    reached = np.cumsum(weight[order])
-    return float(values[order[np.searchsorted(reached, 0.5 * reached[-1])]])
 
 
 def _band_edges(first: int, last: int) -> NDArray[np.intp]:

@@ -26,7 +26,7 @@ from features.kernels.conditioning import (
     WORKING_LIMIT,
     checked_signal,
 )
-from features.kernels.lines import interpolated
+from features.kernels.lines import parabola_tops
 from models.show import short_repr
 
 _TORQUE_SMOOTHING = math.sqrt(math.log(2.0) / 2.0) / math.pi / 2_000.0
@@ -164,7 +164,7 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
         drop_variation=float(drops.std() / drops.mean()),
         mean_interval=float(intervals.mean()),
         interval_variation=float(intervals.std() / intervals.mean()),
-        glide=_glide(interpolated(smooth, peaks) / rate),
+        glide=_glide(parabola_tops(smooth, peaks)[0] / rate),
         stick_slope=_median(whole),
         stick_curvature=_median(second_half[rising] / first_half[rising]),
         stick_fraction=float(rises.sum() / rate / intervals.sum()),

@@ -390,3 +390,26 @@ def spectral_shape(spectrum: Spectrum, *, low: float, high: float) -> SpectralSh
     cumulative = np.cumsum(p)
     roll_off = float(np.interp(_ROLL_OFF, cumulative, f))
     return SpectralShape(centroid, spread, flatness, roll_off)
+
+
+def weighted_median(values: NDArray[np.float64], weight: NDArray[np.float64]) -> float:
+    """Value below which half of the weight lies.
+
+    Parameters
+    ----------
+    values, weight : ndarray, shape (n,)
+        In any [unit], and not negative [-].
+
+    Returns
+    -------
+    float
+        In the [unit] of the values.
+
+    Examples
+    --------
+    >>> weighted_median(np.array([3.0, 1.0, 2.0]), np.array([5.0, 1.0, 1.0]))
+    3.0
+    """
+    order = np.argsort(values)
+    reached = np.cumsum(weight[order])
+    return float(values[order[np.searchsorted(reached, 0.5 * reached[-1])]])
