@@ -5,7 +5,6 @@ import pytest
 from scipy.signal import coherence, csd, welch
 
 from features.modal.hammer import (
-    ESTIMATORS,
     Hit,
     check_hit,
     estimate_transfer_function,
@@ -116,21 +115,6 @@ def test_h1_and_coherence_are_those_of_scipy():
     np.testing.assert_allclose(estimate.response[1:], (cross / welch(force, *arguments)[1])[1:])
     expected = coherence(force, response, *arguments)[1]
     np.testing.assert_allclose(estimate.coherence[1:], expected[1:], rtol=1e-9)
-
-
-def test_noise_in_the_response_biases_h2_up_and_not_h1():
-    some = hits(np.random.default_rng(2), n_hits=40, noise=0.3)
-    h1, h2, hv = (estimate_transfer_function(some, estimator=e) for e in ESTIMATORS)
-    true = np.fft.rfft(ringing())
-    band = (h1.frequencies > 2500) & (h1.frequencies < 4000)
-
-    def bias(h):
-        return np.median(np.abs(h.response[band]) / np.abs(true[band]))
-
-    assert bias(h1) < bias(hv) < bias(h2)
-    np.testing.assert_allclose(
-        np.abs(hv.response) ** 2, np.abs(h1.response) * np.abs(h2.response), rtol=1e-9
-    )
 
 
 def test_hits_of_different_length_cannot_be_averaged():

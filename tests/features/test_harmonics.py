@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings, strategies as st
-from scipy.signal import lfilter
 
 from features.kernels.conditioning import band_signal, forward
 from features.kernels.harmonics import analyse_harmonics, pitch_track
@@ -24,15 +23,6 @@ def sawtooth(frequency, seconds=1.0, rate=RATE):
     number = np.arange(1, int(0.43 * rate / frequency) + 1)
     phase = 2 * np.pi * frequency * np.outer(number, times(seconds, rate))
     return -(np.sin(phase) / number[:, np.newaxis]).sum(axis=0)
-
-
-def ringing(pulses, rate=RATE):
-    total = np.zeros(pulses.size)
-    for frequency, quality in ((940, 20), (2300, 30), (4800, 40)):
-        radius = math.exp(-math.pi * frequency / quality / rate)
-        turn = -2 * radius * math.cos(2 * math.pi * frequency / rate)
-        total += lfilter([1.0], [1.0, turn, radius**2], pulses)
-    return total
 
 
 def noise(n, seed=0):
@@ -57,16 +47,6 @@ def test_white_noise_has_no_line_and_no_harmonics(seconds, seed):
     assert found.harmonicity < 0.1
     assert found.strength < 0.3
     assert math.isnan(found.fundamental)
-
-
-@pytest.mark.parametrize("level", [0.0, 0.5])
-def test_pulses_that_excite_resonances_have_the_pulses_rate_as_fundamental(level):
-    pulses = np.zeros(16_000)
-    pulses[::200] = 1.0
-    x = ringing(pulses)
-    found = analyse_harmonics(x + level * x.std() * noise(x.size), RATE)
-    assert found.fundamental == pytest.approx(80, rel=0.005)
-    assert found.peaks.frequency[0] > 800
 
 
 @settings(max_examples=30)

@@ -4,15 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from scipy import fft
 
 from features.kernels.levels import (
-    NOMINAL_THIRD_OCTAVES,
     a_weighted,
     band_power,
     fast_levels,
     sound_levels,
-    third_octave_levels,
 )
 from features.kernels.spectra import autospectrum
 from features.recording import feature_vector
@@ -78,19 +75,6 @@ PASCAL_DB = 93.979
 
 def sine(frequency, rate=48e3, seconds=2.0):
     return math.sqrt(2) * np.sin(2 * np.pi * frequency * np.arange(round(rate * seconds)) / rate)
-
-
-def pink(n, rate, seed=0):
-    frequency = np.maximum(fft.rfftfreq(n, 1 / rate), 1.0)
-    phase = np.random.default_rng(seed).uniform(0, 2 * np.pi, frequency.size)
-    return fft.irfft(np.exp(1j * phase) / np.sqrt(frequency), n)
-
-
-def test_pink_noise_is_flat_in_one_third_octaves():
-    spectrum = autospectrum(pink(20 * 48_000, 48e3), 48e3, resolution=1.0)
-    levels = third_octave_levels(spectrum, reference=1.0)
-    inside = np.array([levels[name] for name in NOMINAL_THIRD_OCTAVES if 50 <= float(name) <= 16e3])
-    assert np.abs(inside - inside.mean()).max() < 0.5
 
 
 def test_bands_share_out_the_whole_power_whatever_their_edges():

@@ -32,9 +32,7 @@ def test_a_row_is_the_feature_vector_of_the_waveform():
 @pytest.mark.parametrize(
     ("transformer", "X", "message"),
     [
-        (RecordingFeatures(("angle",)), [hiss()], r"kinds are \('angle',\); give a tuple"),
         (RecordingFeatures("pressure"), [hiss()], "kinds are 'pressure'; give a tuple"),
-        (RecordingFeatures(rate=0.0), [hiss()], "rate is 0.0; a sampling rate is a positive"),
         (RecordingFeatures(("pressure", "torque")), [hiss()], "waveforms are of one kind"),
     ],
 )

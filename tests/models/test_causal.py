@@ -1,7 +1,6 @@
 """Impulse responses of spectra that are known in a band only."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.signal import butter, sosfilt
 
@@ -40,13 +39,6 @@ def difference(impulse_response):
     return np.std(convolve(torque, impulse_response) - true) / np.std(true)
 
 
-def test_a_modal_model_is_reproduced_from_its_lines():
-    f = lines()
-    h, misfit = causal_impulse_response(TransferFunction(f, spectrum(f)), RATE, 20000)
-    assert difference(h) < 0.005
-    assert misfit < 0.005
-
-
 def test_lines_with_noise_reproduce_it_within_the_noise():
     f = lines()
     scatter = np.random.default_rng(1).standard_normal((2, f.size))
@@ -54,13 +46,6 @@ def test_lines_with_noise_reproduce_it_within_the_noise():
     h, misfit = causal_impulse_response(TransferFunction(f, noisy), RATE, 20000)
     assert difference(h) < 0.04
     assert misfit < 0.04
-
-
-@pytest.mark.parametrize("spacing", [1.7, 2.0, 3.3])
-def test_any_spacing_of_the_lines_will_do(spacing):
-    f = lines(spacing=spacing)
-    h, _ = causal_impulse_response(TransferFunction(f, spectrum(f)), RATE, 20000)
-    assert difference(h) < 0.02
 
 
 def test_a_line_without_weight_does_not_matter():

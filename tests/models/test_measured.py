@@ -86,13 +86,9 @@ def test_a_response_of_reversed_phase_is_refused(tmp_path, modelled):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("= 2214", "= 0"), "support_stiffness_Nm_rad"),
         (("= 2214", '= "stiff"'), "support_stiffness_Nm_rad = 'stiff' must be"),
-        (("= 2214", "= true"), "support_stiffness_Nm_rad = True"),
         (("support_stiffness_Nm_rad = 2214", ""), "support_stiffness_Nm_rad is missing"),
-        (("torque_to_acceleration", "torque_to_force"), "unknown key 'torque_to_force'"),
         (('torque_to_acceleration = "a.npz"', ""), "names no response"),
-        (('"a.npz"', "3"), "torque_to_acceleration = 3 must be a text"),
         (('"a.npz"', '"b.npz"'), "b.npz: there is no such file"),
         (("torque_to_acceleration", "torque_to_pressure"), "output_unit is 'm/s^2'; it must be"),
         (('"a.npz"', '"short.npz"'), "short.npz: stops at 3000 Hz; it must reach from 100 to 5000"),

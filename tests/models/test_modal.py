@@ -7,7 +7,6 @@ from scipy.integrate import solve_ivp
 from scipy.signal import freqz, lfilter
 
 from models.structure.modal import (
-    ModalModel,
     acceleration_section,
     displacement_section,
 )
@@ -33,26 +32,6 @@ def test_sampled_mode_follows_the_continuous_one_up_to_a_sixth_of_the_rate(natur
         b, a = section(natural, damping, RATE)
         sampled = freqz(b, a, omega / RATE)[1]
         assert np.max(np.abs(_decibels(sampled / continuous))) < (0.2 if damping < 1 else 0.5)
-
-
-def test_impulse_response_and_frequency_response_describe_the_same_structure():
-    random = np.random.default_rng(3)
-    n_modes = 6
-    model = ModalModel(
-        frequencies=random.uniform(200, 9e3, n_modes),
-        damping_ratios=random.uniform(0.01, 0.05, n_modes),
-        inputs=random.normal(size=(n_modes, 2)),
-        displacements=random.normal(size=(3, n_modes)) * 1e6,
-        accelerations=random.normal(size=(3, n_modes)),
-        feedthrough=random.normal(size=(3, 2)),
-    )
-    n = 2**16
-    frequency = np.fft.rfftfreq(n, 1 / RATE)
-    band = frequency < 12e3
-    sampled = np.fft.rfft(model.impulse_response(RATE, n))[:, :, band]
-    continuous = model.frequency_response(frequency[band])
-    scale = np.abs(continuous).max(axis=-1, keepdims=True)
-    assert np.max(np.abs(sampled - continuous) / scale) < 0.03
 
 
 @settings(max_examples=15)
