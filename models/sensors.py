@@ -213,13 +213,8 @@ def _for_all(given: Any, name: str, ranged: list[str], where: str) -> dict[str, 
     """One number for all kinds of channel, or for those whose range is stated."""
     if name == "antialias":
         return dict.fromkeys(CHANNEL_UNITS, given)
-    if name == "bits" and ranged:
-        return dict.fromkeys(ranged, given)
     if name == "bits":
-        raise ParameterError(
-            f"{where}: bits without a range, of which a step is a share; add range = "
-            "{ torque = ... }"
-        )
+        return dict.fromkeys(ranged or CHANNEL_UNITS, given)
     words = f'"{FROM_RECORDINGS}", or ' if name == "noise" else ""
     raise ParameterError(
         f"{where}: {_KEYS[name]} = {given!r} must be {words}a table by channel, such as "

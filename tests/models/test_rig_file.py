@@ -233,7 +233,7 @@ def fit(old, new):
         # sensors
         ("[sensors]\nnoise = 3", ("from recordings",)),
         ("[sensors]\nragne = { torque = 1 }", ("'ragne'", "did you mean 'range'")),
-        ("[sensors]\nbits = 12", ("bits without a range", "range = { torque = ... }")),
+        ("[sensors]\nbits = 12", ("bits of torque without a range", "range = { torque = ... }")),
         ("[sensors]\nrange = { torque = 50 }\nbits = { pressure = 12 }", ("bits of pressure",)),
         ("[sensors]\nrange = { torque = 50 }\nbits = 12.5", ("bits = 12.5", "whole number")),
     ],
