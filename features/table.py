@@ -107,8 +107,7 @@ class Feature:
 
     Examples
     --------
-    >>> from features.kernels.spectra import weighted_median as _median
-    from features.prepared import prepare
+    >>> from features.prepared import prepare
     >>> length = Feature("length", "s", "Duration.", "-", lambda p: p.samples.size / p.rate, None)
     >>> length(prepare([0.0] * 480, 48e3, "pressure"))
     0.01
