@@ -22,7 +22,7 @@ import math
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -171,8 +171,7 @@ class Suspension:
         return self.contact_pressure(interference) * sleeve.inner_radius * sleeve.length
 
 
-@dataclass(frozen=True, eq=False)
-class TorsionChain:
+class TorsionChain(NamedTuple):
     """A bar in torsion as inertias in a row, with springs between them and links to the travel.
 
     Parameters
@@ -210,15 +209,6 @@ class TorsionChain:
     start: NDArray[np.float64]
     bushings: NDArray[np.int64]
     load: NDArray[np.float64]
-
-    def frequencies(self) -> NDArray[np.float64]:
-        """Undamped natural frequencies without bushings [Hz], rising, shape (n,)."""
-        matrix = np.diag(self.link_stiffness)
-        for i, k in enumerate(self.stiffness):
-            matrix[i : i + 2, i : i + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
-        root = np.sqrt(self.inertia)
-        squares = np.linalg.eigvalsh(matrix / np.outer(root, root))
-        return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * math.pi))
 
 
 def torsion_chain(

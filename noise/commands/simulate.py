@@ -124,12 +124,12 @@ def _run_suspension(options: Namespace, path: Path) -> int:
         raise ParameterError(f"--rig: {error}") from None
     arguments, notes = run_arguments(options, options.rate, rig=car.rig)
     from noise.base.remarks import clipping_remarks
-    from sim.suspension.run import run_suspension
+    from sim.suspension import run_suspension
 
     car = replace(car, rig=arguments.pop("rig"))
     made = run_suspension(car, **arguments)
     through = arguments["acquisition"].over(car.rig.sensors).sensors
-    notes += (*made.remarks(), *clipping_remarks(made.recording, through))
+    notes += (*made.remarks, *clipping_remarks(made.recording, through))
     for text in notes:
         note(text)
     _write_or_tell(options.out, replace(made.recording, notes=notes))

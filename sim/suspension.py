@@ -1,0 +1,595 @@
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
+# mypy: allow-untyped-decorators, no-warn-return-any
+# ruff: noqa: ANN001
+"""A car's stabilizer bar in its two bushings: motion, loads, and the recording of a run.
+
+The drive is the travel of the wheels, as the angle that it asks of an arm. Each bushing is the
+lumped model as `sim.solvers.contact_rates` has it, with the bar at its place for a shaft; what its
+surface takes is taken from the bar. Links load the bushings, and where that lifts the bar off a
+part of one, its torques rise (`torque_gain`). Only friction laws with an inner state are solved:
+they stick by themselves, where constant torques would need an event at each contact. Steps are
+those of `sim.solvers.tsitouras`, as long as their error allows.
+
+Every bushing sends its torque through clamp, beams and plate as the rig's does, at its own place on
+the plate; accelerometers sit at both, and the microphone hears the sum. The brackets act on each
+other through the bar alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from models.compilation import PART
+from models.condition import Condition
+from models.errors import ParameterError
+from models.radiation.rig_response import impulse_responses
+from models.recording import Channel, Recording
+from models.rig import Rig
+from models.suspension import Suspension, TorsionChain, torsion_chain
+from sim.acquisition import Acquisition, sample
+from sim.analysis.regime import never_slips
+from sim.bushing import lumped_bushing
+from sim.chain import changed_chain
+from sim.contact import CRITICAL, KINETIC
+from sim.effects import EFFECTS
+from sim.effects.effect import ActiveEffect, Effect, activated
+from sim.friction import friction_law
+from sim.motion import Motion, blaming_the_unusual, contact_hooks, refuse_fast
+from sim.parameters import resolve
+from sim.pipeline import SIMULATION, apply_sensor_effects, radiate_motion, sensor_signals
+from sim.run import plan_run
+from sim.shaft import ShaftMotion
+from sim.solvers.contact_rates import (
+    N_LAG,
+    N_MOTION,
+    N_STAGES,
+    SHORTEST_STEP,
+    Drive,
+    Limits,
+    contact_rates,
+    empty_rows,
+)
+from sim.solvers.contact_solver import LONGEST_STEP, contact_record, hooks_record, n_variables
+from sim.solvers.tsitouras import ERROR, NODES, factor_of_step, fill_between, fill_stage
+
+LONGEST_SUSPENSION_RUN = 20.0
+"""All that moves is held in memory [s]."""
+
+_STRONGEST = 1e9
+"""Shear stress that no spring steel bears: 1.7 GPa in tension, over the root of 3 [Pa]."""
+
+_TURN_SHARE = 0.1
+"""Of the law's tolerance: where the sliding turns is left to the error, not sought."""
+
+_FIRST_STEP = 1e-6
+"""[s]"""
+
+_LEAST_STEP = 1e-10
+"""At which an error is accepted: something jumps [s]."""
+
+_GRACE = 2e-3
+"""Time that is granted before steps are counted [s]."""
+
+_NEWTON_STEPS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class SuspensionMotion:
+    """Motion of bar and bushings over time.
+
+    Parameters
+    ----------
+    bushings : tuple of Motion
+        Left and right; the shaft of each is the bar at its place.
+    load : ndarray, shape (n_bushings, n)
+        Normal force on each by the links [N].
+    travel : ndarray, shape (n,)
+        Of the wheels, as the angle asked of an arm [rad].
+    angle, speed : ndarray, shape (n_inertias, n)
+        Of the bar along its length [rad], [rad/s].
+    """
+
+    bushings: tuple[Motion, ...]
+    load: NDArray[np.float64]
+    travel: NDArray[np.float64]
+    angle: NDArray[np.float64]
+    speed: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SuspensionRun:
+    """What a run of a suspension gives.
+
+    Parameters
+    ----------
+    recording : Recording
+        ``torque``, ``acceleration`` and ``angle`` are those of the left bushing, ``torque_2`` and
+        so on those of the right one; ``pressure`` is of both.
+    motion : SuspensionMotion
+        At the rate of the computation, from rest on.
+    remarks : tuple of str
+        What a user should know of it, a line each.
+    """
+
+    recording: Recording
+    motion: SuspensionMotion
+    remarks: tuple[str, ...]
+
+
+def run_suspension(
+    suspension: Suspension,
+    shaft: ShaftMotion | float,
+    *,
+    interference: float,
+    support_stiffness: float,
+    temperature: float,
+    seconds: float,
+    acquisition: Acquisition,
+    library: Mapping[str, Effect] | None = None,
+    rng: np.random.Generator | None = None,
+) -> SuspensionRun:
+    """Simulate one run of a suspension.
+
+    Parameters
+    ----------
+    suspension : Suspension
+    shaft : ShaftMotion or float
+        Travel of the wheels, as the speed that it asks of an arm [rad/s].
+    interference, support_stiffness, temperature, seconds, acquisition, library, rng
+        As for `sim.run.simulate`.
+
+    Returns
+    -------
+    SuspensionRun
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used, or the run is too long.
+
+    Examples
+    --------
+    >>> from models.suspension import load_suspension, suspension_file
+    >>> from sim.shaft import Oscillation
+    >>> run = run_suspension(load_suspension(suspension_file()), Oscillation(0.1, 2.0),
+    ...     interference=0.279e-3, support_stiffness=2214.0, temperature=23.0, seconds=0.1,
+    ...     acquisition=Acquisition(30e3))
+    >>> run.recording.channel_names
+    ('torque', 'acceleration', 'pressure', 'angle', 'torque_2', 'acceleration_2', 'angle_2')
+    """
+    if seconds > LONGEST_SUSPENSION_RUN:
+        raise ParameterError(
+            f"suspension: --seconds {seconds:g} is too long, since the whole run is held in "
+            f"memory; give {LONGEST_SUSPENSION_RUN:g} or less"
+        )
+    acquisition = acquisition.over(suspension.rig.sensors)
+    noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
+    plan = plan_run(
+        suspension.rig, shaft, interference=interference, support_stiffness=support_stiffness,
+        temperature=temperature, seconds=seconds, rate=acquisition.rate, settling=None,
+        library=library,
+    )  # fmt: skip
+    rig = plan.rig  # at the temperature
+    suspension = replace(suspension, rig=rig)
+    motion = simulate_suspension(
+        suspension, plan.shaft, interference=interference,
+        support_stiffness=support_stiffness, seconds=(plan.n_settling + plan.n_kept) / plan.rate,
+        rate=plan.rate, effects=plan.effects, rng=effect_rng,
+    )  # fmt: skip
+    signals: dict[str, NDArray[np.float64]] = {}
+    decimation = SIMULATION.decimation(acquisition.rate)
+    pressure = np.zeros(plan.n_kept)
+    seen = []
+    for each, place in zip(motion.bushings, suspension.positions, strict=True):
+        paths = impulse_responses(_placed(rig, place), interference, support_stiffness, plan.rate)
+        paths = changed_chain(paths, plan.effects, effect_rng.spawn(1)[0])
+        sound = radiate_motion(each, paths, plan.effects)
+        seen.append(sensor_signals(each, sound, plan.n_settling))
+        pressure += seen[-1]["pressure"]
+    for number, own in enumerate(seen, start=1):
+        sensed = apply_sensor_effects(
+            own | {"pressure": pressure}, plan.effects, plan.rate, effect_rng
+        )
+        for kind, values in sample(sensed, decimation, acquisition, noise_rng).items():
+            if number > 1 and kind == "pressure":
+                continue  # one microphone
+            signals[kind if number == 1 else f"{kind}_{number}"] = values
+    channels = [
+        Channel(name, position=rig.microphone.position if name == "pressure" else None)
+        for name in signals
+    ]
+    return SuspensionRun(
+        Recording(
+            samples=np.stack(list(signals.values())),
+            rate=acquisition.rate,
+            channels=tuple(channels),
+            condition=Condition(
+                interference=interference, support_stiffness=support_stiffness,
+                material=rig.material, temperature=temperature,
+            ),
+        ),
+        motion,
+        _remarks(suspension, motion, interference),
+    )  # fmt: skip
+
+
+def _placed(rig: Rig, along: float) -> Rig:
+    """Return the rig with its clamp so far along the plate's y [m]."""
+    return replace(
+        rig, plate=replace(rig.plate, clamp_position=(rig.plate.clamp_position[0], along))
+    )
+
+
+def simulate_suspension(
+    suspension: Suspension,
+    travel: ShaftMotion,
+    *,
+    interference: float,
+    support_stiffness: float,
+    seconds: float,
+    rate: float,
+    effects: Sequence[ActiveEffect] | None = None,
+    rng: np.random.Generator | None = None,
+    tolerance: float | None = None,
+) -> SuspensionMotion:
+    """Simulate bar and bushings from rest.
+
+    Parameters
+    ----------
+    suspension : Suspension
+    travel : ShaftMotion
+        Of the wheels: the speed that it asks of an arm [rad/s].
+    interference, support_stiffness, seconds, rate, effects, rng, tolerance
+        As for `sim.motion.simulate_motion`.
+
+    Returns
+    -------
+    SuspensionMotion
+
+    Raises
+    ------
+    ParameterError
+        The friction law is one of constant torques, the rig does not say its sleeve, or the bar
+        would be twisted beyond what it bears.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from models.suspension import Bar, Suspension
+    >>> from sim.shaft import Oscillation
+    >>> car = Suspension(load_material_rig("PDMS"), Bar(0.03, 0.004, 0.9, 0.2, 0.02), 0.4, 2e6,
+    ...                  100.0, "opposite")
+    >>> run = simulate_suspension(car, Oscillation(0.2, 2.0), interference=0.279e-3,
+    ...                           support_stiffness=2214.0, seconds=0.05, rate=30e3)
+    >>> len(run.bushings), run.load.shape
+    (2, (2, 1500))
+    """
+    rig, bar = suspension.rig, suspension.bar
+    rng = rng or np.random.default_rng(0)
+    effects = activated(rig.effects, EFFECTS) if effects is None else effects
+    n = round(seconds * rate)
+    if not n >= 2:
+        raise ParameterError(f"seconds = {seconds:g} at rate = {rate:g} Hz gives no samples")
+    speed = travel.speed(np.arange(n) / rate)
+    for active in effects:
+        speed = active.driven(speed, rate, {"rng": rng, "whole": True})
+    chain = torsion_chain(
+        bar, suspension.spacing, suspension.link_stiffness, suspension.link_damping,
+        suspension.wheels,
+    )  # fmt: skip
+    twist = abs(chain.travel[0] - chain.travel[-1]) * float(np.abs(_integral(speed, rate)).max())
+    stress = 0.5 * bar.shear_modulus * bar.diameter * twist / bar.length
+    if stress > _STRONGEST:
+        raise ParameterError(
+            f"suspension: the wheels' travel twists the bar by {math.degrees(twist):.3g} degrees, "
+            f"a shear stress of {stress / 1e6:.0f} MPa where steel bears {_STRONGEST / 1e6:.0f}; "
+            'let it swing less (--oscillate), or the wheels go together (wheels = "together")'
+        )
+    with blaming_the_unusual(rig):
+        return solve_chain(
+            chain, rig, speed, interference=interference, support_stiffness=support_stiffness,
+            preload=suspension.preload(interference), rate=rate, effects=effects, rng=rng,
+            tolerance=tolerance,
+        )  # fmt: skip
+
+
+def solve_chain(
+    chain: TorsionChain,
+    rig: Rig,
+    speed: NDArray[np.float64],
+    *,
+    interference: float,
+    support_stiffness: float,
+    preload: float,
+    rate: float,
+    effects: Sequence[ActiveEffect],
+    rng: np.random.Generator,
+    tolerance: float | None,
+) -> SuspensionMotion:
+    """Solve a bar in any number of bushings.
+
+    Parameters
+    ----------
+    chain : TorsionChain
+    rig : Rig
+        Of every bushing.
+    speed : ndarray, shape (n,)
+        Of the travel, linear between the samples [rad/s].
+    interference, support_stiffness, rate, effects, rng, tolerance
+        As of `simulate_suspension`.
+    preload : float
+        Contact pressure times radius and length of a bushing [N].
+
+    Raises
+    ------
+    ParameterError
+        The friction law is one of constant torques, or no steps follow the motion.
+    """
+    law = friction_law(rig.friction.name)
+    if law.torque is None:
+        raise ParameterError(
+            f"suspension: friction law {law.name!r} holds by constant torques, which are solved on "
+            "the rig alone; take one with an inner state, such as lugre or contact_with_memory"
+        )
+    system, fit = lumped_bushing(rig, interference, support_stiffness), rig.fit(interference)
+    values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
+    top = float(np.abs(speed).max())
+    refuse_fast(system, rig, fit.kinetic_torque, values, top)
+    rest, torque_limits = law.state(), (fit.critical_torque, fit.kinetic_torque)
+    places = range(chain.bushings.size)
+    hooks = [contact_hooks(effects, stream) for stream in rng.spawn(len(places))]
+    first, block = 2 * chain.inertia.size, n_variables(rest, hooks[0])
+    rows = tuple(empty_rows(block) for _ in places)
+    bushings = tuple(
+        contact_record(system.packed(), *torque_limits, law.torque, law.coefficients(values))
+        for _ in places
+    )
+    n, start = speed.size, np.zeros(first + block * len(places))
+    start[1:first:2] = chain.start * speed[0]
+    # Errors of angles and speeds go with the twist at the critical torque, and what it releases.
+    scale = np.zeros(start.size)
+    twist = max(torque_limits) / system.elastomer_stiffness
+    scales = twist, twist * math.sqrt(system.elastomer_stiffness / system.elastomer_inertia)
+    scale[0:first:2], scale[1:first:2] = scales
+    for b in places:
+        begin = first + block * b
+        start[begin + N_MOTION :][: rest.size] = rest
+        scale[begin : begin + N_MOTION : 2] = scales[0]
+        scale[begin + 1 : begin + N_MOTION : 2] = scales[1]
+        if hooks[b]:
+            scale[begin + block - N_LAG : begin + block] = scales
+    states, torques = np.empty((n, start.size)), np.empty((n, len(places), 3))
+    slope = np.append(np.diff(speed) * rate, 0.0)
+    compiled: Any = _solve
+    compiled(
+        chain, bushings,
+        tuple(hooks_record(own, row, rest.size) for own, row in zip(hooks, rows, strict=True)),
+        rows,
+        Drive(1.0 / rate, speed, slope, _integral(speed, rate)),
+        Drive(1.0, np.zeros(1), np.zeros(1), np.zeros(1)),
+        Limits(LONGEST_STEP, tolerance or _TURN_SHARE * law.tolerance), preload, torque_limits,
+        start, scale, states, torques,
+    )  # fmt: skip
+    if not np.isfinite(states[-1]).all():
+        raise ParameterError(
+            "suspension: the motion cannot be followed; make links, bar or contact softer or "
+            "heavier, or the swing smaller"
+        )
+    columns = states.T
+    angle, turning = columns[0:first:2], columns[1:first:2]
+    return SuspensionMotion(
+        bushings=tuple(
+            Motion(
+                rate, torques[:, b, 1], torques[:, b, 0], angle[node], turning[node],
+                *columns[first + block * b : first + block * b + 4],
+            )
+            for b, node in enumerate(chain.bushings)
+        ),
+        load=torques[:, :, 2].T,
+        travel=_integral(speed, rate),
+        angle=angle,
+        speed=turning,
+    )  # fmt: skip
+
+
+def _remarks(
+    suspension: Suspension, motion: SuspensionMotion, interference: float
+) -> tuple[str, ...]:
+    load, preload = float(np.abs(motion.load).max()), suspension.preload(interference)
+    gain = torque_gain(load / preload)
+    lifted = (
+        f"lifts the bar off a part of it and raises its torque up to {gain:.3g} times"
+        if gain > 1.0
+        else "is carried by the contact pressure and leaves its torque as it is"
+    )
+    sleeve = suspension.rig.sleeve
+    assert sleeve is not None  # a suspension has one
+    torque = suspension.rig.fit(interference).kinetic_torque
+    coefficient = torque / (2.0 * np.pi * sleeve.inner_radius * preload)
+    pressure = suspension.contact_pressure(interference)
+    return (
+        "torque, acceleration and angle are of the left bushing, those with _2 of the right "
+        "one; the pressure is of both",
+        f"the links load a bushing with up to {load:.0f} N, which {lifted}",
+        f"the contact pressure is taken to be {pressure / 1e6:.3g} MPa, which with the "
+        f"kinetic torque is a friction coefficient of {coefficient:.3g}; where "
+        "that is not believed, friction_coefficient under [suspension] gives the pressure",
+        *(
+            f"{side} bushing: its contact holds from first to last"
+            for side, own in zip(("left", "right"), motion.bushings, strict=True)
+            if never_slips(own)
+        ),
+    )
+
+
+def _integral(speed: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    steps = 0.5 * (speed[1:] + speed[:-1]) / rate
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+@njit(cache=True, error_model="numpy")
+def torque_gain(load) -> float:
+    r"""Torque of a loaded bushing over that without load [-].
+
+    A radial load R presses the sleeve as p0 (1 + rho cos(phi)). As long as rho < 1 what one side
+    gains the other loses, and the torque, which goes with the integral of the pressure, stays.
+    Rubber that is not glued to the bar does not pull: beyond, only |phi| < phi0 touches, where
+    cos(phi0) = -1 / rho, with
+
+    .. math::
+        R / (p_0 a L) &= 2 \sin\varphi_0 + \rho (\varphi_0 + \sin\varphi_0 \cos\varphi_0) \\
+        T / T_0 &= (\varphi_0 + \rho \sin\varphi_0) / \pi
+
+    an elastic foundation (Johnson, Contact Mechanics, 4.3) that touches in part. Limits: R up to
+    pi p0 a L, T = T0; without interference the cosine pressure of a journal, T = 4 / pi mu R a.
+
+    Parameters
+    ----------
+    load : float
+        R / (p0 a L), of either sign [-].
+
+    Examples
+    --------
+    >>> torque_gain(3.0), round(torque_gain(31.4), 3), round(torque_gain(-31.4), 3)
+    (1.0, 6.466, 6.466)
+    """
+    load = abs(load)
+    if not load > math.pi:
+        return 1.0
+    rho = load / math.pi
+    for _ in range(_NEWTON_STEPS):  # from below, on a curve that bends downwards
+        cosine = -1.0 / rho
+        sine = math.sqrt(1.0 - cosine * cosine)
+        angle = math.acos(cosine)
+        slope = angle + sine * cosine
+        step = (load - 2.0 * sine - rho * slope) / slope
+        rho += step
+        if abs(step) < 1e-14 * rho:
+            break
+    cosine = -1.0 / rho
+    return (math.acos(cosine) + rho * math.sqrt(1.0 - cosine * cosine)) / math.pi
+
+
+@njit(**PART)
+def _fill_rates(
+    stage, since, i, time, u, k, chain, bushings, hooks, rows, drive, place, preload, limits, out
+) -> None:
+    """Fill the rates `k` of the state `u` at a stage; `out` gets friction, elastomer, load."""
+    n = chain.inertia.size
+    wheel = drive.speed[i] + drive.slope[i] * since
+    angle = drive.angle[i] + since * (drive.speed[i] + 0.5 * drive.slope[i] * since)
+    for j in range(n):
+        k[2 * j, stage] = u[2 * j + 1]
+        k[2 * j + 1, stage] = 0.0
+    for b in range(chain.bushings.size):
+        out[b, 2] = 0.0
+    for j in range(n):
+        if chain.link_stiffness[j] == 0.0 and chain.link_damping[j] == 0.0:
+            continue
+        link = chain.link_stiffness[j] * (chain.travel[j] * angle - u[2 * j])
+        link += chain.link_damping[j] * (chain.travel[j] * wheel - u[2 * j + 1])
+        k[2 * j + 1, stage] += link
+        for b in range(chain.bushings.size):
+            out[b, 2] += chain.load[b, j] * link
+    for j in range(n - 1):
+        torque = chain.stiffness[j] * (u[2 * j + 2] - u[2 * j])
+        torque += chain.damping[j] * (u[2 * j + 3] - u[2 * j + 1])
+        k[2 * j + 1, stage] += torque
+        k[2 * j + 3, stage] -= torque
+    first = 2 * n
+    for b in range(chain.bushings.size):
+        node, row, bushing = chain.bushings[b], rows[b], bushings[b]
+        for j in range(row.state.size):
+            row.state[j] = u[first + j]
+        gain = torque_gain(out[b, 2] / preload)
+        bushing.system[8], bushing.system[9] = gain * limits[0], gain * limits[1]
+        bushing.contact[CRITICAL], bushing.contact[KINETIC] = bushing.system[8], bushing.system[9]
+        place.speed[0], place.angle[0] = u[2 * node + 1], u[2 * node]
+        friction, elastomer, _, _, _, _ = contact_rates(
+            stage, 0.0, 0, time, time, 0, bushing, hooks[b], place, row
+        )
+        k[2 * node + 1, stage] -= friction
+        out[b, 0], out[b, 1] = friction, elastomer
+        for j in range(row.state.size):
+            k[first + j, stage] = row.stages[j, stage]
+        first += row.state.size
+    for j in range(n):
+        k[2 * j + 1, stage] *= 1.0 / chain.inertia[j]
+
+
+@njit(**PART)
+def _step_error(k, h, start, end, scale) -> float:
+    """Largest error of a step over its scale [-]; a scale of 0 is what the variable itself is."""
+    largest = 0.0
+    for j in range(end.size):
+        error = 0.0
+        for b in range(N_STAGES):
+            error += ERROR[b] * k[j, b]
+        if not math.isfinite(error):
+            return math.inf
+        own = max(abs(start[j]), abs(end[j])) + h * abs(k[j, 0]) + 1e-300
+        largest = max(largest, abs(h * error) / (scale[j] if scale[j] > 0.0 else own))
+    return largest
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _solve(
+    chain, bushings, hooks, rows, drive, place, steps, preload, limits, start, scale, states,
+    torques,
+) -> None:  # fmt: skip
+    """Write states and torques at the samples of the drive; not a number where it is given up."""
+    d, n, step = start.size, states.shape[0], drive.step
+    k, u, following = np.zeros((d, N_STAGES + 1)), np.empty(d), np.empty(d)
+    torques_now = np.empty((len(bushings), 3))
+    last = n - 2
+    t, h, sample, n_done, error_before = 0.0, _FIRST_STEP, 0, 0.0, 0.0
+    _fill_rates(
+        0, 0.0, 0, 0.0, start, k, chain, bushings, hooks, rows, drive, place,
+        preload, limits, torques_now,
+    )  # fmt: skip
+    while sample < n:
+        n_done += 1.0
+        if n_done * SHORTEST_STEP > _GRACE + t:
+            states[sample:] = math.nan
+            return
+        for stage in range(1, N_STAGES):
+            fill_stage(u, start, k, stage, h)
+            time = t + NODES[stage] * h
+            i = min(int(time / step), last)
+            _fill_rates(
+                stage, time - i * step, i, time, u, k, chain, bushings, hooks,
+                rows, drive, place, preload, limits, torques_now,
+            )  # fmt: skip
+        error = _step_error(k, h, start, u, scale) / steps.tolerance
+        factor = factor_of_step(error, error_before)
+        if error > 1.0 and h > _LEAST_STEP:
+            h *= factor
+            continue
+        if not math.isfinite(error):
+            states[sample:] = math.nan
+            return
+        end = t + h
+        for j in range(d):
+            following[j] = u[j]
+        while sample < n and sample * step <= end:
+            fill_between(u, start, k, rows[0].weights, (sample * step - t) / h, h)
+            for j in range(d):
+                states[sample, j] = u[j]
+            i = min(sample, last)
+            _fill_rates(
+                N_STAGES, (sample - i) * step, i, sample * step, u, k, chain, bushings, hooks,
+                rows, drive, place, preload, limits, torques[sample],
+            )  # fmt: skip
+            sample += 1
+        for j in range(d):
+            start[j] = following[j]
+            k[j, 0] = k[j, N_STAGES - 1]
+        t, error_before = end, error
+        h = min(h * factor, steps.longest)

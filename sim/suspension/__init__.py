@@ -1,1 +1,0 @@
-"""A stabilizer bar in two bushings: motion, normal load, recording."""
