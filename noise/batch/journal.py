@@ -21,7 +21,7 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from models.errors import BushingNoiseError, ParameterError
+from models.errors import ParameterError
 from noise.base.files import locked
 from noise.base.progress import note
 from noise.batch.work import Done, Job, Work, file_identity
@@ -186,7 +186,7 @@ def open_journal(table: Path | None, work: Work, *, fresh: bool = False) -> Iter
 
 @contextmanager
 def kept_results(target: Path | None, identity: str) -> Iterator[Journal | None]:
-    """Keep results until the block ends well, or is refused, and has no more need of them.
+    """Keep results until the block ends well and has no more need of them.
 
     Parameters
     ----------
@@ -203,22 +203,19 @@ def kept_results(target: Path | None, identity: str) -> Iterator[Journal | None]
     if target is None:
         yield None
         return
-    done_with, made = False, not target.parent.exists()
+    ended_well, made = False, not target.parent.exists()
     try:
         with _opened(target, identity) as journal:
             try:
                 yield journal
-                done_with = True
-            except BushingNoiseError as error:  # what is refused leaves nothing, a full disk does
-                done_with = not isinstance(error.__context__, OSError | sqlite3.Error)
-                raise
+                ended_well = True
             finally:
-                done_with |= not len(journal)
+                ended_well |= not len(journal)
     finally:
-        if done_with:
+        if ended_well:
             journal_path(target).unlink(missing_ok=True)
-            if made:
-                with suppress(OSError):  # there is something in it
+            with suppress(OSError):  # there is something in it
+                if made:
                     target.parent.rmdir()
 
 

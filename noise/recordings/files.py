@@ -32,6 +32,7 @@ from noise.recordings.sidecar import sidecar_of
 MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""
 
+_DENSEST = 8192  # samples a byte: FLAC holds silence in about 10 bytes a block of 65535 samples
 _LARGE = 64 << 20
 """Recordings of fewer bytes, as 64-bit samples, are read whole."""
 
@@ -160,6 +161,11 @@ def open_raw(path: Path) -> Iterator[RawRecording]:
                 raise RecordingError(f"{path}: {why_not_read(path.name) or known}")
             raw = stack.enter_context((of.open or open_isolated)(path))
             check_rate(raw.rate, str(path))
+            if raw.n_samples > _DENSEST * path.stat().st_size:
+                raise RecordingError(
+                    f"{path}: its header announces {raw.n_samples} samples, more than a file of "
+                    "this size holds"
+                )
             if raw.n_samples < MIN_SAMPLES:
                 raise RecordingError(
                     f"{path}: holds {raw.n_samples} samples, expected at least {MIN_SAMPLES}"

@@ -32,7 +32,6 @@ _STARTS = ("t0", "start", "start_s", "start_time")
 _AXIS_UNITS = ("x_unit", "xunit", "x_units", "axis_unit")
 _UNITS = ("unit", "units", "unit_str")
 _DENSEST = 1032  # bytes a byte: what deflate reaches at best
-_LONGEST = 1 << 16  # of the text of an attribute [byte]
 
 
 @contextmanager
@@ -155,19 +154,12 @@ def _attributes(path: Path, item: Any, keys: tuple[str, ...]) -> dict[str, objec
 
 
 def _attribute(path: Path, item: Any, key: str) -> object:
-    """Value of an attribute of one element.
-
-    Its size is asked for first: the library sets aside what a damaged header announces.
-    """
-    import h5py
-
-    entry = item.attrs.get_id(key)
-    number, text = entry.dtype.kind in "iuf", h5py.check_string_dtype(entry.dtype) is not None
-    single = entry.get_space().get_simple_extent_npoints() == 1
-    if not single or not (number or text) or entry.dtype.itemsize > _LONGEST:
-        raise RecordingError(f"{path}: attribute {key!r} of {item.name!r} is no single value")
     value = item.attrs[key]
-    return value.reshape(-1)[0] if isinstance(value, np.ndarray) else value
+    if isinstance(value, np.ndarray) and value.size == 1:
+        value = value.reshape(-1)[0]
+    if not isinstance(value, str | bytes | np.number | np.bool_):
+        raise RecordingError(f"{path}: attribute {key!r} of {item.name!r} is no single value")
+    return value
 
 
 def _last(dataset: Any) -> str:

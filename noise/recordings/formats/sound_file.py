@@ -32,7 +32,6 @@ from noise.recordings.formats.containers import (
 )
 
 _BLOCK = 1 << 16  # samples a channel
-_DENSEST = 8192  # samples a byte: FLAC holds silence in about 10 bytes a block of 65535 samples
 _OTHERS = (b"RIFF", b"RIFX", b"RF64", b"FORM", b"fLaC", b"OggS")
 """How files begin that are no MP3, whatever they are called."""
 
@@ -112,11 +111,6 @@ class _Sound:
                     f"at {first.samplerate} Hz and of {sound.channels} at {sound.samplerate} Hz; "
                     "save each as a file of its own"
                 )
-        if self.n_samples > _DENSEST * self._path.stat().st_size:
-            raise RecordingError(
-                f"{self._path}: its header announces {self.n_samples} samples, more than a file of "
-                "this size holds"
-            )
 
     def read(self, first: int, last: int) -> NDArray[np.float64]:
         """Return the samples between two, shape (n_channels, n), as stored.

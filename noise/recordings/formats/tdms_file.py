@@ -81,20 +81,16 @@ def _check_head(path: Path) -> None:
 
 
 def _holds(path: Path, channel: Any, kinds: str) -> bool:
-    """Whether a channel holds values of some kinds; refused where it announces more than can be."""
-    where = f"{path}: channel {channel.name!r}"
-    n = len(channel)
-    if n == 0 or channel.data_type is None:
+    """Whether a channel holds values of some kinds, in a scale that is known."""
+    if not len(channel) or channel.data_type is None:
         return False
-    size = path.stat().st_size
-    if n > size:
-        raise RecordingError(f"{where} announces {n} samples in a file of {size} bytes")
     if np.dtype(channel.dtype).kind not in kinds:
         return False
     for key, value in channel.properties.items():
         if key.endswith(_SCALE_TYPE) and value not in _SCALES:
             raise RecordingError(
-                f"{where} has scale type {str(value)!r}, expected {', '.join(_SCALES)}"
+                f"{path}: channel {channel.name!r} has scale type {str(value)!r}, expected "
+                f"{', '.join(_SCALES)}"
             )
     return True
 
