@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,6 @@ from noise.base.tables import read_table
 from noise.labels.corrections import version
 from noise.recordings import write_recording
 from tests.helpers.labelled_folder import made_row, write_folder
-from tests.helpers.opened_app import opened_app
 
 NAMES = ("a.wav", "b.wav", "c.wav")
 
@@ -51,15 +49,3 @@ def test_what_a_person_has_corrected_is_learned_and_nothing_else(folder, monkeyp
         (str(folder / "b.wav"), "squeal"), (str(folder / "b.wav"), "none")
     ]  # fmt: skip
     opened.leaving.close()
-
-
-@pytest.mark.slow
-def test_the_button_learns_and_labels_all_but_what_a_person_has_corrected(folder):
-    with opened_app(folder, "--samples", 60) as app:
-        app.correct(0, "unknown", 0.0, 1.5)
-        assert app.json("api/train", {})["learning"]
-        while (state := app.json("api/recordings")["state"])["running"]:
-            time.sleep(0.2)
-        assert app.json("api/recordings/0/segments")["rows"][0]["label_source"] == "human"
-        assert app.json("api/recordings/1/segments")["rows"][0]["p_squeal"] is not None
-        assert (state["classifier"], state["done"]) == ("labels.classifier.npz", 3)

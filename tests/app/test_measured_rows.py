@@ -27,15 +27,6 @@ def correct(folder, said):
     return labels.correct(0, said, version(labels.rows(0)))
 
 
-def test_the_whole_of_a_long_recording_is_named_otherwise(tmp_path):
-    write_tone(tmp_path / "a.wav", 130.0, 1)
-    rows = [made_row("a.wav", "none", 0.0, 130.0, level_dbfs=-23.0)]
-    write_table(tmp_path / "labels.csv", COLUMNS, rows)
-    (found,) = correct(tmp_path, [Correction(0.0, 130.0, "squeal")])
-    assert (found["label"], found["label_source"]) == ("squeal", "human")
-    assert found["level_dbfs"] == -23.0
-
-
 def test_one_track_of_a_long_recording_is_corrected_and_the_other_stays(tmp_path):
     write_tone(tmp_path / "a.wav", 130.0, 2)
     rows = [made_row("a.wav", "none", 0.0, 130.0, channel=track) for track in "12"]

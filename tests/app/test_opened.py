@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import socket
-
 import pytest
 
 from models.errors import ParameterError
@@ -40,11 +38,6 @@ def test_several_paths_and_a_rig_are_opened_together(folder, tmp_path):
     assert (opened.rigs, opened.table) == ((tmp_path / "rig.toml",), tmp_path / "all.csv")
 
 
-def test_nothing_may_be_opened_for_a_design_alone():
-    opened = open_paths([])
-    assert (opened.jobs, opened.table) == ((), None)
-
-
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
@@ -76,10 +69,3 @@ def test_a_port_that_is_none_is_refused_at_once(capsys, port):
     said = capsys.readouterr().err
     assert "--port" in said
     assert "from 0 to 65535" in said
-
-
-def test_a_port_that_is_taken_is_said(folder, capsys):
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = str(taken.getsockname()[1])
-        assert main(["open", str(folder), "--no-browser", "--port", port]) == 2
-    assert f"--port {port}: " in capsys.readouterr().err

@@ -61,14 +61,6 @@ def test_a_file_of_the_users_is_a_base_and_is_never_written_over(tmp_path):
     assert mine.read_text(encoding="utf-8") == before
 
 
-def test_nothing_is_written_over_unless_it_is_said_twice(tmp_path):
-    said = {"base": "PDMS", "values": {}, "name": "one"}
-    save_rig(said, MATERIALS, tmp_path)
-    with pytest.raises(ParameterError, match="is there already"):
-        save_rig(said, MATERIALS, tmp_path)
-    save_rig({**said, "replace": True}, MATERIALS, tmp_path)
-
-
 HEARD = [
     {"speed": -7.25, "interference": 0.3, "support": 3745.0},
     {"motion": "run_up", "run_up.start": 2.0, "run_up.seconds": 3.5, "temperature": 60.0},
@@ -153,14 +145,6 @@ def test_laws_and_effects_of_the_registries_can_all_be_changed():
         assert all(f"effect.{name}.{key}" in controls for key in effect.parameters)
 
 
-@pytest.mark.parametrize("base", MATERIALS)
-def test_sliders_reach_what_is_plausible_and_fields_what_is_possible(base):
-    for one in controls_of(MATERIALS[base].rig):
-        if one.kind == "number":
-            assert one.least <= one.low < one.high <= one.most, one.key
-            assert one.low > 0.0 or not one.log, one.key
-
-
 @pytest.mark.parametrize(
     ("said", "told"),
     [
@@ -187,20 +171,6 @@ def test_conditions_outside_what_was_measured_are_said_to_be():
     assert "for 0.45 mm the nearest is held" in said
     assert "damping is given for supports of" in said
     assert design({}).remarks() == []
-
-
-def test_a_design_says_what_differs_from_its_base():
-    changed = {
-        "change.damping": 2.0,
-        "effect.slip_pulse": True,
-        "effect.slip_pulse.amplitude": 120.0,
-        "effect.critical_torque_scatter": False,
-    }
-    words = design(changed).words
-    for part in ("damping x2", "effect slip_pulse:", "amplitude=120", "no critical_torque_scatter"):
-        assert part in words
-    law = design({"law": "coulomb"}).words
-    assert law.startswith("fluorocarbon with law coulomb")
 
 
 def test_the_condition_is_told_as_options_that_the_command_reads():

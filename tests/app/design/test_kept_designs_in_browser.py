@@ -2,21 +2,7 @@
 
 from __future__ import annotations
 
-from models.rig_file import load_rig
 from tests.helpers.design_page import DESIGN, DesignPage
-from tests.helpers.opened_app import opened_app
-
-
-def test_a_rig_file_is_saved_by_keys(browser, app, tmp_path):
-    opened = DesignPage(browser, app)
-    opened.type("change-damping", 1.5)
-    opened.page.locator("#design-name").fill("softer")
-    opened.page.keyboard.press("Tab")
-    opened.page.keyboard.press("Enter")
-    opened.page.locator(".saved").get_by_text("softer.toml").first.wait_for()
-    softer = load_rig(tmp_path / "softer.toml")
-    assert softer == load_rig(tmp_path / "mine.toml").changed(damping="x1.5")
-    opened.close()
 
 
 def test_a_reload_keeps_both_designs(browser, app):
@@ -61,25 +47,3 @@ def test_another_base_keeps_the_condition_and_tells_what_it_drops(browser, app):
     opened.page.get_by_text("Done again.").wait_for()
     assert opened.page.evaluate(f"{DESIGN}.stated()") == after
     opened.close()
-
-
-def test_a_rig_that_was_saved_is_opened_as_it_was_heard(browser, app, tmp_path):
-    opened = DesignPage(browser, app)
-    opened.page.locator("#design-motion").select_option("run_up")
-    for key, value in {"run_up-end": 9, "support": 3745, "change-damping": 1.5}.items():
-        opened.type(key, value)
-    opened.page.get_by_role("button", name="Save rig file").click()
-    opened.page.locator(".saved").get_by_text("design.toml").first.wait_for()
-    opened.close()
-    with opened_app(tmp_path / "design.toml", tmp_path / "mine.toml") as app_:
-        opened = DesignPage(browser, app_)
-        assert opened.value("motion") == "run_up"
-        assert (opened.value("run_up-end"), opened.value("support")) == ("9", "3745")
-        opened.type("support", 3000)
-        opened.choose_base("mine.toml")
-        opened.choose_base("design.toml")  # what one is in the midst of stays
-        opened.page.get_by_text("design.toml was saved at others").wait_for()
-        assert (opened.value("motion"), opened.value("support")) == ("run_up", "3000")
-        opened.page.get_by_role("button", name="As the base").click()
-        assert opened.value("support") == "3745"
-        opened.close()

@@ -78,23 +78,6 @@ def test_blocks_joined_are_the_recording_that_simulate_makes(player):
     np.testing.assert_allclose(pressure[:n], expected[:n], atol=1e-5 * np.abs(expected).max())
 
 
-def test_another_support_is_heard_once_its_response_is_known(player):
-    stiff = {"base": "PDMS", "values": {"support": 3745.0}}
-    first = heard(player, [{"base": "PDMS", "values": {}}, None, stiff])
-    assert np.isfinite(first).all()
-    end = time.monotonic() + 6 * PATIENCE  # its process lets all others go first
-    i = 3
-    while player.beside.newest is None and time.monotonic() < end:
-        heard(player, [None], first=i)
-        i += 1
-        time.sleep(0.05)
-    run = player._runs[1].live
-    heard(player, [None, None], first=i)
-    np.testing.assert_array_equal(
-        run.responses.torque_to_pressure, player.beside.newest[1].torque_to_pressure
-    )
-
-
 def test_a_change_that_cannot_be_is_told_and_the_run_goes_on_as_it_was(player):
     heard(player, [PLAIN, None])
     too_tight = replace(setting(PLAIN), interference=0.5)
@@ -202,25 +185,3 @@ def test_a_stream_is_the_recording_that_simulate_makes_and_comes_as_it_is_played
         assert levels["level_dba"] == pytest.approx(found.level_a, abs=1.0)
         assert levels["l_afmax_dba"] == pytest.approx(found.level_af_max, abs=1.0)
         assert app.json("api/design/levels?run=2")["level_dba"] is None
-
-
-def test_a_stream_that_cannot_go_on_ends_and_another_one_begins():
-    with opened_app() as app:
-        status, answer = app.request("api/design/sound", {"run": 1, "serial": 0, "design": {}})
-        assert status == 400
-        assert b"base" in answer
-        assert len(list(streamed(app, 2, 3))) == 3
-        for number in range(3, 9):  # more than go on at once; each is left
-            assert len(list(streamed(app, number, 2))) == 2
-
-
-def test_without_the_token_or_from_another_site_no_sound_comes():
-    said = {"run": 1, "serial": 0, "design": PLAIN}
-    with opened_app() as app:
-        for path in ("sound", "change", "pace", "facts", "rig"):
-            for wrong in (
-                {"token": "wrong"}, {"Origin": "http://evil.example"}, {"Host": "evil.example"},
-            ):  # fmt: skip
-                status, answer = app.request(f"api/design/{path}", said, **wrong)
-                assert status == 403, (path, wrong)
-                assert answer.startswith(b"refused")

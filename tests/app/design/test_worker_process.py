@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
 
 import pytest
 
 from models.errors import ParameterError
 from noise.app.design import design_of
-from noise.app.design_chart import ChartRequest, SuggestionRequest, suggestions_of
+from noise.app.design_chart import SuggestionRequest, suggestions_of
 from noise.app.design_controls import bases_of
 from noise.app.opened import open_paths
 from noise.app.worker_process import WorkerProcess
@@ -44,18 +43,6 @@ def test_only_the_newest_question_is_answered_and_each_once():
         beside.stop()
 
 
-def test_what_cannot_be_answered_is_told_and_the_next_question_is_answered():
-    beside = WorkerProcess("noise.app.design_chart:chart_of")
-    wrong = ChartRequest(setting({}).rig, -5.0, 23.0)
-    try:
-        answer, error = waited(lambda: beside.answer_to(wrong))
-        assert answer is None
-        assert "support" in error
-        assert waited(lambda: beside.answer_to(ChartRequest.of(setting({}, "PDMS"))))[0]
-    finally:
-        beside.stop()
-
-
 @pytest.mark.slow
 def test_the_change_that_is_suggested_ends_the_noise():
     values = {"speed": 5.0}
@@ -78,9 +65,3 @@ def test_the_speed_at_which_help_is_asked_for_is_that_which_is_heard():
     for wrong in ("fast", math.nan, 1e9):
         with pytest.raises(ParameterError, match="speed"):
             SuggestionRequest.of(run_up, {"speed": wrong})
-
-
-def test_charts_are_the_same_whatever_the_motion():
-    one = setting({"motion": "swing", "interference": 0.2})
-    assert ChartRequest.of(one) == ChartRequest.of(setting({}))
-    assert ChartRequest.of(one) != ChartRequest.of(replace(one, temperature=60.0))

@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 
 from noise.base.tables import read_table
-from tests.helpers.browser import until
+from tests.helpers.browser import accessibility_errors
 from tests.helpers.jury_page import JuryPage, pairs, votes
 from tests.helpers.jury_sounds import NAMES, write_tones
 from tests.helpers.opened_app import opened_app
-
-RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 
 
 @pytest.fixture
@@ -64,25 +62,6 @@ def read_table_of(download):
     return read_table(target)[1]
 
 
-def test_while_votes_are_given_no_name_is_in_the_page_or_asked_for(browser, folder):
-    with opened_app(folder) as app:
-        jury = JuryPage(browser, app)
-        jury.page.get_by_text("softest.wav").wait_for()
-        jury.begin()
-        jury.vote("1")
-        jury.turn(2).listen()
-        for name in (*(name.removesuffix(".wav") for name in NAMES), "onerror", ".wav"):
-            assert name not in jury.page.content()
-            assert not any(name in url for url in jury.asked)
-
-        def sounds():
-            return [url for url in jury.asked if "/heard/" in url]
-
-        until(jury.page, lambda: len(sounds()) >= 6)  # of the next comparison, too
-        assert len(sounds()) == len(set(sounds())) == 6  # each has addresses of its own
-        jury.close()
-
-
 def test_what_was_looked_at_before_is_neither_in_the_page_nor_asked_for_nor_heard(browser, folder):
     with opened_app(folder) as app:
         jury = JuryPage(browser, app, tapped=True)
@@ -127,13 +106,8 @@ def test_a_and_b_are_heard_in_step_at_one_gain(browser, folder):
 
 @pytest.mark.parametrize("width", [390, 1280])
 def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, folder, width):
-    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not there")
-
     def check():
-        tags = {"runOnly": {"type": "tag", "values": RULES}}
-        found = axe.Axe().run(jury.page, options=tags).response
-        wrong = [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]]
-        assert wrong == []
+        assert accessibility_errors(jury.page) == []
         assert jury.page.evaluate("document.documentElement.scrollWidth") <= width
 
     with opened_app(folder) as app:

@@ -64,12 +64,6 @@ def test_a_jury_is_asked_without_a_name_and_heard_at_one_gain(app, folder):
             assert level == pytest.approx(0.5 ** NAMES.index(name) / np.sqrt(2.0), rel=0.01)
 
 
-def test_at_equal_loudness_nothing_is_left_of_the_level(app):
-    begun = app.json("api/juries", ASKED | {"played": "equal loudness"})
-    levels = [rms(heard(app, begun["jury"], place, side)) for place in range(6) for side in "ab"]
-    assert max(levels) == pytest.approx(min(levels), rel=0.01)
-
-
 def test_votes_are_answered_by_what_is_next_and_undone(app, folder):
     begun = app.json("api/juries", ASKED | {"listener": "L. Istener"})
     one = f"api/juries/{begun['jury']}"
@@ -82,18 +76,6 @@ def test_votes_are_answered_by_what_is_next_and_undone(app, folder):
     assert app.json(f"{one}/undo", {"place": 0})["waiting"] == 0
     assert app.request(f"{one}/undo", {"place": 0})[0] == 400
     assert begun["total"] == 6
-
-
-def test_the_result_has_names_and_is_a_table(app, folder):
-    jury = app.json("api/juries", ASKED)["jury"]
-    for place, (first, second) in enumerate(planned(folder, jury)):
-        said = "first" if NAMES.index(first) < NAMES.index(second) else "second"
-        app.json(f"api/juries/{jury}/vote", {"place": place, "vote": said, "seconds": 1})
-    found = app.json(f"api/juries/{jury}/result")
-    assert [one["sound"] for one in found["sounds"]] == list(NAMES)
-    assert (found["voted"], found["remarks"]) == (6, [])
-    text = app.request(f"api/juries/{jury}/result.csv")[1].decode()
-    assert text.splitlines()[1].startswith(f"{jury},,Which is louder?,one gain,loudest.wav,")
 
 
 @pytest.mark.parametrize(
@@ -118,18 +100,6 @@ def test_what_cannot_be_compared_is_said_and_begins_nothing(app, said, told):
     assert status == 400
     assert told in answer.decode()
     assert len(app.json("api/juries")["juries"]) == before
-
-
-@pytest.mark.parametrize("path", ["api/juries", "api/juries/1/heard/0/a", "api/juries/1/result"])
-def test_without_the_token_there_is_nothing(app, path):
-    assert app.request(path, token="x")[0] == 403
-
-
-def test_a_vote_from_another_site_is_none(app):
-    jury = app.json("api/juries", ASKED)["jury"]
-    vote = {"place": 0, "vote": "first", "seconds": 1}
-    assert app.request(f"api/juries/{jury}/vote", vote, Origin="http://x.example")[0] == 403
-    assert app.json(f"api/juries/{jury}")["waiting"] == 0
 
 
 def test_a_jury_whose_sounds_are_gone_keeps_its_result(app, folder, tmp_path):

@@ -8,22 +8,6 @@ from tests.helpers.browser import until
 from tests.helpers.recording_page import HALF, TONE, OpenPage, in_table
 
 
-def test_corrections_by_keys_are_in_the_table_when_the_server_is_killed(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    opened.press("]", "1")
-    opened.saved()
-    app.kill()
-    assert in_table(folder) == [
-        (0.0, 0.5, "none", "classifier"),
-        (0.5, 1.5, "creak", "human"),
-        (1.5, 2.0, "none", "classifier"),
-    ]
-    opened.press("2")  # it goes back, and says so
-    opened.page.locator(".saved").filter(has_text="not saved").wait_for()
-    assert opened.segments()[1] == "creak, 0.50 to 1.50 s, by a person"
-    opened.page.close()
-
-
 def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
     opened = OpenPage(browser, app).open(TONE)
     before = in_table(folder)
@@ -114,33 +98,4 @@ def test_keys_during_a_save_count_in_their_order(browser, app, folder):
         ("squeal", "classifier"),
         ("squeal", "human"),
     ]
-    opened.close()
-
-
-def test_a_page_that_is_loaded_again_undoes_its_own_correction_and_no_others(browser, app, folder):
-    one, other = (OpenPage(browser, app).open(name) for name in (TONE, HALF))
-    one.press("1")
-    one.saved()
-    other.press("1")
-    other.saved()
-    one.page.reload()
-    one.open(TONE)
-    one.undo()
-    assert in_table(folder)[0][2:] == ("none", "classifier")
-    assert in_table(folder, HALF)[0][2:] == ("creak", "human")
-    for opened in (one, other):
-        opened.close()
-
-
-def test_the_program_is_not_stopped_while_a_correction_is_saved(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    go_on = opened.holding("segments")
-    opened.press("1")
-    opened.page.locator("#stop").click()
-    opened.page.locator("#status").filter(has_text="Not stopped").wait_for()
-    go_on()
-    opened.saved()
-    opened.page.locator("#stop").click()
-    opened.page.get_by_text("Stopped.").wait_for()
-    assert in_table(folder)[0][2:] == ("creak", "human")
     opened.close()

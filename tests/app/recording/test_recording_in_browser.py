@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
-from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
 import pytest
 
+from tests.helpers.browser import accessibility_errors
 from tests.helpers.opened_app import opened_app
 from tests.helpers.recording_page import HALF, RATE, TONE, OpenPage, write_sounds
-
-RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 
 
 @pytest.fixture(scope="module")
@@ -49,40 +47,6 @@ def test_the_cursor_reads_time_frequency_and_level_of_a_known_tone(browser, show
     )
     assert max(levels[0]) < 60  # dark where the tone is
     assert min(levels[1]) > 240  # white where nothing is
-    opened.close()
-
-
-def test_zoom_by_wheel_keeps_what_is_under_the_pointer(browser, shown):
-    opened = OpenPage(browser, shown).open(TONE)
-    x, y = opened.at(1.5)
-    border = opened.page.locator(".handle").nth(1)
-    opened.page.mouse.move(x, y)
-    start = 1.5 - 1.5 * np.exp(-0.0015 * 3 * 400)
-
-    def is_of_the_view(request):
-        asked = parse_qs(urlsplit(request.url).query)
-        return float(asked.get("start", ["nan"])[0]) == pytest.approx(start, abs=0.005)
-
-    with opened.page.expect_request(is_of_the_view):
-        for _ in range(3):
-            opened.page.mouse.wheel(0, -400)
-    assert border.is_visible()
-    box = border.bounding_box()
-    assert box["x"] + box["width"] / 2 == pytest.approx(x, abs=2)
-    opened.press("0")
-    opened.page.wait_for_function("() => !document.querySelector('.handle').hidden")
-    opened.close()
-
-
-def test_what_the_classifier_gives_less_than_a_half_is_said(browser, shown):
-    opened = OpenPage(browser, shown).open(HALF)
-    assert opened.page.get_by_text("less than a half").is_visible()
-    assert opened.page.locator(".shares dd .number").all_text_contents()[2:4] == ["0.40", "0.54"]
-    opened.open(TONE)
-    opened.press("]")
-    opened.page.get_by_text("By the classifier.", exact=True).wait_for()
-    told = opened.page.locator("div.chosen:not(.segment)").filter(has_text="squeal")
-    assert told.text_content() == "squeal 0.50\N{EN DASH}1.50 s, 1000 Hz, 94.0 dB(A)"
     opened.close()
 
 
@@ -143,13 +107,9 @@ def test_a_band_is_heard_and_nothing_beside_it(browser, shown):
 
 @pytest.mark.parametrize("width", [390, 1280])
 def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, shown, width):
-    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not there")
     opened = OpenPage(browser, shown, width).open(TONE)
     for key in ("h", "?"):
         opened.press(key)
-        tags = {"runOnly": {"type": "tag", "values": RULES}}
-        found = axe.Axe().run(opened.page, options=tags).response
-        wrong = [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]]
-        assert wrong == []
+        assert accessibility_errors(opened.page) == []
     assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
     opened.close()

@@ -46,13 +46,6 @@ def test_what_a_person_agrees_with_is_by_a_person_and_what_nobody_touched_is_not
     assert [r["label_source"] for r in found] == ["classifier", "human"]
 
 
-def test_a_track_without_times_stays_as_it_was_beside_one_that_is_corrected(folder):
-    (folder / "labels.csv").write_text("file,channel,label\na.wav,1,creak\na.wav,2,none\n")
-    said = [Correction(0.0, 2.0, "squeal", "1", confirmed=True), Correction(0.0, 2.0, "none", "2")]
-    found = correct(labels_of(folder), 0, said)
-    assert [(r["label"], r["label_source"]) for r in found] == [("squeal", "human"), ("none", None)]
-
-
 def test_a_correction_before_there_is_a_table_outlives_the_labelling(folder):
     labels = labels_of(folder)
     correct(labels, 1, [Correction(0.0, 2.0, "squawk")])
@@ -73,13 +66,6 @@ def test_rows_arrive_from_the_journal_and_never_over_a_correction(folder):
     assert labels.undo()[1][0]["label"] == "creak"
 
 
-def test_what_others_write_into_the_table_is_taken_and_kept(tabled):
-    labels = labels_of(tabled)
-    write_table(tabled / "labels.csv", COLUMNS, [row(name, "creak") for name in NAMES])
-    correct(labels, 0, [Correction(0.0, 2.0, "squeal")])
-    assert [label for *_, label, _ in in_table(tabled)] == ["squeal", "creak", "creak"]
-
-
 def test_rows_and_columns_that_are_not_ours_stay(folder):
     rows = [row("a.wav") | {"remark": "left door"}, row("gone.wav") | {"remark": "sold"}]
     write_table(folder / "labels.csv", (*COLUMNS, "remark"), rows)
@@ -87,15 +73,6 @@ def test_rows_and_columns_that_are_not_ours_stay(folder):
     with (folder / "labels.csv").open() as file:
         found = [(r["file"], r["label"], r["remark"]) for r in csv.DictReader(file)]
     assert found == [("a.wav", "creak", "left door"), ("gone.wav", "none", "sold")]
-
-
-def test_columns_of_ones_own_stay_beside_their_time_when_all_is_labelled_again(folder):
-    before = [row("a.wav", end=1.0, remark="left"), row("a.wav", start=1.0, remark="right")]
-    before += [row("b.wav", "creak", label_source="human", remark="sold")]
-    write_table(folder / "labels.csv", (*COLUMNS, "remark"), before)
-    new = [row("a.wav", start=0.8), row("a.wav", end=0.8), row("b.wav"), row("c.wav")]
-    found = with_corrections(folder / "labels.csv", new)
-    assert [r["remark"] for r in found] == ["right", "left", "sold", None]
 
 
 def test_times_with_more_decimals_than_are_told_apart_leave_a_segment_as_it_was(folder):
@@ -128,19 +105,6 @@ def test_a_table_that_has_become_none_is_not_written_over_however_often_it_is_re
     with pytest.raises(RecordingError):
         labels.correct(0, [Correction(0.0, 2.0, "creak")], seen)
     assert (tabled / "labels.csv").read_bytes() == broken
-
-
-def test_a_row_that_cannot_be_used_is_told_before_corrections_are_lost_by_it(folder):
-    rows = [row("a.wav", "creak", label_source="human"), row("b.wav") | {"label": "Creaky"}]
-    write_table(folder / "labels.csv", COLUMNS, rows)
-    with pytest.raises(ParameterError, match=r"row 2 has label 'creaky'.* would be lost"):
-        with_corrections(folder / "labels.csv", [])
-
-
-def test_a_table_that_is_none_is_left_as_it_is(folder):
-    (folder / "labels.csv").write_text("x,y\n1,2\n")
-    with pytest.raises(RecordingError, match="no label table"):
-        labels_of(folder)
 
 
 @pytest.mark.parametrize(

@@ -38,14 +38,6 @@ def test_what_was_said_of_other_labels_than_those_of_the_table_is_refused(tabled
         labels.undo()
 
 
-def test_the_same_labels_written_anew_are_those_that_were_seen(tabled):
-    labels = labels_of(tabled)
-    seen = version(labels.rows(0))
-    write_table(tabled / "labels.csv", COLUMNS, [row(n, p_none=0.5) for n in NAMES])
-    labels.correct(0, [Correction(0.0, 2.0, "squeal")], seen)
-    assert in_table(tabled)[0][3] == "squeal"
-
-
 def test_who_names_a_recording_before_the_classifier_has_is_heard_and_not_over_another(folder):
     labels, other = labels_of(folder), labels_of(folder)
     seen = version(labels.rows(0))
