@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from models.rig import Rig
 from noise.app.requests import number
 from noise.base.labels import NAMED
+from noise.pages.maps import MAP_SIZE, ConditionMap, areas_of, axis_of, cells_of
+from noise.pages.page import map_html
 from noise.screening.design.design import Design as Screened, Use
 from noise.screening.map.batches import batch_evaluator
 from noise.screening.map.grid import shared_grid
@@ -89,20 +91,23 @@ class SuggestionRequest:
 
 _SPEEDS, _FITS = 16, 7
 _SIMULATIONS = 60
+_HEIGHT = 200.0
+"""Of its drawing [px]."""
+
 _FASTEST = 13.0
 """Of a chart of a bushing that states none [rad/s]."""
 
 
 def chart_of(asked: ChartRequest) -> dict[str, object]:
-    """Return labels over interference (rows) and speed, with both axes.
+    """Return the map of noises over speed and interference as a piece of a page, and labels.
 
     Examples
     --------
     >>> from models.rig_file import load_material_rig
     >>> from noise.app.design_chart import ChartRequest
     >>> found = chart_of(ChartRequest(load_material_rig("PDMS"), 2214.0, 23.0))
-    >>> found["interference_mm"][0], found["speed_rad_s"][-1], found["labels"][0][0]
-    (0.254, 17.0, 'none')
+    >>> found["labels"][0][0], 'data-label="none"' in found["html"]
+    ('none', True)
     """
     rig = asked.rig
     low, high = rig.interference_range
@@ -116,12 +121,13 @@ def chart_of(asked: ChartRequest) -> dict[str, object]:
     grid = shared_grid([Screened("design", rig)], use)
     with batch_evaluator(workers=1) as evaluate:
         found = map_design(rig, grid, evaluate, design="design", most=_SIMULATIONS)
-    return {
-        "speed_rad_s": list(grid.speed),
-        "interference_mm": [round(1e3 * fit, 6) for fit in grid.interference],
-        "labels": found.label[0, 0].tolist(),
-        "levels_dba": [[_level(one) for one in row] for row in found.level[0, 0]],
-    }
+    speed, fit = np.meshgrid(grid.speed, 1e3 * np.array(grid.interference))
+    cells, labels = cells_of(speed.ravel(), fit.ravel().round(6)), found.label[0, 0]
+    across = axis_of(cells.speed_edges, edges=True)
+    up = axis_of(cells.interference_edges, edges=True)
+    areas = areas_of(cells, labels.ravel().tolist(), across, up, (MAP_SIZE[0], _HEIGHT))
+    noises = ConditionMap("Noise", across, up, areas, (), height=_HEIGHT, compared=True)
+    return {"labels": labels.tolist(), "html": map_html(noises)}
 
 
 def suggestions_of(asked: SuggestionRequest) -> dict[str, object]:
@@ -157,7 +163,3 @@ def suggestions_of(asked: SuggestionRequest) -> dict[str, object]:
         for one in enough
     ]
     return {"noise": noise, "speed_rad_s": asked.speed, "changes": changes}
-
-
-def _level(value: float) -> float | None:
-    return round(float(value), 1) if math.isfinite(value) else None

@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import soundfile
@@ -35,14 +35,12 @@ from noise.diagnosis.text.words import number
 from noise.pages import blocks as b
 from noise.pages.cards import facts_of
 from noise.pages.clips import RATE, Clip, Entry, common_gain, make_clips
-from noise.pages.figures import COLUMNS, Panel, as_svg, new_panel, panel_frequencies
+from noise.pages.figures import COLUMNS, Line, Panel, lines_panel
 from noise.pictures.figure import KINDS
 from noise.pictures.recording import recorded_levels, recorded_orders
 from noise.recordings.meaning import check_finite
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from noise.diagnosis.evidence.friction_curves import FrictionCurves
     from noise.diagnosis.outcome import Diagnosis
 
@@ -186,6 +184,13 @@ def _signal(recording: Recording, kind: str) -> NDArray[np.float64] | None:
     return np.asarray(recording.samples[row], dtype=np.float64)
 
 
+def _line(role: str, x: NDArray[np.float64], y: NDArray[np.float64], **more: Any) -> Line:
+    """Return a curve as all of its role are drawn."""
+    curve = CURVES[role]
+    style = "dashes" if curve.dashed else "-"
+    return Line(x, y, curve.colour, curve.label, curve.width, style, **more)
+
+
 def _cycles(runs: dict[str, Recording]) -> Panel:
     signals = {
         name: (signal, recording.rate)
@@ -193,30 +198,27 @@ def _cycles(runs: dict[str, Recording]) -> Panel:
         if (signal := _signal(recording, "torque")) is not None
     }
     length = _length(*signals["measured"]) if "measured" in signals else _LONGEST
-    figure, axes = new_panel(
-        "Torque, around a slip of each", "Time from the slip [ms]", "Torque [Nm]"
-    )
-    unaligned, low, high = [], np.inf, -np.inf
+    lines, unaligned, low, high = [], [], np.inf, -np.inf
     for name, (signal, rate) in signals.items():
         start, aligned = cycle_window(signal, rate, length)
         first = round(start * rate)
         piece = signal[first : first + round(length * rate) + 1]
         time = (np.arange(first, first + piece.size) / rate - start - _LEAD * length) * 1e3
-        draw(axes, name, *thinned(time, piece, columns=COLUMNS))
+        lines.append(_line(name, *thinned(time, piece, columns=COLUMNS)))
         low, high = min(low, float(piece.min())), max(high, float(piece.max()))
-        if not aligned:
-            unaligned.append(CURVES[name].label)
-    axes.set_xlim(-1e3 * _LEAD * length, 1e3 * (1.0 - _LEAD) * length)
-    axes.set_ylim(*padded(low, high, 0.1))
+        unaligned += [] if aligned else [CURVES[name].label]
+    title, across = "Torque, around a slip of each", "Time from the slip [ms]"
     alt = f"Torque over {1e3 * length:.0f} ms around a slip, {low:.3g} to {high:.3g} Nm."
     if unaligned:
         text = f"no slip: {', '.join(unaligned)}"
-        axes.set_xlabel(f"Time from the slip [ms]; {text}")
+        across, alt = f"{across}; {text}", f"{alt} There is {text}."
         if len(unaligned) == len(signals):
-            axes.set_title("Torque, in which nothing slips", loc="left", fontweight="bold")
-            axes.set_xlabel("Time [ms]")
-        alt = f"{alt} There is {text}."
-    return Panel(as_svg(figure), alt)
+            title, across = "Torque, in which nothing slips", "Time [ms]"
+    return lines_panel(
+        title, across, "Torque [Nm]", lines, alt,
+        across_ends=(-1e3 * _LEAD * length, 1e3 * (1.0 - _LEAD) * length),
+        up_ends=padded(low, high, 0.1),
+    )  # fmt: skip
 
 
 def _length(torque: NDArray[np.float64], rate: float) -> float:
@@ -229,56 +231,24 @@ def _length(torque: NDArray[np.float64], rate: float) -> float:
 def _spectra(runs: dict[str, Recording], kind: str) -> Panel:
     about = KINDS[kind]
     reference = about.density.removesuffix("²/Hz").strip("()")
-    figure, axes = new_panel(f"{about.name}, sixth octaves", "Frequency [Hz]", f"dB re {reference}")
-    tops, bottoms, overall = [], [], []
+    lines, overall, ends = [], [], None
     for name, recording in runs.items():
         signal = _signal(recording, kind)
         if signal is None:
             continue
         middle, level = sixth_octaves(signal, recording.rate, about.reference)
-        level = np.where(np.isfinite(level), level, np.nan)
-        draw(axes, name, middle, level)
-        if np.isfinite(level).any():
-            tops.append(float(np.nanmax(level)))
-            bottoms.append(float(np.nanmin(level)))
+        lines.append(_line(name, middle, np.where(np.isfinite(level), level, np.nan)))
         square = float(np.mean((signal - signal.mean()) ** 2))
         words = f"{float(band_levels(square, about.reference)):.1f} dB" if square else "silent"
         overall.append(f"{CURVES[name].label} {words}")
-    if tops:
-        top = 5.0 * np.ceil((max(tops) + 3.0) / 5.0)
-        axes.set_ylim(max(5.0 * np.floor((min(bottoms) - 1.0) / 5.0), top - _RANGE), top)
-    panel_frequencies(axes, _LOWEST, _HIGHEST)
-    return Panel(as_svg(figure), f"{about.name} in sixth octaves: over all, {', '.join(overall)}.")
-
-
-def draw(
-    axes: Axes, role: str, x: NDArray[np.float64], y: NDArray[np.float64], marker: str = ""
-) -> None:
-    """Draw a curve as all of its role are drawn.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    role : str
-        A key of `CURVES`.
-    x, y : ndarray, shape (n,)
-        In the units of the axes [-].
-    marker : str
-        Of matplotlib; none by default.
-
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> axes = Figure().subplots()
-    >>> draw(axes, "before", np.zeros(2), np.ones(2))
-    >>> axes.lines[0].get_label()
-    'nominal model'
-    """
-    curve = CURVES[role]
-    style = (0.0, (4.0, 1.6)) if curve.dashed else "-"
-    axes.plot(
-        x, y, color=curve.colour, linewidth=curve.width, linestyle=style, label=curve.label,
-        marker=marker, markersize=3.0,
+    known = np.concatenate([one.y[np.isfinite(one.y)] for one in lines] or [np.empty(0)])
+    if known.size:
+        top = 5.0 * math.ceil((float(known.max()) + 3.0) / 5.0)
+        ends = max(5.0 * math.floor((float(known.min()) - 1.0) / 5.0), top - _RANGE), top
+    return lines_panel(
+        f"{about.name}, sixth octaves", "Frequency [Hz]", f"dB re {reference}", lines,
+        f"{about.name} in sixth octaves: over all, {', '.join(overall)}.",
+        up_ends=ends, frequencies=(_LOWEST, _HIGHEST),
     )  # fmt: skip
 
 
@@ -317,21 +287,16 @@ def contact_panels(contacts: Mapping[str, FrictionCurves]) -> tuple[Panel, ...]:
 
 def _panel(over: str, contacts: Mapping[str, FrictionCurves]) -> Panel:
     title, across, scale = _OVER[over]
-    figure, axes = new_panel(title, across, "Torque [Nm]")
-    words = []
+    lines, words = [], []
     for name, friction_curves in contacts.items():
-        torque_curve, curve = getattr(friction_curves, over), CURVES[name]
-        if not torque_curve.x.size:
-            continue
-        x = scale * torque_curve.x
-        axes.fill_between(
-            x, torque_curve.low, torque_curve.high, color=curve.colour, alpha=0.18, linewidth=0
-        )
-        draw(axes, name, x, torque_curve.torque, marker="o")
-        words.append(
-            f"{curve.label} {torque_curve.torque.min():.3g} to {torque_curve.torque.max():.3g} Nm"
-        )
-    return Panel(as_svg(figure), f"{title}, over {across.lower()}: {'; '.join(words)}.")
+        found = getattr(friction_curves, over)
+        if found.x.size:
+            more = {"marker": "o", "low": found.low, "high": found.high}
+            lines.append(_line(name, scale * found.x, found.torque, **more))
+            ends = f"{found.torque.min():.3g} to {found.torque.max():.3g} Nm"
+            words.append(f"{CURVES[name].label} {ends}")
+    alt = f"{title}, over {across.lower()}: {'; '.join(words)}."
+    return lines_panel(title, across, "Torque [Nm]", lines, alt)
 
 
 LONGEST = 4.0

@@ -74,18 +74,17 @@ def new_panel(title: str, across: str, up: str) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def panel_frequencies(axes: Axes, low: float, high: float) -> None:
-    """Make the horizontal axis one of frequency [Hz], with as many ticks as a panel has room for.
+def as_svg(figure: Figure) -> bytes:
+    """Write a figure out, the same one as the same bytes.
 
     Examples
     --------
-    >>> _, axes = new_panel("Torque", "Frequency [Hz]", "dB")
-    >>> panel_frequencies(axes, 20.0, 15e3)
-    >>> axes.get_xscale()
-    'log'
+    >>> as_svg(Figure())[:5]
+    b'<?xml'
     """
-    frequency_axis(axes, low, high)
-    axes.xaxis.set_major_locator(FixedLocator([tick for tick in _TICKS if low <= tick <= high]))
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+    return buffer.getvalue()
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +99,9 @@ class Line:
     width : float
         [point]
     style, marker : str
-        Of matplotlib.
+        Of matplotlib; "dashes" are long ones.
+    low, high : ndarray, shape (n,), optional
+        Between which it is coloured, in the unit of the vertical axis [-].
     """
 
     x: NDArray[np.floating[Any]]
@@ -110,6 +111,13 @@ class Line:
     width: float = 1.5
     style: str = "-"
     marker: str = ""
+    low: NDArray[np.floating[Any]] | None = None
+    high: NDArray[np.floating[Any]] | None = None
+
+
+Ends = tuple[float, float]
+
+_STYLES: dict[str, Any] = {"": "none", "dashes": (0.0, (4.0, 2.0))}
 
 
 def lines_panel(
@@ -119,11 +127,13 @@ def lines_panel(
     lines: Sequence[Line],
     alt: str,
     *,
+    across_ends: Ends | None = None,
+    up_ends: Ends | None = None,
+    frequencies: Ends | None = None,
+    steps: int = 0,
     legend: str = "",
-    bands: Sequence[tuple[float, float, str]] = (),
-    above: float = 0.0,
-    below: float = 0.0,
-    from_zero: bool = False,
+    room: Ends = (0.0, 0.0),
+    inside: str = "",
 ) -> Panel:
     """Draw lines, to be called within `models.drawing.styled`.
 
@@ -133,14 +143,18 @@ def lines_panel(
     lines : sequence of Line
     alt : str
         What the panel shows, in words.
+    across_ends, up_ends : tuple of float, optional
+        Ends of the axes, in their units [-]; by default what the lines need.
+    frequencies : tuple of float, optional
+        Ends of the horizontal axis where it is one of frequency [Hz].
+    steps : int
+        Into how many steps the vertical axis is divided at most; 0 leaves it to matplotlib [-].
     legend : str
         Where it stands; none by default.
-    bands : sequence of (float, float, str)
-        Values between which the panel is coloured [unit of `up`], and colours.
-    above, below : float
-        Room for the legend, as a share of what the lines span [-].
-    from_zero : bool
-        Whether the vertical axis begins there.
+    room : tuple of float
+        For it below and above the lines, as a share of what they span [-].
+    inside : str
+        What stands at the bottom of the panel.
 
     Examples
     --------
@@ -150,32 +164,29 @@ def lines_panel(
     """
     figure, axes = new_panel(title, across, up)
     for one in lines:
+        if one.low is not None and one.high is not None:
+            axes.fill_between(one.x, one.low, one.high, color=one.colour, alpha=0.18, linewidth=0)
         axes.plot(
             one.x, one.y, color=one.colour, label=one.label or None, lw=one.width,
-            ls=one.style or "none", marker=one.marker, ms=2 if one.marker == "." else 5,
+            ls=_STYLES.get(one.style, one.style), marker=one.marker,
+            ms=2 if one.marker == "." else 4,
         )  # fmt: skip
-    for low, high, colour in bands:
-        axes.axhspan(low, high, color=colour, alpha=0.18, lw=0)
-    low, high = axes.get_ylim()
-    axes.set_ylim(low - below * (high - low), high + above * (high - low))
-    if from_zero:
-        axes.set_ylim(0.0, 1.12 * high)
+    low, high = up_ends or axes.get_ylim()
+    axes.set_ylim(low - room[0] * (high - low), high + room[1] * (high - low))
+    if steps:
+        axes.yaxis.set_major_locator(MaxNLocator(steps, steps=[1, 2, 2.5, 5, 10]))
+        axes.ticklabel_format(axis="y", style="plain", useOffset=False)
+    if across_ends is not None:
+        axes.set_xlim(*across_ends)
+    if frequencies is not None:
+        frequency_axis(axes, *frequencies)
+        ticks = [tick for tick in _TICKS if frequencies[0] <= tick <= frequencies[1]]
+        axes.xaxis.set_major_locator(FixedLocator(ticks))
+    if inside:
+        axes.text(0.5, 0.08, inside, transform=axes.transAxes, ha="center")
     if legend:
         axes.legend(loc=legend, fontsize=8)  # type: ignore[call-overload]
     return Panel(as_svg(figure), alt)
-
-
-def as_svg(figure: Figure) -> bytes:
-    """Write a figure out, the same one as the same bytes.
-
-    Examples
-    --------
-    >>> as_svg(Figure())[:5]
-    b'<?xml'
-    """
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
-    return buffer.getvalue()
 
 
 LOWEST, HIGHEST = 20.0, 15e3
@@ -477,45 +488,39 @@ def _time_panel(trace: Trace, scale: Scale) -> Panel:
     factor, unit = _display_unit(kind, scale.reach, calibrated=trace.calibrated)
     t = np.arange(trace.samples.size, dtype=np.float64) * (1e3 / trace.rate)
     length = 1e3 * trace.samples.size / trace.rate
-    across = f"Time from {trace.start:.3f} s [ms]"
-    figure, axes = new_panel(kind.name, across, f"{kind.name} [{unit}]")
-    axes.plot(
-        *thinned(t, factor * trace.samples, columns=COLUMNS), color=kind.colour, linewidth=1.2
-    )
-    axes.set_xlim(0.0, length)
-    axes.set_ylim(factor * (middle - swing), factor * (middle + swing))
-    axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
-    axes.ticklabel_format(axis="y", style="plain", useOffset=False)
     low, high = factor * float(trace.samples.min()), factor * float(trace.samples.max())
-    alt = (
+    return lines_panel(
+        kind.name, f"Time from {trace.start:.3f} s [ms]", f"{kind.name} [{unit}]",
+        [Line(*thinned(t, factor * trace.samples, columns=COLUMNS), kind.colour, width=1.2)],
         f"{kind.name} over {length:.3g} ms from {trace.start:.3f} s: between {low:.3g} and "
-        f"{high:.3g} {unit}."
-    )
-    return Panel(as_svg(figure), alt)
+        f"{high:.3g} {unit}.",
+        across_ends=(0.0, length),
+        up_ends=(factor * (middle - swing), factor * (middle + swing)),
+        steps=5,
+    )  # fmt: skip
 
 
 def _spectrum_panel(trace: Trace, scale: Scale, frequency: float | None) -> Panel:
     kind = KINDS[trace.kind]
     density = kind.density if trace.calibrated else "FS²/Hz"
-    bottom = scale.top - _DYNAMIC_RANGE
+    inside, bottom = "", scale.top - _DYNAMIC_RANGE
     f, levels = trace.levels
-    figure, axes = new_panel(f"{kind.name}, autospectrum", "Frequency [Hz]", f"dB re {density}")
-    if frequency is not None and LOWEST <= frequency <= HIGHEST:
-        axes.axvline(frequency, color="#777777", linewidth=1.0, linestyle=(0, (4, 3)))
     drawn = np.maximum(levels, bottom - 5.0)
-    curve = thinned(f, drawn, position=np.log(f), columns=COLUMNS)
-    axes.plot(*curve, color=kind.colour, linewidth=1.0)
-    panel_frequencies(axes, LOWEST, HIGHEST)
-    axes.set_ylim(bottom, scale.top)
-    axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    lines = [Line(*thinned(f, drawn, position=np.log(f), columns=COLUMNS), kind.colour, width=1.0)]
+    if frequency is not None and LOWEST <= frequency <= HIGHEST:
+        at, ends = np.full(2, frequency), np.array([bottom, scale.top])
+        lines.insert(0, Line(at, ends, "#777777", width=1.0, style="dashes"))
     alt = f"Autospectrum of the {kind.name.lower()} from 20 Hz to 15 kHz: "
     if levels.max(initial=-math.inf) >= bottom:
         peak = int(levels.argmax())
         alt += f"highest at {f[peak]:.0f} Hz with {levels[peak]:.0f} dB re {density}."
     else:
-        axes.text(0.5, 0.08, "below this axis", transform=axes.transAxes, ha="center")
+        inside = "below this axis"
         alt += f"all below {bottom:.0f} dB re {density}."
-    return Panel(as_svg(figure), alt)
+    return lines_panel(
+        f"{kind.name}, autospectrum", "Frequency [Hz]", f"dB re {density}", lines, alt,
+        up_ends=(bottom, scale.top), frequencies=(LOWEST, HIGHEST), steps=6, inside=inside,
+    )  # fmt: skip
 
 
 def _caption(entry: Sequence[Trace]) -> str:

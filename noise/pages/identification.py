@@ -70,7 +70,7 @@ def _rise(one: Seen) -> Panel:
                  f"rise by k_EFF = {stiffness:.4g} Nm/rad", style="--"),
         ],
         f"Torque over angle: rises by {stiffness:.4g} Nm/rad while the contact sticks.",
-        legend="upper left", above=0.55,
+        legend="upper left", room=(0.0, 0.55),
     )  # fmt: skip
 
 
@@ -105,7 +105,7 @@ def _prediction(forecast: Forecast) -> Panel:
             Line(time, forecast.foretold, VERMILION, "predicted", 1.0),
         ],
         f"Recorded and predicted torque; {100.0 * missed:.1f} % is missed.",
-        legend="lower right", below=0.25,
+        legend="lower right", room=(0.25, 0.0),
     )  # fmt: skip
 
 
@@ -140,7 +140,7 @@ def level_panels(found: Identification) -> tuple[Panel, ...]:
 
 
 def _levels(found: Identification, title: str, up: str, names: tuple[str, ...]) -> Panel:
-    lines, bands, words = [], [], []
+    lines, words, most = [], [], 0.0
     for name, colour in zip(names, (VERMILION, BLUE), strict=False):
         for k, number in enumerate(n for n in found.numbers if n.name == name):
             own = [
@@ -150,13 +150,18 @@ def _levels(found: Identification, title: str, up: str, names: tuple[str, ...]) 
             speeds = np.array([one.measured.condition.speed for one in own], dtype=float)
             values = np.array([one.values[name] for one in own])
             label = f"{name.split('_')[0]}, {1e3 * (number.interference or 0.0):g} mm"
-            marker = _MARKERS[k % len(_MARKERS)]
-            lines.append(Line(speeds, values, colour, label, style="", marker=marker))
-            bands.append((number.low, number.high, colour))
+            marker, ends = _MARKERS[k % len(_MARKERS)], (number.low, number.high)
+            low, high = (np.full(speeds.size, end) for end in ends)
+            order = np.argsort(speeds)
+            lines.append(
+                Line(speeds[order], values[order], colour, label, style="", marker=marker,
+                     low=low, high=high)
+            )  # fmt: skip
+            most = max(most, number.high, *values)
             words.append(f"{label}: {number.value:.4g}")
     return lines_panel(
         title, "Speed of the shaft [rad/s]", up, lines, f"{title}, {up}: {'; '.join(words)}.",
-        legend="lower right", bands=bands, from_zero=True,
+        up_ends=(0.0, 1.17 * most or 1.0), legend="lower right",
     )  # fmt: skip
 
 

@@ -20,7 +20,7 @@ from noise.base.labels import LABEL_LOOKS
 from noise.pages import blocks as b
 from noise.pages.cards import draw_entries, frequency_ticks, scale_picture
 from noise.pages.clips import MOST_RAISED, Clip, Entry, equal_factors
-from noise.pages.maps import MAP_SIZE
+from noise.pages.maps import MAP_SIZE, ConditionMap
 
 PAGE_BYTES, CARD_BYTES, ORDERS_BYTES = 75_000.0, 45_000.0, 10_000.0
 """What a page takes up, and at most each of its sounds beside the sound itself and an order map
@@ -120,6 +120,20 @@ def write_page(path: Path, html: str) -> None:
     with atomic(path) as temporary:
         # Names of files may hold what no UTF-8 can.
         temporary.write_bytes(html.encode("utf-8", "backslashreplace"))
+
+
+def map_html(shown: ConditionMap) -> str:
+    """Return a condition map as a piece of a page, such as of the app.
+
+    Examples
+    --------
+    >>> from noise.pages.maps import axis_of
+    >>> axis = axis_of([0.0, 10.0], edges=True)
+    >>> map_html(ConditionMap("Noise", axis, axis, (), ())).count("<svg")
+    2
+    """
+    blocks = _environment().get_template("blocks.html.j2").module
+    return str(blocks.patterns(LABEL_LOOKS)) + str(blocks.condition_map(shown))  # type: ignore[attr-defined]
 
 
 def as_base64(content: bytes) -> str:

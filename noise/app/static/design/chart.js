@@ -2,9 +2,7 @@
 import { api } from "../api.js";
 import { made } from "../dom.js";
 
-const SVG = "http://www.w3.org/2000/svg", AGAIN = 700, AFTER = 1000; // ms
-const WIDTH = 400, HEIGHT = 136, LEFT = 46, ABOVE = 8, BELOW = 30;
-const MARKS = { creak: "Cr", squawk: "Sk", squeal: "Sl", none: "", unknown: "?" };
+const AGAIN = 700, AFTER = 1000; // ms
 
 export class Chart {
   constructor(panel, design) {
@@ -31,46 +29,25 @@ export class Chart {
     const stated = this.design.stated(), mine = this.following = {};
     const answer = await asked("design/chart", stated, () => mine === this.following && !this.design.hidden());
     if (!answer) return;
-    this.said.textContent = answer.error || "Cr creak, Sk squawk, Sl squeal, blank no noise: at constant speed, at this support and temperature; simulated at some points, told by stability at others.";
-    if (answer.found) this.#draw(answer.found);
-  }
-
-  #draw(found) {
-    this.known = found;
+    this.said.textContent = answer.error || "Cr creak, Sk squawk, Sl squeal: at constant speed, at this support and temperature; simulated at some points, told by stability at others.";
+    if (!answer.found) return;
+    this.known = true;
     this.box.classList.remove("old");
-    const { speed_rad_s: speeds, interference_mm: fits, labels, levels_dba: levels } = found;
-    const svg = node("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": summary(found) });
-    const xs = edges(speeds), ys = edges(fits.length > 1 ? fits : [fits[0] * 0.9, fits[0] * 1.1]);
-    this.x = (speed) => LEFT + (WIDTH - LEFT - 4) * Math.min(1, Math.max(0, (speed - xs[0]) / (xs.at(-1) - xs[0])));
-    this.y = (fit) => ABOVE + (HEIGHT - ABOVE - BELOW) * (1 - Math.min(1, Math.max(0, (fit - ys[0]) / (ys.at(-1) - ys[0]))));
-    labels.forEach((row, j) => row.forEach((label, i) => {
-      const y = fits.length > 1 ? [ys[j], ys[j + 1]] : [ys[0], ys.at(-1)];
-      const left = this.x(xs[i]), width = this.x(xs[i + 1]) - left, top = this.y(y[1]), height = this.y(y[0]) - top;
-      const cell = node("rect", { x: left, y: top, width: width + 0.3, height: height + 0.3, class: `cell ${label}` });
-      const level = levels[j][i] === null ? "" : `, ${levels[j][i]} dB(A)`;
-      cell.append(node("title", {}, `${label} at ${speeds[i].toFixed(1)} rad/s, ${fits[j]} mm${level}`));
-      svg.append(cell);
-      if (MARKS[label]) svg.append(node("text", { x: left + width / 2, y: top + height / 2 + 3, class: `mark ${label}` }, MARKS[label]));
-    }));
-    const top = speeds.at(-1);
-    for (const speed of [0, 2, 4, 6, 8, 10, 12, 16, 20].filter((one) => one <= top)) svg.append(node("text", { x: this.x(speed), y: HEIGHT - 17, class: "tick" }, String(speed)));
-    svg.append(node("text", { x: (LEFT + WIDTH) / 2, y: HEIGHT - 4, class: "tick" }, "speed, rad/s"));
-    for (const fit of [fits[0], fits.at(-1)]) svg.append(node("text", { x: LEFT - 4, y: this.y(fit) + 4, class: "tick end" }, fit.toFixed(3)));
-    svg.append(node("text", { x: LEFT - 4, y: (HEIGHT - BELOW) / 2 + 4, class: "tick end" }, "mm"));
-    this.dot = node("circle", { r: 5, class: "here" });
-    svg.append(this.dot);
-    this.box.replaceChildren(svg);
+    this.box.innerHTML = answer.found.html; // as pages have it
     this.point();
   }
 
   // Where on the map it is.
   point() {
-    if (!this.dot) return;
-    const at = {
-      cx: this.x(Math.abs(this.design.speed ?? this.design.controls.values.get("speed"))).toFixed(1),
-      cy: this.y(this.design.controls.values.get("interference")).toFixed(1),
+    const map = this.box.querySelector(".map"), here = map?.querySelector(".asked");
+    if (!here) return;
+    const { values } = this.design.controls, at = { speed: Math.abs(this.design.speed ?? values.get("speed")), interference: values.get("interference") };
+    const share = (key) => {
+      const [low, high] = map.dataset[key].split(" ").map(Number);
+      return `${(100 * Math.min(1, Math.max(0, (at[key] - low) / (high - low)))).toFixed(1)}%`;
     };
-    for (const [key, value] of Object.entries(at)) if (this.dot.getAttribute(key) !== value) this.dot.setAttribute(key, value);
+    here.hidden = false;
+    Object.assign(here.style, { left: share("speed"), bottom: share("interference") });
   }
 
   async help() {
@@ -111,22 +88,4 @@ async function asked(path, stated, wanted) {
     await new Promise((resolve) => { setTimeout(resolve, AGAIN); });
   }
   return null;
-}
-
-function node(name, attributes, text = "") {
-  const made_ = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) made_.setAttribute(key, value);
-  if (text) made_.textContent = text;
-  return made_;
-}
-
-function edges(values) {
-  const inner = values.slice(1).map((value, i) => (value + values[i]) / 2);
-  return [values[0], ...inner, values.at(-1)];
-}
-
-function summary({ labels }) {
-  const all = labels.flat(), share = (label) => Math.round(100 * all.filter((one) => one === label).length / all.length);
-  const found = ["creak", "squawk", "squeal", "none"].filter((label) => share(label)).map((label) => `${label} ${share(label)} %`);
-  return `Noise over speed and interference: ${found.join(", ")} of the map`;
 }

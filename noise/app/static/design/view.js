@@ -12,7 +12,7 @@ import { Undo } from "./undo.js";
 const LEVELS_EVERY = 500, FACTS_AFTER = 200; // ms
 
 export async function mount(panel) {
-  stylesheet(new URL("./design.css", import.meta.url));
+  for (const name of ["./design.css", "../shared/maps.css"]) stylesheet(new URL(name, import.meta.url));
   const about = await api("design");
   const view = made("div", { className: "design-view" });
   const left = made("div", { className: "left" }), right = made("div", { className: "right" });
