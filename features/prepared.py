@@ -30,12 +30,11 @@ from features.kernels.conditioning import (
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
 from features.kernels.levels import (
     LEAST_SHARE_DB,
-    REFERENCES,
     THESIS_BANDS,
-    a_weighted_level,
+    THIRD_OCTAVE_RESOLUTION,
     band_power,
-    fine_third_octaves,
     relative_db,
+    third_octave_levels,
 )
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.modulation import Modulation, modulation, short_time
@@ -218,11 +217,6 @@ class Prepared:
         return torque_slips(self.samples, self.rate)
 
     @cached_property
-    def level_a(self) -> float:
-        """A-weighted level [dB re the kind's reference]."""
-        return a_weighted_level(self.samples, self.rate, reference=REFERENCES[self.kind])
-
-    @cached_property
     def fine_spectrum(self) -> Spectrum:
         """Of the signal divided by its rms value, over all that the rate holds, in finest bins."""
         return whole_spectrum(self.transform)
@@ -230,7 +224,8 @@ class Prepared:
     @cached_property
     def third_octaves(self) -> dict[str, float]:
         """Levels of the samples as they are [dB re 1 unit], by nominal mid-band frequency."""
-        return fine_third_octaves(self.samples, self.rate, reference=1.0)
+        spectrum = welch(self.samples, self.rate, THIRD_OCTAVE_RESOLUTION)
+        return third_octave_levels(spectrum, reference=1.0)
 
     def thesis_band(self, number: int) -> float:
         """Level of one of the thesis's bands relative to the band described.

@@ -23,6 +23,7 @@ from features.kernels.levels import (
     LEAST_SHARE_DB,
     NOMINAL_THIRD_OCTAVES,
     REFERENCES,
+    a_weighted_level,
     band_power,
     relative_db,
 )
@@ -183,9 +184,8 @@ def _level(p: Prepared) -> float:
 
 
 def _level_a(p: Prepared) -> float:
-    if p.rms == 0.0:
-        return math.nan
-    return p.level_a
+    reference = REFERENCES[p.kind]
+    return a_weighted_level(p.samples, p.rate, reference=reference) if p.rms > 0.0 else math.nan
 
 
 def _hum(p: Prepared) -> float:

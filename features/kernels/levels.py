@@ -51,7 +51,7 @@ _ANTI_ALIAS = 0.9
 _LEAST_BINS = 4
 """Bins that a band must hold for its level to be its own."""
 
-_THIRD_OCTAVE_RESOLUTION = 1.4
+THIRD_OCTAVE_RESOLUTION = 1.4
 """Spacing of the bins [Hz] for one-third octaves: the band at 25 Hz is 5.8 Hz wide."""
 
 _A_POLES = (20.598997, 107.65265, 737.86223, 12194.217)
@@ -147,8 +147,7 @@ def third_octave_levels(spectrum: Spectrum, *, reference: float) -> dict[str, fl
     Parameters
     ----------
     spectrum : Spectrum
-        Its bins should lie closer than a quarter of the lowest band of interest (25 Hz: 5.8 Hz
-        wide); otherwise that band shares its power with its neighbours.
+        `THIRD_OCTAVE_RESOLUTION` is fine enough for the lowest band.
     reference : float
         [unit], for instance `REFERENCES` of the channel's kind.
 
@@ -156,7 +155,8 @@ def third_octave_levels(spectrum: Spectrum, *, reference: float) -> dict[str, fl
     -------
     dict of str to float
         [dB] by nominal mid-band frequency. NaN where the band's upper edge lies above 0.9 times
-        half the sampling rate, where a recorder's anti-aliasing filter has set in.
+        half the sampling rate, where a recorder's anti-aliasing filter has set in, and where it
+        holds fewer than four bins: half a second is too short below 40 Hz.
 
     Examples
     --------
@@ -171,45 +171,9 @@ def third_octave_levels(spectrum: Spectrum, *, reference: float) -> dict[str, fl
     low, _, high = third_octave_edges()
     power = band_power(spectrum, low, high)
     power[high > _ANTI_ALIAS * 0.5 * spectrum.rate] = np.nan
+    power[high - low < _LEAST_BINS * spectrum.spacing] = np.nan
     levels = band_levels(power, reference)
     return dict(zip(NOMINAL_THIRD_OCTAVES, levels.tolist(), strict=True))
-
-
-def fine_third_octaves(
-    x: NDArray[np.float64], rate: float, *, reference: float
-) -> dict[str, float]:
-    """`third_octave_levels` of a signal, from as fine a spectrum as the lowest band needs.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n_samples,)
-        Checked already [unit].
-    rate : float
-        Sampling rate [Hz].
-    reference : float
-        [unit]
-
-    Returns
-    -------
-    dict of str to float
-        [dB] by nominal mid-band frequency; NaN also where the signal is too short for four bins in
-        a band: half a second is below 40 Hz.
-
-    Examples
-    --------
-    >>> hum = np.sin(2 * np.pi * 50 * np.arange(24000) / 48e3)
-    >>> levels = fine_third_octaves(hum, 48e3, reference=1.0)
-    >>> round(levels["50"], 1), levels["25"]
-    (-3.0, nan)
-    """
-    spectrum = welch(x, rate, _THIRD_OCTAVE_RESOLUTION)
-    levels = third_octave_levels(spectrum, reference=reference)
-    low, _, high = third_octave_edges()
-    fine = high - low >= _LEAST_BINS * spectrum.spacing
-    return {
-        band: levels[band] if resolved else float("nan")
-        for band, resolved in zip(NOMINAL_THIRD_OCTAVES, fine, strict=True)
-    }
 
 
 def a_weighting(frequency: ArrayLike) -> NDArray[np.float64]:
@@ -404,7 +368,7 @@ def sound_levels(
     x = x - x.mean()
     level = float(band_levels(np.mean(x**2), reference))
     weighted = weighted_levels(_reader(x), x.size, rate, reference=reference)
-    bands = fine_third_octaves(x, rate, reference=reference)
+    bands = third_octave_levels(welch(x, rate, THIRD_OCTAVE_RESOLUTION), reference=reference)
     return SoundLevels(level, weighted.level_a, weighted.level_af_max, bands)
 
 

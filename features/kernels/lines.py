@@ -274,7 +274,7 @@ def parabola_tops(
     curvature = left - 2.0 * middle + right
     bent = curvature < 0.0
     safe = np.where(bent, curvature, -1.0)
-    place = peaks + np.where(bent, 0.5 * (left - right) / safe, 0.0)
+    place = np.asarray(peaks + np.where(bent, 0.5 * (left - right) / safe, 0.0), np.float64)
     return place, middle - np.where(bent, (left - right) ** 2 / (8.0 * safe), 0.0)
 
 

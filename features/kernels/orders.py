@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from features.kernels.conditioning import checked_signal
 from models.blocks import Read
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
@@ -67,48 +66,6 @@ class OrderMap:
 
 
 def order_map(
-    signal: ArrayLike, rate: float, speed: ArrayLike, *, reference: float = REFERENCE_PRESSURE
-) -> OrderMap:
-    """Levels of a signal by the shaft's speed and by order.
-
-    Parameters
-    ----------
-    signal : array_like, shape (n_samples,)
-        In any unit, such as [Pa].
-    rate : float
-        Sampling rate [Hz].
-    speed : array_like, shape (n_samples,)
-        Of the shaft [rad/s], in either direction.
-    reference : float
-        Of the levels, in the [unit] of the signal.
-
-    Returns
-    -------
-    OrderMap
-
-    Raises
-    ------
-    ParameterError
-        A signal that cannot be analysed or is shorter than a frame, or a shaft that stands.
-
-    Examples
-    --------
-    >>> speed = np.linspace(2.0, 10.0, 96000)
-    >>> turned = np.cumsum(speed) / 48e3
-    >>> found = order_map(np.sin(2000 * turned), 48e3, speed)  # 2000 times a revolution
-    >>> strongest = found.order_edges[np.nanargmax(found.level, axis=0)]
-    >>> bool(np.all(np.abs(strongest / 2000 - 1) < 0.1))
-    True
-    """
-    x, shaft = checked_signal(signal, rate), np.asarray(speed, dtype=np.float64)
-    if shaft.size != x.size:
-        raise ParameterError("an order map needs a speed for each sample")
-    return order_map_of(
-        lambda first, last: x[first:last], x.size, rate, shaft, rate, reference=reference
-    )
-
-
-def order_map_of(
     read: Read,
     n_samples: int,
     rate: float,
@@ -117,7 +74,7 @@ def order_map_of(
     *,
     reference: float = REFERENCE_PRESSURE,
 ) -> OrderMap:
-    """`order_map` of a signal that need not be in memory as a whole.
+    """Levels of a signal by the shaft's speed and by order.
 
     Parameters
     ----------
@@ -128,7 +85,7 @@ def order_map_of(
     rate : float
         Sampling rate [Hz].
     speed : ndarray, shape (n_speeds,)
-        Of the shaft [rad/s].
+        Of the shaft [rad/s], in either direction.
     speed_rate : float
         Sampling rate of the speed [Hz].
     reference : float
@@ -141,7 +98,16 @@ def order_map_of(
     Raises
     ------
     ParameterError
-        As `order_map`.
+        A signal that is shorter than a frame, or a shaft that stands.
+
+    Examples
+    --------
+    >>> speed = np.linspace(2.0, 10.0, 96000)
+    >>> sound = np.sin(2000 * np.cumsum(speed) / 48e3)  # 2000 times a revolution
+    >>> found = order_map(lambda first, last: sound[first:last], 96000, 48e3, speed, 48e3)
+    >>> strongest = found.order_edges[np.nanargmax(found.level, axis=0)]
+    >>> bool(np.all(np.abs(strongest / 2000 - 1) < 0.1))
+    True
     """
     magnitude = np.abs(speed)
     length, hop = round(_FRAME * rate), max(1, round(_HOP * rate))

@@ -223,7 +223,9 @@ def orders_display(orders: OrderMap, highest: float) -> OrdersDisplay:
     --------
     >>> from features.kernels.orders import order_map
     >>> speed = np.linspace(1.0, 11.0, 48000)
-    >>> shown = orders_display(order_map(np.sin(2000 * np.cumsum(speed) / 24e3), 24e3, speed), 90.0)
+    >>> sound = np.sin(2000 * np.cumsum(speed) / 24e3)
+    >>> found = order_map(lambda first, last: sound[first:last], 48000, 24e3, speed, 24e3)
+    >>> shown = orders_display(found, 90.0)
     >>> [words for _, words in shown.speeds], [words for _, words in shown.orders]
     (['2', '4', '6', '8', '10'], ['100', '1k', '10k'])
     """

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.levels import fast_level_pieces
-from features.kernels.orders import order_map_of, speed_of_angle
+from features.kernels.orders import order_map, speed_of_angle
 from models.blocks import in_pieces, n_samples_of, reader_of
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
@@ -271,7 +271,7 @@ def recorded_orders(recording: Recording | RecordingBlocks) -> OrderMap | None:
     if fastest <= max(_RUN_UP * slowest, 0.05):
         return None
     try:
-        found = order_map_of(
+        found = order_map(
             reader_of(recording, row), n_samples_of(recording), recording.rate, values, rate,
             reference=_reference(recording),
         )  # fmt: skip

@@ -10,7 +10,7 @@ from hypothesis import given, settings, strategies as st
 from scipy.signal import welch
 
 from features.kernels.conditioning import band_analytic, band_signal, forward
-from features.kernels.orders import order_map
+from features.kernels.orders import order_map as order_map_of
 from features.kernels.spectra import autospectrum, spectral_shape
 from models.errors import ParameterError
 
@@ -84,6 +84,12 @@ def test_a_band_keeps_what_lies_inside_and_drops_what_lies_outside(rate):
 RATE = 24_000.0
 
 
+def order_map(signal, rate, speed, **more):
+    return order_map_of(
+        lambda first, last: signal[first:last], signal.size, rate, speed, rate, **more
+    )
+
+
 def strongest(found):
     orders = np.sqrt(found.order_edges[:-1] * found.order_edges[1:])
     return orders[np.nanargmax(found.level, axis=0)]
@@ -110,7 +116,6 @@ def test_a_tone_has_its_level_at_every_speed():
     ("signal", "speed", "said"),
     [
         (np.zeros(100), np.ones(100), "0.085 s"),
-        (np.zeros(24_000), np.ones(23_000), "a speed for each sample"),
         (np.ones(24_000), np.zeros(24_000), "stands"),
     ],
 )
