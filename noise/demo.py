@@ -1,6 +1,8 @@
 """Demonstration: the rig's three noises and a silent rubber, from physics to a page in one call.
 
 The conditions are those of the thesis's Figures 5.21, 5.22 and 5.24, and PDMS for comparison.
+Hammer hits on the modelled clamp and beams come along, to try the way from hits to a rig file on:
+the bushing is out, and the hammer strikes the clamp `ARM` from its axis.
 """
 
 from __future__ import annotations
@@ -13,15 +15,16 @@ import numpy as np
 
 from features.recording import recording_features
 from features.table import recording_feature_names
+from models.radiation.rig_response import impulse_responses
 from models.rig_file import load_material_rig
+from models.transfer_functions.filtering import convolve
 from noise.audio.audio_file import write_audio
 from noise.audio.gain import QUIETEST_FULL_SCALE, common_full_scale
 from noise.audio.sound import audible
-from noise.base.files import locked
+from noise.base.files import atomic, locked
 from noise.base.progress import say, track
 from noise.base.tables import write_table
 from noise.classifier import load_classifier
-from noise.demo_hits import write_hits
 from noise.labels.corrections import with_corrections
 from noise.labels.rows import label_rows
 from noise.labels.segments import file_label, label_recording
@@ -33,8 +36,6 @@ from sim.run import simulate
 if TYPE_CHECKING:
     from models.recording import Recording
     from noise.labels.segments import Segment
-
-__all__ = ["CASES", "Case", "run_demo"]
 
 
 @dataclass(frozen=True)
@@ -143,3 +144,54 @@ def _entry(case: Case, recording: Recording, segments: list[Segment], audio: Pat
         note=f"Simulated: {case.source} of De Togni's thesis.",
         full_scale=full_scale,
     )
+
+
+ARM = 0.05
+"""Lever of the hammer [m]."""
+
+N_HITS = 5
+
+_HIT_SUPPORT = 2214.0  # Nm/rad
+_HIT_RATE = 25_600  # Hz
+_HIT_SECONDS = 0.8  # the response has died away by then
+_BLOW_START = 0.01  # of the blow [s]
+_BLOW = 0.25e-3  # its length, with a hard tip [s]
+_FORCE = (40.0, 90.0)  # N
+_FORCE_NOISE, _ACCELERATION_NOISE = 0.02, 0.02  # rms, N and m/s2
+
+
+def write_hits(folder: Path, rng: np.random.Generator) -> None:
+    """Write `N_HITS` hits as NPY files of time [s], force [N] and acceleration [m/s2].
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is missing.
+    rng : numpy.random.Generator
+        Of how hard the hammer strikes, and of the sensors' noise.
+
+    Raises
+    ------
+    ParameterError
+        The folder cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_hits(Path(folder) / "hits", np.random.default_rng(0))
+    ...     np.load(Path(folder) / "hits" / "hit-1.npy").shape
+    (3, 20480)
+    """
+    paths = impulse_responses(load_material_rig("fluorocarbon"), 0.279e-3, _HIT_SUPPORT, _HIT_RATE)
+    time = np.arange(round(_HIT_SECONDS * _HIT_RATE)) / _HIT_RATE
+    during = (time >= _BLOW_START) & (time < _BLOW_START + _BLOW)
+    blow = np.where(during, np.sin(np.pi * (time - _BLOW_START) / _BLOW), 0.0)
+    for number in range(1, N_HITS + 1):
+        force = rng.uniform(*_FORCE) * blow
+        acceleration = convolve(ARM * force, paths.torque_to_acceleration)
+        force = force + _FORCE_NOISE * rng.standard_normal(time.size)
+        acceleration = acceleration + _ACCELERATION_NOISE * rng.standard_normal(time.size)
+        with atomic(folder / f"hit-{number}.npy") as target, target.open("wb") as file:
+            np.save(file, np.stack([time, force, acceleration]))

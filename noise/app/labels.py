@@ -22,18 +22,10 @@ from noise.base.files import locked
 from noise.base.labels import LABELS
 from noise.batch import Done, Job, JournalReader
 from noise.labels.corrections import common_time, place, track, version, with_corrected_rows
+from noise.labels.human_rows import human_rows
 from noise.labels.labelling import Labelling
-from noise.labels.rows import human_rows
-from noise.labels.table import (
-    ASSUMED,
-    COLUMNS,
-    CONDITIONS,
-    HUMAN,
-    LabelTable,
-    labels_in,
-    naming_row,
-    read_label_table,
-)
+from noise.labels.summary import ASSUMED, labels_in, naming_row
+from noise.labels.table import COLUMNS, CONDITIONS, HUMAN, LabelTable, read_label_table
 
 Row = dict[str, object]
 

@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING
 from noise.base.files import check_target, locked
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
-from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_number
+from noise.commands.options import OneOf, Option, refuse
+from noise.commands.values import MOST_WORKERS, whole_number
 
 if TYPE_CHECKING:
     from noise.batch import Done, Job, Journal, Work

@@ -6,7 +6,6 @@ value meet, such as ``--rig`` and ``--material``.
 
 from __future__ import annotations
 
-import csv
 import math
 from argparse import ArgumentTypeError, Namespace
 from collections.abc import Mapping
@@ -16,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 from models.condition import CONDITION as QUANTITIES, FIXED
 from models.errors import ParameterError
-from models.foreign_file import LARGEST_TEXT, reading
 from models.rig import LawSpec, Rig, parse_spec
 from models.rig_file import material_names
 from noise.base.progress import note, say
@@ -29,43 +27,21 @@ from noise.base.remarks import (
     use_remarks,
 )
 from noise.base.user_effects import effect_library
-from noise.commands.options import CHANGE, Group, Option, changed, number, number_or_none
+from noise.commands.options import CHANGE, Group, Option, changed
+from noise.commands.shaft import shaft_motion, speed, swing
+from noise.commands.values import number
 
 if TYPE_CHECKING:
     from models.recording import Recording
     from sim.effects.effect import Effect
     from sim.run import Run
-    from sim.shaft import LoggedSpeed, ShaftMotion
+    from sim.shaft import ShaftMotion
 
 DEFAULT_MATERIAL = "fluorocarbon"
 DEFAULT_SECONDS = 1.0
 _FIT, _SUPPORT, _TEMPERATURE = (
     QUANTITIES[name] for name in ("interference", "support_stiffness", "temperature")
 )
-
-
-def _speed(text: str) -> float | tuple[float, float] | Path:
-    start, dots, end = text.partition("..")
-    if dots and number_or_none(start) is not None and number_or_none(end) is not None:
-        return number()(start), number()(end)
-    if number_or_none(text) is not None:
-        return number()(text)
-    if not Path(text).is_file():
-        raise ArgumentTypeError(
-            f"is {text!r}, expected a number in rad/s, a ramp such as 0..10, or a CSV file that "
-            "exists"
-        )
-    return Path(text)
-
-
-def _swing(text: str) -> tuple[float, float]:
-    try:
-        degrees, frequency = (number(above=0.0)(part) for part in text.split(","))
-    except (ArgumentTypeError, ValueError):
-        raise ArgumentTypeError(
-            f"is {text!r}, expected degrees and Hz, both above 0, such as 15,2"
-        ) from None
-    return degrees, frequency
 
 
 def _support_stiffness(text: str) -> float:
@@ -90,11 +66,11 @@ CONDITION = Group(
     "operating condition",
     "Exactly one of --speed and --oscillate is needed.",
     (
-        Option("--speed V", _speed).help(
+        Option("--speed V", speed).help(
             "speed of the shaft in rad/s, of either sign; A..B is a ramp from A to B over the "
             "run; the name of a CSV file is a log with the columns time_s, speed_rad_s"
         ),
-        Option("--oscillate DEG,HZ", _swing).help(
+        Option("--oscillate DEG,HZ", swing).help(
             "the shaft swings by +-DEG degrees, HZ times a second, instead of turning"
         ),
         Option("--interference MM", number(above=0.0, most=_FIT.high)).help(
@@ -195,7 +171,7 @@ def run_arguments(
     nearest = min(max(_FIT.default, low), high)
     interference_mm = _or(options.interference, nearest)
     _note_idle(options.effects, rig, library)
-    shaft, turning = _shaft(options, seconds)
+    shaft, turning = shaft_motion(options, seconds)
     notes = _remarks(options, rig, shaft, library, interference_mm, stiffness)
     notes += tuple(sensor_remarks(rig.sensors, rate))
     support = "clamp fixed" if math.isinf(stiffness) else f"{stiffness:g} Nm/rad"
@@ -339,71 +315,3 @@ def _note_idle(path: Path | None, rig: Rig, library: Mapping[str, Effect]) -> No
     own = sorted(set(library) - set(EFFECTS))
     if own and not any(spec.name in own for spec in rig.effects):
         note(f"--effects {path} defines {', '.join(own)}; --effect {own[0]} turns it on")
-
-
-def _shaft(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:
-    """How the shaft turns, and that in words."""
-    from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
-
-    if options.oscillate is not None:
-        degrees, frequency = options.oscillate
-        words = f"swinging +-{degrees:g} degrees at {frequency:g} Hz"
-        return Oscillation(math.radians(degrees), frequency), words
-    if isinstance(options.speed, tuple):
-        start, end = options.speed
-        return SpeedRamp(start, end, seconds), f"{start:g} to {end:g} rad/s"
-    if isinstance(options.speed, Path):
-        return _logged_speed(options.speed, seconds), f"speed as logged in {options.speed.name}"
-    return ConstantSpeed(options.speed), f"{options.speed:g} rad/s"
-
-
-def _logged_speed(path: Path, seconds: float) -> LoggedSpeed:
-    from sim.shaft import LoggedSpeed
-
-    where = f"--speed {path}"
-    with reading(path, "CSV table", where=where, largest=LARGEST_TEXT):
-        try:
-            time, speed = _read_log(path)
-            logged = LoggedSpeed(time, speed)
-        except ParameterError as error:
-            raise ParameterError(f"{where}: {error}") from None
-    if time[0] > 0.0 or time[-1] < seconds:
-        note(
-            f"--speed {path} covers {time[0]:g} to {time[-1]:g} s, the run 0 to {seconds:g} s; "
-            "where the log says nothing its nearest speed is held"
-        )
-    elif time[-1] > seconds:
-        note(f"--speed {path} lasts {time[-1]:g} s, the run takes its first {seconds:g} s")
-    return logged
-
-
-def _read_log(path: Path) -> tuple[list[float], list[float]]:
-    time: list[float] = []
-    speed: list[float] = []
-    columns = (0, 1)
-    header_possible = True
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        rows = csv.reader(file)
-        for row in rows:
-            cells = [cell.strip() for cell in row]
-            if not any(cells):
-                continue
-            if header_possible and all(number_or_none(cell) is None for cell in cells):
-                header_possible = False
-                if not {"time_s", "speed_rad_s"} <= set(cells):
-                    raise ParameterError(
-                        f"has the columns {', '.join(cells)}, expected time_s and speed_rad_s"
-                    )
-                columns = (cells.index("time_s"), cells.index("speed_rad_s"))
-                continue
-            header_possible = False
-            try:
-                moment, value = (float(cells[column]) for column in columns)
-            except (ValueError, IndexError):
-                raise ParameterError(
-                    f"line {rows.line_num} is {','.join(row)!r}, expected time in s and speed in "
-                    "rad/s with a comma between"
-                ) from None
-            time.append(moment)
-            speed.append(value)
-    return time, speed

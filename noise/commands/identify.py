@@ -51,8 +51,10 @@ def run(options: Namespace) -> int:
     with steps("identifying", 1) as tell:
         found, refused = _identified(options, tell)
         if found is not None and options.out is not None:
+            from noise.pages.identification import write_identification
+
             tell("writing the report")
-            _write(found, options.out)
+            write_identification(options.out, found)
     if found is None:
         return 1
     for text in found.notes:
@@ -94,9 +96,3 @@ def _identified(options: Namespace, tell: Steps) -> tuple[Identification | None,
         say(f"{', '.join(one.name for one in measurements.used)}: {error}; nothing is written")
         return None, True
     return found, bool(measurements.refused)
-
-
-def _write(found: Identification, out: Path) -> None:
-    from noise.pages.identification import write_identification
-
-    write_identification(out, found)

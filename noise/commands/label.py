@@ -17,8 +17,9 @@ from noise.base.files import check_target, export_paths, locked
 from noise.base.progress import counted, note
 from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands.batch import BATCH, check_batch, run_batch
-from noise.commands.options import CALIBRATION, Option, full_scale_of, number, seed
+from noise.commands.options import CALIBRATION, Option, full_scale_of, seed
 from noise.commands.plots import PLOT, check_plots, draw_recordings
+from noise.commands.values import number
 
 if TYPE_CHECKING:
     from noise.labels.labelling import Labelling
@@ -84,7 +85,7 @@ def run(options: Namespace) -> int:
         check_plots(options.plot, jobs)
     from noise.labels.corrections import with_corrections
     from noise.labels.labelling import Labelling
-    from noise.labels.table import result_lines
+    from noise.labels.summary import result_lines
 
     # Or its corrections could not be kept after all the work.
     with_corrections(options.out, [], [job.name for job in jobs])
@@ -133,7 +134,7 @@ def _note_sensitivity(work: Labelling) -> None:
 
 def _note_assumed(rows: list[dict[str, object]]) -> None:
     """Say what inferred conditions rely on where no material was logged."""
-    from noise.labels.table import ASSUMED, assumes_material
+    from noise.labels.summary import ASSUMED, assumes_material
 
     number = len({row["file"] for row in rows if assumes_material(row)})
     if number:
@@ -207,8 +208,8 @@ def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
         written.append(options.audacity)
     if options.map is not None:
         from noise.labels.conditions import MAP_COLUMNS, conditions_map, map_rows
+        from noise.pictures.conditions import plot_conditions
         from noise.pictures.figure import write_picture
-        from noise.pictures.maps import plot_conditions
 
         places = conditions_map(rows)
         if not places:

@@ -15,7 +15,8 @@ from noise.base.files import check_target
 from noise.base.progress import note, say
 from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.condition import CONDITION, is_long, run_arguments, with_notes
-from noise.commands.options import Option, seed, whole_number
+from noise.commands.options import Option, seed
+from noise.commands.values import whole_number
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:

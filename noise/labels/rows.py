@@ -9,7 +9,7 @@ says to be of a rig. Segments that a person has drawn are measured as `label` do
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,13 +21,10 @@ from models.condition import Condition
 from models.recording import Recording
 from noise.base.labels import NAMED
 from noise.inference import Inference, Interval
-from noise.labels.classified import FREQUENCY_COLUMNS, segment_frequency
-from noise.labels.levels import sound_levels, with_weighted_levels
 from noise.labels.segments import Segment
-from noise.labels.table import ASSUMED, COLUMNS, CONDITIONS, HUMAN, assumes_material
-from noise.labels.windows import has_window_channel, tracks, window_features
-from noise.recordings.files import names_channels, open_blocks
-from noise.recordings.meaning import PascalPerFullScale
+from noise.labels.summary import ASSUMED, assumes_material
+from noise.labels.table import COLUMNS, CONDITIONS
+from noise.recordings.files import names_channels
 from noise.recordings.rotation import agrees, as_logged
 
 _DIGITS = 4
@@ -289,107 +286,3 @@ def _mean_speed(pieces: Iterable[NDArray[np.float64]]) -> float:
         travelled += float(np.sum(np.abs(speed)))
     mean, magnitude = total / n, travelled / n
     return mean if abs(mean) > 0.9 * magnitude else magnitude
-
-
-LONGEST_MEASURED = 120.0
-"""No more is measured while a person waits [s]: of a longer recording what is new alone."""
-
-
-def human_rows(
-    path: Path,
-    name: str,
-    segments: Sequence[tuple[str, float, float, str]],
-    full_scale: PascalPerFullScale | None = None,
-    new: Sequence[tuple[str, float, float, str]] | None = None,
-) -> list[dict[str, object]]:
-    """Return a row for each segment of a recording that a person has drawn.
-
-    Parameters
-    ----------
-    path : Path
-    name : str
-        File as the table names it.
-    segments : sequence of (str, float, float, str)
-        Channel, start [s], end [s] and label of all segments.
-    full_scale : float or tuple of float, optional
-        Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
-    new : sequence of (str, float, float, str), optional
-        As in `segments`: those that are measured where the recording is longer than
-        `LONGEST_MEASURED`, the shortest of them up to that; by default all segments.
-
-    Returns
-    -------
-    list of dict
-        By `noise.labels.table.COLUMNS`, without probabilities; those that are not measured, of
-        a channel that it does not have, and beyond its end are left out. Where not all are
-        measured, none has a level over the background, which lies in all of them.
-
-    Raises
-    ------
-    RecordingError
-        It cannot be read.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> import numpy as np
-    >>> from models.recording import Channel, Recording
-    >>> from noise.recordings import write_recording
-    >>> tone = np.sin(2.0 * np.pi * 800.0 * np.arange(32_000) / 16_000.0)
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     run = Recording(tone[None], 16_000.0, (Channel("pressure"),))
-    ...     path = write_recording(Path(folder) / "run07", run)
-    ...     (row,) = human_rows(path, "run07.wav", [("all", 0.5, 1.5, "squeal")])
-    >>> round(row["frequency_hz"], -1), row["level_db"], row["label_source"], row["p_squeal"]
-    (800.0, 90.97, 'human', None)
-    """
-    with open_blocks(path, full_scale=full_scale) as recording:
-        whole = recording.n_samples <= LONGEST_MEASURED * recording.rate
-        if not whole:
-            segments = _as_many_as_fit(segments if new is None else new)
-        found = [
-            segment
-            for channel, track in tracks(recording, per_track=not names_channels(path))
-            for segment in with_weighted_levels(track, _measured(track, channel, segments))
-        ]
-        if not whole:
-            found = [replace(segment, snr=None) for segment in found]
-        rows = label_rows(name, recording, found)
-        return [row | {"label_source": HUMAN} for row in rows]
-
-
-def _as_many_as_fit(
-    segments: Sequence[tuple[str, float, float, str]],
-) -> list[tuple[str, float, float, str]]:
-    """Return the shortest of some segments, `LONGEST_MEASURED` together, in order of time."""
-    fit, left = [], LONGEST_MEASURED
-    for segment in sorted(segments, key=lambda one: one[2] - one[1]):
-        left -= segment[2] - segment[1]
-        if left >= 0.0:
-            fit.append(segment)
-    return sorted(fit)
-
-
-def _measured(
-    track: RecordingBlocks, channel: str, segments: Sequence[tuple[str, float, float, str]]
-) -> list[Segment]:
-    measured = []
-    for at, start, end, label in segments:
-        first, last = round(start * track.rate), min(round(end * track.rate), track.n_samples)
-        if at != channel or last - first < 2:
-            continue
-        blocks = RecordingBlocks.of(track.cut(first, last))
-        level = level_dbfs = frequency = None
-        if has_window_channel(blocks):
-            found = window_features(blocks)
-            frequency = segment_frequency(found.features[:, FREQUENCY_COLUMNS], label)
-            row = blocks.first("pressure")
-            if row is not None:
-                level, level_dbfs = sound_levels(
-                    found.cells.rms_db(0, found.cells.count),
-                    calibrated=blocks.calibrated,
-                    full_scale=blocks.channels[row].full_scale,
-                )
-        measured.append(Segment(channel, start, end, label, {}, frequency, level, level_dbfs))
-    return measured

@@ -21,7 +21,7 @@ from features.kernels.orders import OrderMap
 from models.drawing import thinned
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
-from noise.labels.table import ASSUMED, assumes_material
+from noise.labels.summary import ASSUMED, assumes_material
 from noise.pages.clips import RATE, Clip, Entry, FastLevels, Row
 from noise.pictures.recording import level_over_time
 

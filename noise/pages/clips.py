@@ -35,7 +35,7 @@ from noise.audio.gain import (
 from noise.audio.sound import FADE
 from noise.base.labels import LABELS
 from noise.base.progress import counted
-from noise.labels.table import labels_in, naming_row
+from noise.labels.summary import labels_in, naming_row
 from noise.recordings.wav import integers, largest_sample
 
 if TYPE_CHECKING:

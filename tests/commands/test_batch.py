@@ -19,7 +19,8 @@ from models.condition import Condition
 from models.recording import Channel, Recording
 from noise.classifier import load_classifier
 from noise.cli import main
-from noise.labels.table import COLUMNS, LabelTable, read_label_table, result_lines
+from noise.labels.summary import result_lines
+from noise.labels.table import COLUMNS, LabelTable, read_label_table
 from noise.labels.windows import FEATURE_NAMES, window_features
 from noise.recordings import read_recording, write_recording
 

@@ -13,8 +13,7 @@ from models.radiation.rig_response import impulse_responses
 from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.commands import COMMANDS
-from noise.demo import CASES
-from noise.demo_hits import ARM, N_HITS
+from noise.demo import ARM, CASES, N_HITS
 from noise.recordings import read_recording
 from noise.recordings.hits import find_hits, read_hit
 from tests.helpers.readme_blocks import (

@@ -23,7 +23,8 @@ from noise.inference.inputs import LONGEST, QUANTITIES, scaled, unscaled
 from noise.labels.conditions import conditions_map
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment
-from noise.labels.table import ASSUMED, COLUMNS, LabelTable, assumes_material, read_label_table
+from noise.labels.summary import ASSUMED, assumes_material
+from noise.labels.table import COLUMNS, LabelTable, read_label_table
 from noise.pages.cards import facts_of
 from noise.pages.clips import Entry
 from noise.training.inference.fit import coverage, draw_run_sample, train_inference

@@ -17,7 +17,7 @@ from noise.cli import main
 from noise.labels.conditions import conditions_map
 from noise.labels.table import COLUMNS, read_label_table
 from noise.labels.tracks import write_label_tracks
-from noise.pictures.maps import plot_conditions
+from noise.pictures.conditions import plot_conditions
 
 
 def row(file="a.wav", label="creak", speed=5.0, fit=0.279, support=2214.0, **more):

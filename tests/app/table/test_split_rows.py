@@ -10,7 +10,8 @@ from models.recording import Channel, Recording
 from noise.app.labels import NOT_MEASURED, Correction
 from noise.base.tables import write_table
 from noise.labels.labelling import label
-from noise.labels.table import ASSUMED, COLUMNS
+from noise.labels.summary import ASSUMED
+from noise.labels.table import COLUMNS
 from noise.recordings import write_recording
 from tests.helpers.corrected_table import correct, labels_of
 from tests.helpers.labelled_folder import made_row as row, write_folder

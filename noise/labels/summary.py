@@ -1,0 +1,121 @@
+"""Summary of a recording's rows: the label that names it, all its labels, one line in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
+
+from noise.base.labels import NAMED
+
+ASSUMED = "assuming a fluorocarbon bushing like the shipped one"
+"""What inferred conditions say of themselves where no material was logged."""
+
+
+def assumes_material(row: Mapping[str, object]) -> bool:
+    """Whether a row of the label table has inferred conditions, and no material to rely on.
+
+    Examples
+    --------
+    >>> row = {"speed_rad_s_source": "inferred", "material_source": "missing"}
+    >>> assumes_material(row), assumes_material(row | {"material_source": "logged"})
+    (True, False)
+    """
+    sources = (value for column, value in row.items() if column.endswith("_source"))
+    return "inferred" in sources and row.get("material_source") != "logged"
+
+
+def naming_row(rows: Sequence[Mapping[str, object]]) -> Mapping[str, object] | None:
+    """Return the longest row that is not ``none``, by which a file is named.
+
+    Examples
+    --------
+    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
+    >>> naming_row([short, {"label": "none", "start_s": 1.0, "end_s": 9.0}])["label"]
+    'creak'
+    """
+    labelled = [row for row in rows if row.get("label") is not None]
+    loud = [row for row in labelled if row["label"] != "none"]
+    return max(loud or labelled, key=_length, default=None)
+
+
+def labels_in(rows: Sequence[Mapping[str, object]]) -> tuple[str, ...]:
+    """Return all labels of a recording: the one that names it, then by their longest row.
+
+    ``none`` comes last.
+
+    Examples
+    --------
+    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
+    >>> long = {"label": "squeal", "start_s": 1.0, "end_s": 3.0}
+    >>> labels_in([{"label": "none", "start_s": 3.0, "end_s": 9.0}, short, long])
+    ('squeal', 'creak', 'none')
+    """
+    longest: dict[str, float] = {}
+    for row in rows:
+        if row["label"] is not None:
+            label = str(row["label"])
+            longest[label] = max(_length(row), longest.get(label, 0.0))
+    return tuple(sorted(longest, key=lambda label: (label == "none", -longest[label])))
+
+
+def result_lines(rows: Iterable[Mapping[str, object]]) -> Iterator[str]:
+    """Yield one line a file: its label, frequency, level, place in time and probability.
+
+    Parameters
+    ----------
+    rows : iterable of mapping
+        Of the label table, those of one file behind one another.
+
+    Yields
+    ------
+    str
+        Of the segment that names the file, and of the longest of each other noise in it; or why
+        it was refused.
+
+    Examples
+    --------
+    >>> row = {"file": "run07.wav", "label": "squeal", "start_s": 1.99, "end_s": 6.01,
+    ...        "frequency_hz": 974.2, "level_dba": 59.9, "p_squeal": 0.93}
+    >>> list(result_lines([row, {"file": "b.wav", "label": None, "error": "is empty"}]))
+    ['run07.wav  squeal 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.93', 'b.wav  refused: is empty']
+    """
+    for file, of_file in groupby(rows, key=lambda row: row["file"]):
+        segments = list(of_file)
+        row = naming_row(segments)
+        if row is None:
+            yield f"{file}  refused: {segments[0].get('error')}"
+            continue
+        also = ""
+        for label in labels_in(segments)[1:]:
+            other = naming_row([one for one in segments if one["label"] == label])
+            if label in NAMED and other is not None:
+                also += f"  also {'  '.join(_result_words(other))}"
+        yield f"{file}  {'  '.join(_result_words(row))}{also}"
+
+
+def _result_words(row: Mapping[str, object]) -> Iterator[str]:
+    label, hertz, start, end = (row.get(c) for c in ("label", "frequency_hz", "start_s", "end_s"))
+    yield f"{label} {hertz:.0f} Hz" if isinstance(hertz, float) else str(label)
+    for column, unit in (("level_dba", "dB(A)"), ("level_dbfs", "dBFS")):
+        level = row.get(column)
+        if isinstance(level, float):
+            yield f"{level:.1f} {unit}"
+            break
+    if isinstance(start, float) and isinstance(end, float):
+        yield f"{start:.2f}-{end:.2f} s"
+    probability = row.get(f"p_{label}")
+    if row.get("label_source") == "human":
+        yield "by hand"
+    elif isinstance(probability, float):
+        # `unknown` may be the less likely: a noise that is likelier was not likely enough.
+        noises = [(p, name) for name in NAMED if isinstance(p := row.get(f"p_{name}"), float)]
+        p, name = max(noises, default=(0.0, ""))
+        less = label == "unknown" and p > probability
+        yield f"p {probability:.2f}" + (f" ({name} {p:.2f})" if less else "")
+
+
+def _length(row: Mapping[str, object]) -> float:
+    start, end = row.get("start_s"), row.get("end_s")
+    if isinstance(start, int | float) and isinstance(end, int | float):
+        return float(end - start)
+    return 0.0
