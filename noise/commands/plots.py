@@ -39,13 +39,7 @@ def check_plots(target: Path, jobs: Sequence[Job]) -> None:
     """
     from noise.pictures.figure import PICTURE_ENDINGS
 
-    try:
-        paths = export_paths(target, [job.name for job in jobs], PICTURE_ENDINGS, "--plot")
-    except ParameterError:
-        if target.suffix.lower() not in PICTURE_ENDINGS and target.suffix:
-            kinds = ", ".join(PICTURE_ENDINGS)
-            raise ParameterError(f"--plot {target}: a picture ends in {kinds}") from None
-        raise
+    paths = export_paths(target, [job.name for job in jobs], PICTURE_ENDINGS, "--plot")
     if target.is_file() and target.suffix.lower() not in PICTURE_ENDINGS:
         raise ParameterError(f"--plot {target}: is a file; name a folder or a picture")
     for path in paths.values():

@@ -74,7 +74,7 @@ BATCH = [
     (f"runs --workers {'9' * 5000}", "expected a whole number from 1 to 1024"),
     ("runs --workers 2 --scheduler x", "not allowed with"),
     ("runs --plot file.txt", "is a file; name a folder or a picture"),
-    ("runs/a.wav --plot a.gif", "a picture ends in .png, .svg, .pdf"),
+    ("runs --plot one.png", "2 recordings; name a folder"),
     ("", "PATH"),
 ]
 SIMULATE = [
