@@ -168,18 +168,6 @@ def known_units() -> str:
     return ", ".join(CHANNEL_UNITS.values())
 
 
-def same_unit(one: str, other: str) -> bool:
-    """Whether two texts spell the same unit.
-
-    Examples
-    --------
-    >>> same_unit("N·m", "N m"), same_unit("m/s**2", "m/s²"), same_unit("mN", "N m")
-    (True, True, False)
-    """
-    found = quantity_of_unit(one)
-    return one.split() == other.split() if found is None else found == quantity_of_unit(other)
-
-
 def split_unit(heading: str) -> tuple[str, str]:
     """Part the heading of a column into name and unit; the unit is empty where none is stated.
 

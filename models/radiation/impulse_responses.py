@@ -50,11 +50,9 @@ class ImpulseResponses:
 
 
 def radiate(
-    paths: ImpulseResponses,
-    torque: NDArray[np.float64],
-    pulse_force: NDArray[np.float64] | None = None,
+    paths: ImpulseResponses, torque: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Acceleration and sound pressure that torque and pulses cause.
+    """Acceleration and sound pressure that a torque causes.
 
     The first sample of the torque is taken to have acted for ever before, so a torque that
     starts at a constant part makes no thump.
@@ -64,8 +62,6 @@ def radiate(
     paths : ImpulseResponses
     torque : ndarray, shape (n,)
         Of the bushing on the clamp, sampled at their rate [Nm].
-    pulse_force : ndarray, shape (n,), optional
-        Of the anchors on the plate [N].
 
     Returns
     -------
@@ -81,13 +77,10 @@ def radiate(
     (array([0., 0., 2.]), array([0. , 0.5, 0.5]))
     """
     change = torque - torque[:1]
-    acceleration = _along(paths, "torque_to_acceleration", change)
-    pressure = _along(paths, "torque_to_pressure", change)
-    if pulse_force is not None and np.any(pulse_force):
-        struck, sounding = radiate_pulses(paths, pulse_force)
-        acceleration += struck
-        pressure += sounding
-    return acceleration, pressure
+    return (
+        _along(paths, "torque_to_acceleration", change),
+        _along(paths, "torque_to_pressure", change),
+    )
 
 
 def radiate_pulses(

@@ -46,7 +46,6 @@ from models.transfer_functions.transfer_function import (
     check_band,
     trusted_band,
 )
-from models.units import same_unit
 
 OUTSIDE = 1e-3
 """Weight of smallness outside the band, relative to the measured lines."""
@@ -377,7 +376,7 @@ def measured_impulse_response(
         warnings.warn(
             f"{transfer.name}: measured from {first:.5g} to {last:.5g} Hz; what lies above, up to "
             f"{wanted:.5g} Hz, is missing from the simulated "
-            f"{'sound' if same_unit(transfer.output_unit, 'Pa') else 'acceleration'}",
+            f"{'sound' if transfer.output_unit == 'Pa' else 'acceleration'}",
             stacklevel=2,
         )
     trusted = replace(
