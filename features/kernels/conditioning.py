@@ -234,7 +234,7 @@ def band_signal(transform: Transform, low: float, high: float) -> tuple[NDArray[
 
 
 def band_analytic(
-    transform: Transform, low: float, high: float, *, rate: float | None = None
+    transform: Transform, low: float, high: float
 ) -> tuple[NDArray[np.complex128], float]:
     """Analytic signal of a band, shifted to zero frequency: its magnitude is the band's envelope.
 
@@ -243,15 +243,13 @@ def band_analytic(
     transform : Transform
     low, high : float
         Limits of the band [Hz], flanks as in `band_signal`.
-    rate : float, optional
-        Of the result [Hz], at least the band's width with its flanks.
 
     Returns
     -------
     analytic : ndarray of complex, shape (n,)
         In the signal's unit; the magnitude of a sinusoid in the band is its amplitude.
     rate : float
-        [Hz]; by default about 1.25 times the band's width with its flanks.
+        [Hz]; about 1.25 times the band's width with its flanks.
 
     Examples
     --------
@@ -262,10 +260,7 @@ def band_analytic(
     3.0
     """
     first, mask = _mask(transform, low, high, transform.bins.size)
-    if rate is None:
-        length = int(fft.next_fast_len(round(1.25 * mask.size) + 8))
-    else:
-        length = round(transform.length * rate / transform.rate)
+    length = int(fft.next_fast_len(round(1.25 * mask.size) + 8))
     bins = np.zeros(length, dtype=np.complex128)
     bins[: mask.size] = transform.bins[first : first + mask.size] * mask
     ratio = length / transform.length

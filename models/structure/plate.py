@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
 
 import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
@@ -248,17 +247,15 @@ class PlateModes:
         ndarray, shape (..., n_modes)
             [1/sqrt(kg)]
         """
-        return self._at(x, y, 0, 0)
+        return self._at(x, y, 0)
 
-    def slope(
-        self, x: ArrayLike, y: ArrayLike, direction: Literal["x", "y"] = "x"
-    ) -> NDArray[np.float64]:
-        """Give the derivative of `shape` along x or y [1/m], on which a moment works.
+    def slope(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
+        """Give the derivative of `shape` along x [1/m], on which a moment works.
 
-        The moment is one about the other axis that lifts the side of larger x or y. Parameters
-        and returns are those of `shape`.
+        The moment is one about y that lifts the side of larger x. Parameters and returns are those
+        of `shape`.
         """
-        return self._at(x, y, 1, 0) if direction == "x" else self._at(x, y, 0, 1)
+        return self._at(x, y, 1)
 
     def on_grid(
         self, x: NDArray[np.float64], y: NDArray[np.float64], some: slice
@@ -266,10 +263,10 @@ class PlateModes:
         """Give `shape` of some modes on all pairs of x and y, shape (n_x, n_y, n_some)."""
         return self.products.combine(self.along.values(x), self.across.values(y)[None], some)
 
-    def _at(self, x: ArrayLike, y: ArrayLike, dx: int, dy: int) -> NDArray[np.float64]:
+    def _at(self, x: ArrayLike, y: ArrayLike, derivative: int) -> NDArray[np.float64]:
         where = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        along = self.along.values(where[0].ravel(), dx)
-        across = self.across.values(where[1].ravel(), dy)[:, None]
+        along = self.along.values(where[0].ravel(), derivative)
+        across = self.across.values(where[1].ravel())[:, None]
         values = self.products.combine(along, across, slice(None))[:, 0]
         return values.reshape(*where[0].shape, -1)
 

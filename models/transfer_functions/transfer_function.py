@@ -191,11 +191,11 @@ _SMOOTHING = 1.06
 """Half width of the band over which the median of the coherence is taken: 1/6 octave in all."""
 
 
-def trusted_band(transfer: TransferFunction, least: float = LEAST_COHERENCE) -> tuple[float, float]:
+def trusted_band(transfer: TransferFunction) -> tuple[float, float]:
     """Lowest and highest frequency between which the response can be used [Hz].
 
     Without coherence these are its ends, but for a line at 0 Hz, where sensors measure nothing.
-    With it, a line counts where the median coherence within 1/6 octave is at least `least`;
+    With it, a line counts where the median coherence within 1/6 octave is at least a half;
     single lines below it, such as at antiresonances, do no harm.
 
     Examples
@@ -211,7 +211,7 @@ def trusted_band(transfer: TransferFunction, least: float = LEAST_COHERENCE) -> 
         low = np.searchsorted(f, f / _SMOOTHING)
         high = np.searchsorted(f, f * _SMOOTHING, side="right")
         medians = [np.median(transfer.coherence[a:b]) for a, b in zip(low, high, strict=True)]
-        usable &= np.array(medians) >= least
+        usable &= np.array(medians) >= LEAST_COHERENCE
     if not usable.any():
         return 0.0, 0.0
     lines = f[usable]
