@@ -44,7 +44,15 @@ def swing(text: str) -> tuple[float, float]:
 
 
 def shaft_motion(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:
-    """Return how the shaft turns, and that in words."""
+    """Return how the shaft turns, and that in words.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        With ``speed`` and ``oscillate``, of which one is given.
+    seconds : float
+        Length of the run [s].
+    """
     from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
 
     if options.oscillate is not None:

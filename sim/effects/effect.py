@@ -14,8 +14,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from models.errors import ParameterError
 from models.show import short_repr
 from sim.parameters import resolve
@@ -168,7 +166,7 @@ class ActiveEffect:
         effect = self.effect
         if effect.pack is not None:
             return effect.pack(self.form, self.values, rng)
-        import numpy as np
+        import numpy as np  # help names the effects, and has no need of it
 
         return np.array([*self.values.values(), effect.forms.index(self.form)])
 
@@ -207,6 +205,8 @@ def _condition_effect(name: str) -> Effect | None:
 def begun(effects: Sequence[ActiveEffect], seed: int) -> Memories:
     """Return the memory, by name, that each effect begins with; each has its own random numbers."""
     names = [active.effect.name for active in effects if active.effect.in_blocks]
+    import numpy as np
+
     return {name: {"rng": np.random.default_rng([seed, *name.encode()])} for name in names}
 
 
