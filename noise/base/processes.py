@@ -19,7 +19,8 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from functools import lru_cache, partial
-from multiprocessing import get_context, resource_tracker
+from multiprocessing import current_process, get_context, resource_tracker
+from multiprocessing.util import Finalize
 from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
@@ -92,13 +93,10 @@ class Worker:
         self._executor = ProcessPoolExecutor(
             1, get_context("spawn"), initializer=_watch, initargs=(os.getpid(),)
         )
-        script = sys.modules["__main__"]
-        with interrupts_blocked():
-            sys.modules["__main__"] = ModuleType("__main__")  # which it would import
-            try:
-                self._begun = self._submitted(os.getpid)
-            finally:
-                sys.modules["__main__"] = script
+        with interrupts_blocked(), _on_its_own():
+            self._begun = self._submitted(os.getpid)
+        # A process that ends waits for those that it started.
+        self._at_exit = Finalize(None, self.end, exitpriority=10)
 
     @property
     def process(self) -> int | None:
@@ -122,11 +120,27 @@ class Worker:
 
     def end(self) -> None:
         """End the process, whatever it is at."""
+        self._at_exit.cancel()
         process = self.process
         self._executor.shutdown(wait=False, cancel_futures=True)
         if process is not None:
             with suppress(ProcessLookupError, PermissionError):
                 os.kill(process, getattr(signal, "SIGKILL", signal.SIGTERM))
+
+
+@contextmanager
+def _on_its_own() -> Iterator[None]:
+    """Start a process within that does not run the caller's script, from any process.
+
+    One of a Dask cluster is not allowed to start others, as nobody would end them.
+    """
+    script, config = sys.modules["__main__"], current_process()._config  # type: ignore[attr-defined]
+    sys.modules["__main__"], daemon = ModuleType("__main__"), config.get("daemon", False)
+    config["daemon"] = False
+    try:
+        yield
+    finally:
+        sys.modules["__main__"], config["daemon"] = script, daemon
 
 
 @contextmanager

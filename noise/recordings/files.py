@@ -39,7 +39,7 @@ _LARGE = 64 << 20
 _CHUNK = 8 << 20
 """What is read at once of others [byte of 64-bit samples]."""
 
-_said: set[str] = set()
+_noted: set[str] = set()
 
 
 def read_recording(
@@ -265,6 +265,6 @@ def names_channels(path: Path) -> bool:
 def _say_once(path: Path, notes: Iterable[str]) -> None:
     """Print notes on a recording; one that is true of many files is printed for the first."""
     for text in notes:
-        if text not in _said:
-            _said.add(text)
+        if text not in _noted:
+            _noted.add(text)
             note(f"{path}: {text}")

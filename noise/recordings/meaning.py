@@ -210,9 +210,9 @@ def _interpret(
     readings = sidecar.readings or ("",) * len(channels)
     pairs: list[tuple[Channel, Calibration | None]] = []
     for channel, scale, reading, option in zip(channels, scales, readings, options, strict=True):
-        told = sidecar.calibrated is not False and not reading
+        in_unit = sidecar.calibrated is not False and not reading
         if channel.kind == "pressure" and option is not None:
-            if not (in_units and told):
+            if not (in_units and in_unit):
                 pairs.append((replace(channel, full_scale=option), None))
                 continue
             notes.append(
@@ -220,7 +220,7 @@ def _interpret(
                 "(--full-scale, --calibrator) is not used"
             )
         metered = stated.value if stated and stated.kind == channel.kind else None
-        value = scale or (1.0 if in_units else metered) if told else None
+        value = scale or (1.0 if in_units else metered) if in_unit else None
         if value is not None:
             pairs.append((replace(channel, full_scale=value), None))
         elif channel.kind in calibrations:

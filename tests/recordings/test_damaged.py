@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -219,3 +220,10 @@ def test_it_ends_with_the_one_that_asks(path):
     while any(Path(f"/proc/{pid}").exists() for pid in started):
         assert time.monotonic() < until
         time.sleep(0.05)
+
+
+def test_a_process_that_may_start_no_other_reads_as_well(path):
+    process = get_context("spawn").Process(target=read_recording, args=(path,), daemon=True)
+    process.start()
+    process.join(60.0)
+    assert process.exitcode == 0

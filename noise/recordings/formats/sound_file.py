@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from itertools import accumulate
 from pathlib import Path
@@ -21,7 +21,7 @@ import soundfile
 from numpy.typing import NDArray
 
 from models.errors import RecordingError
-from noise.recordings.formats import Format, RawRecording
+from noise.recordings.formats import Format, RawRecording, Read
 from noise.recordings.formats.containers import (
     Piece,
     PieceFile,
@@ -60,9 +60,28 @@ def open_sound_file(path: Path) -> Iterator[RawRecording]:
     >>> samples.shape, raw.rate, raw.fractional, float(samples[0, 0])
     ((1, 480), 48000.0, True, 0.5)
     """
-    sound = _Sound(path)
-    with sound.closing:
-        yield sound.raw
+    pieces, notes = pieces_of(path)
+    with ExitStack() as stack:
+        with _errors(path):
+            sounds = [_opened(path, piece, stack) for piece in pieces]
+        first = sounds[0]
+        for sound in sounds:
+            if (sound.samplerate, sound.channels) != (first.samplerate, first.channels):
+                raise RecordingError(
+                    f"{path}: holds sounds one after the other, of {first.channels} tracks at "
+                    f"{first.samplerate} Hz and of {sound.channels} at {sound.samplerate} Hz; "
+                    "save each as a file of its own"
+                )
+        yield RawRecording(
+            n_channels=int(first.channels),
+            n_samples=sum(int(sound.frames) for sound in sounds),
+            rate=float(first.samplerate),
+            fractional=first.subtype not in ("FLOAT", "DOUBLE"),
+            description=bext_description(path),
+            comment=first.comment,
+            read=_reading(path, sounds),
+            notes=tuple(notes),
+        )
 
 
 FORMAT = Format(
@@ -75,82 +94,40 @@ FORMAT = Format(
 )
 
 
-class _Sound:
-    """A sound file that is open for reading."""
+def _reading(path: Path, sounds: Sequence[Any]) -> Read:
+    """Give what reads sounds that follow one another; refused where one breaks off before."""
+    ends = list(accumulate(int(sound.frames) for sound in sounds))
+    positions = [0] * len(sounds)
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        if path.stat().st_size == 0:
-            raise RecordingError(f"{path}: is empty (0 bytes)")
-        pieces, notes = pieces_of(path)
-        with ExitStack() as stack, _errors(path):
-            self._sounds = [_opened(path, piece, stack) for piece in pieces]
-            self._positions = [0] * len(pieces)
-            self._ends = list(accumulate(int(sound.frames) for sound in self._sounds))
-            self.n_samples = self._ends[-1]
-            self._check()
-            self.closing = stack.pop_all()
-        first = self._sounds[0]
-        self.raw = RawRecording(
-            n_channels=int(first.channels),
-            n_samples=self.n_samples,
-            rate=float(first.samplerate),
-            fractional=first.subtype not in ("FLOAT", "DOUBLE"),
-            description=bext_description(path),
-            comment=first.comment,
-            read=self.read,
-            notes=tuple(notes),
-        )
-
-    def _check(self) -> None:
-        first = self._sounds[0]
-        for sound in self._sounds:
-            if (sound.samplerate, sound.channels) != (first.samplerate, first.channels):
-                raise RecordingError(
-                    f"{self._path}: holds sounds one after the other, of {first.channels} tracks "
-                    f"at {first.samplerate} Hz and of {sound.channels} at {sound.samplerate} Hz; "
-                    "save each as a file of its own"
-                )
-
-    def read(self, first: int, last: int) -> NDArray[np.float64]:
-        """Return the samples between two, shape (n_channels, n), as stored.
-
-        Raises
-        ------
-        RecordingError
-            The file breaks off before.
-        """
-        samples = np.empty((self.raw.n_channels, last - first))
-        done = first
-        with _errors(self._path):
-            for i, end in enumerate(self._ends):
-                start = end - int(self._sounds[i].frames)
-                while start <= done < min(end, last):
-                    block = self._block(i, done - start, min(_BLOCK, min(end, last) - done))
-                    if not len(block):
-                        raise RecordingError(
-                            f"{self._path}: is truncated; its header announces {self.n_samples} "
-                            f"samples, {done} can be read"
-                        )
-                    samples[:, done - first : done - first + len(block)] = block.T
-                    done += len(block)
-        return samples
-
-    def _block(self, i: int, start: int, n: int) -> NDArray[np.float64]:
-        """Read `n` samples of one of the sounds."""
-        sound, position = self._sounds[i], self._positions[i]
+    def block(i: int, start: int, n: int) -> NDArray[np.float64]:
+        sound, position = sounds[i], positions[i]
         if start != position and sound.format in _EXACT:
             position = sound.seek(start)
         elif start < position:
             position = sound.seek(0)
-        while position < start:
-            passed = len(sound.read(min(_BLOCK, start - position)))
-            if not passed:
-                return np.empty((0, sound.channels))
+        while position < start and (passed := len(sound.read(min(_BLOCK, start - position)))):
             position += passed
-        block: NDArray[np.float64] = sound.read(n, dtype="float64", always_2d=True)
-        self._positions[i] = position + len(block)
-        return block
+        found: NDArray[np.float64] = sound.read(n, dtype="float64", always_2d=True)
+        positions[i] = position + len(found)
+        return found
+
+    def read(first: int, last: int) -> NDArray[np.float64]:
+        samples, done = np.empty((sounds[0].channels, last - first)), first
+        with _errors(path):
+            for i, end in enumerate(ends):
+                start = end - int(sounds[i].frames)
+                while start <= done < min(end, last):
+                    found = block(i, done - start, min(_BLOCK, min(end, last) - done))
+                    if not len(found):
+                        raise RecordingError(
+                            f"{path}: is truncated; its header announces {ends[-1]} samples, "
+                            f"{done} can be read"
+                        )
+                    samples[:, done - first : done - first + len(found)] = found.T
+                    done += len(found)
+        return samples
+
+    return read
 
 
 @contextmanager
