@@ -65,9 +65,7 @@ def can_act(active: ActiveEffect, friction: LawSpec) -> bool:
     if effect.contact is None or law.torque is None:
         return True
     rng = np.random.default_rng(0)
-    values = np.zeros(1)
-    if effect.pack is not None:
-        values = effect.pack(active.form, active.values, rng)
+    values = active.packed(rng)
     changed = np.zeros(N_CONTACT, dtype=bool)
     for _ in range(_PROBES):
         context = 10.0 ** rng.uniform(-4.0, 1.0, N_CONTEXT)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from models.errors import ParameterError
-from models.radiation.impulse_responses import ImpulseResponses, radiate
+from models.radiation.impulse_responses import radiate
 from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
@@ -16,7 +15,7 @@ from sim.acquisition import Acquisition
 from sim.blocks import simulate_blocks
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
-from sim.effects.effect import Effect, Stage, activated
+from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 from sim.run import simulate
 from tests.helpers.chain_paths import RATE, changed
@@ -45,24 +44,6 @@ def difference(one, other, path):
     return np.abs(padded(first, size) - padded(second, size)).max() / np.abs(second).max()
 
 
-def test_each_has_three_forms_and_acts_on_the_chain_alone():
-    for name in CHAIN:
-        effect = EFFECTS[name]
-        assert len(effect.forms) >= 3
-        assert effect.chain is not None
-        assert effect.drive is effect.contact is effect.force is effect.sensors is None
-    assert EFFECTS["beam_modes"].stage is Stage.STRUCTURE
-    assert EFFECTS["plate_modes"].stage is EFFECTS["room_reflections"].stage is Stage.RADIATION
-
-
-@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
-def test_it_vanishes_as_its_strength_does(plain, name, form):
-    for strength in (0.0, 1e-12, 1e-6, 1e-3):
-        almost = changed(plain, name, form=form, **{EFFECTS[name].strength: strength})
-        for path in PATHS:
-            assert difference(almost, plain, path) <= 1e-12 + 100.0 * strength
-
-
 @pytest.mark.parametrize(("name", "form"), EVERY_FORM)
 def test_what_is_added_is_proportional_to_the_strength(plain, name, form):
     single, double = (
@@ -73,23 +54,6 @@ def test_what_is_added_is_proportional_to_the_strength(plain, name, form):
         base = padded(getattr(plain, path), getattr(single, path).size)
         first, second = getattr(single, path) - base, getattr(double, path) - base
         assert np.abs(second - 2.0 * first).max() <= 1e-12 * np.abs(base).max()
-
-
-@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
-def test_the_default_strength_changes_the_sound_and_leaves_the_given_response(plain, name, form):
-    before = {field.name: np.copy(getattr(plain, field.name)) for field in fields(ImpulseResponses)}
-    louder = changed(plain, name, form=form)
-    assert difference(louder, plain, "torque_to_pressure") > 1e-3
-    assert all(np.array_equal(getattr(plain, key), value) for key, value in before.items())
-    assert louder.rate == plain.rate
-
-
-@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
-def test_the_seed_decides_and_nothing_else(plain, name, form):
-    one, same, other = (changed(plain, name, seed, form=form) for seed in (3, 3, 4))
-    assert all(np.array_equal(getattr(one, path), getattr(same, path)) for path in PATHS)
-    scatters = difference(one, other, "torque_to_pressure") > 0.0
-    assert scatters == (form in ("scattered", "diffuse"))
 
 
 @pytest.mark.parametrize(("name", "form"), EVERY_FORM)
@@ -177,18 +141,3 @@ def test_an_effect_of_the_users_own_can_change_the_chain():
     damped = simulate(rig, 5.0, library={"foam": mine}, **how).recording["pressure"]
     loud = simulate(replace(RIG, effects=()), 5.0, **how).recording["pressure"]
     assert damped == pytest.approx(0.5 * loud, abs=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("name", "given", "message"),
-    [
-        ("beam_modes", {"frequency": 0.0}, "out of range"),
-        ("plate_modes", {"damping_ratio": 2.0}, "out of range"),
-        ("room_reflections", {"distance": -1.0}, "out of range"),
-        ("room_reflections", {"form": "cave"}, "form 'cave' is unknown; there are floor"),
-        ("plate_modes", {"modes": 3.0}, "no parameter 'modes'"),
-    ],
-)
-def test_what_cannot_be_used_is_refused_by_name(name, given, message):
-    with pytest.raises(ParameterError, match=message):
-        activated((LawSpec(name, given),), EFFECTS)

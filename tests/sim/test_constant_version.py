@@ -76,11 +76,6 @@ def _settled(rig, speed, interference):
     return run.since(4500)
 
 
-def test_steady_sliding_does_not_scatter():
-    torque = _settled(_scattered("fluorocarbon", 0.3), 10.0, 0.178e-3).torque
-    assert torque.std() < 1e-3 * torque.mean()
-
-
 def test_slips_scatter_with_a_law_that_counts_none():
     even, scattered = (
         np.diff(motion_slips(_settled(_scattered("fluorocarbon", scatter), 1.0, 0.381e-3)).times)

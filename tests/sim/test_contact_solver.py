@@ -15,7 +15,7 @@ from sim.friction import LAWS, friction_law
 from sim.motion import simulate_motion
 from sim.parameters import resolve
 from sim.shaft import ConstantSpeed
-from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook, solve_contact
+from sim.solvers.contact_solver import Hook, solve_contact
 
 THESIS, CALIBRATED = load_material_rig("fluorocarbon-thesis"), load_material_rig("fluorocarbon")
 RATE = 90e3
@@ -76,12 +76,6 @@ def error_before_chaos(condition, name, speed, hooks=(), stiffness=3745.0, secon
     end = min([end, *grown[:1]])
     assert end > 0.003 * RATE  # the wildest part their neighbours within a cycle
     return np.sqrt(np.mean((coarse - fine)[:end] ** 2)) / rms
-
-
-@pytest.mark.parametrize("condition", CONDITIONS)
-@pytest.mark.parametrize("name", NAMES)
-def test_a_law_agrees_with_a_sixteenth_of_its_step(name, condition):
-    assert error_before_chaos(condition, name, 2.5) < 1e-4
 
 
 @pytest.mark.slow
@@ -203,23 +197,6 @@ def test_an_end_that_lasts_less_than_a_step_is_not_missed():
         solve("calibrated", "coulomb", 5.0, 0.05, refined=n, hooks=hooks)[:, 1] for n in (1, 16)
     )
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-3 * fine.mean()
-
-
-@pytest.mark.parametrize("name", ["coulomb", "contact_with_memory"])
-def test_blocks_joined_are_one_run(name):
-    torques, options = arguments("thesis", name, hooks=(hook("static_ageing"),))
-    beyond = round(LONGEST_STEP * RATE) + 1
-    drive = 2.0 + np.sin(np.arange(6000 + beyond) / 700.0)
-    whole, _ = solve_contact(*torques, drive[:6000], 1.0 / RATE, **options)
-    run = ContactRun(*torques, drive[0], 1.0 / RATE, **options)
-    blocks = [run.advance(drive[i : i + 1000 + beyond], 1000)[0] for i in range(0, 6000, 1000)]
-    joined = np.concatenate(blocks)
-    assert np.abs(joined - whole)[:5900, 1].max() < 1e-6
-
-
-def test_the_same_run_is_the_same_bit_for_bit():
-    one, two = (solve("calibrated", "contact_with_memory", 5.0, 0.1) for _ in range(2))
-    assert np.array_equal(one, two)
 
 
 def test_each_of_five_effects_has_states_of_its_own():

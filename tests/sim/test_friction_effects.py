@@ -1,13 +1,11 @@
 """Effects of the contact and the elastomer: limits, what they change, and that they compose."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from models.errors import ParameterError
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.analysis.regime import Regime, friction_regime
@@ -30,7 +28,7 @@ from sim.contact import (
     call_hook,
 )
 from sim.effects import EFFECTS
-from sim.effects.effect import Stage, activated
+from sim.effects.effect import activated
 from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.parameters import resolve
@@ -39,12 +37,6 @@ from sim.solvers.contact_solver import Hook, solve_contact
 
 TRUE_STICK = load_material_rig("fluorocarbon-thesis")
 MEMORY = load_material_rig("fluorocarbon")
-NAMES = (
-    "partial_slip", "velocity_weakening", "velocity_strengthening", "static_ageing",
-    "critical_torque_scatter", "transfer_film", "frictional_heating", "viscoelastic_stiffness",
-    "amplitude_softening",
-)  # fmt: skip
-FORMS = [(name, form) for name in NAMES for form in EFFECTS[name].forms]
 RATE = 90e3
 
 
@@ -107,59 +99,6 @@ def slips(direction):
     return int(np.count_nonzero(np.diff(np.abs(direction)) > 0))
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_strength_zero_is_the_plain_model(name):
-    effect = EFFECTS[name]
-    plain = motion(seconds=0.1)
-    off = motion((name, {effect.strength: 0.0}), seconds=0.1)
-    assert np.array_equal(plain.torque, off.torque)
-    assert effect.stage is Stage.FRICTION
-    assert len(effect.forms) >= 3
-
-
-@pytest.mark.parametrize("rig", [TRUE_STICK, MEMORY], ids=["true stick", "memory"])
-@pytest.mark.parametrize(("name", "form"), FORMS)
-def test_little_of_an_effect_changes_little(name, form, rig):
-    little = hook(name, form=form, **{EFFECTS[name].strength: 1e-9})
-    torque, _ = solve(little, rig=rig, samples=1500)
-    plain, _ = solve(rig=rig, samples=1500)
-    assert np.abs(torque - plain).max() < 1e-5
-
-
-@pytest.mark.parametrize(("name", "form"), FORMS)
-def test_an_effect_is_seen(name, form):
-    sooner = {"growth_angle": 0.02} if name == "transfer_film" else {}
-    torque, _ = solve(hook(name, form=form, **sooner))
-    plain, _ = solve()
-    assert np.abs(torque - plain).max() > 0.05
-
-
-@pytest.mark.parametrize("rig", [TRUE_STICK, MEMORY], ids=["true stick", "memory"])
-@pytest.mark.parametrize(("name", "form"), FORMS)
-def test_reversing_the_shaft_reverses_the_torque(name, form, rig):
-    effect = hook(name, form=form)
-    forward, _ = solve(effect, rig=rig, samples=1500)
-    backward, _ = solve(effect, rig=rig, samples=1500, speed=-1.0)
-    assert np.array_equal(forward, -backward)
-
-
-@pytest.mark.parametrize(("name", "form"), FORMS)
-def test_integration_agrees_with_a_sixteenth_of_its_step(name, form):
-    effect = hook(name, form=form)
-    coarse, direction = solve(effect, samples=6000)
-    fine, _ = solve(effect, samples=6000, refined=16)
-    assert slips(direction) >= 1
-    assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-4 * fine.std()
-
-
-@pytest.mark.parametrize(("name", "form"), FORMS)
-def test_integration_with_a_law_agrees_with_a_sixteenth_of_its_step(name, form):
-    effect = hook(name, form=form)
-    coarse, _ = solve(effect, rig=MEMORY, samples=1200)
-    fine, _ = solve(effect, rig=MEMORY, samples=1200, refined=16)
-    assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-4 * fine.std()
-
-
 def test_two_effects_act_together():
     heating, weakening = hook("frictional_heating"), hook("velocity_weakening")
     both, _ = solve(heating, weakening)
@@ -168,11 +107,6 @@ def test_two_effects_act_together():
     assert np.abs(both - one).max() > 0.05
     # Heating after weakening sees the weakened power, so the order matters, but little.
     assert np.abs(both - swapped)[:1000].max() < 0.05
-
-
-def test_a_wrong_parameter_is_named():
-    with pytest.raises(ParameterError, match=r"partial_slip.*share = 0\.99"):
-        EFFECTS["partial_slip"].active({"share": 0.99})
 
 
 @pytest.mark.parametrize("form", EFFECTS["partial_slip"].forms)
@@ -291,12 +225,6 @@ def test_scatter_makes_slips_irregular():
     assert spread(hook("critical_torque_scatter", scatter=0.2)) > 3.0 * spread()
 
 
-def test_the_seed_decides_the_scatter():
-    one, same, other = (solve(hook("critical_torque_scatter", seed))[0] for seed in (1, 1, 2))
-    assert np.array_equal(one, same)
-    assert not np.array_equal(one, other)
-
-
 @pytest.mark.parametrize("form", EFFECTS["transfer_film"].forms)
 def test_a_film_raises_the_torque_three_to_four_times(form):
     run = motion(("transfer_film", {"form": form, "growth_angle": 0.4}), speed=7.0)
@@ -410,9 +338,3 @@ def test_a_static_twist_does_not_soften_and_torque_rises_with_every_departure(fo
     assert (np.diff(curve) > 0.0).all()
     assert curve[-1] - curve[1000] == pytest.approx(curve[1000] - curve[0])
     assert curve[-1] - curve[1000] < 0.4 * 665.0 * 0.05
-
-
-def test_effects_stay_within_a_rig_file():
-    rig = replace(TRUE_STICK, effects=(LawSpec("static_ageing", {"form": "power"}),))
-    (active,) = activated(rig.effects, EFFECTS)
-    assert active.form == "power"

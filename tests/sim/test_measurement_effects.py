@@ -12,12 +12,11 @@ from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 from sim.run import simulate
-from tests.helpers.sensor_signals import RATE, random_signals, read, rms, tone
+from tests.helpers.sensor_signals import RATE, read, rms, tone
 
 MEASUREMENT = (
     "background_noise", "mains_hum", "mount_resonance", "clipping", "gain_error", "channel_delay",
 )  # fmt: skip
-EVERY_FORM = [(name, form) for name in MEASUREMENT for form in EFFECTS[name].forms]
 STAGES = {
     "speed_fluctuation": "drive", "shaft_compliance": "drive",
     "partial_slip": "friction", "velocity_weakening": "friction",
@@ -39,45 +38,6 @@ def test_every_effect_acts_in_the_stage_that_the_diagnosis_knows_it_by(name):
     if effect.stage is Stage.MEASUREMENT:
         assert effect.sensors is not None
         assert effect.drive is effect.contact is effect.force is None
-
-
-@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
-def test_at_strength_zero_every_signal_is_itself(name, form):
-    signals = random_signals()
-    same = read(signals, name, form=form, **{EFFECTS[name].strength: 0.0})
-    assert list(same) == list(signals)
-    assert all(np.array_equal(same[kind], signals[kind]) for kind in signals)
-
-
-@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
-def test_the_effect_vanishes_as_its_strength_does(name, form):
-    signals = random_signals()
-    for strength in (1e-3, 1e-6, 1e-9, 1e-12):
-        given = {EFFECTS[name].strength: strength}
-        changed = read(signals, name, form=form, **given)
-        for kind, signal in signals.items():
-            # A delay counts in samples, the soft limit falls with the root of what it takes.
-            largest = 10.0 * np.abs(signal).max() * (strength * RATE + strength**0.5)
-            assert np.abs(changed[kind] - signal).max() <= largest
-
-
-@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
-def test_the_default_strength_changes_something_and_leaves_the_input_alone(name, form):
-    signals = random_signals()
-    before = {kind: signal.copy() for kind, signal in signals.items()}
-    changed = read(signals, name, form=form)
-    assert all(np.array_equal(signals[kind], before[kind]) for kind in signals)
-    assert list(changed) == list(signals)
-    assert not np.allclose(changed["acceleration"], signals["acceleration"], rtol=1e-3)
-    assert all(np.isfinite(signal).all() for signal in changed.values())
-
-
-@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
-def test_the_seed_decides_and_nothing_else(name, form):
-    one, same, other = (read(random_signals(), name, seed, form=form) for seed in (3, 3, 4))
-    assert all(np.array_equal(one[kind], same[kind]) for kind in one)
-    scatters = any(not np.array_equal(one[kind], other[kind]) for kind in one)
-    assert scatters == (name in ("background_noise", "mains_hum") or form == "jitter")
 
 
 @pytest.mark.parametrize("name", MEASUREMENT)

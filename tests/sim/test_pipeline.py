@@ -14,11 +14,9 @@ from sim.pipeline import (
     DIAGNOSIS,
     SCREENING,
     SIMULATION,
-    apply_sensor_effects,
     pulse_force,
     radiate_motion,
     run_motion,
-    sensor_signals,
 )
 from sim.run import plan_run, simulate
 
@@ -44,33 +42,6 @@ def test_the_stages_one_by_one_are_the_run():
     assert pulse_force(motion, plan.effects).max() > 0.0
     assert plan.condition == run.recording.condition
     assert (run.motion.rate, run.settling) == (SIMULATION.rate(30e3), SIMULATION.settling)
-
-
-def test_without_pulses_all_the_sound_is_that_of_the_torque():
-    plan = planned()
-    motion, paths = run_motion(plan), impulse_responses(plan.rig, *AT.values(), plan.rate)
-    sound, torque_alone = (radiate_motion(motion, paths, e) for e in (plan.effects, ()))
-    assert not torque_alone.pulse_pressure.any()
-    assert sound.pressure == pytest.approx(torque_alone.pressure + sound.pulse_pressure, abs=1e-12)
-
-
-def test_sensors_see_the_run_from_where_it_is_kept():
-    plan = planned(settling=0.1)
-    motion = run_motion(plan)
-    sound = radiate_motion(motion, impulse_responses(plan.rig, *AT.values(), plan.rate))
-    signals = sensor_signals(motion, sound, plan.n_settling)
-    assert {x.size for x in signals.values()} == {plan.n_kept}
-    assert signals["angle"][0] == 0.0
-    assert apply_sensor_effects(signals, (), plan.rate, np.random.default_rng(0)) is signals
-
-
-def test_a_motion_in_parts_is_the_motion():
-    motion = run_motion(planned())
-    joined = (
-        motion.part(0, 1000).followed_by(motion.part(1000, 2500)).followed_by(motion.since(2500))
-    )
-    for name in ("torque", "shaft_angle", "clamp_speed"):
-        assert np.array_equal(getattr(joined, name), getattr(motion, name))
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
 from sim.contact import (
@@ -18,19 +17,13 @@ from sim.contact import (
     call_hook,
 )
 from sim.effects import EFFECTS
-from sim.effects.effect import Stage, activated
 from sim.friction import friction_law
-from sim.motion import simulate_motion
 from sim.parameters import resolve
-from sim.shaft import ConstantSpeed
 from sim.solvers.contact_solver import Hook, solve_contact
 
 TRUE_STICK = load_material_rig("fluorocarbon-thesis")
-MEMORY = load_material_rig("fluorocarbon")
 EFFECT = EFFECTS["shaft_compliance"]
 RATE = 90e3
-BOTH_RIGS = pytest.mark.parametrize("rig", [TRUE_STICK, MEMORY], ids=["true stick", "memory"])
-ALL_FORMS = pytest.mark.parametrize("form", EFFECT.forms)
 
 
 def hook(name="shaft_compliance", **given):
@@ -64,32 +57,6 @@ def shaft_torque(effect, lag, rate):
     return contact[SHAFT_TORQUE], contact[SHAFT_INERTIA]
 
 
-def test_a_rigid_shaft_is_the_plain_model():
-    def run(*specs):
-        return simulate_motion(
-            TRUE_STICK, ConstantSpeed(1.0), interference=0.279e-3, support_stiffness=2214.0,
-            seconds=0.1, rate=RATE, effects=activated(specs, EFFECTS),
-        )  # fmt: skip
-
-    rigid = run(LawSpec("shaft_compliance", {"compliance": 0.0}))
-    assert np.array_equal(rigid.torque, run().torque)
-    assert np.array_equal(rigid.shaft_speed, np.ones(9000))
-    assert EFFECT.stage is Stage.DRIVE
-    assert np.ptp(run(LawSpec("shaft_compliance")).shaft_speed) > 0.1
-
-
-@BOTH_RIGS
-@ALL_FORMS
-def test_a_nearly_rigid_shaft_changes_little(form, rig):
-    stiff, stiffer = (
-        solve(hook(form=form, compliance=kappa), rig=rig, samples=1500)[0][:, 1]
-        for kappa in (1e-6, 1e-8)
-    )
-    plain = solve(rig=rig, samples=1500)[0][:, 1]
-    assert np.abs(stiff - plain).max() < 0.2
-    assert np.abs(stiffer - plain).max() < 2e-3
-
-
 def test_the_default_shaft_has_the_mode_of_table_3_1():
     torque, inertia = shaft_torque(hook(), 1e-3, 0.0)
     assert math.sqrt(torque / 1e-3 / inertia) / (2.0 * math.pi) == pytest.approx(1568.0, rel=2e-3)
@@ -111,27 +78,6 @@ def test_spring_and_damper_have_the_forms_they_are_named_for():
     lost = [np.mean([shaft_torque(h, 0.0, r)[0] * r for r in rate]) for h in (linear, quadratic)]
     assert lost[0] > 0.0
     assert lost[1] == pytest.approx(lost[0], rel=5e-3)
-
-
-@BOTH_RIGS
-@ALL_FORMS
-def test_reversing_the_shaft_reverses_the_motion(form, rig):
-    forward, backward = (
-        solve(hook(form=form), rig=rig, speed=v, samples=1500)[0] for v in (1.0, -1.0)
-    )
-    assert np.array_equal(forward, -backward)
-
-
-@ALL_FORMS
-@pytest.mark.parametrize("kappa", [1.48e-4, 1e-3])
-def test_integration_agrees_with_a_sixteenth_of_its_step(form, kappa):
-    effect = hook(form=form, compliance=kappa)
-    coarse, direction = solve(effect, samples=6000)
-    fine, _ = solve(effect, samples=6000, refined=16)
-    assert np.count_nonzero(np.diff(np.abs(direction)) > 0) >= 2
-    error = np.sqrt(np.mean((coarse - fine) ** 2, axis=0)) / fine.std(axis=0)
-    assert error[1] < 1e-4
-    assert error[6] < 5e-4
 
 
 def test_shaft_and_elastomer_are_springs_in_series():
@@ -173,14 +119,6 @@ def test_what_the_drive_gives_is_stored_or_dissipated():
     damped = np.sum((torque - lag / kappa) * (1.0 - end)) / RATE
     assert damped > 0.0
     assert given - stored == pytest.approx(damped, rel=0.05)
-
-
-def test_it_acts_together_with_another_effect():
-    alone, _ = solve(hook())
-    both, _ = solve(hook(), hook("static_ageing"))
-    swapped, _ = solve(hook("static_ageing"), hook())
-    assert np.abs(both[:, 1] - alone[:, 1]).max() > 0.05
-    assert np.array_equal(both, swapped)
 
 
 def test_a_drive_that_starts_to_turn_makes_the_end_lag():
