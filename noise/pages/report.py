@@ -138,7 +138,7 @@ def write_report(
         ]
     if summary is None:
         summary = f"{labels_sentence(list(on_page.values()))}."
-    names = ["Recording", "Label", *(name.capitalize() for name in _COLUMNS)]
+    names = ["Recording", "Label", *_NAMES.values()]
     html = page_html(
         "report",
         title,
@@ -157,6 +157,7 @@ def write_report(
 
 
 _COLUMNS = ("speed", "interference", "stiffness", "material", "level", "frequency")
+_NAMES = {name: name.capitalize() for name in _COLUMNS} | {"stiffness": "Support stiffness"}
 
 
 def _known_rows(
@@ -164,12 +165,14 @@ def _known_rows(
 ) -> list[tuple[str, str]]:
     """Return condition, level, frequency and gain, and that they are not known where they are."""
     rows = [
-        (name.capitalize(), facts[name].words if name in facts else "not known")
-        for name in (*_COLUMNS[:4], "temperature")
+        (words, facts[name].words if name in facts else "not known")
+        for name, words in (*list(_NAMES.items())[:4], ("temperature", "Temperature"))
     ]
     rows += [
-        (name.capitalize(), facts[name].words if name in facts else "none") for name in _COLUMNS[4:]
+        (_NAMES[name], facts[name].words if name in facts else "none") for name in _COLUMNS[4:]
     ]
+    if "level" in facts and facts["level"].unit in ("dB", "dB(A)"):
+        rows[5] = ("Level", f"{facts['level'].words} re 20 µPa")
     if entry.segment.channel != "all":
         rows.append(("Track", entry.segment.channel))
     gain = "gain not stated"

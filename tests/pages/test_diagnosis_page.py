@@ -22,7 +22,6 @@ from noise.pages.clips import common_gain, make_clips
 from noise.pages.diagnosis import (
     parameter_rows,
     ranked_causes,
-    stage_boxes,
     waterfall,
     write_diagnosis,
 )
@@ -121,11 +120,6 @@ def test_the_waterfall_says_how_much_is_closed_and_how_sure_that_is():
     )
     words = waterfall(parameters())[1].words
     assert words == "Refitted parameters close 97 % of the closable gap."
-
-
-def test_the_guilty_stage_is_the_only_one_marked():
-    assert [box.name for box in stage_boxes(one_effect()) if box.guilty] == ["friction"]
-    assert not any(box.guilty for box in stage_boxes(none()))
 
 
 def test_the_verdict_leads_the_causes_and_none_is_lost():

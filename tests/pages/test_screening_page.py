@@ -104,19 +104,6 @@ def test_a_hostile_name_is_text_and_nothing_else(two, tmp_path, names):
     assert page.data("compared")["names"] == names
 
 
-def test_a_page_asks_nothing_of_the_network(two, tmp_path):
-    page = page_of(two, tmp_path, sounds=2)
-    assert "default-src 'none'" in page.html
-    assert not re.search(r"https?:|@import", page.html)
-    fetched = [
-        value
-        for _, attrs in page.tags
-        for key, value in attrs.items()
-        if key in ("src", "href") and not (value or "").startswith(("data:", "#"))
-    ]
-    assert fetched == []
-
-
 def by_name(rows):
     return {row[1].text: dict(zip(RANKING, row, strict=True)) for row in rows}
 

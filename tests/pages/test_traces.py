@@ -22,12 +22,6 @@ def segment(start=0.0, end=1.0, *, channel="all"):
     return Segment(channel, start, end, "squeal", {"squeal": 1.0}, 1046.0, 91.0, -3.0)
 
 
-def test_a_recording_shorter_than_the_window_is_shown_whole():
-    short = Recording(TONE[None, :600], RATE, (Channel("pressure"),))
-    (trace,) = traces(short, segment(), 0.05)
-    assert (trace.start, trace.samples.size) == (0.0, 600)
-
-
 def test_levels_are_those_of_the_density_that_the_axis_names():
     noise = np.random.default_rng(3).normal(size=RATE)
     (trace,) = traces(recording(pressure=noise), segment(), 0.05)
@@ -49,10 +43,3 @@ def test_the_loudest_recording_makes_the_scale_of_all():
     loud, quiet = recording(pressure=TONE), recording(pressure=1e-3 * TONE)
     together = common_scales(t for r in (quiet, loud) for t in traces(r, segment(), 0.05))
     assert together == common_scales(traces(loud, segment(), 0.05))
-
-
-def test_recordings_that_are_not_calibrated_have_scales_of_their_own():
-    both = (recording(pressure=TONE), recording(pressure=TONE, calibrated=False))
-    scales = common_scales(t for r in both for t in traces(r, segment(), 0.05))
-    assert scales["pressure", True].top == 90.0
-    assert scales["pressure", False].top == 0.0
