@@ -18,6 +18,7 @@ MODULES = sorted(
         path.is_relative_to(ROOT / "noise" / recipes)
         for recipes in (
             "diagnosis/cases",
+            "training/causes/cases",
             "training/classifier/augmentation",
             "training/classifier/background_sounds",
         )

@@ -19,10 +19,10 @@ import numpy as np
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
 from noise.diagnosis.case import Case
-from noise.diagnosis.cases.draw import SHARED, draw_case
-from noise.diagnosis.cases.rigs import with_offsets
 from noise.diagnosis.diagnose import diagnose_case
 from noise.diagnosis.evidence.summary import NominalNumbers, summary
+from noise.diagnosis.simulated.model_runs import with_offsets
+from noise.training.causes.cases.draw import SHARED, draw_case
 from sim.run import simulate
 
 if TYPE_CHECKING:

@@ -9,12 +9,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from noise.diagnosis.cases.draw import WEAKEST, draw_case
-from noise.diagnosis.cases.rigs import OFFSETS, draw_setting, with_offsets
 from noise.diagnosis.cases.strengths import drawn_effect
-from noise.diagnosis.cases.truth import KINDS
-from noise.diagnosis.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
+from noise.diagnosis.simulated.model_runs import OFFSETS, with_offsets
 from noise.diagnosis.simulated.repeats import CHANNELS, Scatter
+from noise.training.causes.cases.draw import WEAKEST, draw_case
+from noise.training.causes.cases.rigs import draw_setting
+from noise.training.causes.cases.truth import KINDS
+from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from noise.training.causes.store import known_cases_of_a_rig
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG, SECONDS, at, run
@@ -60,7 +61,7 @@ def test_a_case_is_what_a_user_brings(seed):
 @pytest.fixture(scope="module")
 def truths():
     """Causes of many cases, whose recordings are not made."""
-    from noise.diagnosis.cases import draw
+    from noise.training.causes.cases import draw
 
     return [draw._draw_cause(RIG, np.random.default_rng(seed)) for seed in range(1500)]
 

@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.diagnosis.cases.truth import Truth
 from noise.diagnosis.causes.joint import joint_probabilities, marginals
 from noise.diagnosis.causes.posterior import CAUSES, calibrated, load_posterior, odds_features
 from noise.diagnosis.causes.verdict import (
@@ -20,6 +19,7 @@ from noise.diagnosis.causes.verdict import (
     next_measurement,
 )
 from noise.diagnosis.gap.distance import Gap
+from noise.training.causes.cases.truth import Truth
 from noise.training.causes.fit import (
     Known,
     causes_of,

@@ -12,13 +12,12 @@ from hypothesis import given, settings, strategies as st
 
 from models.condition import FIXED, Condition
 from models.rig import LawSpec
-from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.evidence.evidence import scale_of
 from noise.diagnosis.evidence.summary import case_table
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.fit_effect import drawn_candidates, fit_effect, plain_candidates
 from noise.diagnosis.fit.fit_parameters import fit_parameters, split
-from noise.diagnosis.simulated.model_runs import Model
+from noise.diagnosis.simulated.model_runs import OFFSETS, Model, with_offsets
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG, at, only, run
 

@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.condition import Condition
-from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.pattern_search import pattern_search
-from noise.diagnosis.simulated.model_runs import Model
+from noise.diagnosis.simulated.model_runs import OFFSETS, Model
 
 PRIOR = 0.12
 """Relative standard deviation of what a rig file may be wrong by; assumed."""

@@ -21,7 +21,6 @@ from models.errors import ParameterError
 from models.recording import Recording
 from noise.base import SURE_90
 from noise.classifier import load_classifier
-from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.evidence.friction_curves import friction_curves
 from noise.diagnosis.findings import EffectFinding, Illustration, LabelsAndLevels, Remainder
 from noise.diagnosis.fit.case_comparison import CaseComparison
@@ -30,7 +29,7 @@ from noise.diagnosis.fit.fit_effect import strength_of
 from noise.diagnosis.fit.fit_parameters import Fitted
 from noise.diagnosis.fit.improve import improved_rig
 from noise.diagnosis.gap.by_channel import worst_places
-from noise.diagnosis.simulated.model_runs import Model, ModelRuns
+from noise.diagnosis.simulated.model_runs import OFFSETS, Model, ModelRuns
 from noise.labels.segments import file_label, label_recording
 
 if TYPE_CHECKING:

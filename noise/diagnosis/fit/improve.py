@@ -36,7 +36,6 @@ from models.condition import known_condition, same_support
 from models.errors import ParameterError
 from models.rig import LawSpec, Rig, parse_spec
 from models.transfer_functions.measured import MeasuredResponse
-from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import rms
@@ -56,7 +55,7 @@ from noise.diagnosis.fit.fit_parameters import (
     offset_cost,
 )
 from noise.diagnosis.improvement import Improvement
-from noise.diagnosis.simulated.model_runs import Model, with_effects
+from noise.diagnosis.simulated.model_runs import OFFSETS, Model, with_effects
 from noise.diagnosis.simulated.transfer_functions import shift_clamp_mode, with_chain_effects
 from sim.bushing import lumped_bushing
 from sim.effects.effect import ActiveEffect

@@ -20,9 +20,8 @@ from numpy.typing import NDArray
 from models.condition import known_condition
 from models.radiation.impulse_responses import ImpulseResponses
 from models.recording import Recording
-from models.rig import LawSpec, Rig
+from models.rig import Fit, LawSpec, Rig
 from models.sensors import Sensor
-from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
 from noise.diagnosis.simulated.heard import chain_changes, heard_of, n_closed
 from noise.diagnosis.simulated.nominal import condition_key
@@ -62,6 +61,42 @@ _SIGNATURES = 4000
 
 _ROOM = 3e8
 """Of the motions that are kept; what is heard of one of a second at 90 kHz takes 1.4e6 [byte]."""
+
+
+OFFSETS = (
+    "elastomer_stiffness", "critical_torque", "kinetic_torque", "damping", "elastomer_inertia",
+)  # fmt: skip
+"""Parameters of the rig file that may be off in all recordings of a case."""
+
+
+def with_offsets(rig: Rig, offsets: Mapping[str, float]) -> Rig:
+    """Return a rig whose parameters differ by factors, in all its fits.
+
+    Parameters
+    ----------
+    rig : Rig
+    offsets : mapping of str to float
+        Factors [-] by names of `OFFSETS`.
+    """
+
+    def factor(name: str) -> float:
+        return offsets.get(name, 1.0)
+
+    def changed(fit: Fit) -> Fit:
+        kinetic = fit.kinetic_torque * factor("kinetic_torque")
+        return replace(
+            fit,
+            elastomer_stiffness=fit.elastomer_stiffness * factor("elastomer_stiffness"),
+            critical_torque=max(fit.critical_torque * factor("critical_torque"), kinetic),
+            kinetic_torque=kinetic,
+            damping={support: c * factor("damping") for support, c in fit.damping.items()},
+        )
+
+    return replace(
+        rig,
+        fits=tuple(changed(fit) for fit in rig.fits),
+        elastomer_inertia=rig.elastomer_inertia * factor("elastomer_inertia"),
+    )
 
 
 @dataclass(frozen=True)

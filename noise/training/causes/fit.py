@@ -25,10 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from noise.base.trees import BoostedTrees
-from noise.diagnosis.cases.truth import Truth, seen_through
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
 from noise.diagnosis.evidence.evidence import evidence, scale_of
 from noise.diagnosis.simulated.repeats import CHANNELS
+from noise.training.causes.cases.truth import Truth, seen_through
 from noise.training.trees import as_arrays
 
 if TYPE_CHECKING:

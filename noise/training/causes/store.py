@@ -31,10 +31,10 @@ from models.rig import Rig
 from models.sensors import Sensors
 from noise.base.files import atomic, check_target
 from noise.base.progress import say
-from noise.diagnosis.cases.draw import SHARED, DrawnCase, draw_case
-from noise.diagnosis.cases.truth import Truth
 from noise.diagnosis.evidence.summary import CaseTable, NominalNumbers, Numbers, case_table
 from noise.diagnosis.preparation.prepare import prepared
+from noise.training.causes.cases.draw import SHARED, DrawnCase, draw_case
+from noise.training.causes.cases.truth import Truth
 from noise.training.causes.fit import Known, with_rows
 from sim.acquisition import Acquisition
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from noise.diagnosis.cases.unknown_effects.hooks import table_hook
+from noise.training.causes.cases.unknown_effects.hooks import table_hook
 from sim.effects.effect import Effect, Signals, Stage
 from sim.parameters import Parameter
 

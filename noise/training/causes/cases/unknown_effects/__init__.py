@@ -10,16 +10,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.cases.unknown_effects.bystanders import BYSTANDERS
-from noise.diagnosis.cases.unknown_effects.mechanics import MECHANICS
-from noise.diagnosis.cases.unknown_effects.recorders import RECORDERS
+from noise.training.causes.cases.unknown_effects.bystanders import BYSTANDERS
+from noise.training.causes.cases.unknown_effects.mechanics import MECHANICS
+from noise.training.causes.cases.unknown_effects.recorders import RECORDERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import numpy as np
 
-    from noise.diagnosis.cases.unknown_effects.parts import Recipe
+    from noise.training.causes.cases.unknown_effects.parts import Recipe
     from sim.effects.effect import Effect
 
 __all__ = ["UNKNOWN_EFFECTS", "draw_unknown_effect"]

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.cases.unknown_effects.hooks import (
+from noise.diagnosis.cases.variants.common import log_uniform
+from noise.diagnosis.cases.variants.hooks import compliance_hook
+from noise.training.causes.cases.unknown_effects.hooks import (
     ABSORBER,
     BESIDE,
     LOADED,
@@ -18,7 +20,7 @@ from noise.diagnosis.cases.unknown_effects.hooks import (
     STIFFNESSES,
     TORQUES,
 )
-from noise.diagnosis.cases.unknown_effects.parts import (
+from noise.training.causes.cases.unknown_effects.parts import (
     Array,
     Recipe,
     Rng,
@@ -27,8 +29,6 @@ from noise.diagnosis.cases.unknown_effects.parts import (
     table,
     unknown,
 )
-from noise.diagnosis.cases.variants.common import log_uniform
-from noise.diagnosis.cases.variants.hooks import compliance_hook
 from sim.effects.effect import Effect, Stage
 
 if TYPE_CHECKING:

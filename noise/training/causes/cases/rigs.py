@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,17 +12,12 @@ from models.condition import FIXED, KnownCondition
 from models.rig import Fit, LawSpec, Rig
 from models.rig_file import load_material_rig
 from models.sensors import Sensors
-from noise.diagnosis.cases.benches import Bench, draw_bench
-from noise.diagnosis.cases.laws import MATERIALS, draw_law, scaled_law
+from noise.training.causes.cases.benches import Bench, draw_bench
+from noise.training.causes.cases.laws import MATERIALS, draw_law, scaled_law
 from sim.motion import simulate_motion
 from sim.pipeline import DIAGNOSIS, REGIME_RATE
 from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
-
-OFFSETS = (
-    "elastomer_stiffness", "critical_torque", "kinetic_torque", "damping", "elastomer_inertia",
-)  # fmt: skip
-"""Parameters of the rig file that may be off in all recordings of a case."""
 
 _FITS = {0.178e-3: (430.0, 5.35, 4.0), 0.279e-3: (665.0, 10.7, 8.0), 0.381e-3: (1011.0, 27.0, 20.0)}
 """Stiffness [Nm/rad], critical and kinetic torque [Nm] at each interference [m]: Table 4.1."""
@@ -103,36 +98,6 @@ def draw_setting(rng: np.random.Generator) -> Setting:
     sensors = bench.sensors(largest)
     stated = sensors if bench.stated else Sensors(noise_from_recordings=True)
     return Setting(replace(rig, sensors=stated), conditions, bench, sensors)
-
-
-def with_offsets(rig: Rig, offsets: Mapping[str, float]) -> Rig:
-    """Return a rig whose parameters differ by factors, in all its fits.
-
-    Parameters
-    ----------
-    rig : Rig
-    offsets : mapping of str to float
-        Factors [-] by names of `OFFSETS`.
-    """
-
-    def factor(name: str) -> float:
-        return offsets.get(name, 1.0)
-
-    def changed(fit: Fit) -> Fit:
-        kinetic = fit.kinetic_torque * factor("kinetic_torque")
-        return replace(
-            fit,
-            elastomer_stiffness=fit.elastomer_stiffness * factor("elastomer_stiffness"),
-            critical_torque=max(fit.critical_torque * factor("critical_torque"), kinetic),
-            kinetic_torque=kinetic,
-            damping={support: c * factor("damping") for support, c in fit.damping.items()},
-        )
-
-    return replace(
-        rig,
-        fits=tuple(changed(fit) for fit in rig.fits),
-        elastomer_inertia=rig.elastomer_inertia * factor("elastomer_inertia"),
-    )
 
 
 def _rig(bench: Bench, rng: np.random.Generator) -> Rig:

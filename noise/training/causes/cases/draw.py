@@ -21,14 +21,9 @@ from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
 from models.rig import Fit, Rig
 from models.sensors import Sensors
-from noise.diagnosis.cases.benches import NOISE_DRAWN
-from noise.diagnosis.cases.rigs import OFFSETS, Setting, draw_setting, with_offsets
-from noise.diagnosis.cases.starts import draw_start
 from noise.diagnosis.cases.strengths import drawn_effect
-from noise.diagnosis.cases.structures import THESIS, draw_structure, draw_trade
-from noise.diagnosis.cases.truth import KINDS, Truth, seen_through
-from noise.diagnosis.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from noise.diagnosis.cases.variants import draw_variant
+from noise.diagnosis.simulated.model_runs import OFFSETS, with_offsets
 from noise.diagnosis.simulated.repeats import (
     CHANNELS,
     Scatter,
@@ -36,6 +31,12 @@ from noise.diagnosis.simulated.repeats import (
     plan_repeat,
     repeat_motion,
 )
+from noise.training.causes.cases.benches import NOISE_DRAWN
+from noise.training.causes.cases.rigs import Setting, draw_setting
+from noise.training.causes.cases.starts import draw_start
+from noise.training.causes.cases.structures import THESIS, draw_structure, draw_trade
+from noise.training.causes.cases.truth import KINDS, Truth, seen_through
+from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from sim.acquisition import Acquisition, decimate, digitise
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain

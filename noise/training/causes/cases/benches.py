@@ -16,10 +16,10 @@ import numpy as np
 
 from models.rig import LawSpec
 from models.sensors import Sensor, Sensors
-from noise.diagnosis.cases.laws import OWN_LAWS
-from noise.diagnosis.cases.starts import STARTS
 from noise.diagnosis.cases.strengths import drawn_effect
 from noise.diagnosis.cases.variants.common import log_uniform
+from noise.training.causes.cases.laws import OWN_LAWS
+from noise.training.causes.cases.starts import STARTS
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects import EFFECTS
 
@@ -79,7 +79,7 @@ class Bench:
     stated : bool
         Whether the rig file states noise and converter.
     law : str
-        Of `noise.diagnosis.cases.laws.OWN_LAWS`; empty for the constant one.
+        Of `noise.training.causes.cases.laws.OWN_LAWS`; empty for the constant one.
     sizes : mapping of str to float
         Factors from the thesis's rig, by `SIZES` [-].
     listed : tuple of LawSpec
@@ -93,7 +93,7 @@ class Bench:
     responses : str
         How the hammer test was: ``good``, ``poor`` or ``none``.
     start : str
-        Of `noise.diagnosis.cases.starts.STARTS`; empty where recordings are settled.
+        Of `noise.training.causes.cases.starts.STARTS`; empty where recordings are settled.
     """
 
     departures: tuple[str, ...] = ()

@@ -8,8 +8,9 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from scipy.signal import bilinear, lfilter
 
-from noise.diagnosis.cases.unknown_effects.hooks import lagging, slewing
-from noise.diagnosis.cases.unknown_effects.parts import (
+from noise.diagnosis.cases.variants.common import log_uniform, slowly
+from noise.training.causes.cases.unknown_effects.hooks import lagging, slewing
+from noise.training.causes.cases.unknown_effects.parts import (
     Array,
     Recipe,
     Rng,
@@ -17,7 +18,6 @@ from noise.diagnosis.cases.unknown_effects.parts import (
     on_sensors,
     where,
 )
-from noise.diagnosis.cases.variants.common import log_uniform, slowly
 from sim.effects.effect import Effect, Signals
 
 

@@ -1,0 +1,1 @@
+"""Training cases: rigs, benches and causes as they are drawn."""
