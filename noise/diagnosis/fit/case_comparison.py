@@ -50,9 +50,6 @@ _BRIEF = 0.5
 _SLOW = ("frictional_heating", "transfer_film")
 """Effects that need as long as was recorded to show; so may those of users."""
 
-_THREADS = 2
-"""Processors that are used at once, where there are as many."""
-
 _SEED = 100
 """Of the repeats; conditions share no repeat's rig, which would err in all of them alike."""
 
@@ -112,7 +109,7 @@ class CaseComparison:
     def __post_init__(self) -> None:
         self._signed, self._numbers = {}, {}
         self.runs = ModelRuns(self.rig, self.library, self.forms)
-        self._threads = min(_THREADS, os.cpu_count() or 1)
+        self._threads = os.cpu_count() or 1
         self._briefly = [_brief(recording) for recording in self.recordings]
         keys = dict.fromkeys(map(condition_key, self.recordings))
         self._seeds = {

@@ -82,7 +82,7 @@ def fitted_cases(folders: Sequence[Path], store: Path) -> Iterator[FittedCase]:
     Yields
     ------
     FittedCase
-        Of each case that raises the alarm, as the first answer has it: local cases change little.
+        Of each case that raises the alarm, as the first answer has it.
 
     Raises
     ------
