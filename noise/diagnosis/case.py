@@ -33,10 +33,9 @@ from models.recording import Recording
 from models.rig import Rig
 from noise.diagnosis.bench.channels import misplaced_torque
 from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
-from noise.diagnosis.bench.units import length_unit
+from noise.diagnosis.bench.levels import length_unit
 from noise.diagnosis.evidence.reconstruction import reconstruct
-from noise.diagnosis.preparation.measured_speed import measured_speed
-from noise.diagnosis.preparation.prepare import prepared
+from noise.diagnosis.preparation.prepare import measured_speed, prepared
 from noise.diagnosis.preparation.settled_part import shortest
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.rotation import as_logged

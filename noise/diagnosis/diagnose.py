@@ -25,8 +25,12 @@ from noise.diagnosis.bench.silent import unchecked_units
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import Posterior, load_posterior
 from noise.diagnosis.causes.stage_nulls import StageNulls, load_stage_nulls
-from noise.diagnosis.causes.unseen import channel_costs
-from noise.diagnosis.causes.verdict import UNUSUAL, equivalent_pairs, next_measurement
+from noise.diagnosis.causes.verdict import (
+    UNUSUAL,
+    channel_costs,
+    equivalent_pairs,
+    next_measurement,
+)
 from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, StageFinding
 from noise.diagnosis.first_answer import FirstAnswer, first_answer
 from noise.diagnosis.gap.distance import Gap
@@ -38,7 +42,7 @@ from sim.effects.effect import Effect, Stage
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
-    from noise.diagnosis.fit.judge import Judged
+    from noise.diagnosis.fit.hypothesis_fits import Judged
 
 
 def assumed_fit(rig: Rig, interferences: Sequence[float]) -> str:
@@ -121,7 +125,7 @@ def diagnose_case(
         answer = replace(answer, notes=(*answer.notes, *_unasked(case, library)))
     else:
         from noise.diagnosis.fit.fits import add_fits  # loads the classifier; no part of a quick
-        from noise.diagnosis.fit.judge import fit_notes, judge  # answer
+        from noise.diagnosis.fit.hypothesis_fits import fit_notes, judge  # answer
 
         stages = stage_findings(first.table, nulls, first.flat)
         judged = judge(case, first, stages, library, seed, tell)

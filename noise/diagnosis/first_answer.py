@@ -31,12 +31,19 @@ from models.rig import Rig
 from models.sensors import Sensors
 from models.units import CHANNEL_UNITS
 from noise.diagnosis.causes.bench_nulls import as_seldom, null_log_odds
-from noise.diagnosis.causes.joint import Hypothesis, joint_probabilities, marginals, with_none
 from noise.diagnosis.causes.posterior import CAUSES, Posterior
-from noise.diagnosis.causes.unseen import unseen_causes
-from noise.diagnosis.causes.verdict import UNUSUAL, likeliest, needs_explaining
+from noise.diagnosis.causes.verdict import (
+    UNUSUAL,
+    Hypothesis,
+    joint_probabilities,
+    likeliest,
+    marginals,
+    needs_explaining,
+    unseen_causes,
+    with_none,
+)
 from noise.diagnosis.evidence.bands import USABLE
-from noise.diagnosis.evidence.bench_context import lacking_coherence
+from noise.diagnosis.evidence.evidence import lacking_coherence
 from noise.diagnosis.evidence.summary import CaseTable, case_table
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.gap.distance import Gap

@@ -27,7 +27,7 @@ from models.rig_file import rig_text
 from models.schema import remarks
 from noise.base import SURE_90
 from noise.diagnosis.bench.check import unit_findings
-from noise.diagnosis.bench.units import unit_of
+from noise.diagnosis.bench.levels import unit_of
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers, read_again
 from noise.identification.evidence import table_evidence, with_evidence

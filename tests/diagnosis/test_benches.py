@@ -9,11 +9,19 @@ import pytest
 
 from models.rig import LawSpec
 from noise.diagnosis.evidence.evidence import aligned
-from noise.training.causes.cases.benches import DEPARTURES, SIZES, draw_bench
+from noise.training.causes.cases.benches import (
+    DEPARTURES,
+    MATERIALS,
+    OWN_LAWS,
+    SIZES,
+    STARTS,
+    draw_bench,
+    draw_law,
+    draw_start,
+    scaled_law,
+)
 from noise.training.causes.cases.draw import draw_case
-from noise.training.causes.cases.laws import MATERIALS, OWN_LAWS, draw_law, scaled_law
 from noise.training.causes.cases.rigs import draw_setting
-from noise.training.causes.cases.starts import STARTS, draw_start
 from noise.training.causes.cases.truth import Truth, seen_through
 from noise.training.causes.store import known_cases_of_a_rig
 from sim.acquisition import Acquisition

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share
-from noise.diagnosis.fit.pattern_search import pattern_search
+from noise.diagnosis.fit.fit_parameters import pattern_search
 
 squares = st.lists(st.floats(0.2, 400.0), min_size=1, max_size=6).map(np.array)
 

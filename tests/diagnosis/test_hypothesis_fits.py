@@ -9,19 +9,18 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.diagnosis.causes.joint import normalised
-from noise.diagnosis.causes.verdict import likeliest
+from noise.diagnosis.causes.verdict import likeliest, normalised
 from noise.diagnosis.findings import StageFinding
 from noise.diagnosis.fit import hypothesis_fits
-from noise.diagnosis.fit.closing_odds import closed_of, load_closing_odds, room_of
+from noise.diagnosis.fit.closing import closed_of, load_closing_odds, room_of
 from noise.diagnosis.fit.hypothesis_fits import (
     CaseFits,
     HypothesisFit,
     fit_hypotheses,
+    fit_notes,
     settled,
     updated,
 )
-from noise.diagnosis.fit.judge import fit_notes
 from sim.effects import EFFECTS
 
 NAMES = ("partial_slip", "velocity_weakening", "background_noise")

@@ -10,11 +10,12 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.diagnosis.causes.joint import joint_probabilities, marginals
 from noise.diagnosis.causes.posterior import CAUSES, calibrated, load_posterior, odds_features
 from noise.diagnosis.causes.verdict import (
     equivalent_pairs,
+    joint_probabilities,
     likeliest,
+    marginals,
     needs_explaining,
     next_measurement,
 )

@@ -10,8 +10,12 @@ from models.condition import KnownCondition
 from models.recording import Channel, Recording
 from models.sensors import Sensor, Sensors
 from noise.diagnosis.evidence.path_summary import path_summary
-from noise.diagnosis.preparation.measured_speed import at_measured_speeds
-from noise.diagnosis.preparation.prepare import converter_step, prepared, with_seen_sensors
+from noise.diagnosis.preparation.prepare import (
+    at_measured_speeds,
+    converter_step,
+    prepared,
+    with_seen_sensors,
+)
 from noise.diagnosis.preparation.sensor_noise import estimated_noise
 from noise.diagnosis.preparation.settled_part import settled_parts, shortest, start_of
 from sim.acquisition import Acquisition

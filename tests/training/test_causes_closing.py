@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from noise.diagnosis.causes.joint import normalised
+from noise.diagnosis.causes.verdict import normalised
 from noise.diagnosis.findings import StageFinding
-from noise.diagnosis.fit.closing_odds import load_closing_odds
+from noise.diagnosis.fit.closing import load_closing_odds
 from noise.diagnosis.fit.hypothesis_fits import CaseFits, HypothesisFit
 from noise.training.causes import closing
 from noise.training.causes.closing import (
@@ -62,9 +62,7 @@ def test_what_fits_tell_is_learned_and_found_again_on_others():
 def test_what_is_learned_is_read_as_it_is_shipped(tmp_path, monkeypatch):
     odds = replace(load_closing_odds(), enough=0.07)
     write_odds(tmp_path / "data" / "closing.json", odds, cases(np.random.default_rng(0), True))
-    monkeypatch.setattr(
-        "noise.diagnosis.fit.closing_odds.resources.files", lambda _package: tmp_path
-    )
+    monkeypatch.setattr("noise.diagnosis.fit.closing.resources.files", lambda _package: tmp_path)
     assert load_closing_odds.__wrapped__() == odds
 
 

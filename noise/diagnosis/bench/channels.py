@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.units import CHANNEL_UNITS
-from noise.diagnosis.bench.units import factor_words, unit_of
+from noise.diagnosis.bench.levels import factor_words, unit_of
 
 if TYPE_CHECKING:
     from models.recording import Recording

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from noise.diagnosis.bench.units import factor_words, unit_of
+from noise.diagnosis.bench.levels import factor_words, unit_of
 
 if TYPE_CHECKING:
     from models.rig import Rig

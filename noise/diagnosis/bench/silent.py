@@ -16,8 +16,7 @@ from models.condition import known_condition
 from models.rig import Rig
 from models.units import CHANNEL_UNITS
 from noise.diagnosis.bench.channels import SWINGING, is_told
-from noise.diagnosis.bench.levels import Levels, levels_of
-from noise.diagnosis.bench.units import factor_words, unit_of
+from noise.diagnosis.bench.levels import Levels, factor_words, levels_of, unit_of
 from noise.diagnosis.preparation.sensor_noise import estimated_noise
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 from sim.acquisition import Acquisition

@@ -1,14 +1,193 @@
-"""Verdict of a diagnosis: causes named, causes that cannot be told apart, what to measure next."""
+"""Verdict of a diagnosis: causes named, causes that cannot be told apart, what to measure next.
+
+Causes that the recorded channels cannot show, whatever stands in those that were recorded.
+
+Hypotheses from causes taken one by one, and causes from hypotheses.
+
+A hypothesis is the set of causes that are at work: none, ``parameters`` or ``unknown`` by itself,
+or up to three effects.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Container, Mapping, Sequence
+from itertools import combinations
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.causes.joint import Hypothesis, marginals
+import numpy as np
+
+from sim.effects import EFFECTS
+from sim.effects.effect import Stage
 
 if TYPE_CHECKING:
     from noise.diagnosis.gap.distance import Gap
+
+
+Hypothesis = frozenset[str]
+
+_EXCLUSIVE = ("none", "parameters", "unknown")
+_LEAST = 1e-4
+"""Probabilities are held this far from 0 and 1 [-]: no library is large enough to tell more."""
+
+
+def joint_probabilities(probabilities: Mapping[str, float]) -> dict[Hypothesis, float]:
+    """Probability of each hypothesis, the causes taken for independent.
+
+    Parameters
+    ----------
+    probabilities : mapping of str to float
+        Of every cause being at work, ``none``, ``parameters`` and ``unknown`` among them [-].
+
+    Returns
+    -------
+    dict of frozenset of str to float
+        The likeliest first; they sum to 1 [-].
+
+    Examples
+    --------
+    >>> p = {"none": 0.0, "parameters": 0.1, "unknown": 0.0, "clipping": 0.9, "mains_hum": 0.7}
+    >>> sorted(next(iter(joint_probabilities(p))))
+    ['clipping', 'mains_hum']
+    """
+    odds = {
+        cause: kept / (1.0 - kept)
+        for cause, p in probabilities.items()
+        if p > 0.0
+        for kept in [min(max(p, _LEAST), 1.0 - _LEAST)]
+    }
+    effects = [cause for cause in odds if cause not in _EXCLUSIVE]
+    weights = {frozenset(set() if c == "none" else {c}): odds.get(c, 0.0) for c in _EXCLUSIVE}
+    for size in (1, 2, 3):
+        for members in combinations(effects, size):
+            weights[frozenset(members)] = float(np.prod([odds[m] for m in members]))
+    return normalised(weights)
+
+
+def normalised(weights: Mapping[Hypothesis, float]) -> dict[Hypothesis, float]:
+    """Return weights in proportion, so that they sum to 1 [-]; the largest first."""
+    whole = sum(weights.values())
+    ranked = sorted(weights.items(), key=lambda entry: -entry[1])
+    return {hypothesis: weight / whole for hypothesis, weight in ranked}
+
+
+def with_none(joint: Mapping[Hypothesis, float], least: float) -> dict[Hypothesis, float]:
+    """Give nothing being the matter a probability, at the expense of all others alike.
+
+    Parameters
+    ----------
+    joint : mapping of frozenset of str to float
+        Of the hypotheses [-].
+    least : float
+        Of nothing being the matter, where it has less [-].
+
+    Examples
+    --------
+    >>> raised = with_none({frozenset({"clipping"}): 0.9, frozenset(): 0.1}, 0.7)
+    >>> {"+".join(causes): round(p, 3) for causes, p in raised.items()}
+    {'': 0.7, 'clipping': 0.3}
+    """
+    none: Hypothesis = frozenset()
+    least = max(least, joint.get(none, 0.0))
+    rest = sum(p for hypothesis, p in joint.items() if hypothesis)
+    share = (1.0 - least) / rest if rest > 0.0 else 0.0
+    others = {hypothesis: share * p for hypothesis, p in joint.items() if hypothesis}
+    return normalised({none: least, **others})
+
+
+def marginals(joint: Mapping[Hypothesis, float]) -> dict[str, float]:
+    """Probability of each cause being at work.
+
+    Parameters
+    ----------
+    joint : mapping of frozenset of str to float
+        Of the hypotheses [-].
+
+    Returns
+    -------
+    dict of str to float
+        By cause, ``none`` among them [-].
+
+    Examples
+    --------
+    >>> marginals({frozenset(): 0.1, frozenset({"a"}): 0.5, frozenset({"a", "b"}): 0.4})
+    {'none': 0.1, 'a': 0.9, 'b': 0.4}
+    """
+    found: dict[str, float] = {}
+    for hypothesis, p in joint.items():
+        for cause in sorted(hypothesis or {"none"}):
+            found[cause] = found.get(cause, 0.0) + p
+    return found
+
+
+_SHOWN_BY = {
+    Stage.STRUCTURE: {"acceleration", "pressure"},
+    Stage.RADIATION: {"pressure"},
+}
+"""Channels of which one is needed; all others show the other stages."""
+
+
+def unseen_causes(kinds: Collection[str]) -> frozenset[str]:
+    """Name the effects that none of the recorded channels can show.
+
+    Parameters
+    ----------
+    kinds : collection of str
+        Of the channels that were recorded.
+
+    Returns
+    -------
+    frozenset of str
+
+    Examples
+    --------
+    >>> sorted(unseen_causes({"torque", "acceleration"}))
+    ['plate_modes', 'room_reflections']
+    >>> unseen_causes({"torque", "acceleration", "pressure"})
+    frozenset()
+    """
+    return frozenset(
+        name
+        for name, effect in EFFECTS.items()
+        if (needed := _SHOWN_BY.get(effect.stage)) is not None and not needed & set(kinds)
+    )
+
+
+def channel_costs(kinds: Collection[str]) -> list[str]:
+    """Say what the channels that were not recorded cost, one line each.
+
+    Parameters
+    ----------
+    kinds : collection of str
+        Of the channels that were recorded.
+
+    Examples
+    --------
+    >>> channel_costs({"torque", "pressure", "angle"})
+    ['no acceleration: structure and radiation cannot be told apart']
+    """
+    missing = {"torque", "acceleration", "pressure", "angle"} - set(kinds)
+    found = []
+    if "torque" in missing:
+        heard = " and ".join(
+            word for kind, word in (("acceleration", "acceleration"), ("pressure", "sound"))
+            if kind not in missing
+        )  # fmt: skip
+        found.append(
+            f"no torque: drive, contact and structure cannot be told apart by {heard} alone"
+        )
+    unseen = ", ".join(sorted(name.replace("_", " ") for name in unseen_causes(kinds)))
+    if {"acceleration", "pressure"} <= missing:
+        found.append(f"no acceleration and no sound: nothing is said of {unseen}")
+    elif "acceleration" in missing:
+        found.append("no acceleration: structure and radiation cannot be told apart")
+    elif "pressure" in missing:
+        found.append(f"no sound: nothing is said of {unseen}")
+    if "angle" in missing:
+        found.append(
+            "no shaft angle: the shaft is taken to turn evenly at the speed that was set, and an "
+            "uneven drive is told by what else it changes"
+        )
+    return found
 
 
 ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"}))

@@ -22,9 +22,9 @@ from models.rig import Rig
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.evidence.angle_summary import angle_summary, shaft_speed
 from noise.diagnosis.evidence.bands import band_levels
-from noise.diagnosis.evidence.bench_context import bench_context
 from noise.diagnosis.evidence.channel_summary import channel_summary, hum_summary
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
+from noise.diagnosis.evidence.evidence import bench_context
 from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.reconstruction import closed_spectrum, reconstruct
 from noise.diagnosis.simulated.nominal import condition_key, nominal_repeats
@@ -55,7 +55,7 @@ class CaseTable:
     rate : float
         Sampling rate of the recordings, the middle one where they differ [Hz].
     bench : mapping of str to float
-        As `noise.diagnosis.evidence.bench_context.bench_context` gives it.
+        As `noise.diagnosis.evidence.evidence.bench_context` gives it.
     """
 
     names: tuple[str, ...]

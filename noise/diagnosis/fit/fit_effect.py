@@ -30,11 +30,11 @@ from noise.diagnosis.fit.fit_parameters import (
     different,
     fit_parameters,
     offset_cost,
+    pattern_search,
     spreads,
 )
 from noise.diagnosis.fit.forms.estimated import estimated_forms
 from noise.diagnosis.fit.forms.form import Form
-from noise.diagnosis.fit.pattern_search import pattern_search
 from noise.diagnosis.simulated.model_runs import Model
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage

@@ -38,8 +38,7 @@ if TYPE_CHECKING:
 
     Simulated = Callable[[Recording], Recording]
     from noise.diagnosis.causes.posterior import Posterior
-    from noise.diagnosis.fit.hypothesis_fits import CaseFits, HypothesisFit
-    from noise.diagnosis.fit.judge import Judged
+    from noise.diagnosis.fit.hypothesis_fits import CaseFits, HypothesisFit, Judged
     from noise.diagnosis.outcome import Diagnosis
     from noise.diagnosis.simulated.model_runs import Model
 

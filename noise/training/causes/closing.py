@@ -1,7 +1,7 @@
 """What fits tell of causes, counted on cases whose cause is known.
 
 Each case is diagnosed as a user's would be, as far as the fits; what these leave of the recordings
-is kept, so that the weights of `noise.diagnosis.fit.closing_odds` can be learned again in minutes
+is kept, so that the weights of `noise.diagnosis.fit.closing` can be learned again in minutes
 when the first answer has changed. The weights are those by which the true hypotheses become
 likeliest, held to the ones before by a ridge, since cases are few.
 """
@@ -24,15 +24,14 @@ from models.rig_file import load_rig
 from noise.base.files import atomic, check_target
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.case import read_case
-from noise.diagnosis.causes.joint import Hypothesis, normalised
 from noise.diagnosis.causes.location import stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.stage_nulls import load_stage_nulls
+from noise.diagnosis.causes.verdict import Hypothesis, normalised
 from noise.diagnosis.findings import StageFinding
 from noise.diagnosis.first_answer import first_answer
-from noise.diagnosis.fit.closing_odds import ClosingOdds, load_closing_odds
-from noise.diagnosis.fit.hypothesis_fits import CaseFits, HypothesisFit, settled, updated
-from noise.diagnosis.fit.judge import judge
+from noise.diagnosis.fit.closing import ClosingOdds, load_closing_odds
+from noise.diagnosis.fit.hypothesis_fits import CaseFits, HypothesisFit, judge, settled, updated
 from sim.effects import EFFECTS
 
 _LOOKED = 50

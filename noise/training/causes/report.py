@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.causes.joint import joint_probabilities
-from noise.diagnosis.causes.verdict import likeliest, needs_explaining
+from noise.diagnosis.causes.verdict import joint_probabilities, likeliest, needs_explaining
 
 if TYPE_CHECKING:
     from noise.diagnosis.causes.posterior import Posterior

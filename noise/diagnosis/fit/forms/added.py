@@ -14,7 +14,7 @@ from noise.diagnosis.gap.signature import KINDS, NAMES
 from sim.effects.effect import Signals, Values
 
 if TYPE_CHECKING:
-    from noise.diagnosis.fit.forms.compared import Compared
+    from noise.diagnosis.fit.forms.form import Compared
 
 
 _SURE = 2.0

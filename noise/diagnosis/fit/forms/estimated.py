@@ -11,9 +11,8 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.fit.forms.added import hum_forms, noise_forms
-from noise.diagnosis.fit.forms.compared import Compared, compared
 from noise.diagnosis.fit.forms.filters import beam_forms, radiation_forms, sensor_forms
-from noise.diagnosis.fit.forms.form import Form
+from noise.diagnosis.fit.forms.form import Compared, Form, compared
 from noise.diagnosis.fit.forms.impacts import impact_forms
 from noise.diagnosis.fit.forms.modulation import gain_forms, speed_forms
 from noise.diagnosis.fit.forms.overloads import overload_forms

@@ -17,7 +17,7 @@ from sim.effects.effect import Signals, Values
 
 if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
-    from noise.diagnosis.fit.forms.compared import Compared
+    from noise.diagnosis.fit.forms.form import Compared
 
 
 _NOISE = {"acceleration": 0.03, "pressure": 1e-3}

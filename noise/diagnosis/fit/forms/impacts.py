@@ -18,7 +18,7 @@ from sim.effects.slip_pulse import torque_drops
 
 if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
-    from noise.diagnosis.fit.forms.compared import Compared
+    from noise.diagnosis.fit.forms.form import Compared
     from sim.motion import Motion
 
 

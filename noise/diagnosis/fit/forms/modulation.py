@@ -17,7 +17,7 @@ from noise.diagnosis.gap.signature import NAMES
 from sim.effects.effect import Signals, Values
 
 if TYPE_CHECKING:
-    from noise.diagnosis.fit.forms.compared import Compared
+    from noise.diagnosis.fit.forms.form import Compared
 
 
 _BLOCK = 0.03

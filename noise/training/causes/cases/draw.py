@@ -31,9 +31,8 @@ from noise.diagnosis.simulated.repeats import (
     plan_repeat,
     repeat_motion,
 )
-from noise.training.causes.cases.benches import NOISE_DRAWN
+from noise.training.causes.cases.benches import NOISE_DRAWN, draw_start
 from noise.training.causes.cases.rigs import Setting, draw_setting
-from noise.training.causes.cases.starts import draw_start
 from noise.training.causes.cases.structures import THESIS, draw_structure, draw_trade
 from noise.training.causes.cases.truth import KINDS, Truth, seen_through
 from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect

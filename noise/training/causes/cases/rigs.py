@@ -12,8 +12,7 @@ from models.condition import FIXED, KnownCondition
 from models.rig import Fit, LawSpec, Rig
 from models.rig_file import load_material_rig
 from models.sensors import Sensors
-from noise.training.causes.cases.benches import Bench, draw_bench
-from noise.training.causes.cases.laws import MATERIALS, draw_law, scaled_law
+from noise.training.causes.cases.benches import MATERIALS, Bench, draw_bench, draw_law, scaled_law
 from sim.motion import simulate_motion
 from sim.pipeline import DIAGNOSIS, REGIME_RATE
 from sim.rig_effects import constant_version
