@@ -77,7 +77,17 @@ def segment_frequency(rate: float) -> tuple[int, NDArray[np.float64]]:
 
 
 def powers(spectra: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Power of each line of spectra [unit^2].
+    """Power of each line of spectra.
+
+    Parameters
+    ----------
+    spectra : ndarray of complex, shape (...)
+        [any unit]
+
+    Returns
+    -------
+    ndarray, shape (...)
+        [unit^2]
 
     Examples
     --------

@@ -33,9 +33,9 @@ from noise.diagnosis.fit.fit_effect import fit_effect
 from noise.diagnosis.fit.fit_parameters import Fitted, fit_parameters, split
 from noise.diagnosis.simulated.model_runs import Model
 from noise.diagnosis.text.words import joined
-from sim.constant_version import irregular_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect
+from sim.rig_effects import irregular_effects
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
