@@ -153,7 +153,7 @@ class Convolution:
         self._next: list[NDArray[np.complex128]] | None = None
 
     def exchange(self, responses: Sequence[Sequence[NDArray[np.float64]]]) -> None:
-        """Let other responses, as many as before, take over within a block."""
+        """Let other responses, shape (m,) each and as many as before, take over within a block."""
         self._next = [self._spectra(own) for own in responses]
 
     def __call__(self, signals: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:

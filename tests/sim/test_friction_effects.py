@@ -99,16 +99,6 @@ def slips(direction):
     return int(np.count_nonzero(np.diff(np.abs(direction)) > 0))
 
 
-def test_two_effects_act_together():
-    heating, weakening = hook("frictional_heating"), hook("velocity_weakening")
-    both, _ = solve(heating, weakening)
-    swapped, _ = solve(weakening, heating)
-    one, _ = solve(heating)
-    assert np.abs(both - one).max() > 0.05
-    # Heating after weakening sees the weakened power, so the order matters, but little.
-    assert np.abs(both - swapped)[:1000].max() < 0.05
-
-
 @pytest.mark.parametrize("form", EFFECTS["partial_slip"].forms)
 def test_torque_rises_ever_more_slowly_in_a_creeping_stick(form):
     free, _ = solve()

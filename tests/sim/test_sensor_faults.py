@@ -46,14 +46,6 @@ def test_a_full_mount_amplifies_its_resonance_by_one_over_twice_its_damping():
     assert found == pytest.approx(1.0 / (2.0 * 0.02), rel=0.01)
 
 
-@pytest.mark.parametrize("form", EFFECTS["mount_resonance"].forms)
-@pytest.mark.parametrize("frequency", [200.0, 30e3])
-def test_a_constant_is_read_as_it_is_from_the_first_sample(form, frequency):
-    held = {"acceleration": np.full(2000, 9.81)}
-    changed = read(held, "mount_resonance", form=form, frequency=frequency)["acceleration"]
-    assert changed == pytest.approx(held["acceleration"], rel=1e-9)
-
-
 # Clipping.
 
 
