@@ -53,7 +53,7 @@ def _over_time(values: NDArray[np.float64], power: NDArray[np.float64]) -> float
 
 
 def pooled_levels(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:  # noqa: ARG001
-    """Level of the mean power, of levels; a piece without any counts as silent."""
+    """Level of the mean power [dB], of levels of shape (n,); an empty piece counts as silent."""
     return 10.0 * math.log10(float(np.mean(np.nan_to_num(10.0 ** (0.1 * values)))))
 
 

@@ -49,7 +49,7 @@ class Responses(NamedTuple):
     h : ndarray, shape (n_responses, n), complex
         In any [unit].
     weight : ndarray, shape (n_responses, n)
-        Of each line.
+        Of each line [-].
     """
 
     f: NDArray[np.float64]
