@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from models.rig import LawSpec
-from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED
+from sim.contact import CRITICAL, KINETIC, SLIDING_SPEED
 from sim.effects.effect import Effect, Stage
 from sim.friction import friction_law
 from sim.friction.shared import FASTEST
@@ -59,7 +59,7 @@ def _log_factor(v, values):
     )
 
 
-@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy")  # by `HOOK_SIGNATURE`, when a temperature acts
 def _contact(context, values, state, state_rates, contact):
     v = context[SLIDING_SPEED]
     factor = math.exp(values[4] + state[0])
