@@ -28,8 +28,6 @@ from models.recording import Recording
 from noise.pictures.figure import KINDS, Kind
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from noise.labels.segments import Segment
 
 
@@ -47,31 +45,6 @@ class Panel:
 
     svg: bytes
     alt: str
-
-
-def new_panel(title: str, across: str, up: str) -> tuple[Figure, Axes]:
-    """Begin a panel, to be called within `models.drawing.styled`.
-
-    Parameters
-    ----------
-    title : str
-    across, up : str
-        What its axes show.
-
-    Examples
-    --------
-    >>> figure, axes = new_panel("Torque", "Time [ms]", "Torque [Nm]")
-    >>> axes.get_xlabel()
-    'Time [ms]'
-    """
-    figure = Figure(figsize=_SIZE)
-    axes = figure.add_axes(_AXES)
-    axes.set_title(title, loc="left", fontweight="bold", color="#222222")
-    axes.set_xlabel(across)
-    axes.set_ylabel(up)
-    # At the same place in every panel, however wide the numbers are.
-    axes.yaxis.set_label_coords(-0.19, 0.5)
-    return figure, axes
 
 
 def as_svg(figure: Figure) -> bytes:
@@ -162,7 +135,13 @@ def lines_panel(
     >>> lines_panel("Torque", "Time [ms]", "Torque [Nm]", [line], "1 Nm throughout.").alt
     '1 Nm throughout.'
     """
-    figure, axes = new_panel(title, across, up)
+    figure = Figure(figsize=_SIZE)
+    axes = figure.add_axes(_AXES)
+    axes.set_title(title, loc="left", fontweight="bold", color="#222222")
+    axes.set_xlabel(across)
+    axes.set_ylabel(up)
+    # At the same place in every panel, however wide the numbers are.
+    axes.yaxis.set_label_coords(-0.19, 0.5)
     for one in lines:
         if one.low is not None and one.high is not None:
             axes.fill_between(one.x, one.low, one.high, color=one.colour, alpha=0.18, linewidth=0)

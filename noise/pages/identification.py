@@ -17,7 +17,7 @@ from noise.identification.law_candidates import CANDIDATES
 from noise.identification.outcome import Forecast, Identification, Number, Seen, as_json
 from noise.identification.quantities import QUANTITIES
 from noise.pages import blocks as b
-from noise.pages.figures import Line, Panel, as_svg, lines_panel, new_panel
+from noise.pages.figures import Line, Panel, lines_panel
 from noise.pages.page import page_html, write_page
 
 if TYPE_CHECKING:
@@ -165,32 +165,6 @@ def _levels(found: Identification, title: str, up: str, names: tuple[str, ...]) 
     )  # fmt: skip
 
 
-def law_panel(found: Identification) -> Panel:
-    """Draw what each law leaves.
-
-    Parameters
-    ----------
-    found : Identification
-
-    Returns
-    -------
-    Panel
-    """
-    with styled():
-        figure, axes = new_panel(
-            "What each law misses within a cycle", "Share of the oscillation [%]", ""
-        )
-        laws = list(reversed(found.laws))
-        colours = [BLUE if score.law == found.law else GREY for score in laws]
-        missed = [100.0 * score.missed for score in laws]
-        axes.barh(range(len(laws)), missed, color=colours, height=0.6)
-        axes.set_yticks(range(len(laws)), [score.law.replace("_", " ") for score in laws])
-        axes.tick_params(axis="y", labelsize=8)
-        scores = ", ".join(f"{s.law} {100.0 * s.missed:.1f} %" for s in found.laws)
-        alt = f"Share of the oscillation that a law does not predict: {scores}"
-        return Panel(as_svg(figure), alt)
-
-
 def static_panels(test: StaticTest) -> tuple[Panel, ...]:
     """Draw torque over angle, and the ring-down where there is one.
 
@@ -292,9 +266,14 @@ def write_identification(folder: Path, found: Identification) -> None:
 def _html(found: Identification) -> str:
     slipping = [one for one in found.seen if one.levels.slips]
     answer, *further = _answer(found)
-    laws = [
+    most = max([one.missed for one in found.laws], default=0.0) or 1.0
+    laws: list[list[b.Cell | str]] = [
         [
-            one.law.replace("_", " "), _WORDS[one.law], f"{100.0 * one.missed:.1f}",
+            one.law.replace("_", " "), _WORDS[one.law],
+            b.Cell(
+                f"{100.0 * one.missed:.1f}",
+                bars=[b.Bar(0.0, 100.0 * one.missed / most, "cause" * (one.law == found.law))],
+            ),
             f"{one.held_out:.2f}", f"{one.trained:.2f}",
         ]
         for one in found.laws
@@ -342,7 +321,6 @@ def _html(found: Identification) -> str:
             b.Section(
                 "Law of friction",
                 [
-                    b.Panels((law_panel(found),) if laws else ()),
                     b.Table(columns, laws),
                     b.Text(choice if laws else "", "soft"),
                 ],
