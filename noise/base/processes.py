@@ -89,11 +89,11 @@ class Worker:
     """A process that does one call at a time, and can be ended at any moment."""
 
     def __init__(self) -> None:
-        # A new interpreter, not a copy of this one, whose threads a copy would lack.
-        self._executor = ProcessPoolExecutor(
-            1, get_context("spawn"), initializer=_watch, initargs=(os.getpid(),)
-        )
         with interrupts_blocked(), _on_its_own():
+            # A new interpreter, not a copy of this one, whose threads a copy would lack.
+            self._executor = ProcessPoolExecutor(
+                1, get_context("spawn"), initializer=_watch, initargs=(os.getpid(),)
+            )
             self._begun = self._submitted(os.getpid)
         # A process that ends waits for those that it started.
         self._at_exit = Finalize(None, self.end, exitpriority=10)
@@ -158,7 +158,14 @@ def interrupts_blocked() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):  # as on Windows
         yield
         return
-    resource_tracker.ensure_running()  # started by the first process, it would let interrupts in
+    # Started by the first process, it would let interrupts in. Of what it cleans up after one that
+    # was killed nobody need read.
+    warned = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = "ignore"
+    resource_tracker.ensure_running()
+    os.environ.pop("PYTHONWARNINGS")
+    if warned is not None:
+        os.environ["PYTHONWARNINGS"] = warned
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
