@@ -227,3 +227,19 @@ def test_a_process_that_may_start_no_other_reads_as_well(path):
     process.start()
     process.join(60.0)
     assert process.exitcode == 0
+
+
+@pytest.mark.slow
+def test_processes_that_share_the_work_read_the_same_and_say_no_more(path, tmp_path):
+    for ending, write in WRITERS.items():
+        write(tmp_path / f"run{ending}", [Wave("mic", "Pa", X)])
+    call = [sys.executable, "-m", "noise", "label", tmp_path, "--out"]
+    said = {
+        subprocess.run(
+            [*call, tmp_path / f"{n}.csv", "--workers", n],
+            check=True, capture_output=True, text=True,
+        ).stderr
+        for n in "12"
+    }  # fmt: skip
+    assert len(said) == 1
+    assert (tmp_path / "1.csv").read_bytes() == (tmp_path / "2.csv").read_bytes()
