@@ -138,8 +138,19 @@ def _run(arguments: list[str]) -> int:
         return stop.code if isinstance(stop.code, int) else 0
     if unknown:
         options_there = f"see {_NAME} {options.command} --help"
-        return _failed(f"unrecognized: {' '.join(unknown)} ({options_there})")
+        meant = _meant(unknown[0], options.command)
+        return _failed(f"unrecognized: {' '.join(unknown)}{meant} ({options_there})")
     return load_command(options.command).run(options)
+
+
+def _meant(word: str, command: str) -> str:
+    """Ask whether an option of a command was meant."""
+    from models.schema import did_you_mean
+
+    parser = argparse.ArgumentParser(add_help=False)
+    add_options(parser, load_command(command).OPTIONS)
+    known = [name for action in parser._actions for name in action.option_strings]
+    return did_you_mean(word.partition("=")[0], known)
 
 
 def _failed(message: str, code: int = _USAGE_ERROR) -> int:
@@ -150,6 +161,10 @@ def _failed(message: str, code: int = _USAGE_ERROR) -> int:
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Tell an error of the call in one line."""
+        if wrong := re.match(r"argument COMMAND: invalid choice: '([^']*)'", message):
+            from models.schema import did_you_mean
+
+            message = f"there is no command {wrong[1]!r}{did_you_mean(wrong[1], COMMANDS)}"
         _failed(f"{_plain(message)} (see {self.prog} --help)")
         raise SystemExit(_USAGE_ERROR)
 

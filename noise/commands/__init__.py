@@ -51,6 +51,9 @@ COMMANDS = {
     "review": "recordings, labels, screens, diagnoses -> one page to look at and to listen to",
     "train": "build the classifier again from simulation",
     "open": "a local app: listen, correct labels, hear a design while it is changed, compare blind",
+    "new-rig": "a commented rig file to start from",
+    "effects": "the effects that a rig file can list, with their parameters",
+    "materials": "the materials that are shipped, with their numbers",
     "thesis": "the published numbers beside what the program computes",
 }
 """Name -> what it does in one line, in the order of the help."""
@@ -64,4 +67,4 @@ def load_command(name: str) -> Command:
     >>> callable(load_command("train").run)
     True
     """
-    return cast("Command", import_module(f"noise.commands.{name}"))
+    return cast("Command", import_module(f"noise.commands.{name.replace('-', '_')}"))

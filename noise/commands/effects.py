@@ -1,0 +1,56 @@
+"""``bushing-noise effects``: the effects that a rig file can list, with their parameters."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+
+from models.errors import ParameterError
+from models.schema import did_you_mean
+from noise.commands.options import Option, seed
+
+DESCRIPTION = (
+    "List the effects that the plain model lacks: what each one is, in which stage it acts, its "
+    "forms, and its parameters with default, range and meaning. A rig file lists them as effects = "
+    '["NAME:PARAMETER=VALUE"]; on the command line use --effect NAME:PARAMETER=VALUE.'
+)
+
+EPILOG = "example: bushing-noise effects slip_pulse"
+
+OPTIONS = (
+    Option("names NAME", str, count="*").help("effects to list; all by default"),
+    seed("accepted as by every command; nothing here is random"),
+)
+
+
+def run(options: Namespace) -> int:
+    """Print the effects."""
+    from sim.effects import EFFECTS
+
+    for name in options.names:
+        if name not in EFFECTS:
+            raise ParameterError(
+                f"effect {name!r} is unknown{did_you_mean(name, EFFECTS)}; there are "
+                f"{', '.join(EFFECTS)}"
+            )
+    stages = list(dict.fromkeys(EFFECTS[name].stage for name in EFFECTS))
+    names = sorted(options.names or EFFECTS, key=lambda name: stages.index(EFFECTS[name].stage))
+    print("\n\n".join(_described(name) for name in names))
+    return 0
+
+
+def _described(name: str) -> str:
+    import sys
+
+    from sim.effects import EFFECTS
+
+    effect = EFFECTS[name]
+    about = (sys.modules[f"sim.effects.{name}"].__doc__ or "").partition("\n")[0]
+    lines = [f"{name} ({effect.stage})", f"  {about}"]
+    if len(effect.forms) > 1:
+        lines.append(f"  form={' | '.join(effect.forms)} (default: {effect.forms[0]})")
+    for key, one in effect.parameters.items():
+        unit = f" {one.unit}" if one.unit not in ("", "1") else ""
+        lines.append(
+            f"  {key}={one.default:g}{unit}, {one.low:g} to {one.high:g}{unit}: {one.meaning}"
+        )
+    return "\n".join(lines)

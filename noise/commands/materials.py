@@ -1,0 +1,56 @@
+"""``bushing-noise materials``: the materials that are shipped, with their numbers."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+
+from noise.commands.options import Option, seed
+
+DESCRIPTION = (
+    "List the materials that are shipped: friction law, effects, for each interference fit the "
+    "stiffness and the torques, and what of it was assumed or fitted. Use one as --material NAME, "
+    "as a design of screen, or as base of a rig file."
+)
+
+EPILOG = "example: bushing-noise materials PDMS"
+
+OPTIONS = (
+    Option("names NAME", str, count="*").help("materials to list; all by default"),
+    seed("accepted as by every command; nothing here is random"),
+)
+
+
+def run(options: Namespace) -> int:
+    """Print the materials."""
+    from models.rig_file import material_names
+
+    print("\n\n".join(material_text(name) for name in options.names or material_names()))
+    return 0
+
+
+def material_text(name: str) -> str:
+    """Describe a material in lines of text.
+
+    Raises
+    ------
+    ParameterError
+        There is no such material.
+
+    Examples
+    --------
+    >>> print(material_text("fluorocarbon-thesis"))
+    fluorocarbon-thesis
+      friction law: coulomb
+      ...
+    """
+    from models.rig_file import load_material_rig
+
+    rig = load_material_rig(name)
+    lines = [rig.material or name, f"  friction law: {rig.friction.name}"]
+    lines += [f"  effect: {one.name}" for one in rig.effects]
+    lines += [
+        f"  fit {1e3 * fit.interference:g} mm: stiffness {fit.elastomer_stiffness:g} Nm/rad, "
+        f"critical torque {fit.critical_torque:g} Nm, kinetic torque {fit.kinetic_torque:g} Nm"
+        for fit in rig.fits
+    ]
+    return "\n".join([*lines, *(f"  not measured: {one}" for one in rig.assumed)])
