@@ -233,6 +233,7 @@ def drive_block(
 
     Examples
     --------
+    >>> import numpy as np
     >>> from sim.effects import EFFECTS
     >>> uneven = [EFFECTS["speed_fluctuation"].active({"frequency": 10.0})]
     >>> start = begun(uneven, 0)
@@ -241,6 +242,8 @@ def drive_block(
     >>> bool(np.allclose(first[6:], second[:3]))
     True
     """
+    import numpy as np
+
     kept = deepcopy(memories)
     for active in effects:
         if active.effect.drive is None:
@@ -266,6 +269,7 @@ def sensors_block(
 
     Examples
     --------
+    >>> import numpy as np
     >>> from sim.effects import EFFECTS
     >>> hum = [EFFECTS["mains_hum"].active({"form": "sine", "pressure_level": 94.0})]
     >>> start = begun(hum, 0)

@@ -18,11 +18,27 @@ import numpy as np
 
 from models.recording import Channel, Recording
 from noise.recordings import write_recording
-from tests.app.test_list_in_browser import FIRST_ROWS, SCROLL, written
+from tests.app.test_list_in_browser import MOUNT, written
 from tests.helpers.browser import chromium
 from tests.helpers.opened_app import opened_app
 
 RATE = 48_000
+FIRST_ROWS = f"""async () => {{
+  const start = performance.now();
+  await ({MOUNT})();
+  while (!document.querySelector("[role=option] b")?.textContent.endsWith(".wav"))
+    await new Promise(requestAnimationFrame);
+  return (performance.now() - start) / 1000;
+}}"""
+SCROLL = """() => new Promise((done) => {
+  const rows = document.querySelector(".rows"), times = [];
+  const step = (now) => {
+    times.push(now);
+    rows.scrollTop += 137;
+    times.length < 300 ? requestAnimationFrame(step) : done(times);
+  };
+  requestAnimationFrame(step);
+})"""
 
 
 def processor_seconds(pid):
