@@ -191,6 +191,7 @@ def workers_of(process):
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="tells no children of a process")
 def test_one_of_two_workers_is_killed_and_the_table_is_the_same(tmp_path):
     make_recordings(tmp_path / "runs", 36, 2, 0.2)

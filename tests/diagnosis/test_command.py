@@ -105,6 +105,7 @@ def test_a_shipped_material_stands_in_the_place_of_a_rig_file(plain, tmp_path):
     assert named | {"seconds": 0.0} == filed | {"seconds": 0.0}
 
 
+@pytest.mark.slow
 def test_the_same_call_gives_the_same_answer(plain, tmp_path, capsys):
     data, rig = write_case(tmp_path, plain)
     one, other = (_told(capsys, data, "--rig", rig, "--quick", "--seed", "3") for _ in range(2))
@@ -209,6 +210,7 @@ def test_an_effect_of_the_users_own_takes_the_verdict_when_it_is_the_cause(
     assert told["location"]["stage"] == "measurement"
 
 
+@pytest.mark.slow
 def test_a_notebook_takes_effects_of_the_users_own_as_the_command_does(tmp_path, capsys):
     mine, other = tmp_path / "rectifier.py", tmp_path / "other.py"
     mine.write_text(RECTIFIER)

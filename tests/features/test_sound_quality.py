@@ -41,6 +41,7 @@ def test_a_kilohertz_of_40_decibels_is_one_sone():
     assert heard.tone_frequency == pytest.approx(1000, abs=5)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_library")
 def test_a_tone_in_noise_stands_out_and_noise_alone_does_not():
     noise = at_level(np.random.default_rng(0).standard_normal(RATE // 2), 50)

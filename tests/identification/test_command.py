@@ -128,6 +128,7 @@ def test_a_notebook_gets_the_same(identified):
     assert stiffness.n_recordings == 3 + 1 + 1  # that of the table is one, too
 
 
+@pytest.mark.slow
 def test_a_table_beside_recordings_joins_them_and_is_held_against_the_rig(identified):
     said, elsewhere = (value for _, value in identified.measured)
     assert said == pytest.approx(identified.number("elastomer_stiffness").value)

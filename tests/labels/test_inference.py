@@ -83,6 +83,7 @@ def total(counted, part):
     return sum(told), sum(held)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_intervals_hold_for_about_nine_of_ten(heard, name):
     told, held = total(coverage(MODEL, heard), f"{name}/")

@@ -247,6 +247,7 @@ def written(folder, samples, rate=RATE, subtype="PCM_24"):
     return folder / "tone.wav"
 
 
+@pytest.mark.slow
 @given(
     gain_db=st.floats(-60.0, -1.0),
     noise_db=st.sampled_from([-300.0, -60.0, -30.0]),

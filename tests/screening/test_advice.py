@@ -217,6 +217,7 @@ def moved_as_predicted(rig, variables, gain, step, seconds=1.0):
     return [(one, before - boundary(changed(rig, **{one.name: one.value}), fine)) for one in advice]
 
 
+@pytest.mark.slow
 def test_the_advised_change_made_moves_the_boundary_as_predicted():
     rig = load_material_rig("fluorocarbon-thesis")
     variables = [

@@ -134,6 +134,7 @@ def test_a_design_with_tolerances_tells_what_its_parts_do_and_what_helps(tmp_pat
     assert rig_of(seen, out, []).material == "fluorocarbon-thesis"
 
 
+@pytest.mark.slow
 def test_tolerances_can_be_assumed_or_left_out(tmp_path, rough):
     given = tmp_path / "given.toml"
     given.write_text(STATED, encoding="utf-8")

@@ -190,6 +190,7 @@ def test_equal_designs_share_a_rank_and_are_told_apart():
     assert [(one.rank, one.design) for one in found.standings] == [(1, "PDMS"), (1, "PDMS (2)")]
 
 
+@pytest.mark.slow
 def test_environments_change_a_map_and_are_told_apart():
     use = Use(speed=(3.0, 6.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
     found = screen(["fluorocarbon"], use, environments=["dry", "grease", "wet"])

@@ -52,6 +52,7 @@ def quieter():
     return stands(found, variables=FEW[:1])
 
 
+@pytest.mark.slow
 def test_a_design_quieter_by_construction_is_ranked_first(plain, quieter):
     ranks = ranked(
         [

@@ -96,6 +96,7 @@ def test_without_interaction_first_and_total_agree(weights, seed):
         assert index.first.value == pytest.approx(exact, abs=0.15)
 
 
+@pytest.mark.slow
 @given(st.floats(-1e3, 1e3), st.floats(0.1, 1e3))
 @settings(max_examples=10)
 def test_the_unit_of_the_output_does_not_matter(offset, scale):
