@@ -23,18 +23,22 @@ _NEW, _KEPT = FOREIGN[DEVELOPMENT], FOREIGN[SEALED]
 
 
 def _limited(s, a, case, shape):
-    """Limits above and below that differ, the lower one at times out of reach; soft by `shape`."""
-    upper = 1.0 - 0.75 * a
+    """Limits above and below that differ, the lower one at times out of reach; soft by `shape`.
+
+    A soft limit acts on a signal that just reaches it, so that weak ones are mixed in by a share.
+    """
+    upper, share = 1.0 - 0.75 * a, min(1.0, 5.0 * a)
     lower = float(case.choice([upper, 0.5 * (1.0 + upper), 30.0]))
 
     def make(x, rate, rng):
         away = x - x.mean()
         size = np.abs(away).max()
-        return x.mean() + np.where(
+        limited = np.where(
             away > 0.0,
             size * upper * shape(away / (size * upper)),
             size * lower * shape(away / (size * lower)),
         )
+        return x + share * (limited - away)
 
     _each(s, _one_or_two(case), make)
 
