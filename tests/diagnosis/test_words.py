@@ -143,6 +143,24 @@ def test_a_surer_stage_in_which_nothing_acts_that_is_named_is_said():
     assert said in location_sentence(blow)
 
 
+def test_a_fit_that_leaves_nothing_explains_the_other_stages_too():
+    """No sentence says that something else is missing where nothing is left."""
+    place = Location("structure", ("acceleration",), (4e3, 1e4), "all", "all", 0.09)
+    stages = dict.fromkeys(one_effect().stages, SLIGHT) | {"radiation": StageFinding(9, 0.8, 0.03)}
+    (finding, *_) = one_effect().effects
+    blow = replace(
+        one_effect(),
+        verdict=("slip_pulse",),
+        location=place,
+        stages=stages,
+        effects=(replace(finding, name="slip_pulse", stage="structure", closed=0.99),),
+        remainder=None,
+    )
+    said = location_sentence(blow)
+    assert said.endswith("the radiation (p = 0.030), which the fit explains as well.")
+    assert "missing" not in said
+
+
 def test_without_a_gap_an_alternative_that_is_likelier_is_said():
     torn = replace(none(), probabilities={"none": 0.2, "clipping": 0.6})
     assert verdict_sentence(torn).endswith(

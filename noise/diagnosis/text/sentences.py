@@ -101,6 +101,12 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     return f"{said} {_surer(diagnosis)}".strip()
 
 
+def _explained(diagnosis: Diagnosis) -> bool:
+    """Whether fits of what is named leave no more than repeats differ by."""
+    fitted = {one.name for one in diagnosis.effects if one.closed is not None}
+    return diagnosis.remainder is None and bool(fitted) and fitted >= set(diagnosis.verdict)
+
+
 def _surer(diagnosis: Diagnosis) -> str:
     """Say which stage differs surely where that of the named effects does not."""
     place, acting = diagnosis.location, stages_acting(diagnosis)
@@ -120,6 +126,8 @@ def _surer(diagnosis: Diagnosis) -> str:
         return f"{said}, as it can where something acts in the {place.stage}."
     if surest in acting:
         return f"{said}."
+    if _explained(diagnosis):
+        return f"{said}, which the fit explains as well."
     return f"{said}, in which nothing acts that is named: something else may be missing there."
 
 
