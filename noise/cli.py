@@ -23,10 +23,10 @@ from typing import TYPE_CHECKING, NoReturn
 from models.errors import BushingNoiseError, RecordingError
 from noise.base.progress import discard, note, say
 from noise.commands import COMMANDS, load_command
-from noise.commands.options import add_options
+from noise.commands.options import add_options, option_names
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
 __all__ = ["main"]
 
@@ -132,25 +132,26 @@ def _run(arguments: list[str]) -> int:
     if not arguments:
         parser.print_help(sys.stderr)
         return _USAGE_ERROR
+    command = arguments[0]
+    if not command.startswith("-") and command not in COMMANDS:
+        meant = _meant(command, COMMANDS)
+        return _failed(f"there is no command {command!r}{meant} (see {_NAME} --help)")
     try:
         options, unknown = parser.parse_known_args(_with_negative_values(arguments))
     except SystemExit as stop:  # 0 after help, 2 after an error
         return stop.code if isinstance(stop.code, int) else 0
     if unknown:
         options_there = f"see {_NAME} {options.command} --help"
-        meant = _meant(unknown[0], options.command)
+        known = ["--help", *option_names(load_command(options.command).OPTIONS)]
+        meant = _meant(unknown[0].partition("=")[0], known)
         return _failed(f"unrecognized: {' '.join(unknown)}{meant} ({options_there})")
     return load_command(options.command).run(options)
 
 
-def _meant(word: str, command: str) -> str:
-    """Ask whether an option of a command was meant."""
-    from models.schema import did_you_mean
+def _meant(word: str, known: Iterable[str]) -> str:
+    from models.schema import did_you_mean  # whose imports the help does without
 
-    parser = argparse.ArgumentParser(add_help=False)
-    add_options(parser, load_command(command).OPTIONS)
-    known = [name for action in parser._actions for name in action.option_strings]
-    return did_you_mean(word.partition("=")[0], known)
+    return did_you_mean(word, known)
 
 
 def _failed(message: str, code: int = _USAGE_ERROR) -> int:
@@ -161,10 +162,6 @@ def _failed(message: str, code: int = _USAGE_ERROR) -> int:
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Tell an error of the call in one line."""
-        if wrong := re.match(r"argument COMMAND: invalid choice: '([^']*)'", message):
-            from models.schema import did_you_mean
-
-            message = f"there is no command {wrong[1]!r}{did_you_mean(wrong[1], COMMANDS)}"
         _failed(f"{_plain(message)} (see {self.prog} --help)")
         raise SystemExit(_USAGE_ERROR)
 

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.schema import did_you_mean
 from noise.commands.options import Option, seed
+
+if TYPE_CHECKING:
+    from sim.effects import Effect
 
 DESCRIPTION = (
     "List the effects that the plain model lacks: what each one is, in which stage it acts, its "
@@ -25,6 +30,7 @@ OPTIONS = (
 def run(options: Namespace) -> int:
     """Print the effects."""
     from sim.effects import EFFECTS
+    from sim.effects.effect import Stage
 
     for name in options.names:
         if name not in EFFECTS:
@@ -32,20 +38,17 @@ def run(options: Namespace) -> int:
                 f"effect {name!r} is unknown{did_you_mean(name, EFFECTS)}; there are "
                 f"{', '.join(EFFECTS)}"
             )
-    stages = list(dict.fromkeys(EFFECTS[name].stage for name in EFFECTS))
-    names = sorted(options.names or EFFECTS, key=lambda name: stages.index(EFFECTS[name].stage))
-    print("\n\n".join(_described(name) for name in names))
+    along = list(Stage).index
+    effects = sorted(
+        (EFFECTS[name] for name in options.names or EFFECTS), key=lambda one: along(one.stage)
+    )
+    print("\n\n".join(_described(one) for one in effects))
     return 0
 
 
-def _described(name: str) -> str:
-    import sys
-
-    from sim.effects import EFFECTS
-
-    effect = EFFECTS[name]
-    about = (sys.modules[f"sim.effects.{name}"].__doc__ or "").partition("\n")[0]
-    lines = [f"{name} ({effect.stage})", f"  {about}"]
+def _described(effect: Effect) -> str:
+    about = (import_module(f"sim.effects.{effect.name}").__doc__ or "").partition("\n")[0]
+    lines = [f"{effect.name} ({effect.stage})", f"  {about}"]
     if len(effect.forms) > 1:
         lines.append(f"  form={' | '.join(effect.forms)} (default: {effect.forms[0]})")
     for key, one in effect.parameters.items():

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from typing import TYPE_CHECKING
 
 from noise.commands.options import Option, seed
+
+if TYPE_CHECKING:
+    from models.rig import Fit
 
 DESCRIPTION = (
     "List the materials that are shipped: friction law, effects, for each interference fit the "
@@ -48,9 +52,20 @@ def material_text(name: str) -> str:
     rig = load_material_rig(name)
     lines = [rig.material or name, f"  friction law: {rig.friction.name}"]
     lines += [f"  effect: {one.name}" for one in rig.effects]
-    lines += [
-        f"  fit {1e3 * fit.interference:g} mm: stiffness {fit.elastomer_stiffness:g} Nm/rad, "
-        f"critical torque {fit.critical_torque:g} Nm, kinetic torque {fit.kinetic_torque:g} Nm"
-        for fit in rig.fits
-    ]
+    lines += [f"  fit {fit_text(fit)}" for fit in rig.fits]
     return "\n".join([*lines, *(f"  not measured: {one}" for one in rig.assumed)])
+
+
+def fit_text(fit: Fit) -> str:
+    """Describe an interference fit in a line.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> fit_text(load_material_rig("fluorocarbon-thesis").fits[1])
+    '0.279 mm: stiffness 665 Nm/rad, critical torque 10.7 Nm, kinetic torque 8 Nm'
+    """
+    return (
+        f"{1e3 * fit.interference:g} mm: stiffness {fit.elastomer_stiffness:g} Nm/rad, "
+        f"critical torque {fit.critical_torque:g} Nm, kinetic torque {fit.kinetic_torque:g} Nm"
+    )

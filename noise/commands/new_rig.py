@@ -7,6 +7,7 @@ from pathlib import Path
 
 from models.errors import ParameterError
 from noise.base.files import atomic, check_target
+from noise.commands.materials import fit_text
 from noise.commands.options import Option, seed
 
 DESCRIPTION = (
@@ -94,11 +95,7 @@ def new_rig_text(material: str) -> str:
     return _TEXT.format(
         base=rig.material or material,
         effects=", ".join(f'"{one.name}"' for one in rig.effects) or '"slip_pulse"',
-        fits="\n".join(
-            f"#   {1e3 * fit.interference:g} mm: stiffness {fit.elastomer_stiffness:g} Nm/rad, "
-            f"critical torque {fit.critical_torque:g} Nm, kinetic torque {fit.kinetic_torque:g} Nm"
-            for fit in rig.fits
-        ),
+        fits="\n".join(f"#   {fit_text(fit)}" for fit in rig.fits),
         kinetic=min(fit.kinetic_torque for fit in rig.fits),
         damping=next(iter(rig.fits[0].damping.values())),
         interference=[round(1e3 * fit.interference, 6) for fit in rig.fits],

@@ -7,7 +7,7 @@ used is refused while the call is read, by a message that names the option.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -111,6 +111,21 @@ def add_options(parser: argparse._ActionsContainer, rows: Iterable[Row]) -> None
             add_options(parser.add_mutually_exclusive_group(), row)
         else:
             _add(parser, row)
+
+
+def option_names(rows: Iterable[Row]) -> Iterator[str]:
+    """Names of the rows of a table, as they are given in a call.
+
+    Examples
+    --------
+    >>> list(option_names([Option("--gap S"), OneOf(Option("--ab"), Option("--set"))]))
+    ['--gap', '--ab', '--set']
+    """
+    for row in rows:
+        if isinstance(row, Option):
+            yield row.name.partition(" ")[0]
+        else:
+            yield from option_names(row.rows if isinstance(row, Group) else row)
 
 
 def _add(parser: argparse._ActionsContainer, row: Option) -> None:
