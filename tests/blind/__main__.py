@@ -12,14 +12,14 @@ made, of each as many cases as ``--cases`` says, or else one block.
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from pathlib import Path
 
 from .benches import KINDS
 from .design import BLOCKS
 from .generate import Wanted, generate
-from .score.baselines import BASELINES
-from .score.diagnosing import DIAGNOSE
+from .score.cases import DIAGNOSE
 from .score.run import Asked, score_folder, score_sealed
 
 SEALED_SEEDS = 1000
@@ -29,11 +29,8 @@ SEALED_SEEDS = 1000
 def main(arguments: list[str] | None = None) -> None:
     """Run the command."""
     given = _parser().parse_args(arguments)
-    if given.command == "identify":
-        _identify(given)
-        return
-    if given.command == "improve":
-        _improve(given)
+    if given.command in ("identify", "improve"):
+        _scored(given)
         return
     wanted = _wanted(given)
     if given.command == "generate":
@@ -41,10 +38,7 @@ def main(arguments: list[str] | None = None) -> None:
         made = wanted.cases * len(wanted.benches)
         sys.stderr.write(f"{made} cases in {seconds:.0f} s\n")
         return
-    asked = Asked(
-        given.diagnose, given.baseline, given.quick, given.workers, given.equivalent, given.own,
-        given.floors,
-    )  # fmt: skip
+    asked = Asked(given.diagnose, given.quick, given.workers)
     if given.sealed == (given.folder is not None):
         raise SystemExit("score takes either a folder that generate has written, or --sealed")
     if given.sealed:
@@ -63,26 +57,19 @@ def _wanted(given: argparse.Namespace) -> Wanted:
     return Wanted(seed, cases, block, tuple(given.bench or KINDS))
 
 
-def _identify(given: argparse.Namespace) -> None:
-    import json
+def _scored(given: argparse.Namespace) -> None:
+    """Identify rigs, or improve them, and print how well that went."""
+    if given.command == "identify":
+        from .identify.score import score, table
 
-    from .identify.score import score, table
+        result = score(given.seed, given.cases, given.workers)
+    else:
+        from .score.improving import improve_cases, table
 
-    result = score(given.seed, given.rigs, given.workers)
+        result = improve_cases(given.seed, given.cases, given.workers)
     if given.out is not None:
         given.out.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     sys.stdout.write(table(result) + "\n")
-
-
-def _improve(given: argparse.Namespace) -> None:
-    import json
-
-    from .score.improving import improve_cases, table
-
-    rows = improve_cases(given.seed, given.cases, given.workers)
-    if given.out is not None:
-        given.out.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
-    sys.stdout.write(table(rows) + "\n")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -90,18 +77,15 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True)
     making = commands.add_parser("generate", help="write development cases, answers apart")
     scoring = commands.add_parser("score", help="score a diagnosis on cases")
-    identifying = commands.add_parser("identify", help="score an identification on rigs")
-    identifying.add_argument("--rigs", type=int, default=60)
-    identifying.add_argument("--seed", type=int, default=1, help="from 100 on for reporting")
-    identifying.add_argument("--workers", type=int, default=2)
-    identifying.add_argument("--out", type=Path, metavar="FILE.json")
-    improving = commands.add_parser("improve", help="score the improved rigs of a diagnosis")
-    improving.add_argument(
-        "--cases", type=int, default=24, help="of one effect, above 1.5 floors; a minute each"
-    )
-    improving.add_argument("--seed", type=int, default=1, help="from 100 on for reporting")
-    improving.add_argument("--workers", type=int, default=1)
-    improving.add_argument("--out", type=Path, metavar="FILE.json")
+    for name, cases, about in (
+        ("identify", 60, "score an identification on so many rigs"),
+        ("improve", 24, "score the improved rigs of a diagnosis, a minute a case of one effect"),
+    ):
+        one = commands.add_parser(name, help=about)
+        one.add_argument("--cases", type=int, default=cases)
+        one.add_argument("--seed", type=int, default=1, help="from 100 on for reporting")
+        one.add_argument("--workers", type=int, default=1)
+        one.add_argument("--out", type=Path, metavar="FILE.json")
     for one in (making, scoring):
         one.add_argument("--out", type=Path, required=True)
         one.add_argument("--seed", type=int)
@@ -115,17 +99,7 @@ def _parser() -> argparse.ArgumentParser:
     scoring.add_argument("folder", type=Path, nargs="?", help="what generate has written")
     scoring.add_argument("--sealed", action="store_true", help="open the sealed set; logged")
     scoring.add_argument("--diagnose", default=DIAGNOSE, metavar="MODULE:FUNCTION")
-    scoring.add_argument("--baseline", choices=sorted(BASELINES))
     scoring.add_argument("--quick", action="store_true", help="the first answer alone")
-    scoring.add_argument(
-        "--equivalent", type=Path,
-        help="JSON: lists of effects that count as one, declared before the cases are seen",
-    )  # fmt: skip
-    scoring.add_argument(
-        "--floors", action="store_true",
-        help="reckon gaps, and what the effect's absence closes, by the diagnosis' own floors",
-    )  # fmt: skip
-    scoring.add_argument("--own", type=Path, help="cases of own forms, for what is lost to others")
     return parser
 
 

@@ -6,24 +6,28 @@ is written before the first case is made.
 
 from __future__ import annotations
 
+import json
+import subprocess
 import time
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from datetime import UTC, datetime
 from multiprocessing import get_context
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .cases import run_case, write_case
 from .design import draw_design
 from .effects import DEVELOPMENT, SEALED
 from .gap import gaps_of
-from .score.log import log_opening
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
-__all__ = ["Wanted", "each", "generate", "generate_sealed"]
+__all__ = ["LOG", "Wanted", "append_to_log", "commit", "each", "generate", "generate_sealed"]
+
+LOG = Path(__file__).parent / "sealed_log.jsonl"
 
 
 @dataclass(frozen=True)
@@ -76,11 +80,39 @@ def generate(out: Path, wanted: Wanted, workers: int) -> float:
     return _make(out / "data", out / "answers", wanted, DEVELOPMENT, workers)
 
 
+def commit(folder: Path = LOG.parent) -> tuple[str, bool | None]:
+    """Return the commit that a folder is at, and whether something is changed since."""
+    said = []
+    for call in (["rev-parse", "HEAD"], ["status", "--porcelain"]):
+        try:
+            done = subprocess.run(
+                ["git", "-C", str(folder), *call], capture_output=True, text=True, check=True
+            )
+        except (OSError, subprocess.CalledProcessError):
+            return "unknown", None
+        said.append(done.stdout.strip())
+    return said[0], bool(said[1])
+
+
+def append_to_log(log: Path, entry: dict) -> None:
+    """Add a line to the log of the sealed set: an opening, or what one gave."""
+    with log.open("a", encoding="utf-8") as file:
+        file.write(json.dumps(entry) + "\n")
+
+
+def _log_opening(log: Path, **about: object) -> str:
+    """Write that the sealed set is opened, by what and for what; return the time as its name."""
+    at = datetime.now(UTC).isoformat(timespec="microseconds")
+    name, dirty = commit()
+    append_to_log(log, {"opened": at, "commit": name, "dirty": dirty, **about})
+    return at
+
+
 def generate_sealed(
     data: Path, answers: Path, wanted: Wanted, workers: int, *, log: Path, about: str
 ) -> str:
     """Log that the sealed set is opened, then write its cases; return the opening's name."""
-    opened = log_opening(
+    opened = _log_opening(
         log, seed=wanted.seed, cases=wanted.cases, block=wanted.block, benches=wanted.benches,
         about=about,
     )  # fmt: skip

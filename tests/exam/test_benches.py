@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from models.rig_file import load_rig
+from noise.diagnosis.case import read_case
+from noise.diagnosis.gap.floor import case_gap
 from noise.recordings.files import read_recording
 from tests.blind.__main__ import main
 from tests.blind.benches import BITS, KINDS, NOISE, Bench, draw_bench
@@ -17,11 +19,6 @@ from tests.blind.effects import DEVELOPMENT, FORMS, SEALED, STRANGERS
 from tests.blind.files import rig_text
 from tests.blind.gap import gaps_of, null_gap
 from tests.blind.laws import CONSTANT, LAWS, draw_law
-from tests.blind.score.answers import Answer
-from tests.blind.score.by_bench import ASKED, by_bench, by_bench_text, worst
-from tests.blind.score.floors import gap_from_rig_file
-from tests.blind.score.table import score_pairs
-from tests.blind.score.truth import Truth
 from tests.blind.starts import STARTS
 
 
@@ -57,16 +54,21 @@ def test_what_is_handed_out_of_each_kind_can_be_read(kind, tmp_path):
         assert np.isfinite(recording.samples).all()
 
 
+def _gap_from_rig_file(case, folder):
+    write_case(case, folder, None)
+    read = read_case([folder], load_rig(folder / "rig.toml"))
+    return case_gap(read.recordings, read.rig).distance
+
+
 @pytest.mark.filterwarnings("ignore:.*is missing from the simulated")
 @pytest.mark.parametrize("name", sorted(set(LAWS) - {"constant"}))
-def test_the_first_simulator_solves_a_stated_law_as_this_rig_does(name):
+def test_the_first_simulator_solves_a_stated_law_as_this_rig_does(name, tmp_path):
     bench = Bench("laws", law=draw_law(name, np.random.default_rng(4)))
     design = _null("quiet", 1, seconds=0.5, bench=bench)
     case = run_case(replace(design, conditions=design.conditions[:4]))
-    stated = gap_from_rig_file(case)
-    unstated = gap_from_rig_file(
-        replace(case, design=replace(case.design, bench=replace(bench, law=CONSTANT)))
-    )
+    stated = _gap_from_rig_file(case, tmp_path / "stated")
+    constant = replace(case, design=replace(case.design, bench=replace(bench, law=CONSTANT)))
+    unstated = _gap_from_rig_file(constant, tmp_path / "unstated")
     assert stated < 2.2
     assert unstated > 1.5 * stated
 
@@ -130,27 +132,3 @@ def test_seeds_of_the_sealed_set_are_its_own(tmp_path):
         main(["generate", "--seed", "1001", "--out", str(tmp_path / "a")])
     with pytest.raises(SystemExit, match="seeds from 1000 on are of the sealed set alone"):
         main(["score", "--sealed", "--seed", "1", "--out", str(tmp_path / "a")])
-
-
-def test_the_worst_kind_of_bench_is_the_headline():
-    def null(bench, alarm):
-        said = Answer(("clipping",) if alarm else (), {"none": 0.5})
-        return Truth("case", "none", (), bench=bench), said
-
-    pairs = [null("quiet", False)] * 9 + [null("starts", True)] * 3 + [null("starts", False)]
-    scores = by_bench(pairs)
-    bench, figure = worst(scores)["false alarms on null cases"]
-    assert bench == "starts"
-    assert figure.value == 0.75
-    assert 0.2 < figure.low < 0.75 < figure.high < 1.0
-    text = by_bench_text(scores, score_pairs(pairs, names=ASKED)).splitlines()
-    assert text[1].startswith("worst")
-    assert "starts" in text[2]
-    assert "MISSED" in text[3]
-
-
-def test_a_share_of_none_has_an_interval():
-    pairs = [(Truth("case", "none", ()), Answer((), {"none": 1.0}))] * 20
-    scores = score_pairs(pairs, names=ASKED)
-    assert scores["false alarms on null cases"].low == 0.0
-    assert scores["false alarms on null cases"].high == pytest.approx(0.161, abs=0.001)

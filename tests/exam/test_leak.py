@@ -18,7 +18,7 @@ from tests.blind.cases import (
 )
 from tests.blind.design import draw_design
 from tests.blind.effects import DEVELOPMENT
-from tests.blind.score.leak import leak, seen_of
+from tests.exam.leak import leak, seen_of
 
 
 def _classes(design):
@@ -46,16 +46,9 @@ def _seen(tmp_path, count, change=None, kinds=("quiet",)):
 
 
 @pytest.mark.slow
-def test_what_is_no_sound_tells_no_class(tmp_path):
-    seen, classes = _seen(tmp_path, 60)
-    found = leak(seen, ["nothing" if kind in ("none", "parameters") else "something"
-                        for kind, _ in classes], shuffles=20)  # fmt: skip
-    assert found.p_value > 0.05
-
-
-@pytest.mark.slow
-def test_no_kind_of_bench_tells_the_class(tmp_path):
-    seen, classes = _seen(tmp_path, 66, kinds=tuple(KINDS))
+@pytest.mark.parametrize("kinds", [("quiet",), tuple(KINDS)], ids=["quiet", "all"])
+def test_what_is_no_sound_tells_no_class(tmp_path, kinds):
+    seen, classes = _seen(tmp_path, 66, kinds=kinds)
     found = leak(seen, ["nothing" if kind in ("none", "parameters") else "something"
                         for kind, _ in classes], shuffles=20)  # fmt: skip
     assert found.p_value > 0.05
@@ -88,11 +81,10 @@ def test_levels_tell_no_class_once_effects_are_off(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("which", [0, 1], ids=["class", "class and stage"])
-def test_what_is_no_sound_tells_no_class_in_600_cases(tmp_path, which):
+def test_what_is_no_sound_tells_no_class_in_600_cases(tmp_path):
     seen, classes = _seen(tmp_path, 600)
-    found = leak(seen, [names[which] for names in classes], shuffles=60)
-    assert found.p_value > 0.02
+    for names in zip(*classes, strict=True):
+        assert leak(seen, list(names), shuffles=60).p_value > 0.02
 
 
 def test_samples_are_in_their_units_and_have_no_scale_of_their_own(tmp_path):
