@@ -307,7 +307,12 @@ def resampled(signal: NDArray[np.float64], rate: float, wanted: float) -> NDArra
 
 
 def recorded(
-    sound: NDArray[np.float64], rate: float, rng: np.random.Generator, *, kind: str = "free"
+    sound: NDArray[np.float64],
+    rate: float,
+    rng: np.random.Generator,
+    *,
+    kind: str = "free",
+    span: tuple[float, float] | None = None,
 ) -> tuple[NDArray[np.float64], tuple[float, float]]:
     """Record a sound in some room, car or hall through some microphone.
 
@@ -320,6 +325,8 @@ def recorded(
     rng : numpy.random.Generator
     kind : str
         Of the microphone, as `noise.training.classifier.augmentation.recorder` has them.
+    span : tuple of float, optional
+        From when to when the sound lasts; by default all the time [s].
 
     Returns
     -------
@@ -328,11 +335,14 @@ def recorded(
     span : tuple of float
         From when to when the sound is to be heard [s].
     """
-    span = (0.0, sound.size / rate)
+    lasts = span or (0.0, sound.size / rate)
+    span = lasts
     signal = in_a_room(sound, rate, rng) if rng.random() < 0.7 else sound
     if rng.random() < _IN_A_PLACE:
         around = place(sound.size, rate, rng)
         signal, span = in_a_place(signal, around, rate, rng.uniform(*_SNR))
+        span = (max(span[0], lasts[0]), min(span[1], lasts[1]))
+        span = span if span[1] > span[0] else lasts
     signal = through_a_microphone(signal, rate, rng, kind=kind)
     level = float(signal.std())
     snr = rng.uniform(6.0, 50.0) if rng.random() < 0.6 else 60.0
@@ -341,7 +351,13 @@ def recorded(
     return np.asarray(signal / signal.std()), span
 
 
-def augmented(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -> RecordedSound:
+def augmented(
+    sound: NDArray[np.float64],
+    rate: float,
+    rng: np.random.Generator,
+    *,
+    span: tuple[float, float] | None = None,
+) -> RecordedSound:
     """Record a sound as anybody might: any microphone, rate, gain, codec and cut.
 
     Parameters
@@ -351,6 +367,8 @@ def augmented(sound: NDArray[np.float64], rate: float, rng: np.random.Generator)
     rate : float
         Sampling rate [Hz].
     rng : numpy.random.Generator
+    span : tuple of float, optional
+        From when to when the sound lasts; by default all the time [s].
 
     Examples
     --------
@@ -363,7 +381,7 @@ def augmented(sound: NDArray[np.float64], rate: float, rng: np.random.Generator)
     if low < wanted and not _left(sound, rate, low):
         low = wanted
     kind = list(_KINDS)[int(rng.choice(len(_KINDS), p=list(_KINDS.values())))]
-    signal, span = recorded(sound, rate, rng, kind=kind)
+    signal, lasts = recorded(sound, rate, rng, kind=kind, span=span)
     signal = resampled(signal, rate, wanted)
     if low < wanted and rng.random() < 0.5:
         signal, wanted = resampled(signal, wanted, low), low
@@ -378,12 +396,12 @@ def augmented(sound: NDArray[np.float64], rate: float, rng: np.random.Generator)
     peak = 10.0 ** (rng.uniform(-50.0, -1.0) / 20.0) if rng.random() < 0.7 else 0.98
     signal = signal * (peak / float(np.abs(signal).max()))
     samples, before = _cut(signal, wanted, rng)
-    span = (span[0] + before, span[1] + before)
+    lasts = (lasts[0] + before, lasts[1] + before)
     if rng.random() < 0.3:
         samples = np.clip(coded(samples, wanted, rng), -1.0, 1.0)
     if rng.random() < 0.5:
         samples = quantised(samples, 8 if rng.random() < 0.06 and peak > 0.3 else 16, rng)
-    return RecordedSound(samples, wanted, span)
+    return RecordedSound(samples, wanted, lasts)
 
 
 def _cut(

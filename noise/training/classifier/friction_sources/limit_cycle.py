@@ -38,7 +38,7 @@ def amplitudes(
         gamma [1/s] and delta omega [rad/s], at `ENVELOPE_RATE`.
     coupling : ndarray, shape (n_modes, n_modes)
         c [1/s].
-    noise : ndarray, shape (n_modes,)
+    noise : ndarray, shape (n_modes,) or (n_modes, m)
         epsilon, of an amplitude of one in the root of a second [1/s^0.5].
     rng : numpy.random.Generator
 
@@ -55,7 +55,7 @@ def amplitudes(
     True
     """
     kicks = rng.standard_normal((2, *growth.shape))
-    kicks *= noise[:, None] / np.sqrt(2.0 * ENVELOPE_RATE)
+    kicks *= noise.reshape(len(growth), -1) / np.sqrt(2.0 * ENVELOPE_RATE)
     return np.asarray(_solved(growth, detuning, coupling, kicks[0] + 1j * kicks[1]))
 
 

@@ -19,15 +19,6 @@ from numpy.typing import NDArray
 
 from noise.training.draws import coloured_noise, log_uniform
 
-MATERIALS = {
-    "door": (80.0, 9000.0, 0.015, 0.08),
-    "floor": (60.0, 7000.0, 0.02, 0.08),
-    "tree": (60.0, 6000.0, 0.015, 0.07),
-    "hinge": (250.0, 10000.0, 0.003, 0.02),
-    "plastic": (150.0, 9000.0, 0.02, 0.08),
-}
-"""Of each body: lowest and highest mode [Hz], least and largest damping ratio."""
-
 
 @dataclass(frozen=True, eq=False)
 class ModalBody:
@@ -84,18 +75,28 @@ class ModalBody:
         return sound
 
 
-def random_body(material: str, rng: np.random.Generator) -> ModalBody:
-    """Draw a body of a material in `MATERIALS`, of 10 to 60 modes.
+def random_body(
+    modes: tuple[float, float], damping_ratio: tuple[float, float], rng: np.random.Generator
+) -> ModalBody:
+    """Draw a body of 10 to 60 modes.
+
+    Parameters
+    ----------
+    modes : pair of float
+        Lowest and highest natural frequency of its kind [Hz].
+    damping_ratio : pair of float
+        Least and largest [-].
+    rng : numpy.random.Generator
 
     Examples
     --------
-    >>> body = random_body("door", np.random.default_rng(0))
+    >>> body = random_body((80.0, 9000.0), (0.015, 0.08), np.random.default_rng(0))
     >>> 10 <= body.frequency.size <= 60
     True
     """
-    lowest, highest, least, largest = MATERIALS[material]
-    lowest *= math.exp(rng.uniform(0.0, 1.2))
-    highest *= math.exp(rng.uniform(-0.7, 0.25))
+    least, largest = damping_ratio
+    lowest = modes[0] * math.exp(rng.uniform(0.0, 1.2))
+    highest = modes[1] * math.exp(rng.uniform(-0.7, 0.25))
     n = int(rng.integers(10, 61))
     place = rng.random(n)
     if rng.random() < 0.5:

@@ -36,7 +36,13 @@ class Slips:
 
 
 def random_drive(
-    n: int, rate: float, slowest: float, fastest: float, rng: np.random.Generator
+    n: int,
+    rate: float,
+    slowest: float,
+    fastest: float,
+    rng: np.random.Generator,
+    *,
+    steps: bool = False,
 ) -> NDArray[np.float64]:
     """Return the drive's speed over D_0 [1/s]: nearly the rate of slips where sticks are long.
 
@@ -52,6 +58,9 @@ def random_drive(
     slowest, fastest : float
         [1/s]
     rng : numpy.random.Generator
+    steps : bool
+        Whether half of the drives hold their speed and jump instead of gliding, as where slips
+        lock onto a mode of the body and then onto another.
 
     Returns
     -------
@@ -73,7 +82,11 @@ def random_drive(
             trend = 1.0 - 2.0 * np.abs(2.0 * x - 1.0)
         share = rng.uniform(0.4, 0.9)
         course = share * trend + (1.0 - share) * course
-    drive = np.exp(middle + half * np.clip(course, -1.1, 1.1))
+    course = half * np.clip(course, -1.1, 1.1)
+    if steps and rng.random() < 0.5:
+        step = rng.uniform(0.15, 0.7)
+        course = 0.85 * step * np.round(course / step) + 0.15 * course
+    drive = np.exp(middle + course)
     for _ in range(int(rng.poisson(0.5 * n / rate))):
         start = int(rng.integers(n))
         drive[start : start + int(rng.uniform(0.04, 0.3) * rate)] = 0.0

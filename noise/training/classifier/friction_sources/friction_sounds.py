@@ -1,0 +1,380 @@
+"""Creaks, squawks and squeals of other bodies, drawn from rows of ``friction_sounds.toml``.
+
+- slips: each slip of `noise.training.classifier.friction_sources.slider` lets go of a force in
+  proportion to its size, as a pulse of half a sine with the rattle of its asperities; the body
+  (`noise.training.classifier.friction_sources.modal_body`) rings from it. A heavier load bears
+  longer sticks: fewer slips, and larger ones.
+- sawtooth: a steady drive sticks and slips so often that its force, whose harmonics lie close below
+  the first, is heard through a body that is damped too well to knock; a bowed string likewise.
+- modes: friction feeds modes (`noise.training.classifier.friction_sources.limit_cycle`). Where they
+  share their losses one predominates, and another may take its place; else several sound at once.
+
+By the definition (`noise.noise_definition`) slips so regular and fast that discrete frequencies
+stand out are a squawk, others a creak; those between are ambiguous.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import resources
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import fftconvolve
+
+from noise.training.classifier.friction_sources.limit_cycle import (
+    ENVELOPE_RATE,
+    amplitudes,
+    carried,
+)
+from noise.training.classifier.friction_sources.modal_body import (
+    ModalBody,
+    overlapping_modes,
+    random_body,
+)
+from noise.training.classifier.friction_sources.slider import Slips, random_drive, slide
+from noise.training.draws import coloured_noise, log_uniform, wandering
+
+_TABLE = resources.files(__package__) / "friction_sounds.toml"
+
+FRICTION_SOUNDS: Mapping[str, Mapping[str, Any]] = tomllib.loads(_TABLE.read_text("utf-8"))
+"""Rows by name."""
+
+_CONTACT = 0.05
+"""Load of a contact, of one when it is pressed [-]."""
+
+_PITCHED = 150.0
+"""Slips so frequent may be heard as a pitch [Hz]."""
+
+_REGULAR = 0.06
+"""Median change from one stick to the next, in logarithms, below which harmonics stand out [-]."""
+
+_CHIRP_S = (0.1, 0.5)
+"""Length of a short squeal [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionSound:
+    """A sound of friction.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n,)
+        Of unit peak [-].
+    label : str
+        creak, squawk or squeal.
+    span : tuple of float
+        From when to when something rubs [s].
+    ambiguous : bool
+        Whether the label hangs on a bound of its definition.
+    """
+
+    samples: NDArray[np.float64]
+    label: str
+    span: tuple[float, float]
+    ambiguous: bool = False
+
+
+def friction_sound(name: str, n: int, rate: float, rng: np.random.Generator) -> FrictionSound:
+    """Draw `n` samples of a sound.
+
+    Parameters
+    ----------
+    name : str
+        One of `FRICTION_SOUNDS`.
+    n : int
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Examples
+    --------
+    >>> sound = friction_sound("belt_squeal", 24_000, 48e3, np.random.default_rng(0))
+    >>> sound.samples.shape, sound.label, round(float(np.abs(sound.samples).max()), 6)
+    ((24000,), 'squeal', 1.0)
+    """
+    row = FRICTION_SOUNDS[name]
+    m = int(n / rate * ENVELOPE_RATE) + 2
+    load = contact_load(row, m, rng)
+    ambiguous = False
+    if row["mechanism"] == "slips":
+        slips, load = _slips_under(load, row, n, rate, rng)
+        sound = _struck(slips, load, row, n, rate, rng)
+        ambiguous = _is_ambiguous(slips, row["label"])
+        span = (float(slips.time[0]), float(slips.time[-1]) + 0.02)
+    else:
+        make = _sawtooth if row["mechanism"] == "sawtooth" else _modes
+        sound = make(load, row, n, rate, rng)
+        rubbing = np.flatnonzero(load > _CONTACT) / ENVELOPE_RATE
+        span = (float(rubbing[0]), float(rubbing[-1]))
+    return FrictionSound(
+        sound / np.abs(sound).max(), row["label"], (span[0], min(span[1], n / rate)), ambiguous
+    )
+
+
+def contact_load(row: Mapping[str, Any], m: int, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Draw the load of a contact at `ENVELOPE_RATE`: bouts about one, gaps of nought between.
+
+    Parameters
+    ----------
+    row : mapping
+        Of `FRICTION_SOUNDS`; without ``bout_s`` the contact lasts.
+    m : int
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        [-]
+
+    Examples
+    --------
+    >>> row = {"bout_s": [0.1, 0.2], "gap": [1.0, 1.0], "arch": [4.0, 4.0]}
+    >>> load = contact_load(row, 6000, np.random.default_rng(0))
+    >>> bool(0.2 < np.mean(load > 0.0) < 0.8)
+    True
+    """
+    chirping = rng.random() < row.get("chirps", 0.0)
+    alone = chirping and rng.random() < 0.5
+    bouts, gaps = row.get("bout_s"), row.get("gap", [0.0, 0.5])
+    if chirping:
+        bouts, gaps = _CHIRP_S, [0.1, 3.0]
+    load = np.zeros(m) if bouts else np.full(m, rng.uniform(0.8, 1.2))
+    start = 0 if rng.random() < 0.5 else int(rng.uniform(0.0, 0.6 if alone else 0.15) * m)
+    while start < m and bouts:
+        bout = log_uniform(*bouts, rng) if chirping else rng.uniform(*bouts)
+        end = min(m, start + int(bout * ENVELOPE_RATE) + 1)
+        x = np.linspace(0.0, 1.0, end - start)
+        steep = rng.uniform(*row.get("arch", (4.0, 40.0)))
+        arch = np.minimum(1.0, np.minimum(x, 1.0 - x) * steep) ** 0.5
+        load[start:end] = arch * rng.uniform(0.6, 1.2)
+        start = m if alone else end + int(bout * rng.uniform(*gaps) * ENVELOPE_RATE)
+    if "modulation" in row:
+        pace = log_uniform(*row["modulation_hz"], rng)
+        fast = 1.0 + rng.uniform(*row["modulation"]) * wandering(m, ENVELOPE_RATE, pace, rng)
+        load = load * np.maximum(fast, 0.0)
+    load = load * (1.0 + 0.3 * wandering(m, ENVELOPE_RATE, 1.0, rng))
+    return load if np.any(load > _CONTACT) else contact_load(row, m, rng)
+
+
+def _slips_under(
+    load: NDArray[np.float64],
+    row: Mapping[str, Any],
+    n: int,
+    rate: float,
+    rng: np.random.Generator,
+) -> tuple[Slips, NDArray[np.float64]]:
+    """Draw drives until one slips often enough, and loads, for one may be too short for that."""
+    while True:
+        fastest = log_uniform(*row["fastest_hz"], rng)
+        slowest = max(4.0, fastest * math.exp(-rng.uniform(*row.get("glide", (0.7, 4.0)))))
+        if slowest < 0.95 * fastest:
+            drive = random_drive(n, rate, slowest, fastest, rng, steps=row.get("steps", False))
+            if "bout_s" in row:
+                pressed = np.interp(np.arange(n) / rate * ENVELOPE_RATE, range(load.size), load)
+                drive = np.where(pressed > _CONTACT, drive / np.clip(pressed, 0.3, 2.0), 0.0)
+            slips = slide(
+                drive,
+                rate,
+                ageing_time=log_uniform(*row.get("ageing_s", (3e-4, 3e-2)), rng),
+                scatter=log_uniform(*row.get("scatter", (0.02, 0.35)), rng),
+                rng=rng,
+            )
+            per_second = slips.time.size * rate / n
+            if slips.time.size >= 5 and (4.0 if "bout_s" in row else 8.0) <= per_second < 900.0:
+                return slips, load
+        load = contact_load(row, load.size, rng)
+
+
+def _is_ambiguous(slips: Slips, label: str) -> bool:
+    """Whether slips are nearly as regular, or irregular, as those of the other label."""
+    sticks = np.diff(slips.time)
+    changes = np.median(np.abs(np.diff(np.log(sticks[sticks < 0.1]))))
+    if label == "creak":
+        return bool(np.median(sticks) < 1.0 / _PITCHED and changes < _REGULAR)
+    return bool(np.median(sticks) > 1.0 / (0.7 * _PITCHED) or changes > 1.5 * _REGULAR)
+
+
+def _struck(
+    slips: Slips,
+    load: NDArray[np.float64],
+    row: Mapping[str, Any],
+    n: int,
+    rate: float,
+    rng: np.random.Generator,
+) -> NDArray[np.float64]:
+    """Let slips strike a body; a second contact may creak besides."""
+    sound = np.zeros(n)
+    for i in range(2 if rng.random() < 0.2 else 1):
+        if i:
+            slips, load = _slips_under(load, row, n, rate, rng)
+        below = np.interp(slips.time * ENVELOPE_RATE, range(load.size), np.minimum(load, 1.0)) - 1.0
+        swell = 10.0 ** (rng.uniform(*row.get("swell_db", (0.0, 0.0))) / 20.0 * below)
+        swollen = Slips(slips.time, slips.size * swell)
+        force = pulses(swollen, n, rate, rng, lasting=row.get("pulse_s", (3e-5, 5e-4)))
+        parts = [_unit(random_body(row["body_hz"], row["damping"], rng).impulse_response(rate))]
+        parts.append(10.0 ** (rng.uniform(-25.0, 20.0) / 20.0) * overlapping_modes(rate, rng))
+        if rng.random() < 0.4:  # what it is fixed to sounds as well
+            other = FRICTION_SOUNDS[str(rng.choice(_STRUCK))]
+            fixed_to = random_body(other["body_hz"], other["damping"], rng)
+            parts.append(rng.uniform(0.1, 1.0) * _unit(fixed_to.impulse_response(rate)))
+        body = np.zeros(max(part.size for part in parts))
+        for part in parts:
+            body[: part.size] += part
+        struck = fftconvolve(force, body)[:n]
+        # The contact itself is heard as well, as a click without a body's voice.
+        click = np.diff(force, prepend=0.0)
+        direct = 10.0 ** (rng.uniform(-30.0, 0.0) / 20.0) * float(np.abs(struck).max())
+        struck = struck + direct * click / (np.abs(click).max() + 1e-300)
+        peak = float(np.abs(struck).max())
+        sound += rng.uniform(0.4, 1.0) * struck / peak if peak > 0.0 else 0.0
+    level = float(np.abs(sound).max()) * 10.0 ** rng.uniform(-4.0, -1.6)
+    return sound + level * coloured_noise(n, rng.uniform(0.3, 1.5), rng)
+
+
+_STRUCK = [name for name, row in FRICTION_SOUNDS.items() if row["mechanism"] == "slips"]
+
+
+def _unit(response: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(response / np.abs(response).max())
+
+
+def pulses(
+    slips: Slips,
+    n: int,
+    rate: float,
+    rng: np.random.Generator,
+    *,
+    lasting: tuple[float, float] = (3e-5, 5e-4),
+) -> NDArray[np.float64]:
+    """Force of the slips: pulses of random strength about their size, with a rattle.
+
+    Parameters
+    ----------
+    slips : Slips
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+    lasting : pair of float
+        Range of the pulse's length [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> slips = Slips(np.array([0.01]), np.array([1.0]))
+    >>> force = pulses(slips, 960, 48e3, np.random.default_rng(0))
+    >>> bool(np.abs(force[:470]).max() < 1e-9), bool(force.max() > 0.0)
+    (True, True)
+    """
+    strength = slips.size ** rng.uniform(0.6, 1.6) * np.exp(
+        rng.normal(0.0, rng.uniform(0.02, 0.5), slips.size.size)
+    )
+    place = slips.time * rate
+    first = np.clip(place.astype(int), 0, n - 2)
+    part = np.clip(place - first, 0.0, 1.0)
+    train = np.zeros(n)
+    np.add.at(train, first, strength * (1.0 - part))
+    np.add.at(train, first + 1, strength * part)
+    m = max(2, int(log_uniform(*lasting, rng) * rate))
+    shape = np.sin(np.pi * (np.arange(m) + 0.5) / m)
+    rattle = rng.standard_normal(4 * m) * np.exp(-np.arange(4 * m) / m)
+    shape = np.concatenate([shape, np.zeros(3 * m)]) + rng.uniform(0.0, 0.8) * rattle
+    return np.asarray(fftconvolve(train, shape)[:n])
+
+
+def _sawtooth(
+    load: NDArray[np.float64],
+    row: Mapping[str, Any],
+    n: int,
+    rate: float,
+    rng: np.random.Generator,
+) -> NDArray[np.float64]:
+    slips_a_second = log_uniform(*row["rate_hz"], rng)
+    wander = rng.uniform(*row["wander"]) * wandering(n, rate, rng.uniform(0.5, 5.0), rng)
+    shake = np.sin(2.0 * np.pi * rng.uniform(4.0, 8.0) * np.arange(n) / rate)
+    drive = slips_a_second * (1.0 + wander + rng.uniform(*row["vibrato"]) * shake)
+    slips = slide(
+        drive,
+        rate,
+        ageing_time=rng.uniform(0.02, 0.1) / slips_a_second,
+        scatter=rng.uniform(*row["scatter"]),
+        rng=rng,
+    )
+    # The spring's force: it rises with the drive and falls at each slip, in a millisecond or so.
+    force = np.cumsum(drive) / rate
+    fallen = np.zeros(n)
+    np.add.at(fallen, np.minimum((slips.time * rate).astype(int), n - 1), slips.size)
+    fall = np.hanning(max(2, int(rng.uniform(*row["fall"]) / slips_a_second * rate)) + 2)[1:-1]
+    force -= np.cumsum(fftconvolve(fallen, fall / fall.sum())[:n])
+    direct = np.gradient(force) * np.interp(
+        np.arange(n) / rate * ENVELOPE_RATE, range(load.size), load
+    )
+    n_modes = int(rng.integers(3, 9))
+    # Broad resonances over the force itself: no blow rings on until the next.
+    response = ModalBody(
+        np.exp(rng.uniform(*np.log(row["body_hz"]), n_modes)),
+        np.full(n_modes, rng.uniform(*row["damping"])),
+        rng.standard_normal(n_modes),
+    ).impulse_response(rate)
+    through = fftconvolve(direct, response)[:n]
+    sound = through / (through.std() + 1e-12)
+    sound = sound + rng.uniform(*row["direct"]) * direct / (direct.std() + 1e-12)
+    hiss = coloured_noise(n, rng.uniform(0.2, 1.5), rng)
+    return np.asarray(sound + sound.std() * 10.0 ** (rng.uniform(-40.0, -10.0) / 20.0) * hiss)
+
+
+def _modes(
+    load: NDArray[np.float64],
+    row: Mapping[str, Any],
+    n: int,
+    rate: float,
+    rng: np.random.Generator,
+) -> NDArray[np.float64]:
+    m = load.size
+    chances = np.array(row.get("n_modes", (0.6, 0.3, 0.1)))
+    n_modes = int(rng.choice(chances.size, p=chances / chances.sum())) + 1
+    frequency = np.exp(rng.uniform(*np.log(row["frequency_hz"]), n_modes))
+    if "ratio" in row:
+        frequency[1:] = frequency[0] * rng.uniform(*row["ratio"], n_modes - 1)
+    competing = "cross" not in row
+    size = rng.uniform(*row["growth"])
+    drift = rng.uniform(*row["drift"])
+    omega = 2.0 * np.pi * frequency
+    turns = np.full(n_modes, omega[0]) if competing else omega
+    pace = max(abs(size), 0.002) * turns
+    # Without contact the mode is damped; each mode has its own optimum of load.
+    growth = np.empty((n_modes, m))
+    detuning = np.empty((n_modes, m))
+    for i in range(n_modes):
+        own = load if i == 0 else load * (1.0 + 0.4 * wandering(m, ENVELOPE_RATE, 1.5, rng))
+        growth[i] = np.where(load > _CONTACT, size * turns[i] * own, -2.0 * pace[i] - 30.0)
+        bend = load - 1.0 + 0.4 * wandering(m, ENVELOPE_RATE, rng.uniform(0.7, 6.0), rng)
+        detuning[i] = omega[i] * drift * np.clip(bend, -1.2, 1.2)
+    cross = rng.uniform(*row.get("cross", (1.2, 2.0)))
+    coupling = pace[:, None] * (np.eye(n_modes) * (1.0 - cross) + cross)
+    roughness = rng.uniform(*row["roughness"]) * np.sqrt(pace)
+    rubbed = np.where(load > _CONTACT, np.sqrt(np.minimum(load, 1.0)), 0.0)
+    solved = amplitudes(growth, detuning, coupling, roughness[:, None] * rubbed, rng)
+    # The loads of the other modes may make them win; else they are heard well below.
+    sound = np.zeros(n)
+    fall = rng.uniform(*row["fall_db"])
+    for i in range(n_modes):
+        levels = fall * np.arange(int(rng.integers(1, 6))) + rng.normal(0.0, 3.0) * (fall > -40.0)
+        strengths = np.minimum(10.0 ** (levels / 20.0), 1.0)
+        strengths[0] = 1.0
+        further = rng.uniform(*row.get("further_db", (0.0, 0.0))) if i else 0.0
+        part = carried(solved[i], float(frequency[i]), strengths, n, rate)
+        sound += 10.0 ** (further / 20.0) * part
+    contact = np.interp(np.arange(n) * (ENVELOPE_RATE / rate), np.arange(m), load)
+    hiss = coloured_noise(n, rng.uniform(-0.5, 1.5), rng) * np.maximum(contact, 0.0)
+    return sound + float(sound.std()) * 10.0 ** (rng.uniform(-62.0, -3.0) / 20.0) * hiss
