@@ -98,24 +98,23 @@ def test_whatever_goes_wrong_is_one_line_and_a_code(monkeypatch, capsys, error, 
     assert err[-1].startswith(said)
 
 
-WITHOUT_ROOM = """
-import resource, sys
-from noise.cli import main
-main(["simulate", "--speed", "5"])  # the compiler keeps its results in files, too
-resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
-sys.exit(main(sys.argv[1:]))
-"""
-
-
 @pytest.mark.skipif(os.name == "nt", reason="limits the size of files as Unix does")
-def test_a_full_disk_is_one_line_and_a_code_of_its_own_and_leaves_nothing(tmp_path):
-    run = ["simulate", "--speed", "5", "--seconds", "0.5", "--out", "run"]
-    done = subprocess.run(
-        [sys.executable, "-c", WITHOUT_ROOM, *run], capture_output=True, text=True, cwd=tmp_path
-    )
-    assert done.returncode == 3
-    assert "cannot be written" in done.stderr.splitlines()[-1]
-    assert "Traceback" not in done.stderr
+def test_a_full_disk_is_one_line_and_a_code_of_its_own_and_leaves_nothing(tmp_path, capsys):
+    import resource
+
+    call = ["simulate", "--speed", "5", "--seconds", "0.5"]
+    assert main(call) == 0  # the compiler keeps its results in files, too
+    capsys.readouterr()
+    unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, unlimited[1]))
+    try:
+        code = main([*call, "--out", str(tmp_path / "run")])
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
+    err = capsys.readouterr().err
+    assert code == 3
+    assert "cannot be written" in err.splitlines()[-1]
+    assert "Traceback" not in err
     assert list(tmp_path.iterdir()) == []
 
 

@@ -74,6 +74,11 @@ def walked(tmp_path_factory):
         return folder, walk(folder, dear=DEAR)
 
 
+@pytest.fixture
+def demo(walked):
+    return walked[0] / "bushing-noise-demo"
+
+
 def test_blocks_run_in_order_from_an_empty_folder(walked):
     folder, said = walked
     assert refused(said) == []
@@ -82,9 +87,9 @@ def test_blocks_run_in_order_from_an_empty_folder(walked):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.parent.name)
-def test_blocks_of_a_reference_page_run_in_order(page, tmp_path, monkeypatch):
+def test_blocks_of_a_reference_page_run_in_order(page, demo, tmp_path, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "Agg")
-    said = walk(tmp_path, dear=DEAR, page=page)
+    said = walk(tmp_path, dear=DEAR, page=page, demo=demo)
     assert refused(said) == []
     assert missing(tmp_path, said) == []
 
@@ -110,11 +115,6 @@ def test_the_readme_is_short():
     sentences = [one for part in paragraphs for one in re.split(r"(?<=[.!?:;])\s", part)]
     assert len(sentences) > 40
     assert [one for one in sentences if len(one.split()) > 35] == []
-
-
-@pytest.fixture
-def demo(walked):
-    return walked[0] / "bushing-noise-demo"
 
 
 def table(path):

@@ -4,6 +4,7 @@ import contextlib
 import io
 import re
 import shlex
+import shutil
 from pathlib import Path
 from typing import NamedTuple
 
@@ -87,8 +88,11 @@ SERVING = ("open",)
 """Commands that go on until they are stopped: they have tests of their own."""
 
 
-def walk(folder, dear=(), page=README):
-    """Run all blocks of a page in a folder, but the commands named, and what needs their output."""
+def walk(folder, dear=(), page=README, demo=None):
+    """Run all blocks of a page in a folder, but the commands named, and what needs their output.
+
+    A folder `demo` of that command is copied where a page calls it.
+    """
     said, lacking = [], set()
     with contextlib.chdir(folder):
         for block in blocks(readme(page=page)):
@@ -96,6 +100,8 @@ def walk(folder, dear=(), page=README):
                 for line in block.commands:
                     if line[0] in (*dear, *SERVING) or _needs(line[1:], lacking):
                         lacking |= _made(line)
+                    elif line[0] == "demo" and demo is not None:
+                        shutil.copytree(demo, line[line.index("--out") + 1])
                     else:
                         said.append(_call(line))
             elif _needs(re.findall(r'"([^"]*)"', block.text), lacking):
