@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
-from itertools import combinations, groupby
+from itertools import combinations, groupby, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -126,9 +126,16 @@ class Votes:
         return _jury(self.path, _rows_of(self._read()[1], number))
 
     def begin(
-        self, names: Sequence[str], *, listener: str, question: str, played: str, seed: int
+        self,
+        names: Sequence[str],
+        *,
+        listener: str,
+        question: str,
+        played: str,
+        seed: int,
+        comparisons: int | None = None,
     ) -> Jury:
-        """Write a new jury of all pairs and return it.
+        """Write a new jury and return it.
 
         Parameters
         ----------
@@ -138,6 +145,8 @@ class Votes:
             As of `Jury`.
         seed : int
             Of the order, with the number of the jury.
+        comparisons : int, optional
+            As of `random_pairs` [-].
 
         Raises
         ------
@@ -149,7 +158,7 @@ class Votes:
         about = {"listener": listener, "question": question, "played": played, "seed": seed}
         with self._changed() as juries:
             number = max(juries, default=0) + 1
-            pairs = random_pairs(names, np.random.default_rng([seed, number]))
+            pairs = random_pairs(names, np.random.default_rng([seed, number]), comparisons)
             juries[number] = [
                 {"jury": number, **about, "order": order, "first": first, "second": second}
                 for order, (first, second) in enumerate(pairs, start=1)
@@ -231,21 +240,46 @@ class Votes:
         return columns, {number: list(of) for number, of in groupby(rows, lambda r: _place(r)[0])}
 
 
-def random_pairs(names: Sequence[str], rng: np.random.Generator) -> list[tuple[str, str]]:
-    """Return all pairs of sounds in random order, either of a pair first.
+def random_pairs(
+    names: Sequence[str], rng: np.random.Generator, count: int | None = None
+) -> list[tuple[str, str]]:
+    """Return pairs of sounds in random order, either of a pair first.
 
     Parameters
     ----------
     names : sequence of str
     rng : Generator
+    count : int, optional
+        Of the pairs, from one less than sounds; these join all sounds [-]. By default all pairs.
+
+    Raises
+    ------
+    ParameterError
+        There are not so many pairs, or so few leave a sound out.
 
     Examples
     --------
     >>> random_pairs("abc", np.random.default_rng(1))
     [('b', 'a'), ('a', 'c'), ('c', 'b')]
+    >>> len(random_pairs("abcd", np.random.default_rng(1), 3))
+    3
     """
     pairs = list(combinations(names, 2))
+    if count is not None and not len(names) - 1 <= count <= len(pairs):
+        raise ParameterError(
+            f"{count} comparisons: {len(names)} sounds need {len(names) - 1} to {len(pairs)}"
+        )
+    chain: set[tuple[int, ...]] = set()
+    if count is not None and count < len(pairs):
+        order = rng.permutation(len(names))
+        chain = {tuple(sorted(two)) for two in pairwise(order.tolist())}
+    places = {
+        pair: two for pair, two in zip(pairs, combinations(range(len(names)), 2), strict=True)
+    }
     found = [pairs[place] for place in rng.permutation(len(pairs))]
+    if chain:
+        found.sort(key=lambda pair: places[pair] not in chain)
+        found = [found[place] for place in rng.permutation(count or 0)]
     return [pair[::-1] if rng.random() < 0.5 else pair for pair in found]
 
 
@@ -348,10 +382,44 @@ def scale(jury: Jury) -> tuple[list[Row], list[str]]:
         remarks.append(f"not compared yet, so not on the scale: {missing}")
     if groups > 1:
         remarks.append(
-            f"the votes so far do not join {groups} groups of sounds: go on before you compare "
-            "values of one with those of another"
+            f"the votes so far leave {groups} groups of sounds that were never compared with each "
+            "other; vote on before you compare their values"
         )
     return rows, remarks
+
+
+def in_words(rows: Sequence[Row]) -> str:
+    """Return the result of a jury in plain words, from the rows of its `scale`.
+
+    Examples
+    --------
+    >>> row = {"value": 1.5, "low_95": 0.9, "high_95": 2.1, "chosen": 5, "not_chosen": 1}
+    >>> last = {"value": -1.5, "low_95": -2.0, "high_95": -0.8, "chosen": 1, "not_chosen": 5}
+    >>> same = {"no_difference": 0}
+    >>> in_words([row | same | {"sound": "loud"}, last | same | {"sound": "calm"}])
+    'loud comes first: chosen in 5 of 6 comparisons. It is clearly ahead of calm.'
+    """
+    placed = [row for row in rows if row["value"] is not None]
+    if len(placed) < 2:
+        return "No votes yet."
+    first, last = placed[0], placed[-1]
+
+    def share(row: Row) -> str:
+        count = row["chosen"] + row["not_chosen"] + row["no_difference"]
+        return f"chosen in {row['chosen']} of {count} comparison{'s' * (count != 1)}"
+
+    close = [row["sound"] for row in placed[1:] if row["high_95"] >= first["low_95"]]
+    texts = [f"{first['sound']} comes first: {share(first)}."]
+    if not close:
+        rest = placed[1]["sound"] if len(placed) == 2 else "all others"
+        texts.append(f"It is clearly ahead of {rest}.")
+    elif len(close) == len(placed) - 1:
+        texts.append("These votes do not separate it clearly from any other sound.")
+    else:
+        texts.append(f"Its lead over {', '.join(close)} is not clear yet.")
+    if len(placed) > 2:
+        texts.append(f"{last['sound']} comes last: {share(last)}.")
+    return " ".join(texts)
 
 
 def scale_csv(jury: Jury) -> str:

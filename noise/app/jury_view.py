@@ -21,7 +21,7 @@ from starlette.routing import BaseRoute, Route
 from models.errors import BushingNoiseError, ParameterError
 from models.recording import REFERENCE_PRESSURE
 from noise.app.gate import body
-from noise.app.jury import VOTES, Jury, Votes, scale, scale_csv
+from noise.app.jury import VOTES, Jury, Votes, in_words, scale, scale_csv
 from noise.app.opened import Opened
 from noise.app.requests import choice, number, text
 from noise.app.sounds import SoundCache
@@ -95,11 +95,14 @@ def routes(opened: Opened) -> list[BaseRoute]:
         if not question:
             raise ParameterError("question: must say what is asked of two sounds")
         played = choice(setup, "played", GAINS, ONE_GAIN)
+        pairs = len(chosen) * (len(chosen) - 1) // 2
+        comparisons = number(setup, "comparisons", len(chosen) - 1, pairs, pairs, whole=True)
         names = [opened.job(index).name for index in chosen]
         playing.gain(indices(names), played)  # or nobody could begin
         jury = votes.begin(
-            names, listener=listener, question=question, played=played, seed=opened.seed
-        )
+            names, listener=listener, question=question, played=played, seed=opened.seed,
+            comparisons=int(comparisons),
+        )  # fmt: skip
         return JSONResponse(state(jury))
 
     def gone_on(request: Request) -> Response:
@@ -130,7 +133,9 @@ def routes(opened: Opened) -> list[BaseRoute]:
         jury = asked(request)
         rows, remarks = scale(jury)
         return JSONResponse(
-            state(jury) | {"sounds": rows, "remarks": remarks, "voted": len(jury.votes)}
+            state(jury)
+            | {"sounds": rows, "words": in_words(rows), "remarks": remarks}
+            | {"voted": len(jury.votes)}
         )
 
     def table(request: Request) -> Response:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from hashlib import blake2b
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -38,11 +40,8 @@ _ORDERS = {
 }
 """Columns that a list is sorted by, as requests call them."""
 
-UNLABELLED, CORRECTED, REFUSED = "unlabelled", "corrected", "refused"
+UNLABELLED, PARTLY, CORRECTED, REFUSED = "unlabelled", "partly", "corrected", "refused"
 """What a list is filtered by beside the labels."""
-
-_MOST = 1000
-"""Recordings that one answer holds."""
 
 _LONGEST_NAME = 80
 """Characters by which pages are told from each other."""
@@ -61,8 +60,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
     def recordings(request: Request) -> Response:
         query, shown = request.query_params, labels.summaries()
         answer = list_answer(query, shown)
+        known = blake2b(json.dumps(answer["rows"]).encode(), digest_size=8).hexdigest()
+        if query.get("known") == known:  # nothing has changed, so that nothing is sent again
+            answer["rows"] = None
+        answer["known"] = known
         if query.get("open"):
-            seen = _whole(query, "open", len(opened.jobs) - 1)
+            seen = int(number(query, "open", 0, len(opened.jobs) - 1, whole=True))
             answer["open"] = {"id": seen, "version": version(labels.rows(seen))}
         done = sum(bool(one["labels"] or one["error"]) for one in shown)
         return JSONResponse({**answer, "state": {"done": done, **run.state()}})
@@ -80,7 +83,9 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return JSONResponse(_segments(job.index, rows))
 
     def undone(_: Request, content: dict[str, Any]) -> Response:
-        return JSONResponse(_segments(*labels.undo(_page(content))))
+        return JSONResponse(
+            _segments(*labels.undo(_page(content), redo=content.get("redo") is True))
+        )
 
     def labelled(_: Request, __: dict[str, Any]) -> Response:
         run.start()
@@ -202,9 +207,9 @@ def list_answer(query: Mapping[str, str], shown: Sequence[Row]) -> dict[str, obj
     Parameters
     ----------
     query : mapping of str to str
-        `label` in some segment, or ``unlabelled``, ``corrected``, ``refused``; `text` that the name
-        holds, whatever its case; column to `sort` by, in the `order` ``asc`` or ``desc``; `first`
-        and `count` of those wanted; the recording whose `place` among them is wanted.
+        `label` in some segment, or ``unlabelled``, ``partly``, ``corrected``, ``refused``; `text`
+        that the name holds, whatever its case; column to `sort` by, in the `order` ``asc`` or
+        ``desc``.
     shown : sequence of dict
         As of `summary`.
 
@@ -218,14 +223,12 @@ def list_answer(query: Mapping[str, str], shown: Sequence[Row]) -> dict[str, obj
     >>> from noise.app.labels import summary
     >>> row = {"label": "squeal", "start_s": 0.0, "end_s": 2.0}
     >>> found = list_answer({"label": "squeal", "sort": "level"}, [summary(7, "run07.wav", [row])])
-    >>> found["total"], found["counts"]["squeal"], found["rows"][0]["name"]
-    (1, 1, 'run07.wav')
+    >>> found["counts"]["squeal"], found["rows"][0]["name"]
+    (1, 'run07.wav')
     """
-    kinds = (*LABELS, UNLABELLED, CORRECTED, REFUSED)
+    kinds = (*LABELS, UNLABELLED, PARTLY, CORRECTED, REFUSED)
     label, sort = choice(query, "label", kinds), choice(query, "sort", _ORDERS)
     order = choice(query, "order", ("asc", "desc"), "asc")
-    first, count = _whole(query, "first", 1 << 31, 0), _whole(query, "count", _MOST, 200)
-    place = _whole(query, "place", 1 << 31) if query.get("place") else None
     text = query.get("text", "").casefold()
     named = [one for one in shown if text in str(one["name"]).casefold()]
     counts = Counter(kind for one in named for kind in _kinds(one))
@@ -233,10 +236,8 @@ def list_answer(query: Mapping[str, str], shown: Sequence[Row]) -> dict[str, obj
     if sort:
         found = _sorted(found, _ORDERS[sort], descending=order == "desc")
     return {
-        "total": len(found),
         "counts": {"": len(named), **{kind: counts[kind] for kind in kinds}},
-        "rows": found[first : first + count],
-        "place": next((at for at, one in enumerate(found) if one["id"] == place), None),
+        "rows": found,
     }
 
 
@@ -263,7 +264,8 @@ def conditions(row: Row) -> list[str]:
 def _kinds(one: Row) -> list[str]:
     """Return what a recording is found under: each label in it."""
     labels = [str(label) for label in one["labels"]]  # type: ignore[attr-defined]
-    kinds = labels + [REFUSED] * bool(one["error"]) + [CORRECTED] * bool(one["corrected"])
+    kinds = labels + [REFUSED] * bool(one["error"])
+    kinds += [CORRECTED] * bool(one["corrected"]) + [PARTLY] * bool(one["partly"])
     return kinds if labels or one["error"] else [*kinds, UNLABELLED]
 
 
@@ -283,10 +285,6 @@ def _plain(name: str, value: object) -> object:
     if isinstance(value, float) and not math.isfinite(value):
         return "fixed" if name.startswith("support_stiffness") and value > 0.0 else None
     return plain_cell(value)  # a date of a column of one's own is text
-
-
-def _whole(query: Mapping[str, str], key: str, most: int, missing: int | None = None) -> int:
-    return int(number(query, key, 0, most, missing, whole=True))
 
 
 def _page(content: dict[str, Any]) -> str:

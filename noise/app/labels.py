@@ -134,6 +134,7 @@ def as_rows(
     list of dict
         A segment that is as it was keeps its row; one with another label keeps what was measured
         of it, but no probability; one with other borders what was logged of that it was cut from.
+        What is left of a segment, with its label, is by whoever gave it.
 
     Examples
     --------
@@ -157,8 +158,19 @@ def as_rows(
         row = row_of_piece(at, before) if old is None else without_opinion(old)
         row = with_measured(row, numbers.get(at, {}))
         row |= {"file": name, "channel": one.channel, "start_s": one.start, "end_s": one.end}
-        rows.append(row | {"label": one.label, "label_source": HUMAN, "error": None})
+        source = HUMAN if one.confirmed else _source_of_rest(one, before)
+        rows.append(row | {"label": one.label, "label_source": source, "error": None})
     return rows
+
+
+def _source_of_rest(one: Correction, before: Sequence[Row]) -> object:
+    """Return who named what is left of a segment that another was cut out of; else a person."""
+    for row in before:
+        channel, start, end = place(row)
+        spans = channel == one.channel and start <= one.start and one.end <= end
+        if spans and row["label"] == one.label:
+            return row.get("label_source") or HUMAN
+    return HUMAN
 
 
 _OF_LABEL = (*(f"p_{label}" for label in LABELS), "frequency_hz")
@@ -349,7 +361,7 @@ def _over_background(rows: Sequence[Row]) -> dict[str, float]:
 
 @dataclass(frozen=True, eq=False)
 class _Correction:
-    """Rows of the tracks of a recording that a correction changed, before and after it."""
+    """Rows of the tracks of a recording that a change replaced, before and after it."""
 
     index: int
     before: list[Row]
@@ -384,6 +396,7 @@ class Labels:
         self._others: list[Row] = []
         self._summaries: list[dict[str, object] | None] = [None for _ in jobs]
         self._undo: list[_Correction] = []
+        self._redo: list[_Correction] = []
         self._fresh: dict[int, list[Row]] = {}
         self._classified: dict[int, list[Row]] = {}
         self._read_table()
@@ -466,25 +479,34 @@ class Labels:
             changed = _changed_tracks(before, after)
             was, now = ([row for row in rows if track(row) in changed] for rows in (before, after))
             self._undo.append(_Correction(index, was, now, by))
+            self._redo = [one for one in self._redo if one.by != by]
             return after
 
-    def undo(self, by: str = "") -> tuple[int, list[Row]]:
+    def undo(self, by: str = "", *, redo: bool = False) -> tuple[int, list[Row]]:
         """Put back what the last correction of a page replaced, and write the table.
+
+        Parameters
+        ----------
+        by : str
+            The page that the corrections come from.
+        redo : bool
+            Undo its last undo instead; there is none after a new correction.
 
         Raises
         ------
         ParameterError
             There is none, somebody has changed the same since, or the table cannot be written.
         """
+        done, undone = (self._redo, self._undo) if redo else (self._undo, self._redo)
         with self._lock, locked(self.path):
-            last = next((one for one in reversed(self._undo) if one.by == by), None)
+            last = next((one for one in reversed(done) if one.by == by), None)
             if last is None:
-                raise ParameterError("there is no correction to undo")
+                raise ParameterError(f"there is no correction to {'redo' if redo else 'undo'}")
             self.refresh()
             rows = self._rows[last.index]
             tracks = {track(row) for row in (*last.before, *last.after)}
             if version([row for row in rows if track(row) in tracks]) != version(last.after):
-                self._undo.remove(last)
+                done.remove(last)
                 name = self._jobs[last.index].name
                 raise ParameterError(f"{name}: what was corrected last has been changed since then")
             # What the classifier has found since then is better than nothing.
@@ -492,7 +514,8 @@ class Labels:
             back = last.before or [row for row in found if track(row) in tracks]
             rows = [*(row for row in rows if track(row) not in tracks), *back]
             self._write(last.index, sorted(rows, key=_order))
-            self._undo.remove(last)
+            done.remove(last)
+            undone.append(_Correction(last.index, last.after, back, by))
             return last.index, self._rows[last.index]
 
     def _check_seen(self, index: int, of: str, rows: Sequence[Row]) -> None:
@@ -603,6 +626,7 @@ def summary(index: int, name: str, rows: Sequence[Row]) -> dict[str, object]:
     """
     naming = naming_row(rows) or {}
     ends = [end for row in rows if isinstance(end := row.get("end_s"), float)]
+    by_person = [row.get("label_source") == HUMAN for row in rows if row.get("label")]
     return {
         "id": index,
         "name": name,
@@ -612,7 +636,8 @@ def summary(index: int, name: str, rows: Sequence[Row]) -> dict[str, object]:
         "level_dba": naming.get("level_dba"),
         "duration_s": max(ends, default=None),
         "least_sure": max(map(_doubt, rows), default=None),
-        "corrected": any(row.get("label_source") == HUMAN for row in rows),
+        "corrected": any(by_person) and all(by_person),
+        "partly": any(by_person) and not all(by_person),
         "error": next((row["error"] for row in rows if row.get("error")), None),
     }
 

@@ -37,7 +37,7 @@ def test_what_a_person_has_corrected_is_learned_and_nothing_else(folder, monkeyp
     run = LabellingRun(opened, opened.table)
     with pytest.raises(ParameterError, match="nothing is corrected"):
         run.learn()
-    segments = [Correction(0.0, 0.75, "squeal"), Correction(0.75, 1.5, "none")]
+    segments = [Correction(0.0, 0.75, "squeal"), Correction(0.75, 1.5, "none", confirmed=True)]
     run.labels.correct(1, segments, version(run.labels.rows(1)))
     run.learn()
     ((command, _, table, _, out, *rest),) = asked

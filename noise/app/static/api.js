@@ -22,23 +22,27 @@ export async function bytes(path, body) {
 async function request(path, body, tell = told) {
   const headers = TOKEN === null ? {} : { "Page-Token": TOKEN };
   const how = body === undefined ? { headers } : { method: "POST", headers: { ...headers, "Content-Type": "application/json" }, body: JSON.stringify(body) };
+  const kind = path.replace(/\?.*|\d+/g, "");
   let answer;
   try {
     answer = await fetch(`api/${path}`, how);
   } catch {
-    tell(GONE);
+    tell(GONE, "");
     throw new Error(GONE);
   }
   if (!answer.ok) {
     const said = await answer.text();
     let reason;
     try { reason = JSON.parse(said).error; } catch { reason = answer.status === 403 ? ENDED : said; }
-    tell(reason);
+    tell(reason, kind);
     throw new Error(reason);
   }
+  if (told.by === kind || told.by === "") told("");
   return answer;
 }
 
-export function told(text) {
+// An error goes when the same request succeeds; "" is that the program does not answer.
+export function told(text, by = null) {
+  told.by = by;
   document.getElementById("status").textContent = text;
 }

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError, RecordingError
-from noise.app.jury import COLUMNS, Jury, Votes, bradley_terry, scale
+from noise.app.jury import COLUMNS, Jury, Votes, bradley_terry, random_pairs, scale
 from noise.base.tables import read_table
 
 NAMES = ["=cmd.wav", "<img src=x onerror=alert(1)>.wav", "c d.wav"]
@@ -41,6 +41,16 @@ def test_a_jury_is_in_the_table_from_its_beginning_with_all_pairs_in_random_orde
     assert text.splitlines()[0] == ",".join(COLUMNS)
     orders = {votes.begin(NAMES, **ABOUT).pairs for _ in range(8)}
     assert len(orders) > 4
+
+
+@pytest.mark.parametrize("count", [4, 5, 9])
+def test_fewer_comparisons_than_pairs_still_join_all_sounds(count):
+    for seed in range(20):
+        pairs = random_pairs("abcde", np.random.default_rng(seed), count)
+        assert len({frozenset(pair) for pair in pairs}) == count
+        assert not scale(Jury(1, "", "?", "one gain", tuple(pairs), ("first",) * count))[1]
+    with pytest.raises(ParameterError, match="need 4 to 10"):
+        random_pairs("abcde", np.random.default_rng(0), 3)
 
 
 def test_each_vote_is_in_the_table_at_once_and_the_last_one_is_undone(votes):
@@ -117,7 +127,7 @@ def test_a_sound_that_never_lost_has_a_finite_value_and_no_vote_none():
 
 
 def test_groups_that_no_vote_joins_are_told():
-    assert "do not join 2 groups" in scale(jury_of(4, [(0, 1), (2, 3)]))[1][0]
+    assert "leave 2 groups" in scale(jury_of(4, [(0, 1), (2, 3)]))[1][0]
 
 
 def test_votes_for_no_difference_are_half_a_vote_for_each():

@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+import re
+
+import numpy as np
 import pytest
 
+from models.recording import Channel, Recording
+from noise.base.tables import write_table
+from noise.labels.table import COLUMNS, read_label_table
+from noise.recordings import write_recording
 from tests.helpers.browser import until
+from tests.helpers.labelled_folder import made_row
+from tests.helpers.opened_app import opened_app
 from tests.helpers.recording_page import HALF, TONE, OpenPage, in_table
 
 
@@ -51,6 +60,37 @@ def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
         opened.undo()
     assert in_table(folder) == before
     opened.close()
+
+
+def test_a_stretch_of_both_tracks_is_labelled_by_a_drag_and_a_key(browser, tmp_path):
+    noise = np.random.default_rng(0).normal(0.0, 0.01, (2, 96_000))
+    write_recording(
+        tmp_path / "both.wav",
+        Recording(noise, 48_000.0, (Channel("pressure"), Channel("pressure_2"))),
+    )
+    rows = [made_row("both.wav", "none", channel=track) for track in ("1", "2")]
+    write_table(tmp_path / "labels.csv", COLUMNS, rows)
+    with opened_app(tmp_path) as app:
+        opened = OpenPage(browser, app).open("both.wav")  # which it is at once
+        opened.page.mouse.move(*opened.at(0.5))
+        opened.page.mouse.down()
+        opened.page.mouse.move(*opened.at(1.0), steps=4)
+        opened.page.mouse.up()
+        opened.press("3")
+        opened.saved()
+        found = read_label_table(tmp_path / "labels.csv")
+        assert [row["label"] for row in found] == ["none", "squeal", "none"] * 2
+        assert {row["label_source"] for row in found if row["label"] == "none"} == {"classifier"}
+        assert [row["start_s"] for row in found] == pytest.approx([0.0, 0.5, 1.0] * 2, abs=0.004)
+        assert opened.page.locator(".strip .lane").count() == 1  # they are alike
+        assert opened.page.get_by_role("option").filter(has_text="partly corrected").count() == 1
+        opened.press("Control+z")
+        opened.page.locator(".saved").filter(has_text="undone").wait_for()
+        assert len(read_label_table(tmp_path / "labels.csv")) == 2
+        opened.press("Control+Shift+z", "a")
+        opened.page.get_by_role("option").filter(has_text=re.compile(", corrected")).wait_for()
+        assert {r["label_source"] for r in read_label_table(tmp_path / "labels.csv")} == {"human"}
+        opened.close()
 
 
 def test_changes_that_wait_are_written_although_another_recording_is_opened(browser, app, folder):

@@ -24,7 +24,7 @@ def test_a_correction_is_in_the_table_and_all_else_stays(tabled):
     assert in_table(tabled) == [
         ("a.wav", 0.0, 2.0, "none", "classifier"),
         ("b.wav", 0.0, 0.5, "creak", "human"),
-        ("b.wav", 0.5, 2.0, "none", "human"),
+        ("b.wav", 0.5, 2.0, "none", "classifier"),  # what is left of it nobody has named
         ("c.wav", 0.0, 2.0, "none", "classifier"),
     ]
 

@@ -13,18 +13,22 @@ from tests.helpers.corrected_table import NAMES, correct, in_table, labels_of
 from tests.helpers.labelled_folder import made_row as row
 
 
-def test_undo_goes_back_one_correction_at_a_time(tabled):
+def test_undo_and_redo_go_one_correction_at_a_time(tabled):
     before = in_table(tabled)
     labels = labels_of(tabled)
     correct(labels, 0, [Correction(0.0, 2.0, "creak")])
     after_one = in_table(tabled)
     correct(labels, 2, [Correction(0.0, 2.0, "squeal")])
+    after_both = in_table(tabled)
+    for redo, then in ((False, after_one), (False, before), (True, after_one), (True, after_both)):
+        labels.undo(redo=redo)
+        assert in_table(tabled) == then
+    with pytest.raises(ParameterError, match="no correction to redo"):
+        labels.undo(redo=True)
     labels.undo()
-    assert in_table(tabled) == after_one
-    labels.undo()
-    assert in_table(tabled) == before
-    with pytest.raises(ParameterError, match="no correction"):
-        labels.undo()
+    correct(labels, 1, [Correction(0.0, 2.0, "squawk")])
+    with pytest.raises(ParameterError, match="no correction to redo"):
+        labels.undo(redo=True)
 
 
 def test_what_was_said_of_other_labels_than_those_of_the_table_is_refused(tabled):

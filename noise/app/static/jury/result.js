@@ -3,7 +3,7 @@ import { api } from "../api.js";
 import { drawn, made } from "../dom.js";
 
 const HEADS = ["Sound", "Value", "95 % interval", "Chosen", "Not chosen", "No difference"];
-const MEANS = "Mean 0. Of two sounds whose values differ by 1.1 the higher is chosen three times in four, by 2.2 nine in ten. Intervals say how surely these votes place a sound, not how others would vote.";
+const MEANS = "The mean is 0. If two values differ by 1.1, the higher sound is chosen three times in four; by 2.2, nine times in ten. The intervals describe these votes, not how other people would vote.";
 const ROW = 26, TOP = 8, AXIS = 34, LETTER = 7.2, GAP = 10; // px
 const STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10];
 
@@ -11,6 +11,7 @@ export class Result {
   constructor(element, goes) {
     this.title = made("h2", { tabIndex: -1 });
     this.facts = made("p", { className: "soft" });
+    this.words = made("p", { className: "words" });
     this.remarks = made("ul", { className: "remarks" });
     this.svg = drawn("svg", { role: "img" });
     this.rows = made("tbody");
@@ -21,9 +22,9 @@ export class Result {
     const back = made("button", { type: "button", textContent: "To all juries" });
     back.addEventListener("click", () => goes.setup());
     this.file = made("a", { textContent: "Scale as CSV" });
-    this.named = made("p", { className: "soft", textContent: "You have seen the names: what you vote from now on is no longer blind." });
+    this.named = made("p", { className: "soft", textContent: "You have seen the names: further votes are no longer blind." });
     this.figure = made("figure", {}, this.svg, made("figcaption", { textContent: MEANS }));
-    element.append(this.title, this.facts, this.remarks, this.figure, box, made("div", { className: "line" }, this.on, back, this.file), this.named);
+    element.append(this.title, this.words, this.facts, this.remarks, this.figure, box, made("div", { className: "line" }, this.on, back, this.file), this.named);
     new ResizeObserver(() => { if (this.found && this.figure.clientWidth !== this.width) this.#draw(); }).observe(this.figure);
   }
 
@@ -34,6 +35,7 @@ export class Result {
     this.found = found;
     this.title.textContent = found.question;
     this.facts.textContent = [found.listener, `played at ${found.played}`, `${found.voted} of ${found.total} comparisons voted`].filter(Boolean).join(" · ");
+    this.words.textContent = found.words;
     this.remarks.replaceChildren(...found.remarks.map((textContent) => made("li", { textContent })));
     this.remarks.hidden = !found.remarks.length;
     this.rows.replaceChildren(...found.sounds.map((one) => made("tr", {}, made("th", { scope: "row", textContent: one.sound }),
@@ -47,7 +49,7 @@ export class Result {
 
   clear() {
     this.number = this.found = null;
-    for (const part of [this.svg, this.rows, this.remarks]) part.replaceChildren();
+    for (const part of [this.svg, this.rows, this.remarks, this.words]) part.replaceChildren();
   }
 
   #draw() {

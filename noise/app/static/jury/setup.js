@@ -3,7 +3,7 @@ import { api } from "../api.js";
 import { made } from "../dom.js";
 
 const KINDS = ["all", "creak", "squawk", "squeal", "none", "unknown", "unlabelled"];
-const AT_FIRST = 12; // sounds that are chosen to begin with
+const AT_FIRST = 8; // sounds that are chosen to begin with, at most
 const SECONDS = 10; // that a comparison takes, about
 
 export class Setup {
@@ -21,26 +21,28 @@ export class Setup {
     this.going = made("ul", { className: "going" });
     this.goingOn = made("section", { hidden: true }, made("h2", { textContent: "Go on" }), this.going);
     this.question = made("input", { type: "text", value: "Which annoys more?", maxLength: 200, className: "wide" });
-    this.listener = made("input", { type: "text", maxLength: 200, placeholder: "may stay empty" });
+    this.listener = made("input", { type: "text", maxLength: 200, placeholder: "optional" });
     this.played = made("select", {},
       made("option", { value: "one gain", textContent: "as recorded, all at one gain" }),
       made("option", { value: "equal loudness", textContent: "at equal loudness" }));
     this.kind = made("select", {}, ...KINDS.map((kind) => made("option", { value: kind === "all" ? "" : kind, textContent: kind })));
-    this.find = made("input", { type: "search", placeholder: "name holds ..." });
+    this.find = made("input", { type: "search", placeholder: "by name" });
     this.sounds = made("ul", { className: "sounds" });
     const all = made("button", { type: "button", textContent: "All shown" });
     const none = made("button", { type: "button", textContent: "None" });
     this.count = made("output", { className: "count" });
+    this.number = made("input", { type: "number", step: 1 });
+    this.number.addEventListener("input", () => { this.wanted = Number(this.number.value); this.#tell(); });
     this.begin = made("button", { type: "button", className: "begin", textContent: "Begin", disabled: true });
     this.plan = made("p", { className: "plan", role: "status" });
     element.append(this.goingOn, made("section", {},
       made("h2", { textContent: "New jury" }),
-      made("p", { className: "soft", textContent: "You hear two sounds at a time, without names and in random order, and choose one. The votes give each sound a place on a scale." }),
+      made("p", { className: "soft", textContent: "You hear two sounds at a time, without names and in random order, and choose one. Your votes place all sounds on a scale." }),
       made("div", { className: "fields" }, field("Question", this.question), field("Listener", this.listener), field("Played", this.played)),
       made("fieldset", {}, made("legend", { textContent: "Sounds" }),
         made("div", { className: "line" }, field("With", this.kind), field("Find", this.find), all, none, this.count),
         this.sounds),
-      made("div", { className: "line" }, this.begin, this.plan)));
+      made("div", { className: "line" }, field("Comparisons", this.number), this.begin, this.plan)));
     this.find.addEventListener("input", () => { clearTimeout(this.wait); this.wait = setTimeout(() => this.#list(), 150); });
     this.kind.addEventListener("change", () => this.#list());
     all.addEventListener("click", () => { for (const { id } of this.shown) this.chosen.add(id); this.#draw(); });
@@ -74,11 +76,10 @@ export class Setup {
 
   async #list() {
     const asked = ++this.asked;
-    const query = new URLSearchParams({ label: this.kind.value, text: this.find.value, count: 1000 });
-    const { rows, total } = await api(`recordings?${query}`);
+    const query = new URLSearchParams({ label: this.kind.value, text: this.find.value });
+    const { rows } = await api(`recordings?${query}`);
     if (asked !== this.asked || this.element.hidden) return;
     this.shown = rows;
-    this.more = total - rows.length; // are not shown
     this.chosen ??= new Set(rows.slice(0, AT_FIRST).map(({ id }) => id));
     this.#draw();
   }
@@ -93,18 +94,26 @@ export class Setup {
   }
 
   #tell() {
-    const { size } = this.chosen, pairs = (size * (size - 1)) / 2;
-    this.count.textContent = `${size} chosen${this.more ? `; ${this.more} recordings are not shown, find them by name` : ""}${size > this.most ? `: at most ${this.most} can be compared` : ""}`;
-    this.begin.disabled = size < 2 || size > this.most;
-    this.plan.textContent = size < 2 ? "Choose two sounds or more; they are the recordings that were opened."
-      : `${pairs} comparisons, about ${Math.max(1, Math.round((pairs * SECONDS) / 60))} min; whoever stops goes on later. Of each sound at most ${this.longest} s are heard.`;
+    const { size } = this.chosen, pairs = (size * (size - 1)) / 2, least = Math.max(1, size - 1);
+    this.count.textContent = `${size} chosen`;
+    Object.assign(this.number, { min: least, max: pairs, disabled: size < 2 });
+    const wanted = this.wanted ?? pairs, isPossible = wanted >= least && wanted <= pairs;
+    if (document.activeElement !== this.number) this.number.value = isPossible ? wanted : pairs;
+    if (!isPossible && document.activeElement !== this.number) this.wanted = undefined;
+    this.begin.disabled = size < 2 || size > this.most || !this.number.validity.valid || this.number.value === "";
+    const number = Number(this.number.value), minutes = Math.max(1, Math.round((number * SECONDS) / 60));
+    if (!this.shown.length && !size) this.plan.textContent = "No recordings are open. Start the program with a folder of recordings: bushing-noise open FOLDER";
+    else if (size < 2) this.plan.textContent = "Choose at least two sounds.";
+    else if (size > this.most) this.plan.textContent = `Choose at most ${this.most} sounds.`;
+    else if (this.begin.disabled) this.plan.textContent = `${size} sounds need ${least} to ${pairs} comparisons.`;
+    else this.plan.textContent = `About ${minutes} min${number < pairs ? `; ${pairs} would compare all pairs` : ", every pair once"}. You can stop and go on later. Sounds are cut to ${this.longest} s.`;
   }
 
   async #begin() {
     this.element.inert = true; // all sounds are measured first
-    this.plan.textContent = "The sounds are being measured.";
+    this.plan.textContent = "Measuring the sounds ...";
     try {
-      const { jury } = await api("juries", { sounds: [...this.chosen], question: this.question.value, listener: this.listener.value, played: this.played.value });
+      const { jury } = await api("juries", { sounds: [...this.chosen], comparisons: Number(this.number.value), question: this.question.value, listener: this.listener.value, played: this.played.value });
       await this.goes.voting(jury);
     } finally {
       this.element.inert = false;

@@ -1,5 +1,6 @@
 // Segments of the recording that is open: each change is written at once, in the order of the keys, and goes back where it cannot be.
 import { api } from "../api.js";
+import { painted } from "./edits.js";
 
 // Undo takes back what was said on this page, and on the same before it was loaded again.
 const PAGE = (sessionStorage.page ??= crypto.randomUUID());
@@ -56,9 +57,20 @@ export class Corrections extends EventTarget {
 
   get tracks() { return [...new Set(this.rows.map((row) => row.channel))]; }
 
-  // Rows of the track that is shown, in order of time.
-  get shown() {
-    return this.rows.filter((row) => row.channel === this.track).sort((one, two) => one.start_s - two.start_s);
+  // Rows of a track in order of time.
+  of(track) { return this.rows.filter((row) => row.channel === track).sort((one, two) => one.start_s - two.start_s); }
+
+  get shown() { return this.of(this.track); }
+
+  // Tracks with the same labels are one lane, corrected together: [{ tracks, rows }].
+  get lanes() {
+    const lanes = new Map();
+    for (const track of this.tracks) {
+      const rows = this.of(track), key = JSON.stringify(rows.map((row) => [row.start_s, row.end_s, row.label, row.label_source]));
+      if (lanes.has(key)) lanes.get(key).tracks.push(track);
+      else lanes.set(key, { tracks: [track], rows });
+    }
+    return [...lanes.values()];
   }
 
   // What is still to be written of it stays shown.
@@ -84,16 +96,30 @@ export class Corrections extends EventTarget {
 
   #tell() { this.dispatchEvent(new Event("change")); }
 
-  // Show rows of the track without writing them, such as while a border is dragged.
-  preview(shown) { this.#show([...this.rows.filter((row) => row.channel !== this.track), ...shown]); }
+  // All rows, where those of the lane are these.
+  #withLane(shown) {
+    const { tracks } = this.lanes.find((lane) => lane.tracks.includes(this.track)) ?? { tracks: [this.track] };
+    return [...this.rows.filter((row) => !tracks.includes(row.channel)), ...tracks.flatMap((channel) => shown.map((row) => ({ ...row, channel })))];
+  }
+
+  // Show rows of the lane without writing them, such as while a border is dragged.
+  preview(shown) { this.#show(this.#withLane(shown)); }
 
   // No longer show what was only looked at.
   restore() { if (this.saved) this.#show([this.sending, ...this.queue].findLast((one) => one?.rows && one.id === this.id)?.rows ?? this.saved); }
 
-  // Write rows of the track. One of the same kind that waits to be written is replaced, such as a border's step.
-  write(shown, kind = null) {
+  // Write rows of the lane. One of the same kind that waits to be written is replaced, such as a border's step.
+  write(shown, kind = null) { this.writeAll(this.#withLane(shown), kind); }
+
+  // Make a stretch of every track a segment; `tracks` are those of a recording that has no labels yet.
+  paint(start, end, label, tracks) {
+    const channels = this.tracks.length ? this.tracks : tracks;
+    this.writeAll(channels.flatMap((channel) => painted(this.of(channel), start, end, label).map((row) => ({ ...row, channel }))));
+  }
+
+  writeAll(all, kind = null) {
     if (!this.saved) return this.tell("not changed: its labels are still being read");
-    this.preview(shown);
+    this.#show(all);
     const { id, name, rows } = this, last = this.queue.at(-1);
     if (kind !== null && last?.kind === kind && last.id === id) last.rows = rows;
     else this.queue.push({ id, name, rows, kind });
@@ -107,9 +133,9 @@ export class Corrections extends EventTarget {
     return undoing.then(() => (id === this.id ? this.inTurn(act) : this.tell("not changed: another recording is open by now")));
   }
 
-  // Undo the last change; the number of its recording comes of it, null where there is none.
-  undo() {
-    const undoing = new Promise((undone) => this.queue.push({ undone }));
+  // Undo the last change, or redo what was undone last; the number of its recording comes of it, null where there is none.
+  undo(redo = false) {
+    const undoing = new Promise((undone) => this.queue.push({ undone, redo }));
     this.undoing = undoing;
     this.working ??= this.#work();
     return undoing.finally(() => { if (this.undoing === undoing) this.undoing = null; });
@@ -147,15 +173,15 @@ export class Corrections extends EventTarget {
     for (const { undone } of dropped) undone?.(null);
   }
 
-  async #undo({ undone }) {
+  async #undo({ undone, redo }) {
     try {
-      const answer = await api("undo", { page: PAGE });
-      this.#say(answer.id, answer.name, `undone, saved ${clock()}`);
+      const answer = await api("undo", { page: PAGE, redo });
+      this.#say(answer.id, answer.name, `${redo ? "redone" : "undone"}, saved ${clock()}`);
       this.#take(answer);
       undone(answer.id);
       this.dispatchEvent(new CustomEvent("saved", { detail: answer.id }));
     } catch (error) {
-      this.tell(`not undone: ${error.message}`);
+      this.tell(`not ${redo ? "redone" : "undone"}: ${error.message}`);
       const { id } = this;
       this.#again(id, await this.#now(id));
       undone(null);

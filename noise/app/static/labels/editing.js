@@ -1,17 +1,36 @@
-// What a person says of the segments of a recording's page, in the order in which it is said.
+// Corrections of the segments of a recording's page, in the order of the keys.
 import { told } from "../api.js";
-import { joined, relabelled, split } from "./edits.js";
+import { joined, relabelled, SHORTEST, split } from "./edits.js";
 
-export function label({ corrections, segments, timeline, sound }, said) {
-  const whole = (sound?.tracks ?? []).map((channel) => ({ start_s: 0, end_s: timeline.duration, label: said, channel, label_source: "human" }));
-  corrections.inTurn(() => corrections.write(segments.chosen ? relabelled(corrections.shown, segments.at, said) : whole));
+// The selection becomes a segment of that label, on all tracks; without one the segment at the cursor has it.
+export function label({ corrections, segments, timeline, player, sound }, said) {
+  const { selection, position } = timeline;
+  corrections.inTurn(() => {
+    if (selection && selection.end - selection.start < SHORTEST) return told(`A segment is at least ${1000 * SHORTEST} ms long: select more.`);
+    if (selection || !segments.chosen) {
+      const { start, end } = selection ?? { start: 0, end: timeline.duration };
+      corrections.paint(start, end, said, sound?.tracks ?? []);
+      timeline.select(null);
+      return segments.chooseAt(0.5 * (start + end));
+    }
+    if (player.playing && !player.looping) segments.chooseAt(position);
+    corrections.write(relabelled(corrections.shown, segments.at, said));
+  });
+}
+
+// Every label that a person has not given is right.
+export function agree({ corrections }) {
+  corrections.inTurn(() => {
+    if (!corrections.rows.length) return told("There are no labels to confirm yet.");
+    corrections.writeAll(corrections.rows.map((row) => ({ ...row, label_source: "human" })));
+  });
 }
 
 export function splitHere({ corrections, segments, timeline, pointed }) {
   const time = pointed ?? timeline.position;
   corrections.inTurn(() => {
     const rows = split(corrections.shown, time);
-    if (!rows) return told("A segment is split inside it: put the cursor there.");
+    if (!rows) return told("Nothing to split here: put the cursor inside a segment.");
     const at = rows.findIndex((row) => Math.abs(row.start_s - time) < 0.002);
     corrections.write(rows);
     if (at > 0) segments.choose(at);
@@ -29,9 +48,9 @@ export function joinHere({ corrections, segments }) {
 }
 
 // The last change may be of another recording, which is then opened.
-export function undo(page) {
+export function undo(page, redo = false) {
   page.corrections.inTurn(async () => {
-    const id = await page.corrections.undo();
+    const id = await page.corrections.undo(redo);
     if (id !== null && id !== page.id) page.onOpen(id);
   });
 }

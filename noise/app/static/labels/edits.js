@@ -43,6 +43,20 @@ export function split(rows, time) {
   return rows.flatMap((row, place) => (place === index ? [said(row, { end_s: at }), said(row, { start_s: at })] : [row]));
 }
 
+// The stretch is a segment of its own, cut out of what was there; a rest that is too short for a segment goes with it.
+export function painted(rows, start, end, label) {
+  let from = Math.round(start * 1000) / 1000, to = Math.round(end * 1000) / 1000;
+  for (const { start_s: first, end_s: last } of rows) {
+    if (first < from && last > from && from - first < SHORTEST) from = first;
+    if (last > to && first < to && last - to < SHORTEST) to = last;
+  }
+  const rest = rows.flatMap((row) => [
+    ...(row.start_s < from ? [{ ...row, end_s: Math.min(row.end_s, from) }] : []),
+    ...(row.end_s > to ? [{ ...row, start_s: Math.max(row.start_s, to) }] : []),
+  ]);
+  return [...rest, { start_s: from, end_s: to, label, label_source: HUMAN }].sort((one, two) => one.start_s - two.start_s);
+}
+
 // To the neighbour before it, or after the first; null where there is none.
 export function joined(rows, index) {
   if (rows.length < 2) return null;

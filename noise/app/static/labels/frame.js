@@ -47,7 +47,6 @@ export function build(element) {
   const frames = select("Window", WINDOWS);
   frames.box.value = "";
   const channel = select("Channel", {});
-  const track = select("Labels of", {});
   const parts = {
     title: made("h2"), facts: made("p", { className: "facts" }), saved: made("p", { className: "saved" }),
     play: button("Play", "Space", { className: "play" }), loop: toggle("Loop", "L", true), clock: made("output", { className: "clock" }),
@@ -56,14 +55,15 @@ export function build(element) {
     out: button("−", "zoom out", { ariaLabel: "Zoom out" }), in: button("+", "zoom in", { ariaLabel: "Zoom in" }),
     left: button("‹", "earlier", { ariaLabel: "Earlier" }), right: button("›", "later", { ariaLabel: "Later" }),
     whole: button("All", "0"), fit: button("Segment", "F", { ariaLabel: "Zoom to the segment" }), harmonic: toggle("Harmonics", "H"),
-    help: button("?", "keys", { ariaLabel: "Help: keys" }), range, frames, channel, track,
+    help: button("?", "keys", { ariaLabel: "Help: keys" }), range, frames, channel, others: group("Channels"),
     gains: made("p", { className: "gains" }), readout: made("output", { className: "readout" }), levelRead: made("output", { className: "readout level" }),
     strip: made("div", { className: "strip" }), overlay: made("div", { className: "overlay" }), position: made("div", { className: "position" }), selection: made("div", { className: "selection" }),
     wave: canvas("wave", "Samples over time"), waveAxis: canvas("axis wave"),
     plot: canvas("plot"), marks: canvas("marks"), frequencies: canvas("axis frequencies"), legend: canvas("legend", "Colours of levels"),
     course: canvas("course", "A-weighted level over time, Fast"), courseAxis: canvas("axis course"), times: canvas("times"),
     chosen: made("div", { className: "chosen" }), labels: group("Label of the segment"), shares: made("dl", { className: "shares" }), source: made("p"), conditions: made("p", { className: "conditions" }),
-    split: button("Split", "S: at the cursor, or where it is played"), join: button("Join", "Delete: to the segment before it"), undo: button("Undo", "U"),
+    split: button("Split", "S: at the cursor, or where it is played"), join: button("Join", "Delete: to the segment before it"), undo: button("Undo", "Ctrl+Z"), redo: button("Redo", "Ctrl+Shift+Z"), agree: button("Confirm all", "A: all labels of this recording are right"),
+    stack: made("div", { className: "stack" }), stackAxes: made("div", { className: "stack" }),
     bands: canvas("bands", "Third octaves"), bandsText: made("p", { className: "facts" }), dialog: helpDialog(),
   };
   for (const [at, label] of LABELS.entries()) {
@@ -73,15 +73,14 @@ export function build(element) {
   parts.saved.setAttribute("role", "status");
   parts.strip.setAttribute("role", "group");
   parts.strip.setAttribute("aria-label", "Segments");
-  parts.track.label.hidden = true;
   const screen = made("div", { className: "screen", tabIndex: 0 }, parts.plot, parts.marks);
   screen.setAttribute("role", "application");
   screen.setAttribute("aria-roledescription", "spectrogram");
   screen.setAttribute("aria-label", "Spectrogram: arrow keys move the cursor");
   parts.screen = screen;
   parts.overlay.append(parts.selection, parts.position);
-  parts.area = made("div", { className: "area" }, parts.strip, parts.wave, screen, parts.course, parts.times, parts.overlay);
-  const axes = made("div", { className: "axes" }, made("span", { className: "strip" }), parts.waveAxis, parts.frequencies, parts.courseAxis, made("span", { className: "times", textContent: "s" }));
+  parts.area = made("div", { className: "area" }, parts.strip, parts.wave, screen, parts.course, parts.stack, parts.times, parts.overlay);
+  const axes = made("div", { className: "axes" }, made("span", { className: "strip" }), parts.waveAxis, parts.frequencies, parts.courseAxis, parts.stackAxes, made("span", { className: "times", textContent: "s" }));
   parts.lanes = made("div", { className: "lanes" }, axes, parts.area);
   element.replaceChildren(
     made("header", { className: "about" }, parts.title, parts.saved, parts.facts),
@@ -89,14 +88,15 @@ export function build(element) {
       group("Playing", parts.play, parts.loop, parts.clock),
       group("Comparing", parts.a, parts.b, parts.keep, parts.equal),
       group("View", parts.out, parts.in, parts.left, parts.right, parts.whole, parts.fit, parts.harmonic),
-      group("Correcting", parts.split, parts.join, parts.undo, parts.help)),
+      group("Correcting", parts.split, parts.join, parts.undo, parts.redo, parts.agree, parts.help)),
     parts.lanes,
+    made("p", { className: "shortcuts", textContent: `Drag: select · 1–5: ${LABELS.join(", ")} · A: confirm all · Ctrl+Z: undo · Space: play · ?: keys` }),
     made("div", { className: "under" }, parts.readout, parts.levelRead, parts.legend),
     made("div", { className: "below" },
       made("section", { ariaLabel: "Segment" }, parts.chosen, parts.labels, parts.source, parts.conditions, parts.shares),
       made("section", { ariaLabel: "Third octaves" }, parts.bands, parts.bandsText)),
     parts.gains,
-    made("div", { className: "tools" }, parts.channel.label, parts.track.label, frames.label, range.label,
+    made("div", { className: "tools" }, parts.channel.label, parts.others, frames.label, range.label,
       group("Band that is heard", "Hear ", parts.low, "–", parts.high, " Hz", parts.unfiltered)),
     parts.dialog);
   return parts;

@@ -2,21 +2,22 @@
 import { made } from "../dom.js";
 
 const TOLD = [
+  ["Drag", "select a stretch; Esc ends the selection"],
+  ["1 2 3 4 5", "label creak, squawk, squeal, none, unknown: the selection becomes a segment; without one, the segment at the cursor"],
+  ["A", "confirm all labels of this recording"],
+  ["Ctrl+Z Ctrl+Shift+Z", "undo, redo a correction; also U"],
   ["Space", "play, pause"],
   ["L", "loop on, off: the selection, else the chosen segment, else all"],
-  ["← →", "0.1 s back, on; with Shift 1 s; on a border it moves by 10 ms, with Shift by 100 ms; on the spectrogram the cursor moves"],
-  ["[ ]", "segment before, after"],
-  ["1 2 3 4 5", "the segment is creak, squawk, squeal, none, unknown; its own label: agreed"],
-  ["S", "split at the cursor, or where it is played"],
+  ["← →", "0.1 s back, forward; with Shift 1 s; on a border, move it by 10 ms, with Shift by 100 ms"],
+  ["[ ]", "previous, next segment"],
+  ["S", "split at the pointer, or at the play position"],
   ["Delete", "join to the segment before it"],
-  ["U", "undo the last correction"],
   ["+ −", "zoom in, out; also by the wheel"],
-  ["0 F", "all; the chosen segment"],
-  ["H", "multiples of the frequency under the cursor"],
-  ["B", "keep this sound as B, from where the loop begins"],
-  ["X", "listen to the other of A and B, at the same moment"],
+  ["0 F", "zoom to all, to the selection or segment"],
+  ["H", "multiples of the frequency at the pointer"],
+  ["B", "use this sound as B, from the start of the loop"],
+  ["X", "switch between A and B at the same moment"],
   ["E", "equal loudness on, off"],
-  ["Esc", "no selection"],
   ["?", "this list"],
 ];
 
@@ -35,14 +36,15 @@ export function helpDialog() {
 // Call what a key stands for, unless somebody is typing or a dialog is open.
 export function listen(element, actions) {
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+    if (event.altKey || event.defaultPrevented) return;
     if (!element.isConnected || element.closest("[hidden]") || document.querySelector("dialog[open]")) return;
     const { target } = event;
     if (target.matches("input, select, textarea, [contenteditable]")) return;
     const at = target.closest("button, summary, [role=tab], [role=listbox]");
     if (at && (event.key === " " || event.key === "Enter") && !element.querySelector(".lanes")?.contains(at)) return;
     if (at?.matches("[role=tab]") && event.key.startsWith("Arrow")) return;
-    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+    const action = actions[event.ctrlKey || event.metaKey ? `Ctrl+${event.shiftKey ? "Shift+" : ""}${key}` : key];
     if (!action) return;
     event.preventDefault();
     action(event);

@@ -1,7 +1,7 @@
 // Level over time, and third octaves of a stretch.
 import { facts } from "./sounds.js";
 import { ticks } from "../shared/player.js";
-import { DEEP, INK, LINE, SOFT, sheet } from "./timeline.js";
+import { caption, DEEP, INK, LINE, SOFT, sheet } from "./timeline.js";
 
 const LEAST_RANGE = 30; // of the level axis [dB]
 
@@ -64,12 +64,7 @@ export class LevelCourse {
       pen.lineTo(this.timeline.share((at + each / 2) * cell) * width, y(most));
     }
     pen.stroke();
-    const what = `${this.found.unit}, Fast`;
-    pen.fillStyle = "#ffffffe0";
-    pen.fillRect(4, height - 15, pen.measureText(what).width + 4, 13);
-    pen.fillStyle = SOFT;
-    pen.textBaseline = "middle";
-    pen.fillText(what, 6, height - 8);
+    caption(pen, `${this.found.unit}, Fast`, height);
   }
 }
 

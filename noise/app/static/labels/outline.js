@@ -1,12 +1,12 @@
 // Outline of the samples over time.
 import { numbers } from "./sounds.js";
-import { DEEP, LINE, SOFT, sheet } from "./timeline.js";
+import { caption, DEEP, LINE, SOFT, sheet } from "./timeline.js";
 
 const FINER = 60; // after the view has come to rest [ms]
 
 export class Outline {
-  constructor(timeline, { plot, axis }) {
-    Object.assign(this, { timeline, plot, axis });
+  constructor(timeline, { plot, axis, name = "" }) {
+    Object.assign(this, { timeline, plot, axis, name }); // the name is written where several are stacked
     this.parts = [];
     this.turn = 0;
   }
@@ -51,6 +51,7 @@ export class Outline {
       const low = y(part.values[column]), high = y(part.values[columns + column]);
       pen.fillRect(x, high, Math.max(1, (step / this.timeline.span) * width), Math.max(1, low - high));
     }
+    caption(pen, this.name, height);
   }
 
   #drawAxis(part) {

@@ -14,7 +14,7 @@ export function follow(page) {
     return Math.min(1, Math.max(0, (clientY - box.top) / box.height));
   };
 
-  for (const lane of [parts.wave, parts.screen, parts.course]) {
+  for (const lane of [parts.wave, parts.screen, parts.course, parts.stack]) {
     lane.addEventListener("pointerdown", (event) => {
       if (event.button || !page.sound) return;
       const first = at(event);

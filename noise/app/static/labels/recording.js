@@ -1,7 +1,7 @@
 // The page of one recording: puts its lanes, segments, player and keys together.
 import { told } from "../api.js";
 import { Corrections } from "./corrections.js";
-import { joinHere, label, splitHere, undo } from "./editing.js";
+import { agree, joinHere, label, splitHere, undo } from "./editing.js";
 import { build, LABELS } from "./frame.js";
 import { listen } from "./keys.js";
 import { Bands, LevelCourse } from "./levels.js";
@@ -32,6 +32,8 @@ export class RecordingPage {
     this.levels = new LevelCourse(timeline, { plot: parts.course, axis: parts.courseAxis, readout: parts.levelRead });
     this.bands = new Bands({ plot: parts.bands, text: parts.bandsText });
     this.segments = new Segments(timeline, this.corrections, parts, () => this.#chosen());
+    this.beside = new Set(); // names of the channels that are shown under the one that is heard
+    this.stacked = [];
     timeline.addEventListener("view", () => this.#view());
     timeline.addEventListener("position", () => this.#position());
     timeline.addEventListener("selection", () => { this.#marks(); this.#stretch(); });
@@ -56,6 +58,7 @@ export class RecordingPage {
     this.bands.clear();
     // All at once: what each needs of the others comes with it.
     const seen = this.spectrogram.load(id, null);
+    seen.catch(() => {}); // the same error comes of what is asked for next
     const sound = await about(id);
     if (id !== this.id) return;
     this.sound = sound;
@@ -70,10 +73,26 @@ export class RecordingPage {
     this.player.stop();
     this.timeline.go(0);
     this.player.position = 0;
-    await Promise.all([seen, this.outline.load(id, this.channel), this.#labels(id)]);
+    await Promise.all([seen, this.outline.load(id, this.channel), this.#labels(id), this.#stack()]);
     if (id !== this.id) return;
     await this.levels.load(id, this.channel);
     this.#chosen();
+  }
+
+  // Other channels of the recording under the one that is heard, on the same time axis.
+  async #stack() {
+    const { parts, sound: { channels }, id } = this, others = channels.filter(({ name }) => name !== this.channel);
+    parts.others.hidden = !others.length;
+    parts.others.replaceChildren("Also show ", ...others.map(({ name }) => {
+      const one = made("button", { type: "button", textContent: name, ariaPressed: this.beside.has(name) });
+      one.addEventListener("click", () => { this.beside.delete(name) || this.beside.add(name); this.#stack(); });
+      return one;
+    }));
+    const shown = others.filter(({ name }) => this.beside.has(name));
+    this.stacked = shown.map(({ name }) => new Outline(this.timeline, { plot: made("canvas", { role: "img", ariaLabel: `${name} over time` }), axis: made("canvas", { ariaHidden: "true" }), name }));
+    parts.stack.replaceChildren(...this.stacked.map(({ plot }) => plot));
+    parts.stackAxes.replaceChildren(...this.stacked.map(({ axis }) => axis));
+    await Promise.all(this.stacked.map((lane) => lane.load(id, lane.name)));
   }
 
   // Labels, which may be on their way.
@@ -96,7 +115,7 @@ export class RecordingPage {
     const at = this.sound.channels.findIndex((one) => one.name === name);
     if (this.corrections.tracks.includes(`${at + 1}`)) this.corrections.show(`${at + 1}`);
     this.player.put("a", this.#slot());
-    await Promise.all([this.spectrogram.load(this.id, name), this.outline.load(this.id, name), this.levels.load(this.id, name)]);
+    await Promise.all([...[this.spectrogram, this.outline, this.levels].map((lane) => lane.load(this.id, name)), this.#stack()]);
     this.spectrogram.refine();
     this.#stretch();
   }
@@ -147,7 +166,7 @@ export class RecordingPage {
   }
 
   #view() {
-    for (const lane of [this.spectrogram, this.outline]) { lane.draw(); lane.refine(); }
+    for (const lane of [this.spectrogram, this.outline, ...this.stacked]) { lane.draw(); lane.refine(); }
     this.levels.draw();
     drawTimes(this.parts.times, this.timeline);
     this.segments.draw();
@@ -172,11 +191,8 @@ export class RecordingPage {
   }
 
   #rows() {
-    const { parts, corrections } = this, { tracks } = corrections;
-    parts.track.label.hidden = tracks.length < 2;
-    parts.track.box.replaceChildren(...tracks.map((track) => made("option", { value: track, textContent: `track ${track}` })));
-    parts.track.box.value = corrections.track;
-    showSegment(parts, this.segments.chosen);
+    showSegment(this.parts, this.segments.chosen);
+    this.parts.agree.disabled = this.corrections.rows.every((row) => row.label_source === "human");
   }
 
   #chosen() {
@@ -199,14 +215,14 @@ export class RecordingPage {
     const { selection } = this.timeline;
     const from = selection?.start ?? (this.player.looping && this.segments.chosen ? this.segments.chosen.start_s : null);
     this.player.put("b", { ...this.#slot(), anchor: from });
-    told(`B is ${this.sound.name}${from === null ? "" : ` from ${from.toFixed(2)} s on`}; open another as A, X changes over.`);
+    told(`B is ${this.sound.name}${from === null ? "" : ` from ${from.toFixed(2)} s on`}. Open another recording as A; X switches between them.`);
   }
 
   filter(low, high) {
     if (!this.sound) return;
     const { parts } = this, top = 0.5 * this.sound.rate;
     const band = low || high ? { low: low || 10, high: high || top } : null;
-    if (band && band.low >= band.high) return told("A band begins below where it ends.");
+    if (band && band.low >= band.high) return told("The lower frequency must be below the upper one.");
     parts.low.value = low ? Math.round(low) : "";
     parts.high.value = high ? Math.round(high) : "";
     this.player.setBand(band);
@@ -234,7 +250,7 @@ export class RecordingPage {
       a: () => this.changeOver("a"), b: () => this.changeOver("b"), keep: () => this.keepAsB(),
       in: () => timeline.zoom(ZOOM), out: () => timeline.zoom(1 / ZOOM), left: () => timeline.pan(-PAN), right: () => timeline.pan(PAN),
       whole: () => timeline.whole(), fit: () => this.fit(), help: () => parts.dialog.showModal(),
-      split: () => splitHere(this), join: () => joinHere(this), undo: () => undo(this), unfiltered: () => this.filter(0, 0),
+      split: () => splitHere(this), join: () => joinHere(this), undo: () => undo(this), redo: () => undo(this, true), agree: () => agree(this), unfiltered: () => this.filter(0, 0),
     };
     for (const [name, action] of Object.entries(actions)) parts[name].addEventListener("click", (event) => { if (this.sound) action(event); });
     for (const button of parts.labels.children) button.addEventListener("click", () => label(this, button.dataset.label));
@@ -242,7 +258,6 @@ export class RecordingPage {
     parts.range.box.addEventListener("change", ({ target }) => this.spectrogram.setRange(Number(target.value)));
     parts.frames.box.addEventListener("change", ({ target }) => this.spectrogram.setWindow(target.value || null));
     parts.channel.box.addEventListener("change", ({ target }) => this.hearChannel(target.value));
-    parts.track.box.addEventListener("change", ({ target }) => this.corrections.show(target.value));
   }
 
   fit() {
@@ -257,7 +272,8 @@ export class RecordingPage {
     const beside = (sign) => () => { segments.choose(segments.at + sign); if (segments.chosen) timeline.go(segments.chosen.start_s); };
     const actions = {
       " ": () => this.toggle("play"), l: () => this.toggle("looping"), e: () => this.toggle("equal"), h: () => this.toggle("harmonic"),
-      x: () => this.changeOver(), b: () => this.keepAsB(), s: () => splitHere(this), u: () => undo(this),
+      x: () => this.changeOver(), b: () => this.keepAsB(), s: () => splitHere(this), a: () => agree(this),
+      u: () => undo(this), "Ctrl+z": () => undo(this), "Ctrl+Shift+z": () => undo(this, true), "Ctrl+y": () => undo(this, true),
       Delete: () => joinHere(this), Backspace: () => joinHere(this), ArrowLeft: step(-1), ArrowRight: step(1), "[": beside(-1), "]": beside(1),
       "+": () => timeline.zoom(ZOOM), "=": () => timeline.zoom(ZOOM), "-": () => timeline.zoom(1 / ZOOM), 0: () => timeline.whole(), f: () => this.fit(),
       Escape: () => timeline.select(null), "?": () => this.parts.dialog.showModal(),

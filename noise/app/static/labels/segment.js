@@ -7,7 +7,7 @@ const HALF = 0.5;
 export function showSegment({ chosen, labels, shares, source, conditions }, row) {
   for (const button of labels.children) button.setAttribute("aria-pressed", button.dataset.label === row?.label);
   if (!row) {
-    chosen.textContent = "No label yet: a label here is of the whole recording.";
+    chosen.textContent = "No label yet. Select a stretch and press 1 to 5, or press 1 to 5 to label the whole recording.";
     source.textContent = conditions.textContent = "";
     shares.replaceChildren();
     return;
@@ -19,8 +19,8 @@ export function showSegment({ chosen, labels, shares, source, conditions }, row)
   chosen.replaceChildren(made("b", { textContent: row.label }), ` ${facts.join(", ")}`);
   const found = LABELS.map((label) => [label, row[`p_${label}`]]).filter(([, share]) => known(share));
   if (row.label_source === "human") source.textContent = "By a person.";
-  else if (!found.length) source.textContent = "How sure this is, the table does not say.";
-  else if ((row[`p_${row.label}`] ?? 0) < HALF) source.textContent = "By the classifier, which gives it less than a half: listen.";
+  else if (!found.length) source.textContent = "The table gives no probability.";
+  else if ((row[`p_${row.label}`] ?? 0) < HALF) source.textContent = "By the classifier. Low confidence (below 50 %): please listen.";
   else source.textContent = "By the classifier.";
   conditions.textContent = [...(row.conditions ?? []), row.note].filter(Boolean).join("; ");
   shares.replaceChildren(...found.flatMap(([label, share]) => {

@@ -32,19 +32,16 @@ export class Segments {
   }
 
   draw() {
-    const rows = this.corrections.shown;
+    const { shown: rows, lanes } = this.corrections;
     this.at = this.#place(rows);
-    fill(this.strip, rows.length, () => this.#button());
+    this.strip.parentNode.parentNode.style.setProperty("--strips", Math.max(1, lanes.length));
+    fill(this.strip, lanes.length, () => made("div", { className: "lane" }));
+    for (const [at, { tracks, rows: ofLane }] of lanes.entries()) this.#lane(this.strip.children[at], tracks, ofLane, lanes.length > 1);
     fill(this.regions, rows.length, () => made("div"));
     for (const [at, row] of rows.entries()) {
-      const chosen = at === this.at;
-      const button = this.strip.children[at], region = this.regions.children[at];
-      button.className = region.className = `segment ${row.label}`;
-      button.firstChild.textContent = row.label;
-      button.setAttribute("aria-pressed", chosen);
-      button.setAttribute("aria-label", `${row.label}, ${seconds(row.start_s, 0.01)} to ${seconds(row.end_s, 0.01)} s${row.label_source === "human" ? ", by a person" : ""}`);
-      region.classList.toggle("chosen", chosen);
-      this.#put(button, row.start_s, row.end_s);
+      const region = this.regions.children[at];
+      region.className = `segment ${row.label}`;
+      region.classList.toggle("chosen", at === this.at);
       this.#put(region, row.start_s, row.end_s);
     }
     const found = borders(rows);
@@ -60,6 +57,20 @@ export class Segments {
       const share = this.timeline.share(border.time);
       handle.hidden = share < 0 || share > 1;
       handle.style.left = `${100 * share}%`;
+    }
+  }
+
+  #lane(lane, tracks, rows, isOneOfSeveral) {
+    const current = tracks.includes(this.corrections.track), name = isOneOfSeveral ? `, track ${tracks.join(" and ")}` : "";
+    lane.track = tracks[0];
+    fill(lane, rows.length, () => this.#button());
+    for (const [at, row] of rows.entries()) {
+      const button = lane.children[at];
+      button.className = `segment ${row.label}`;
+      button.firstChild.textContent = row.label + (isOneOfSeveral && !at ? ` (track ${tracks.join(", ")})` : "");
+      button.setAttribute("aria-pressed", current && at === this.at);
+      button.setAttribute("aria-label", `${row.label}, ${seconds(row.start_s, 0.01)} to ${seconds(row.end_s, 0.01)} s${name}${row.label_source === "human" ? ", by a person" : ""}`);
+      this.#put(button, row.start_s, row.end_s);
     }
   }
 
@@ -82,8 +93,10 @@ export class Segments {
   #button() {
     const button = made("button", { type: "button" }, made("span"));
     button.addEventListener("click", () => {
-      const at = [...this.strip.children].indexOf(button);
-      this.choose(at);
+      const lane = button.parentNode;
+      this.corrections.show(lane.track);
+      this.timeline.select(null);
+      this.choose([...lane.children].indexOf(button));
       this.timeline.go(this.chosen.start_s);
     });
     button.addEventListener("dblclick", () => this.timeline.fit(this.chosen.start_s, this.chosen.end_s));

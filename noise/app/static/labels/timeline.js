@@ -83,6 +83,15 @@ export function seconds(time, step = 0.001) {
 
 export const INK = "#1d2329", SOFT = "#55606b", LINE = "#d9dee3", DEEP = "#0b57a4";
 
+// What a lane shows, in its corner.
+export function caption(pen, text, height) {
+  if (!text) return;
+  Object.assign(pen, { fillStyle: "#ffffffe0", textAlign: "left", textBaseline: "middle" });
+  pen.fillRect(4, height - 15, pen.measureText(text).width + 4, 13);
+  pen.fillStyle = SOFT;
+  pen.fillText(text, 6, height - 8);
+}
+
 export function drawTimes(canvas, timeline) {
   const { pen, width } = sheet(canvas);
   pen.fillStyle = SOFT;

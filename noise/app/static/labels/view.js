@@ -7,7 +7,7 @@ export function mount(panel) {
   for (const name of ["labels", "list"]) stylesheet(new URL(`./${name}.css`, import.meta.url));
   const list = made("div", { className: "beside" });
   const page = made("article", { className: "recording", hidden: true });
-  const empty = made("p", { className: "empty", textContent: "Open a recording of the list." });
+  const empty = made("p", { className: "empty", textContent: "Choose a recording of the list: hear it, then correct its labels." });
   panel.replaceChildren(made("div", { className: "labels-view" }, list, made("div", { className: "page" }, empty, page)));
   const open = async (id) => {
     page.hidden = false;
@@ -21,7 +21,9 @@ export function mount(panel) {
     }
   };
   const recording = new RecordingPage(page, openRecording);
-  mountList(list, { onOpen: open, onSeen: (seen) => recording.corrections.seen(seen) });
+  mountList(list, { onOpen: open, onSeen: (seen) => recording.corrections.seen(seen) }).then(({ rows: [first], marked }) => {
+    if (first && marked === null) openRecording(first.id);
+  });
   addEventListener("beforeunload", (event) => { if (recording.corrections.working) event.preventDefault(); }); // it is not in the table yet
   document.addEventListener("view-shown", ({ detail }) => { if (detail !== "labels" && recording.player.playing) recording.player.stop(); });
   return { recording };
