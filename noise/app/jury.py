@@ -273,9 +273,7 @@ def random_pairs(
     if count is not None and count < len(pairs):
         order = rng.permutation(len(names))
         chain = {tuple(sorted(two)) for two in pairwise(order.tolist())}
-    places = {
-        pair: two for pair, two in zip(pairs, combinations(range(len(names)), 2), strict=True)
-    }
+    places = dict(zip(pairs, combinations(range(len(names)), 2), strict=True))
     found = [pairs[place] for place in rng.permutation(len(pairs))]
     if chain:
         found.sort(key=lambda pair: places[pair] not in chain)
