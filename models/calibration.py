@@ -25,7 +25,7 @@ from models.foreign_file import LARGEST_TEXT, reading
 from models.schema import as_text, did_you_mean, number, refuse_unknown
 from models.show import short_repr
 
-if TYPE_CHECKING:  # rig files are read for help as well, which does without numpy
+if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 

@@ -13,8 +13,6 @@ radius, as `models.bushing` has them, its stiffness and inertia with those of th
 and friction law stay.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping

@@ -6,8 +6,6 @@ folder among the temporary files that lasts as long as the process: it holds mac
 run as it is found, so one that anybody else could have prepared is not used.
 """
 
-from __future__ import annotations
-
 import atexit
 import os
 import shutil

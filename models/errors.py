@@ -5,8 +5,6 @@ in one line: the command line shows it as it is. Values come from files, and may
 and hold line breaks; so the root makes of each message one line that can be read.
 """
 
-from __future__ import annotations
-
 _LONGEST = 2000
 """Letters of a message, of which the end is left out."""
 

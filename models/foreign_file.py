@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import BushingNoiseError, ParameterError
 
-if TYPE_CHECKING:  # most files need no arrays
+if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LARGEST_TEXT = 1 << 30

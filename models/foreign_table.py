@@ -5,8 +5,6 @@ commas do not part columns. What stands above the numbers is read for the column
 ``Force [kN]``, or a row of units below a row of names.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 from dataclasses import dataclass

@@ -32,7 +32,7 @@ from models.schema import (
 from models.sensors import Sensors
 from models.show import short_repr
 
-if TYPE_CHECKING:  # brings numpy, which help does without
+if TYPE_CHECKING:
     from models.transfer_functions.measured import MeasuredResponse
 
 _STIFFNESS, _DAMPING = "elastomer_stiffness_Nm_rad", "damping_Nms_rad"

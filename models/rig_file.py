@@ -39,7 +39,7 @@ from models.schema import (
 )
 from models.sensors import read_sensors, sensors_table
 
-if TYPE_CHECKING:  # brings numpy, help does without
+if TYPE_CHECKING:
     from models.transfer_functions.measured import MeasuredResponse
 
 _DATA = resources.files("models") / "data"

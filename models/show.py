@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeGuard, TypeVar
 
 from models.errors import ParameterError, not_installed
 
-if TYPE_CHECKING:  # what shows nothing starts without them
+if TYPE_CHECKING:
     import numpy as np
     from pandas import DataFrame
 

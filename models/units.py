@@ -4,8 +4,6 @@ A unit names its quantity, so it decides what a channel is: loggers' channel nam
 Only units that can mean one thing are listed, and a further spelling is an entry here.
 """
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -1,4 +1,3 @@
-# mypy: allow-untyped-decorators
 """The rig's data acquisition: anti-alias filter, sampling, noise, and the converter.
 
 A signal goes through it in the order of a laboratory's: a Butterworth low-pass filter of order 8,
@@ -17,22 +16,16 @@ quiet sound.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numba import njit
-from scipy.signal import butter, firwin, sosfilt, sosfilt_zi
+from numpy.typing import NDArray
+from scipy.signal import butter, firwin, resample_poly, sosfilt, sosfilt_zi, upfirdn
 
-from models.compilation import COMPILED
 from models.sensors import Sensor, Sensors
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
 
 CONVERTER_GAIN = {
     "torque": 82.0,
@@ -58,9 +51,6 @@ _FILTER_ORDER = 8
 
 _FILTER_HALF_LENGTH = 10
 """Of the anti-alias filter, in samples kept."""
-
-_AT_ONCE = 512
-"""Values that are filtered together: what they are made of stays in the processor's cache."""
 
 
 @short_repr
@@ -164,11 +154,7 @@ def decimate_sensed(
     >>> decimate_sensed(np.full(9, 2.0), 3, 9e3, Sensor(antialias=1e3)).round(9)
     array([2., 2., 2.])
     """
-    found = analogue_filter(sensor.antialias, rate)
-    if found is not None:
-        sections, settled = found
-        signal = sosfilt(sections, signal, zi=settled * signal[0])[0]
-    return decimate(signal, factor)
+    return decimate(AnalogueFilter(sensor.antialias, rate)(signal), factor)
 
 
 def digitise(
@@ -253,36 +239,7 @@ def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
     if factor == 1:
         return signal
     taps = anti_alias_filter(factor)
-    before, n, kept = taps.size // 2, signal.size, -(-signal.size // factor)
-    slope = (signal[-1] - signal[0]) / max(n - 1, 1)
-    going_on = np.empty(factor * (kept + -(-taps.size // factor)))
-    after = going_on.size - before - n
-    going_on[:before] = signal[0] + np.arange(-before, 0) * slope
-    going_on[before : before + n] = signal
-    going_on[before + n :] = signal[-1] + np.arange(1, after + 1) * slope
-    decimated = np.empty(kept)
-    _filter_phases(np.ascontiguousarray(going_on.reshape(-1, factor).T), taps, decimated)
-    return decimated
-
-
-@njit(cache=True, **COMPILED)
-def _filter_phases(
-    phases: NDArray[np.float64], taps: NDArray[np.float64], values: NDArray[np.float64]
-) -> None:
-    """Filter a signal that is given as every so many of its samples, one row a phase.
-
-    Tap by tap over many values at once, in the order of `scipy.signal.resample_poly` and to its
-    last bit.
-    """
-    for first in range(0, values.size, _AT_ONCE):
-        kept = values[first : first + _AT_ONCE]
-        kept[:] = 0.0
-        for i in range(taps.size):
-            start = first + i // phases.shape[0]
-            source = phases[i % phases.shape[0], start : start + kept.size]
-            tap = taps[taps.size - 1 - i]
-            for k in range(kept.size):
-                kept[k] += tap * source[k]
+    return np.asarray(resample_poly(signal, 1, factor, window=taps, padtype="line"), np.float64)
 
 
 @lru_cache(maxsize=8)
@@ -308,3 +265,90 @@ def anti_alias_filter(factor: int) -> NDArray[np.float64]:
     taps = np.asarray(firwin(size, 1.0 / factor, window=("kaiser", 5.0)), np.float64)
     taps.flags.writeable = False  # shared by all that ask for it
     return taps
+
+
+class AnalogueFilter:
+    """The anti-alias filter of a sensor, as `sim.acquisition.decimate_sensed` has it.
+
+    Parameters
+    ----------
+    corner : float, optional
+        [Hz]; without one, signals pass as they are.
+    rate : float
+        Of the signal [Hz].
+    skip : int
+        Samples at the start that pass as they are: the filter starts settled at the one after.
+
+    Examples
+    --------
+    >>> low = AnalogueFilter(1e3, 90e3, skip=2)
+    >>> [low(np.array(block)).round(9).tolist() for block in ([3.0], [4.0, 5.0], [5.0])]
+    [[3.0], [4.0, 5.0], [5.0]]
+    """
+
+    def __init__(self, corner: float | None, rate: float, skip: int = 0) -> None:
+        self._found, self._skip = analogue_filter(corner, rate), skip
+        self._state: NDArray[np.float64] | None = None
+
+    def __call__(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the next samples, as many as `block` has."""
+        if self._found is None:
+            return block
+        before, rest = block[: self._skip], block[self._skip :]
+        self._skip -= before.size
+        if not rest.size:
+            return before
+        sections, settled = self._found
+        state = settled * rest[0] if self._state is None else self._state
+        passed, self._state = sosfilt(sections, rest, zi=state)
+        return np.concatenate([before, passed])
+
+
+class Decimation:
+    """Anti-alias filter and decimation as `sim.acquisition.sample` does them.
+
+    What it returns lags behind what it is given by half the filter's length. Before its first
+    sample the signal is taken to go on straight, by its first two.
+
+    Parameters
+    ----------
+    factor : int
+        Every so many samples one is kept.
+    skip : int
+        Samples at the start that only the filter is to see.
+
+    Examples
+    --------
+    >>> third = Decimation(3)
+    >>> [third(np.full(60, 2.0)).size for _ in range(3)]
+    [10, 20, 20]
+    """
+
+    def __init__(self, factor: int, skip: int = 0) -> None:
+        self._factor, self._skip = factor, skip
+        self._filter = anti_alias_filter(factor) if factor > 1 else np.ones(1)
+        self._half = self._filter.size // 2
+        self._held: NDArray[np.float64] | None = None
+
+    @property
+    def lookahead(self) -> int:
+        """Samples that it must be given after the last that is to be kept."""
+        return self._half
+
+    def __call__(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return those of the next samples that are known by now."""
+        if self._held is None:
+            before = np.arange(-self._half, 0)
+            self._held = block[0] + before * (block[1:2] - block[:1])
+        held = np.concatenate([self._held, block])
+        dropped = min(self._skip, held.size)
+        held, self._skip = held[dropped:], self._skip - dropped
+        count = (held.size - 2 * self._half - 1) // self._factor + 1
+        if count <= 0 or self._skip > 0:
+            self._held = held
+            return np.empty(0)
+        used = held[: (count - 1) * self._factor + 2 * self._half + 1]
+        kept = upfirdn(self._filter, used, 1, self._factor)
+        first = 2 * self._half // self._factor
+        self._held = held[count * self._factor :]
+        return np.asarray(kept[first : first + count])

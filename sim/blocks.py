@@ -31,7 +31,7 @@ from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import first_mode_damping, impulse_responses
 from models.recording import Channel
 from models.rig import Rig
-from sim.acquisition import Acquisition, digitise
+from sim.acquisition import Acquisition, AnalogueFilter, Decimation, digitise
 from sim.analysis.regime import SlidingWatch
 from sim.chain import changed_chain
 from sim.effects.effect import (
@@ -43,10 +43,9 @@ from sim.effects.effect import (
     drive_block,
     sensors_block,
 )
-from sim.filters import AnalogueFilter, Convolution, Decimation, crossing
+from sim.filters import Convolution, crossing
 from sim.motion import Motion, MotionSolver, blaming_the_unusual, steps_beyond
-from sim.pipeline import SIMULATION, Plan, pulse_force
-from sim.run import plan_run, sensor_channels
+from sim.run import SIMULATION, Plan, plan_run, pulse_force, sensor_channels
 from sim.shaft import ShaftMotion
 from sim.temperature import at_temperature
 

@@ -5,23 +5,15 @@ elastomer T_E = k_E (theta1 - theta2) + c (theta1' - theta2'). The thesis splits
 damping c_E evenly between elastomer and beams (4.1); `Rig.elastomer_damping_share` sets the split.
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
-from models.rig import damping_at
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
+from models.rig import Rig, damping_at
 
 
 @dataclass(frozen=True)

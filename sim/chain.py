@@ -8,10 +8,12 @@ order. They draw their random numbers from a stream of their own, for the same r
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import fftconvolve, lfilter
 
 from models.recording import REFERENCE_PRESSURE
@@ -19,11 +21,6 @@ from models.structure.modal import DECAY_EXPONENT
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    import numpy as np
-    from numpy.typing import NDArray
-
     from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import ActiveEffect, Signals
 

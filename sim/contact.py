@@ -9,8 +9,6 @@ what they are given are pointers to the first of so many numbers, which costs le
 # mypy: allow-untyped-calls
 # ruff: noqa: ANN001, ANN201
 
-from __future__ import annotations
-
 import ctypes
 from functools import lru_cache
 from typing import Any

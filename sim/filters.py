@@ -4,107 +4,11 @@ All carry what the next block needs, so that the blocks joined are what one call
 signal gives, to rounding.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
-from scipy.signal import sosfilt, upfirdn
-
-from sim.acquisition import analogue_filter, anti_alias_filter
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-
-class AnalogueFilter:
-    """The anti-alias filter of a sensor, as `sim.acquisition.decimate_sensed` has it.
-
-    Parameters
-    ----------
-    corner : float, optional
-        [Hz]; without one, signals pass as they are.
-    rate : float
-        Of the signal [Hz].
-    skip : int
-        Samples at the start that pass as they are: the filter starts settled at the one after.
-
-    Examples
-    --------
-    >>> low = AnalogueFilter(1e3, 90e3, skip=2)
-    >>> [low(np.array(block)).round(9).tolist() for block in ([3.0], [4.0, 5.0], [5.0])]
-    [[3.0], [4.0, 5.0], [5.0]]
-    """
-
-    def __init__(self, corner: float | None, rate: float, skip: int = 0) -> None:
-        self._found, self._skip = analogue_filter(corner, rate), skip
-        self._state: NDArray[np.float64] | None = None
-
-    def __call__(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the next samples, as many as `block` has."""
-        if self._found is None:
-            return block
-        before, rest = block[: self._skip], block[self._skip :]
-        self._skip -= before.size
-        if not rest.size:
-            return before
-        sections, settled = self._found
-        state = settled * rest[0] if self._state is None else self._state
-        passed, self._state = sosfilt(sections, rest, zi=state)
-        return np.concatenate([before, passed])
-
-
-class Decimation:
-    """Anti-alias filter and decimation as `sim.acquisition.sample` does them.
-
-    What it returns lags behind what it is given by half the filter's length. Before its first
-    sample the signal is taken to go on straight, by its first two.
-
-    Parameters
-    ----------
-    factor : int
-        Every so many samples one is kept.
-    skip : int
-        Samples at the start that only the filter is to see.
-
-    Examples
-    --------
-    >>> third = Decimation(3)
-    >>> [third(np.full(60, 2.0)).size for _ in range(3)]
-    [10, 20, 20]
-    """
-
-    def __init__(self, factor: int, skip: int = 0) -> None:
-        self._factor, self._skip = factor, skip
-        self._filter = anti_alias_filter(factor) if factor > 1 else np.ones(1)
-        self._half = self._filter.size // 2
-        self._held: NDArray[np.float64] | None = None
-
-    @property
-    def lookahead(self) -> int:
-        """Samples that it must be given after the last that is to be kept."""
-        return self._half
-
-    def __call__(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return those of the next samples that are known by now."""
-        if self._held is None:
-            before = np.arange(-self._half, 0)
-            self._held = block[0] + before * (block[1:2] - block[:1])
-        held = np.concatenate([self._held, block])
-        dropped = min(self._skip, held.size)
-        held, self._skip = held[dropped:], self._skip - dropped
-        count = (held.size - 2 * self._half - 1) // self._factor + 1
-        if count <= 0 or self._skip > 0:
-            self._held = held
-            return np.empty(0)
-        used = held[: (count - 1) * self._factor + 2 * self._half + 1]
-        kept = upfirdn(self._filter, used, 1, self._factor)
-        first = 2 * self._half // self._factor
-        self._held = held[count * self._factor :]
-        return np.asarray(kept[first : first + count])
 
 
 def crossing(n: int) -> NDArray[np.float64]:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
+from models.rig import Rig
 from models.schema import remarks
 from models.show import short_repr
-from sim.bushing import lumped_bushing
+from sim.bushing import LumpedBushing, lumped_bushing
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
+from sim.effects.effect import ActiveEffect, activated
 from sim.friction import friction_law
 from sim.parameters import resolve
 from sim.solvers.contact_rates import N_MOTION
@@ -23,13 +26,6 @@ from sim.solvers.stick_slip import advance_stick_slip, rest_state
 from sim.solvers.stick_slip_kernel import DIRECTION
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
-    from sim.bushing import LumpedBushing
-    from sim.effects.effect import ActiveEffect
     from sim.shaft import ShaftMotion
 
 

@@ -7,6 +7,7 @@ changes, and which a law reads, is found by calling them.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -25,14 +26,12 @@ from sim.contact import (
     call_law,
 )  # fmt: skip
 from sim.effects import EFFECTS
+from sim.effects.effect import ActiveEffect, Effect
 from sim.friction import friction_law
 from sim.parameters import resolve
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from models.rig import LawSpec, Rig
-    from sim.effects.effect import ActiveEffect, Effect
     from sim.friction.law import FrictionLaw
 
 

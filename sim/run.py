@@ -1,48 +1,245 @@
-"""One run of the rig: from an operating condition to a recording, as the rig's computer has it."""
+"""One run of the rig: from an operating condition to a recording, as the rig's computer has it.
 
-from __future__ import annotations
+`simulate` goes through the stages of a run in one block: motion, force and sound, what reaches the
+sensors, what these and the data acquisition make of it. Each is a function of what the one before
+gave, and of a generator where it scatters, so who needs only some of them, or keeps what they give,
+calls those. `sim.blocks` sends blocks through the same solver, effects and filters.
+"""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.condition import Condition
 from models.drawing import BLUE, ORANGE, axes_or_new, thinned
 from models.errors import ParameterError
+from models.radiation.impulse_responses import ImpulseResponses, radiate, radiate_pulses
 from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
+from models.rig import Rig
 from models.show import short_repr
 from models.units import ABSOLUTE_ZERO
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
-from sim.pipeline import (
-    SIMULATION,
-    Plan,
-    apply_sensor_effects,
-    radiate_motion,
-    run_motion,
-    sensor_signals,
-)
+from sim.effects.effect import ActiveEffect, Effect, Signals, activated
+from sim.motion import Motion, simulate_motion
 from sim.shaft import ConstantSpeed, ShaftMotion
 from sim.temperature import at_temperature
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
-    from sim.effects.effect import Effect
-    from sim.motion import Motion
-
 
 LONGEST_RUN = 600.0
 """[s]; the whole run is held in memory. `sim.blocks` has no such limit."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Rate and settling of a kind of run.
+
+    Parameters
+    ----------
+    least_rate : float
+        Motion and sound are computed at a multiple of the sampling rate no lower than this [Hz].
+    settling : float
+        How long a shaft at constant speed has turned before a run is kept [s].
+    tolerance : float, optional
+        Error of a step of the solver where the motion has no exact solution [-]; by default that
+        of the friction law.
+
+    Examples
+    --------
+    >>> SIMULATION.rate(30e3), SIMULATION.rate(48e3), DIAGNOSIS.rate(25.6e3)
+    (90000.0, 96000.0, 76800.0)
+    """
+
+    least_rate: float
+    settling: float
+    tolerance: float | None = None
+
+    def decimation(self, sampling_rate: float) -> int:
+        """By what the rate of motion and sound is divided for a sampling rate [Hz]."""
+        return math.ceil(self.least_rate / sampling_rate)
+
+    def rate(self, sampling_rate: float) -> float:
+        """Rate of motion and sound for a sampling rate [Hz]."""
+        return self.decimation(sampling_rate) * sampling_rate
+
+
+SIMULATION = Timing(least_rate=90e3, settling=0.5)
+"""Of recordings that are simulated to be kept: sound is right up to 20 kHz and beyond."""
+
+DIAGNOSIS = Timing(least_rate=75e3, settling=0.25, tolerance=3e-6)
+"""Of the many runs that a diagnosis compares with recordings: settled as long as structures are
+followed to ring on, torques right to four digits. The shipped posterior of causes was fitted to
+runs of exactly these, so they change with it only."""
+
+LEARNING = replace(DIAGNOSIS, least_rate=60e3)
+"""Of the cases that it was fitted to: usual rates are still at least halved, so that what lies
+above half of them is filtered out as in a recording and does not fold back."""
+
+SCREENING = Timing(least_rate=30e3, settling=0.6)
+"""Of a point of a map, named by its physics: creaks reach 15 kHz."""
+
+SCREENING_SLOW = Timing(least_rate=30e3, settling=1.5)
+"""Of a point whose vibration still grows or dies after that; some creaks set in that late."""
+
+REGIME_RATE = 15e3
+"""Of a motion of which only the regime and slow lines are asked [Hz]; it resolves stick, and the
+solution does not depend on it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A run before it is computed.
+
+    Parameters
+    ----------
+    rig : Rig
+        Its friction at the ambient temperature.
+    shaft : ShaftMotion
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    effects : sequence of ActiveEffect
+        In the order in which they act.
+    rate : float
+        Of motion and sound [Hz].
+    n_settling, n_kept : int
+        Samples at that rate from rest to where the run is kept, and those that are kept.
+    temperature : float, optional
+        Ambient [degree Celsius], for the record.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> plan = Plan(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0, (), 90e3, 0, 9)
+    >>> plan.condition.speed, run_motion(plan).torque.size
+    (5.0, 9)
+    """
+
+    rig: Rig
+    shaft: ShaftMotion
+    interference: float
+    support_stiffness: float
+    effects: Sequence[ActiveEffect]
+    rate: float
+    n_settling: int
+    n_kept: int
+    temperature: float | None = None
+
+    @property
+    def condition(self) -> Condition:
+        """What the engineer sets on the rig; without a speed where it varies."""
+        return Condition(
+            speed=self.shaft.value if isinstance(self.shaft, ConstantSpeed) else None,
+            interference=self.interference,
+            support_stiffness=self.support_stiffness,
+            material=self.rig.material,
+            temperature=self.temperature,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Sound:
+    """What a motion makes accelerometer and microphone see, before any noise; shapes (n,).
+
+    Parameters
+    ----------
+    acceleration : ndarray, shape (n,)
+        At the clamp [m/s2].
+    pressure : ndarray, shape (n,)
+        At the microphone [Pa].
+    pulse_pressure : ndarray, shape (n,)
+        The part of `pressure` that slip pulses make through the plate [Pa].
+    """
+
+    acceleration: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    pulse_pressure: NDArray[np.float64]
+
+
+def run_motion(
+    plan: Plan, rng: np.random.Generator | None = None, *, tolerance: float | None = None
+) -> Motion:
+    """Simulate the motion of a plan from rest; `rng` and `tolerance` as of `simulate_motion`."""
+    return simulate_motion(
+        plan.rig,
+        plan.shaft,
+        interference=plan.interference,
+        support_stiffness=plan.support_stiffness,
+        seconds=(plan.n_settling + plan.n_kept) / plan.rate,
+        rate=plan.rate,
+        effects=plan.effects,
+        rng=rng,
+        tolerance=tolerance,
+    )
+
+
+def pulse_force(motion: Motion, effects: Sequence[ActiveEffect]) -> NDArray[np.float64]:
+    """Force that a motion makes the effects exert in the anchors' joint [N], shape (n,)."""
+    force = np.zeros_like(motion.torque)
+    for active in effects:
+        if active.effect.force is not None:
+            force += active.effect.force(motion, active.form, active.values)
+    return force
+
+
+def radiate_motion(
+    motion: Motion, paths: ImpulseResponses, effects: Sequence[ActiveEffect] = ()
+) -> Sound:
+    """Send torque and pulses of a motion through structure and plate.
+
+    Parameters
+    ----------
+    motion : Motion
+    paths : ImpulseResponses
+        At the motion's rate, as effects have changed them.
+    effects : sequence of ActiveEffect
+        Of which some make pulses.
+
+    Returns
+    -------
+    Sound
+        As long as the motion.
+    """
+    acceleration, pressure = radiate(paths, motion.torque)
+    force = pulse_force(motion, effects)
+    pulse_pressure = np.zeros_like(pressure)
+    if np.any(force):
+        struck, pulse_pressure = radiate_pulses(paths, force)
+        acceleration += struck
+        pressure += pulse_pressure
+    return Sound(acceleration, pressure, pulse_pressure)
+
+
+def sensor_signals(motion: Motion, sound: Sound, n_settling: int) -> Signals:
+    """Return what reaches the sensors while the run is kept, by channel; the angle from 0 on."""
+    return {
+        "torque": motion.torque[n_settling:],
+        "acceleration": sound.acceleration[n_settling:],
+        "pressure": sound.pressure[n_settling:],
+        "angle": motion.shaft_angle[n_settling:] - motion.shaft_angle[n_settling],
+    }
+
+
+def apply_sensor_effects(
+    signals: Signals, effects: Sequence[ActiveEffect], rate: float, rng: np.random.Generator
+) -> Signals:
+    """Let the effects on sensors change signals of a run in one block, in their order.
+
+    The sampling rate is that of the signals [Hz].
+    """
+    for active in effects:
+        signals = active.sensed(signals, rate, {"rng": rng, "whole": True})
+    return signals
 
 
 @short_repr
@@ -78,8 +275,8 @@ class Run:
     settling: float
 
     def plot(
-        self, ax: Axes | None = None, *, start: float | None = None, end: float | None = None
-    ) -> Axes:
+        self, ax: "Axes | None" = None, *, start: float | None = None, end: float | None = None
+    ) -> "Axes":
         """Draw the torques in contact and elastomer over time.
 
         Parameters
@@ -106,7 +303,24 @@ class Run:
         >>> run.plot(Figure().subplots()).get_title("left")
         'PDMS, 0.279 mm, 2214 Nm/rad, 5 rad/s'
         """
-        return draw_torques(self, ax, start=start, end=end)
+        motion = self.motion
+        lasting = motion.torque.size / motion.rate
+        end = lasting if end is None else end
+        start = max(0.0, end - _SHOWN) if start is None else start
+        part = slice(math.ceil(max(0.0, start) * motion.rate), round(end * motion.rate))
+        if not motion.torque[part].size:
+            raise ParameterError(
+                f"start = {start:g} s and end = {end:g} s hold nothing of a run of {lasting:g} s"
+            )
+        time = np.arange(motion.torque.size)[part] / motion.rate
+        with axes_or_new(ax) as axes:
+            for values, colour, label, width in torque_curves(motion, part):
+                axes.plot(*thinned(time, values), color=colour, linewidth=width, label=label)
+            axes.set_xlabel("Time [s]")
+            axes.set_ylabel("Torque [Nm]")
+            axes.set_title(", ".join(self.recording.condition.words), loc="left")
+            axes.legend(loc="best")
+        return axes
 
 
 def simulate(
@@ -142,7 +356,7 @@ def simulate(
         the rig's.
     settling : float, optional
         How long the rig has run before the recording starts [s]; by default that of
-        `sim.pipeline.SIMULATION` at constant speed, else none.
+        `SIMULATION` at constant speed, else none.
     library : mapping of str to Effect, optional
         Effects that the rig's can be found among; by default `sim.effects.EFFECTS`.
     rng : numpy.random.Generator, optional
@@ -226,7 +440,7 @@ def plan_run(
     Returns
     -------
     Plan
-        At a multiple of `rate`, as `sim.pipeline.SIMULATION` has it.
+        At a multiple of `rate`, as `SIMULATION` has it.
 
     Raises
     ------
@@ -298,7 +512,7 @@ _SHOWN = 0.1
 """A run is drawn from so long before its end [s]: slips can still be told apart."""
 
 
-Curve = tuple["NDArray[np.float64]", str, str, float]
+Curve = tuple[NDArray[np.float64], str, str, float]
 """Values, colour, label (empty for none) and line width."""
 
 
@@ -317,37 +531,3 @@ def torque_curves(motion: Motion, part: slice) -> list[Curve]:
         (motion.friction_torque[part], ORANGE, "contact", 0.9),
         (motion.torque[part], BLUE, "elastomer", 1.3),
     ]
-
-
-def draw_torques(
-    run: Run, ax: Axes | None = None, *, start: float | None = None, end: float | None = None
-) -> Axes:
-    """Draw the torques over time; parameters and errors are those of `Run.plot`.
-
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> from models.rig_file import load_material_rig
-    >>> from sim.run import simulate
-    >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
-    >>> draw_torques(run, Figure().subplots(), start=0.02).get_ylabel()
-    'Torque [Nm]'
-    """
-    motion = run.motion
-    lasting = motion.torque.size / motion.rate
-    end = lasting if end is None else end
-    start = max(0.0, end - _SHOWN) if start is None else start
-    part = slice(math.ceil(max(0.0, start) * motion.rate), round(end * motion.rate))
-    if not motion.torque[part].size:
-        raise ParameterError(
-            f"start = {start:g} s and end = {end:g} s hold nothing of a run of {lasting:g} s"
-        )
-    time = np.arange(motion.torque.size)[part] / motion.rate
-    with axes_or_new(ax) as axes:
-        for values, colour, label, width in torque_curves(motion, part):
-            axes.plot(*thinned(time, values), color=colour, linewidth=width, label=label)
-        axes.set_xlabel("Time [s]")
-        axes.set_ylabel("Torque [Nm]")
-        axes.set_title(", ".join(run.recording.condition.words), loc="left")
-        axes.legend(loc="best")
-    return axes

@@ -15,8 +15,6 @@ the plate; accelerometers sit at both, and the microphone hears the sum. The bra
 other through the bar alone.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -43,8 +41,7 @@ from sim.effects.effect import ActiveEffect, Effect, activated
 from sim.friction import friction_law
 from sim.motion import Motion, blaming_the_unusual, contact_hooks, refuse_fast
 from sim.parameters import resolve
-from sim.pipeline import SIMULATION, apply_sensor_effects, radiate_motion, sensor_signals
-from sim.run import plan_run
+from sim.run import SIMULATION, apply_sensor_effects, plan_run, radiate_motion, sensor_signals
 from sim.shaft import ShaftMotion
 from sim.solvers.contact_rates import (
     N_LAG,

@@ -6,28 +6,20 @@ A simulated condition calls `at_temperature` once. Friction acts through the con
 so that it holds with any law; a law that is a master curve itself has its speeds shifted instead.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
-from models.rig import LawSpec
+from models.bushing import TemperatureDependence
+from models.rig import Fit, LawSpec, Rig
 from sim.contact import CRITICAL, KINETIC, SLIDING_SPEED
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Stage, Values
 from sim.friction import friction_law
 from sim.friction.shared import FASTEST
 from sim.parameters import Parameter, resolve
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.bushing import TemperatureDependence
-    from models.rig import Fit, Rig
-    from sim.effects.effect import Values
 
 _SLOWEST = 0.25
 """Speed below which the bell's factor is held, the slowest the rig turned at (5.1.2) [rad/s]; it is

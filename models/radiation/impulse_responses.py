@@ -4,8 +4,6 @@ Time domain, because simulated torques are signals without a period, and because
 response can stand in for a modelled one once it is an impulse response too.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal

@@ -7,8 +7,6 @@ and it is one sparse matrix for all distributions. Times between samples are int
 Lagrange's cubic, which costs 0.1 dB at a sixth of the sampling rate.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -14,8 +14,6 @@ Beams and clamp are heard as well where the rig says so (`models.structure.beams
 direct sound is modelled, and the plate does not act back on the beams.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

@@ -21,8 +21,6 @@ Bands are those of base ten (IEC 61260-1). In each one the frequencies computed 
 the narrowest resonance: half its width apart, which sums a resonance to half a percent.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache

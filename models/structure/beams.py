@@ -48,8 +48,6 @@ shipped, the plate is 15 dB ahead above 2 kHz at 2214 Nm/rad and 17 dB at 3745, 
 24th of the length from the anchor the beams would be the louder.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -16,8 +16,6 @@ of which the slower, -omega / (zeta + sqrt(zeta^2 - 1)), decides how long the mo
 to a sixth of the sampling rate such a mode differs by less than 0.5 dB, however much it is damped.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -17,8 +17,6 @@ on either. Functions alternate between even and odd about the middle, beginning 
 parts of unlike parity never radiate together, which saves three quarters of the integration.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

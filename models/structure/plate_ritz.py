@@ -9,8 +9,6 @@ time. Stiffness plus a multiple of mass is what gets factorised: a free plate ha
 against its rigid-body motions.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -8,8 +8,6 @@ its own. Whatever the format, lines rise, numbers are finite, and units are thos
 converted to them.
 """
 
-from __future__ import annotations
-
 import csv
 import warnings
 from dataclasses import replace

@@ -9,8 +9,6 @@ and table are compared with each other; `models.transfer_functions.measured` wei
 by their coherence.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

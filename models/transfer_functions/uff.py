@@ -9,8 +9,6 @@ step is therefore taken to be that of the whole number of hertz, or the whole fr
 which rounds to the digits stored, where there is one.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ the measurement's and a gain does not change them. Without a calibration there i
 air, and all levels are told re full scale of the file that is written.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, dataclass
 

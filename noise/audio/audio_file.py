@@ -1,7 +1,5 @@
 """Sound as a WAV file for listening, with a sidecar; both whole or not at all."""
 
-from __future__ import annotations
-
 import json
 import math
 import zlib

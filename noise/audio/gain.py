@@ -11,8 +11,6 @@ The peak that must not clip is that of the curve through the samples, as a conve
 the largest sample.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 

@@ -10,8 +10,6 @@ stays calibrated when the sidecar is lost. (Floating-point samples have no other
 a sidecar's ``scale`` is for integers.)
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping, Sequence

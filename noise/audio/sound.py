@@ -5,8 +5,6 @@ back: images and alias, which an ear would take for a squeal of the bushing, lie
 the filter's phase is linear, so that a slip stays a click.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction

@@ -6,8 +6,6 @@ column holds many. Frames are transformed in single precision, many at once: wha
 the strongest line of its frame is not measured, and no picture shows it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ stand in it; places where nothing was recorded stay empty, so that what was not 
 for what was quiet.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 

@@ -26,7 +26,7 @@ from noise.base.labels import LABEL_COLOURS
 from noise.pictures.figure import new_figure, support_words
 from sim.analysis.regime import Regime
 
-if TYPE_CHECKING:  # a screened design draws itself by this file
+if TYPE_CHECKING:
     from noise.screening.map.mapping import DesignMap
 
 _SIMULATED = ("none", "squeal", "squawk", "creak")

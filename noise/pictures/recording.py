@@ -8,30 +8,25 @@ second.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.kernels.levels import fast_level_pieces
-from features.kernels.orders import order_map, speed_of_angle
-from models.blocks import in_pieces, n_samples_of, reader_of
+from features.kernels.orders import OrderMap, order_map, speed_of_angle
+from models.blocks import Read, RecordingBlocks, in_pieces, n_samples_of, reader_of
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
-from models.recording import REFERENCE_PRESSURE
+from models.recording import REFERENCE_PRESSURE, Recording
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.base.labels import DARK_LABELS, LABEL_COLOURS
 from noise.pictures.figure import new_figure
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from features.kernels.orders import OrderMap
-    from models.blocks import Read, RecordingBlocks
-    from models.recording import Recording
 
 _RANGE = 70.0
 """Of colours, from the highest down [dB]."""

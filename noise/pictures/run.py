@@ -12,30 +12,27 @@ acceleration of the beam.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.kernels.spectra import autospectrum
+from models.condition import Condition
 from models.drawing import BLUE, GREY, ORANGE, frequency_axis, levels, padded, styled, thinned
+from models.recording import Recording
 from noise.pictures.figure import KINDS, new_figure
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import motion_slips
-from sim.run import torque_curves
+from sim.motion import Motion
+from sim.run import Curve, Run, torque_curves
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
-    from numpy.typing import NDArray
-
-    from models.condition import Condition
-    from models.recording import Recording
-    from sim.motion import Motion
-    from sim.run import Curve, Run
 
 _CYCLES = 6
 _SHORTEST, _LONGEST = 2e-3, 0.1

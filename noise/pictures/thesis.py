@@ -10,8 +10,6 @@ well.
 A further figure is a further entry of `RUNS`, `SPECTRA` or `SWEEPS`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple

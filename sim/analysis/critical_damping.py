@@ -5,20 +5,14 @@ only change: a little less damping can end stick-slip again where the clamp's ph
 What is sought is the largest damping with stick, so the search comes from above.
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from models.rig import Rig
 from sim.analysis.critical_speeds import regime_at
 from sim.analysis.regime import Regime
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from models.rig import Rig
 
 _LEAST = 1e-9
 """Of a fit [Nm s/rad]."""

@@ -11,25 +11,18 @@ lies below both critical speeds costs nothing. All runs are those of the rig's c
 (`sim.rig_effects`).
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from models.rig import Rig
 from sim.analysis.regime import Regime, friction_regime
-from sim.motion import simulate_motion
-from sim.pipeline import REGIME_RATE
+from sim.motion import Motion, simulate_motion
 from sim.rig_effects import constant_version
+from sim.run import REGIME_RATE
 from sim.shaft import ConstantSpeed
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from models.rig import Rig
-    from sim.motion import Motion
 
 SPEEDS = tuple(0.25 * i for i in range(1, 53))
 """From 0.25 to 13 rad/s, the range of the measurements."""

@@ -10,34 +10,25 @@ come out 1 dB off. Not in it are the sound of beams and clamp, the room, respons
 measured, and effects on the path of sound.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.signal import csd
 
 from models.bench import HIGHEST_PLATE_FREQUENCY
 from models.errors import ParameterError
 from models.radiation.rig_response import anchor_drives, first_mode_damping
-from models.radiation.sound_power import third_octave_power
+from models.radiation.sound_power import BandPower, third_octave_power
+from models.rig import Rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import plate_modes
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
-from sim.pipeline import pulse_force
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-    from models.radiation.sound_power import BandPower
-    from models.rig import Rig
-    from sim.effects.effect import Effect
-    from sim.motion import Motion
+from sim.effects.effect import Effect, activated
+from sim.motion import Motion
+from sim.run import pulse_force
 
 LOWEST, HIGHEST = 50.0, 10e3
 """Middles of the lowest and the highest band [Hz]."""

@@ -23,16 +23,17 @@ shaft that yields and an elastomer with a memory do not count.
 # mypy: allow-untyped-decorators, no-warn-return-any
 # ruff: noqa: ANN001
 
-from __future__ import annotations
-
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numba import float64, int64, njit, types
+from numpy.typing import ArrayLike, NDArray
 
 from models.compilation import COMPILED, PART
+from models.rig import Rig
 from sim.bushing import packed_systems
 from sim.contact import (
     CRITICAL,
@@ -52,22 +53,13 @@ from sim.contact import (
     call_law_at,
 )  # fmt: skip
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
+from sim.effects.effect import Effect, activated
 from sim.friction import friction_law
 from sim.motion import contact_hooks
 from sim.parameters import resolve
 from sim.rig_effects import constant_version
+from sim.solvers.contact_solver import Hook
 from sim.temperature import FRICTION_SHIFT
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from models.rig import Rig
-    from sim.effects.effect import Effect
-    from sim.solvers.contact_solver import Hook
-
 
 _MOMENTS = 48
 """Of steady sliding, over which effects with a state are averaged."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from joblib import Parallel, delayed
+from numpy.typing import ArrayLike, NDArray
 
 from models.condition import Condition
 from models.drawing import CURVES, axes_or_new
@@ -15,19 +17,13 @@ from models.rig import Rig
 from models.show import data_frame, short_repr
 from sim.analysis.slips import motion_slips
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
-from sim.motion import simulate_motion
+from sim.effects.effect import Effect, activated
+from sim.motion import Motion, simulate_motion
 from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from matplotlib.axes import Axes
-    from numpy.typing import ArrayLike, NDArray
     from pandas import DataFrame
-
-    from sim.effects.effect import Effect
-    from sim.motion import Motion
 
 FEATURES = {
     "slip_count": "Slips",

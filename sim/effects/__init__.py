@@ -4,8 +4,6 @@ A new effect is a file with an ``EFFECT`` that is named as the file is; a user's
 anywhere, read by `load_effects`.
 """
 
-from __future__ import annotations
-
 import sys
 from collections import ChainMap
 from collections.abc import Callable, Iterator, Mapping

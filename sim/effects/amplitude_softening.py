@@ -16,8 +16,6 @@ Limits: s = 0 is the plain model, and so are small vibrations; large ones feel k
 torque rises with the departure everywhere as s <= 0.8.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

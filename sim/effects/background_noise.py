@@ -20,21 +20,13 @@ amplifier of 0.1 mV; an encoder counts lines and has none, which ``angle=0`` say
 True
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
 from sim.chain import channel_level
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Memory, Signals, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Memory, Signals, Values
 
 _LOWEST, _HIGHEST = 20.0, 20e3
 """Band that levels are those of [Hz]."""

@@ -23,23 +23,16 @@ are the signal itself.
 (np.int64(6), np.int64(4))
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 from scipy.signal import lfilter
 
 from sim.chain import change_channels, channel_shares
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Signals, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Signals, Values
 
 _DEGREE = 5
 

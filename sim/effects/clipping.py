@@ -19,21 +19,13 @@ the corners; what the converter clips is left to `sim.acquisition`. The angle is
 array([-2.5, -1.5,  3. ])
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from sim.chain import change_channels, channel_shares
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Signals, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Signals, Values
 
 
 def _sensors(

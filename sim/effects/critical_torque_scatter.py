@@ -25,13 +25,11 @@ it is forgotten in the creep before the next slip. Draws repeat after 4096.
 Limits: s = 0 is the plain model, and so is a contact with T_crit = T_kin.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from sim.contact import (
     CRITICAL,
@@ -42,13 +40,8 @@ from sim.contact import (
     STICKS,
     slipless,
 )
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Values
 
 _FORMS = ("normal", "uniform", "correlated")
 _N_DRAWS = 4096

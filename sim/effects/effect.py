@@ -8,7 +8,7 @@ effect is the plain model to rounding.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from enum import StrEnum
@@ -16,18 +16,15 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from models.show import short_repr
-from sim.parameters import resolve
+from sim.parameters import Parameter, resolve
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy as np
     from numpy.typing import NDArray
 
     from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import LawSpec
     from sim.motion import Motion
-    from sim.parameters import Parameter
 
 
 Values = Mapping[str, float]

@@ -19,22 +19,15 @@ sum of exponentials, each with one state:
 Limits: b = 0 is the plain model, and so is a contact that never slides.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Values
 
 _FORMS = ("half_space", "lumped", "two_layer", "linear_with_floor")
 

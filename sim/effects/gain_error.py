@@ -21,21 +21,13 @@ zero all are the signal itself.
 array([7.6, 7.6, 7.6])
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import butter, lfilter, lfilter_zi
 
 from sim.chain import change_channels, channel_shares
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Signals, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Signals, Values
 
 
 def _sensors(

@@ -23,21 +23,14 @@ counts lines and picks up none, so the angle has none by default; a potentiomete
 1.0
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.chain import channel_level
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Memory, Signals, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Memory, Signals, Values
 
 _ODD = (1, 3, 5, 7, 9)
 

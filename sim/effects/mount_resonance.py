@@ -23,22 +23,15 @@ start as if the first value had lasted for ever.
 10.05
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import bilinear, lfilter, lfilter_zi
 
 from sim.chain import change_channels, channel_shares
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Signals, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Signals, Values
 
 _SECOND = 2.3
 """Frequency of the rocking over that of the first mode; assumed."""

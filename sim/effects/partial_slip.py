@@ -20,8 +20,6 @@ It acts on true stick alone: laws with an inner state release gradually themselv
 Limits: s = 0 is true stick; s -> 1 never breaks, but passes into sliding at T_crit.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

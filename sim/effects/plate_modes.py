@@ -30,16 +30,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Stage, Values
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from models.radiation.impulse_responses import ImpulseResponses
-    from sim.effects.effect import Values
 
 _HIGHEST = 16e3
 """[Hz], as for the plate's own modes."""

@@ -30,17 +30,15 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.radiation.rayleigh import SOUND_SPEED
 from sim.chain import filter_pressure
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Stage, Values
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from models.radiation.impulse_responses import ImpulseResponses
-    from sim.effects.effect import Values
 
 _SOURCE_HEIGHT = 0.9
 """Of the rig on its bench over the floor [m]; assumed."""

@@ -19,22 +19,15 @@ Limits: kappa = 0 is the rigid drive. Where the end alone would vibrate above 8 
 raised to stay there, which the integration can resolve; its motion is then quasi-static anyway.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from sim.contact import HOOK_SIGNATURE, SHAFT_INERTIA, SHAFT_LAG, SHAFT_LAG_RATE, SHAFT_TORQUE
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Values
 
 _FORMS = ("linear", "stiffening", "quadratic_damping")
 

@@ -24,21 +24,14 @@ not known; all is assumed.
 (4.5, 5.5)
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Memory, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Memory, Values
 
 _HARMONICS = 4
 

@@ -17,8 +17,6 @@ and takes the place of t_stick; from rest on and in true stick the two are the s
 Limits: s = 0 is the plain model; s = 1 breaks at T_kin at once and at T_crit after long stick.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

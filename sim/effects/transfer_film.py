@@ -17,22 +17,15 @@ Limits: s = 0, no part of the shaft covered, is the plain model; with d = 0 a co
 no drop and so no stick-slip.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED, TIME
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Values
 
 _FORMS = ("exponential", "linear", "logistic")
 

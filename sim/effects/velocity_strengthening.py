@@ -14,8 +14,6 @@ s T_kin / v_r [Nm s/rad] between shaft and bushing. Where dT/dv exceeds some 300
 surface follows the shaft faster than any bearable number of steps, and the run is refused.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

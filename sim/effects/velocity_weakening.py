@@ -13,8 +13,6 @@ rest, where neither has, and laws with memory keep the part of their torque that
 Limits: s = 0 is the plain model; at rest nothing changes; at high speed the share s is lost.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

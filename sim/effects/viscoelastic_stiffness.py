@@ -15,21 +15,13 @@ Limits: s = 0 is the plain model; slowly deformed, the elastomer is a spring k_E
 below 20 us, shorter than the integration resolves, are raised to that.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from sim.contact import ELASTOMER_TORQUE, HOOK_SIGNATURE, STIFFNESS, TWIST
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from sim.effects.effect import Values
 
 _BRANCHES = {"one_branch": 1, "two_branches": 2, "fractional": 4}
 _MOST_BRANCHES = max(_BRANCHES.values())

@@ -18,8 +18,6 @@ rest of t, a contact much stiffer than T_crit / D has held T_kin + (T_crit - T_k
 (1 - exp(-t / tau)); equal torques, or tau -> infinity, give a constant friction.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

@@ -18,8 +18,6 @@ Limits: steady sliding gives u = v / r, n = 1 / (1 + r t_r); at rest nearly all 
 torque relaxes; at high speed nothing is, and T = T_r + eta v.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

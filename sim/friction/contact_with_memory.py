@@ -20,8 +20,6 @@ age as if they slid more slowly; tau -> infinity and beta = 0 give a constant T_
 long, T may rise to T_crit and the share beta of T_kin.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

@@ -5,8 +5,6 @@ slide it is T_kin, whatever the speed. Only T_crit - T_kin matters for the vibra
 kinetic torque sustains neither squawk nor squeal: it has no quasi-harmonic regime (6.3.1).
 """
 
-from __future__ import annotations
-
 from sim.friction.law import FrictionLaw
 
 LAW = FrictionLaw(name="coulomb", tolerance=1e-7)

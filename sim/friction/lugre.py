@@ -9,8 +9,6 @@ with T_crit = T_kin and sigma_2 > 0 the torque rises with speed and sliding is s
 as PDMS does on the rig (5.1.2).
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

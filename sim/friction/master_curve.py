@@ -16,23 +16,17 @@ Limits: steady sliding gives T = g(v); at the peak's speed that is p_1 T_crit; e
 shares, or w -> infinity with the peak in place of T_kin, give a constant friction.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
 from sim.friction.shared import BRISTLE_PARAMETERS, shear_speed
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
 
 _LEAST_SPEED = 1e-30
 """Whose logarithm stands in for that of rest [rad/s]."""

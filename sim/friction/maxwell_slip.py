@@ -18,8 +18,6 @@ each hold up to their threshold, linear at first and settling at T_crit beyond
 creeps; equal torques give a constant friction.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

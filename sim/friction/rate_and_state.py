@@ -17,8 +17,6 @@ is small, and strengthens beyond the speed where that overtakes; equal torques a
 tau -> infinity and a = 0, give a constant friction.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

@@ -11,8 +11,6 @@ Limits: steady sliding gives T = g(v), which is T_crit at rest and T_kin at high
 torques give a constant friction; s = 0 is one scale, and so is v_1 = v_2 with any s.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

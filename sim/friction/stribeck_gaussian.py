@@ -12,8 +12,6 @@ torques give a constant friction; s = 0 is one scale, LuGre without its viscous 
 v_1 = v_2 with any s.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

@@ -11,8 +11,6 @@ Limits: steady sliding gives T = g(v), which is T_crit at rest and falls to T_ki
 torques give a constant friction; s = 0 is one scale, and so is v_1 = v_2 with any s.
 """
 
-from __future__ import annotations
-
 from numba import njit
 
 from sim.contact import LAW_SIGNATURE

@@ -11,8 +11,6 @@ Limits: steady sliding gives T = T_kin (1 + v / v_0) along v; v_0 -> infinity gi
 friction; the torque never falls with speed, so that sliding is stable at any.
 """
 
-from __future__ import annotations
-
 from numba import njit
 
 from sim.contact import KINETIC, LAW_SIGNATURE

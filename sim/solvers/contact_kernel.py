@@ -8,8 +8,6 @@ or a law's sliding turns, its length is sought at which that happens just at its
 begins with the new right-hand side. Outputs are read within the step that covers them.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import float64, int64, njit, types
@@ -148,7 +146,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
     s, has_law, context = bushing.system, bushing.law != 0, bushing.context
     k, start, end, u = rows.stages, rows.start, rows.end, rows.state
     slope, step, tolerance = drive.slope, drive.step, limits.tolerance
-    n, d = direction_out.size, u.size
+    n, d, output = direction_out.size, u.size, k.shape[1] - 1
     lag = d - N_LAG if hooks.n > 0 else d
     last = max(drive.speed.size - 2, 0)  # segment of the drive
     t_crit, t_kin = s[8], s[9]
@@ -183,10 +181,10 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             i = min(sample, last)
             stick_time = time - stick_start if mode == 0 else stick_length
             friction, e, holding, critical, caught, shaft = contact_rates(
-                N_STAGES, (sample - i) * step, i, time, stick_time, mode, bushing, hooks,
+                output, (sample - i) * step, i, time, stick_time, mode, bushing, hooks,
                 drive, rows,
             )  # fmt: skip
-            surface = k[0, N_STAGES]
+            surface = k[0, output]
             out[0, sample], out[1, sample] = friction, e
             out[2, sample], out[3, sample], out[4, sample] = u[0], surface, u[2]
             out[5, sample], out[6, sample] = u[3], shaft

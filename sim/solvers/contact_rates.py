@@ -8,13 +8,12 @@ every variable go through memory at each call, and a further call would do so tw
 reads of the inner states is a view made once, since making one costs more than the call.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from models.compilation import PART
 from sim.contact import (
@@ -40,17 +39,13 @@ from sim.contact import (
     pointer,
 )
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-
 _CREEP_ACCURACY = 1e-4
 """Of a creep's share before its last secant, which squares it."""
 
 _MOST_CREEP_PASSES = 30
 
 
-@njit(forceinline=True, **PART)
+@njit(**PART)
 def contact_rates(
     stage, since, i, time, stick_time, mode, bushing, hooks, drive, rows
 ) -> tuple[float, float, float, float, float, float]:

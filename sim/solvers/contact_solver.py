@@ -12,9 +12,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from sim.contact import N_CONTACT, N_CONTEXT, address_of
@@ -42,9 +43,6 @@ from sim.solvers.contact_rates import (
     Rows,
     empty_rows,
 )
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 LONGEST_STEP = 1e-4
 """Whatever the error says: an effect may act at any time [s]."""

@@ -9,19 +9,14 @@ agree to rounding. A step is cut up until the series converges fast and no quant
 within a part.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from models.compilation import PART
 from models.errors import ParameterError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 ORDER = 17
 """Most terms of the series: 0.7^18 / 18! is below rounding."""

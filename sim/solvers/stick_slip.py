@@ -6,17 +6,11 @@ instant to machine precision: no step-size error, and no re-stick at the end of 
 the thesis's listing (and any fixed-step method) first order only.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.solvers.free_motion import extended, parts_of_a_step
 from sim.solvers.stick_slip_kernel import N_STATE, step_through
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 
 def rest_state(shaft_speed: float) -> NDArray[np.float64]:

@@ -9,8 +9,6 @@ within half a step, and so passes the limit by less than (omega h / 2)^3 / 12 of
 the fastest mode (omega h is at most 0.7, and 0.2 on the thesis's rig at 30 kHz: 0.01 %).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

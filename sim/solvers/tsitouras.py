@@ -10,8 +10,6 @@ variable at a time: what has just been written by itself is read by itself, wher
 once would wait for the writing to end.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -73,37 +71,13 @@ _inlined = njit(forceinline=True, **PART)
 
 
 @_inlined
-def _change(k, j, stage) -> float:
-    change = 0.0
-    for b in range(stage):
-        change += STAGES[stage, b] * k[j, b]
-    return change
-
-
-@_inlined
 def fill_stage(u, start, k, stage, h) -> None:
     """Fill the state `u` of a stage of a step of length `h` from `start`, with the rates `k`."""
-    if stage == 0:
-        for j in range(u.size):
-            u[j] = start[j]
-    elif stage == 1:
-        for j in range(u.size):
-            u[j] = start[j] + h * _change(k, j, 1)
-    elif stage == 2:
-        for j in range(u.size):
-            u[j] = start[j] + h * _change(k, j, 2)
-    elif stage == 3:
-        for j in range(u.size):
-            u[j] = start[j] + h * _change(k, j, 3)
-    elif stage == 4:
-        for j in range(u.size):
-            u[j] = start[j] + h * _change(k, j, 4)
-    elif stage == 5:
-        for j in range(u.size):
-            u[j] = start[j] + h * _change(k, j, 5)
-    else:
-        for j in range(u.size):
-            u[j] = start[j] + h * _change(k, j, 6)
+    for j in range(u.size):
+        change = 0.0
+        for b in range(stage):
+            change += STAGES[stage, b] * k[j, b]
+        u[j] = start[j] + h * change
 
 
 @_inlined

@@ -15,7 +15,7 @@ from noise.diagnosis.simulated.transfer_functions import chain_of, torque_transf
 from noise.recordings import write_recording
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.pipeline import DIAGNOSIS
+from sim.run import DIAGNOSIS
 
 __all__ = [
     "RATE", "RIG", "RIG_FILE", "SECONDS", "at", "only", "run", "table_of", "write_case",

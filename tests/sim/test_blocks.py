@@ -19,10 +19,10 @@ from models.transfer_functions.filtering import convolve
 from noise.long_run import write_run
 from noise.recordings import read_recording
 from noise.recordings.wav import write_blocks
-from sim.acquisition import Acquisition
+from sim.acquisition import Acquisition, Decimation
 from sim.blocks import BlockEngine, Setting, simulate_blocks
 from sim.effects import EFFECTS
-from sim.filters import Convolution, Decimation
+from sim.filters import Convolution
 from sim.friction import LAWS
 from sim.run import simulate
 from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp

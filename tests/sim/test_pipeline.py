@@ -10,15 +10,16 @@ from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from noise.diagnosis.simulated.repeats import plan_repeat
-from sim.pipeline import (
+from sim.run import (
     DIAGNOSIS,
     SCREENING,
     SIMULATION,
+    plan_run,
     pulse_force,
     radiate_motion,
     run_motion,
+    simulate,
 )
-from sim.run import plan_run, simulate
 
 RIG = replace(load_material_rig("fluorocarbon"), effects=(LawSpec("slip_pulse"),))
 AT = {"interference": 0.381e-3, "support_stiffness": 2214.0}

@@ -22,7 +22,7 @@ from noise.diagnosis.simulated.transfer_functions import predict_outputs, with_c
 from sim.bushing import lumped_bushing
 from sim.effects.effect import ActiveEffect
 from sim.motion import Motion
-from sim.pipeline import Plan, Sound, pulse_force
+from sim.run import Plan, Sound, pulse_force
 
 _FADE = 0.1
 """In which a torque fades in and out [s], outside of the recording."""

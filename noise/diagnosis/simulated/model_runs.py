@@ -37,7 +37,7 @@ from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import changed_chain
 from sim.effects.effect import ActiveEffect, Effect, Signals
 from sim.motion import Motion
-from sim.pipeline import DIAGNOSIS, Plan, apply_sensor_effects, sensor_signals
+from sim.run import DIAGNOSIS, Plan, apply_sensor_effects, sensor_signals
 
 if TYPE_CHECKING:
     from noise.diagnosis.fit.forms.form import Form

@@ -40,7 +40,7 @@ from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, Effect, activated
-from sim.pipeline import DIAGNOSIS, apply_sensor_effects, radiate_motion, sensor_signals
+from sim.run import DIAGNOSIS, apply_sensor_effects, radiate_motion, sensor_signals
 
 _RUNNING_OUT = 0.12
 """Simulated after a recording ends [s]."""

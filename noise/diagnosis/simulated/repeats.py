@@ -26,7 +26,7 @@ from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import changed_chain
 from sim.effects.effect import ActiveEffect, activated
 from sim.motion import Motion
-from sim.pipeline import (
+from sim.run import (
     DIAGNOSIS,
     Plan,
     apply_sensor_effects,
@@ -207,7 +207,7 @@ def repeat_motion(plan: Plan, rng: np.random.Generator, tolerance: float | None 
     rng : numpy.random.Generator
         As of `run_motion`.
     tolerance : float, optional
-        As of `run_motion`, by default that of `sim.pipeline.DIAGNOSIS` [-].
+        As of `run_motion`, by default that of `sim.run.DIAGNOSIS` [-].
     """
     return run_motion(plan, rng, tolerance=tolerance or DIAGNOSIS.tolerance)
 

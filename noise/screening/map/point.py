@@ -39,8 +39,8 @@ from sim.analysis.slips import motion_slips
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, activated
 from sim.motion import Motion
-from sim.pipeline import SCREENING, SCREENING_SLOW, Plan, Timing, radiate_motion, run_motion
 from sim.rig_effects import constant_version
+from sim.run import SCREENING, SCREENING_SLOW, Plan, Timing, radiate_motion, run_motion
 from sim.shaft import ConstantSpeed, Oscillation
 from sim.temperature import at_temperature
 

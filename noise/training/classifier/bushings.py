@@ -27,8 +27,7 @@ from sim.analysis.regime import Regime, friction_regime
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import simulate_motion
-from sim.pipeline import pulse_force
-from sim.run import Run, simulate
+from sim.run import Run, pulse_force, simulate
 from sim.shaft import ConstantSpeed, Oscillation, ShaftMotion, SpeedRamp
 
 _SHARES = {"creak": 0.34, "squawk": 0.17, "squeal": 0.32, "none": 0.17}

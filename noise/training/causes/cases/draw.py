@@ -41,8 +41,8 @@ from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, activated
-from sim.pipeline import LEARNING, apply_sensor_effects, radiate_motion, sensor_signals
 from sim.rig_effects import irregular_effects
+from sim.run import LEARNING, apply_sensor_effects, radiate_motion, sensor_signals
 
 SHARED = 4
 """Cases of one rig."""
