@@ -143,7 +143,7 @@ def headless(data):
 def test_an_mp3_without_a_header_is_read_to_its_end(tmp_path, mode, rate, n_tracks):
     raw = read(tmp_path, headless(mp3(mode, rate, n_tracks)), "mp3")
     assert raw.samples.shape[0] == n_tracks
-    assert raw.samples.shape[1] / raw.rate == pytest.approx(SECONDS, abs=0.15)
+    assert raw.samples.shape[1] / raw.rate == pytest.approx(SECONDS, abs=0.2)
     assert_tones(raw, (2.0, 2.5))
 
 
@@ -151,7 +151,7 @@ def test_all_frames_of_an_mp3_without_a_header_are_read(tmp_path):
     data = headless(mp3("CONSTANT"))
     frames = round(len(data) * 44100 / (144 * 160_000))  # of 160 kbit/s
     n = read(tmp_path, data, "mp3").samples.shape[1]
-    assert n == frames * 1152 - 529  # which is the delay of the decoder
+    assert n == frames * 1152
 
 
 ID3V2 = b"ID3\x04\0\0\0\0\x02\x01" + b"\xff\xfb\x90\x64" * 64 + b"\0"
@@ -168,21 +168,15 @@ def test_tags_around_an_mp3_are_no_sound(tmp_path, before, after):
         assert np.array_equal(read(tmp_path, before + data + after, "mp3").samples, bare)
 
 
-@pytest.mark.parametrize("between", [b"", ID3V1 + ID3V2])
 @pytest.mark.parametrize("first", [bytes, headless])
-@pytest.mark.parametrize("second", [bytes, headless])
-def test_of_joined_mp3_both_are_read(tmp_path, first, second, between):
-    data = first(mp3("VARIABLE")) + between + second(mp3("VARIABLE", start=0.5, end=1.0))
-    raw = read(tmp_path, data, "mp3")
-    assert raw.samples.shape[1] / raw.rate == pytest.approx(2 * SECONDS, abs=0.15)
-    assert_tones(raw, (2.0, 2.5), (3.5, 4.0))
-
-
-def test_an_mp3_that_is_cut_off_is_refused_where_it_has_a_header(tmp_path):
-    data = mp3("VARIABLE")
-    with pytest.raises(RecordingError, match=r"truncated; its header announces 1\d\d frames, \d+"):
-        read(tmp_path, data[: len(data) * 2 // 3], "mp3")
-    assert_tones(read(tmp_path, headless(data)[:-2000], "mp3"), (2.0, 2.5))
+def test_of_an_mp3_with_a_header_cut_off_is_refused_and_without_it_read(tmp_path, first):
+    data = first(mp3("VARIABLE"))
+    cut = data[: len(data) * 9 // 10]
+    if first is headless:
+        assert_tones(read(tmp_path, cut, "mp3"), (2.0, 2.5))
+    else:
+        with pytest.raises(RecordingError, match=r"truncated; its header announces 13\d+ samples"):
+            read(tmp_path, cut, "mp3")
 
 
 def test_text_and_noise_are_no_mp3(tmp_path):
@@ -203,40 +197,22 @@ def open_length(flac):
     return bytes(content)
 
 
-def parts(*starts, rate=RATE, n_tracks=1, **how):
-    return [encoded(tone(at, at + 0.5, rate, n_tracks), rate, **how) for at in starts]
+def parts(*starts, **how):
+    return [encoded(tone(at, at + 0.5), **how) for at in starts]
 
 
-OGG, FLAC = {"format": "OGG", "subtype": "VORBIS"}, {"format": "FLAC"}
-
-
-@pytest.mark.parametrize("subtype", ["VORBIS", "OPUS"])
-def test_of_joined_ogg_all_are_read(tmp_path, subtype):
-    data = b"".join(parts(2.0, 1.0, 0.5, n_tracks=2, format="OGG", subtype=subtype))
-    raw = read(tmp_path, data, "opus" if subtype == "OPUS" else "ogg")
-    assert raw.samples.shape == (2, 3 * SECONDS * RATE)
-    assert_tones(raw, (2.0, 2.5), (4.0, 4.5), (6.5, 7.0))
-    assert raw.notes == ("3 sounds one after the other in one file are read as one",)
-
-
-def test_sounds_of_other_rates_in_one_file_are_refused(tmp_path):
-    data = b"".join(parts(2.0, **OGG) + parts(2.0, rate=44100, **OGG))
-    with pytest.raises(RecordingError, match="of 1 tracks at 48000 Hz and of 1 at 44100 Hz"):
-        read(tmp_path, data, "ogg")
-
-
-def test_a_part_of_joined_sounds_is_that_of_the_whole(tmp_path):
+def test_several_sounds_in_a_file_are_refused(tmp_path):
     joined = {
-        "ogg": b"".join(parts(0.0, 2.0, **OGG)),
-        "mp3": headless(mp3("VARIABLE")) + mp3("VARIABLE"),
-        "flac": b"".join(parts(2.0, 1.0, **FLAC)),
+        "ogg": parts(2.0, 1.0, format="OGG", subtype="VORBIS"),
+        "opus": parts(2.0, 1.0, format="OGG", subtype="OPUS"),
+        "flac": parts(2.0, 1.0, format="FLAC"),
+        "wav": parts(2.0, 1.0, format="WAV"),
+        "mp3": (mp3("VARIABLE"), ID3V1 + ID3V2 + mp3("VARIABLE")),
+        "mpeg": (headless(mp3("CONSTANT")), mp3("CONSTANT")),
     }
-    for ending, data in joined.items():
-        whole = read(tmp_path, data, ending).samples
-        n = whole.shape[1]
-        with open_sound_file(tmp_path / f"run.{ending}") as raw:
-            for first, last in [(0, 10), (n // 2 - 9000, n // 2 + 9000), (100, 7000), (n - 9, n)]:
-                assert np.array_equal(raw.read(first, last), whole[:, first:last])
+    for ending, (one, other) in joined.items():
+        with pytest.raises(RecordingError, match=r"a second sound begins at byte \d+"):
+            read(tmp_path, one + other, ending)
 
 
 @pytest.mark.parametrize("subtype", ["PCM_16", "PCM_24"])
@@ -244,8 +220,6 @@ def test_a_flac_of_unknown_length_is_read_to_its_end(tmp_path, subtype):
     data = encoded(tone(n_tracks=2), format="FLAC", subtype=subtype)
     raw = read(tmp_path, open_length(data), "flac")
     assert np.array_equal(raw.samples, read(tmp_path, data, "flac").samples)
-    one, other = parts(2.0, 1.0, **FLAC)
-    assert_tones(read(tmp_path, one + open_length(other), "flac"), (2.0, 2.5), (4.0, 4.5))
 
 
 def test_a_flac_of_unknown_length_that_breaks_off_says_what_there_is(tmp_path):
@@ -352,12 +326,6 @@ def test_what_follows_the_samples_is_none_of_them_and_named_where_it_is_no_chunk
 def test_an_odd_chunk_before_the_samples_may_lack_its_last_byte(tmp_path):
     odd = b"LIST" + struct.pack("<I", 3) + b"abc"
     assert_sound(read(tmp_path, riff(HEAD, odd, chunk(b"data", AS_16))))
-
-
-def test_a_second_wav_in_a_file_is_refused(tmp_path):
-    data = encoded(tone(), format="WAV")
-    with pytest.raises(RecordingError, match=f"a second WAV file begins at byte {len(data)}"):
-        read(tmp_path, data + data)
 
 
 # The description of Broadcast Wave files

@@ -1,17 +1,17 @@
-"""Containers of sound: chunks of RIFF, pages of Ogg and streams of FLAC, cut into pieces.
+"""Containers of sound: chunks of RIFF, pages of Ogg, streams of FLAC and MPEG, with their length.
 
 The sound library reads the first sound of a file and takes its length from the header; where that
 has none, it estimates it from the size of the file (MP3), gives up (FLAC) or finds no samples (a
-WAV file whose recorder was switched off before it could fill in the sizes). So each file is cut
-into pieces that the library reads to their end: every piece has a header with the length that was
-counted. Nothing in a file is trusted: a walk ends where it cannot be followed, and judging what is
-left is the library's.
+WAV file whose recorder was switched off before it could fill in the sizes). So each file becomes a
+piece that the library reads to its end, and a file of several sounds is refused. Nothing in a file
+is trusted: a walk ends where it cannot be followed, and judging what is left is the library's.
 """
 
 from __future__ import annotations
 
 import io
 import os
+import re
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import BinaryIO
 
 from models.errors import RecordingError
-from noise.recordings.formats.mpeg import id3_bytes, mpeg_sounds
 
 _RIFF = (b"RIFF", b"RF64", b"BW64")
 _SAMPLE_CHUNKS = (b"data", b"SSND")  # RIFF, AIFF
@@ -30,6 +29,14 @@ _UNFINISHED = (0, _NO_SIZE, 0x7FFFFFFF, 0x80000000, 0x7FFFF000)
 
 _DESCRIPTION_BYTES = 256  # EBU Tech 3285, first field of the chunk
 _FLAC = b"fLaC\x00\x00\x00\x22"  # with the head of the block that always comes first
+_MPEG = re.compile(rb"\xff[\xe2-\xff][\x10-\xef]")  # how a frame of MP3 may begin
+_PLAYERS = re.compile(_MPEG.pattern + rb".(?:(?:.{9}|.{17}|.{32})(?:Xing|Info)|.{32}VBRI)", re.S)
+"""A frame of MP3 without sound, in which the length stands; files that were joined have several."""
+
+_MOST_BEFORE = 1 << 11  # bytes from what may be a frame to it
+_NO_LENGTH = 100
+"""Times its size that an MP3 without a length is given out to have: the library estimates a length
+from the size and the first frames, of 8 to 320 kbit/s, and reads no further than that."""
 
 
 @dataclass(frozen=True)
@@ -42,11 +49,14 @@ class Piece:
         Of its bytes in the file.
     head : bytes
         Stands before them.
+    unknown : bool
+        Whether its length has to be counted.
     """
 
     start: int
     end: int
     head: bytes = b""
+    unknown: bool = False
 
 
 class PieceFile(io.RawIOBase):
@@ -62,6 +72,7 @@ class PieceFile(io.RawIOBase):
         self._file = path.open("rb")
         self._piece, self._at = piece, 0
         self._size = len(piece.head) + piece.end - piece.start
+        self._stated = self._size * (_NO_LENGTH if piece.unknown else 1)
 
     def readable(self) -> bool:
         """Say yes."""
@@ -71,7 +82,7 @@ class PieceFile(io.RawIOBase):
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
         """Go to a byte."""
-        base = {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self._size}[whence]
+        base = {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self._stated}[whence]
         self._at = max(0, base + offset)
         return self._at
 
@@ -82,6 +93,9 @@ class PieceFile(io.RawIOBase):
     def readinto(self, buffer: object) -> int:
         """Read as many bytes as fit."""
         view = memoryview(buffer).cast("B")  # type: ignore[arg-type]  # a writable buffer
+        if self._at >= self._size + _NO_LENGTH:  # of an unknown length, where a tag would stand
+            view[:] = bytes(len(view))
+            return len(view)
         n, head = min(len(view), max(0, self._size - self._at)), self._piece.head
         known = head[self._at : self._at + n]
         self._file.seek(self._piece.start + max(0, self._at - len(head)))
@@ -96,8 +110,8 @@ class PieceFile(io.RawIOBase):
         super().close()
 
 
-def pieces_of(path: Path) -> tuple[list[Piece], list[str]]:
-    """Cut a sound file into pieces of known length.
+def sound_of(path: Path) -> tuple[Piece, list[str]]:
+    """Find the one sound in a file.
 
     Parameters
     ----------
@@ -106,39 +120,56 @@ def pieces_of(path: Path) -> tuple[list[Piece], list[str]]:
 
     Returns
     -------
-    pieces : list of Piece
-        In their order; of a FLAC stream that does not state its length with none either, see
-        `with_flac_length`.
+    piece : Piece
+        A FLAC stream that does not state its length has none here either, see `with_flac_length`.
     notes : list of str
         What should be known of it.
 
     Raises
     ------
     RecordingError
-        It ends before its header says, or holds what cannot be told apart.
+        There are several, it ends before its header says, or it holds what cannot be told apart.
     """
     with path.open("rb") as file:
         size = os.fstat(file.fileno()).st_size
-        start = id3_bytes(file.read(10))
-        file.seek(start)
+        file.seek(id3_bytes(file.read(10)))
         magic = file.read(4)
         file.seek(0)
         if magic in (*_RIFF, b"RIFX", b"FORM"):
-            return _riff_pieces(path, file, size)
+            return _riff_sound(path, file, size)
         if magic == b"OggS":
             starts = _ogg_starts(file.read())
         elif magic == b"fLaC":
             starts = _places(file, _FLAC) or [0]
         else:
-            pieces = [Piece(*sound) for sound in mpeg_sounds(path, file.read())]
-            return pieces, _joined_note(len(pieces))
-    ends = [*starts[1:], size]
-    pieces = [Piece(first, last) for first, last in zip(starts, ends, strict=True)]
-    return pieces, _joined_note(len(pieces))
+            return _mpeg_sound(path, file.read()), []
+    if len(starts) > 1:
+        raise _several(path, starts[1])
+    return Piece(starts[0], size), []
 
 
-def _joined_note(number: int) -> list[str]:
-    return [f"{number} sounds one after the other in one file are read as one"] * (number > 1)
+def _several(path: Path, at: int) -> RecordingError:
+    return RecordingError(f"{path}: a second sound begins at byte {at}; save each as its own")
+
+
+def _mpeg_sound(path: Path, data: bytes) -> Piece:
+    """MP3 from its first frame on; what states no length is counted."""
+    tag = id3_bytes(data[:10])
+    first = _MPEG.search(data, tag)
+    if first is None:
+        raise RecordingError(f"{path}: is damaged or no sound file (Format not recognised)")
+    lengths = [found.start() for found in _PLAYERS.finditer(data, tag)]
+    if lengths[1:] or (lengths and lengths[0] > first.start() + _MOST_BEFORE):
+        raise _several(path, lengths[-1])
+    return Piece(lengths[0] if lengths else first.start(), len(data), unknown=not lengths)
+
+
+def id3_bytes(head: bytes) -> int:
+    """Size of an ID3v2 tag with this head, 0 where it is none."""
+    if head[:3] != b"ID3" or len(head) < 10 or any(byte > 0x7F for byte in head[6:10]):
+        return 0
+    size = head[6] << 21 | head[7] << 14 | head[8] << 7 | head[9]
+    return 10 + size + 10 * bool(head[5] & 0x10)
 
 
 def _places(file: BinaryIO, sign: bytes) -> list[int]:
@@ -146,10 +177,7 @@ def _places(file: BinaryIO, sign: bytes) -> list[int]:
     found, tail, before = [], b"", 0
     while block := file.read(1 << 18):
         data = tail + block
-        at = data.find(sign)
-        while at >= 0:
-            found.append(before + at)
-            at = data.find(sign, at + 1)
+        found += [before + match.start() for match in re.finditer(re.escape(sign), data)]
         tail = data[1 - len(sign) :]
         before += len(data) - len(tail)
     return found
@@ -228,7 +256,7 @@ def bext_description(path: Path) -> str:
     return ""
 
 
-def _riff_pieces(path: Path, file: BinaryIO, end: int) -> tuple[list[Piece], list[str]]:
+def _riff_sound(path: Path, file: BinaryIO, end: int) -> tuple[Piece, list[str]]:
     tag = file.read(4)
     file.seek(0)
     before: list[Chunk] = []
@@ -240,11 +268,11 @@ def _riff_pieces(path: Path, file: BinaryIO, end: int) -> tuple[list[Piece], lis
             break
         before.append(chunk)
     if data is None:
-        return [Piece(0, end)], []
+        return Piece(0, end), []
     if tag in _RIFF and _is_unfinished(file, data, end):
         n = end - data.start
         note = f"the recorder did not finish the header; the {n} bytes that follow it are read"
-        return [Piece(data.start, end, _head(file, before, n))], [note]
+        return Piece(data.start, end, _head(file, before, n)), [note]
     if missing := max(0, data.start + data.size - end):
         raise RecordingError(
             f"{path}: is truncated; its header announces {missing} bytes of samples more than "
@@ -253,9 +281,7 @@ def _riff_pieces(path: Path, file: BinaryIO, end: int) -> tuple[list[Piece], lis
     last = data
     for last in walk:
         if last.name in _RIFF:
-            raise RecordingError(
-                f"{path}: a second WAV file begins at byte {last.start - 8}; save each as its own"
-            )
+            raise _several(path, last.start - 8)
     rest = end - last.start - last.size
     file.seek(last.start + last.size)
     notes = []
@@ -267,8 +293,8 @@ def _riff_pieces(path: Path, file: BinaryIO, end: int) -> tuple[list[Piece], lis
     )
     if tag == b"BW64" or (tag in _RIFF and not padded):
         stop = data.start + data.size
-        return [Piece(data.start, stop, _head(file, before, data.size))], notes
-    return [Piece(0, end)], notes
+        return Piece(data.start, stop, _head(file, before, data.size)), notes
+    return Piece(0, end), notes
 
 
 def _is_unfinished(file: BinaryIO, data: Chunk, end: int) -> bool:

@@ -2,17 +2,15 @@
 
 The sound library stops quietly where a file breaks off. A measurement cut short is not the
 measurement, so the samples announced are counted against the samples found. Where a header does not
-state the length, or a file holds sounds one after the other, `noise.recordings.formats.containers`
-makes of it what the library reads whole.
+state the length, `noise.recordings.formats.containers` makes of it what the library reads whole.
 """
 
 from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -27,11 +25,11 @@ from noise.recordings.formats.containers import (
     PieceFile,
     bext_description,
     flac_length,
-    pieces_of,
+    sound_of,
     with_flac_length,
 )
 
-_BLOCK = 1 << 16  # samples a channel
+_BLOCK, _FEW = 1 << 16, 1 << 12  # samples a channel
 _OTHERS = (b"RIFF", b"RIFX", b"RF64", b"FORM", b"fLaC", b"OggS")
 """How files begin that are no MP3, whatever they are called."""
 
@@ -60,26 +58,18 @@ def open_sound_file(path: Path) -> Iterator[RawRecording]:
     >>> samples.shape, raw.rate, raw.fractional, float(samples[0, 0])
     ((1, 480), 48000.0, True, 0.5)
     """
-    pieces, notes = pieces_of(path)
+    piece, notes = sound_of(path)
     with ExitStack() as stack:
         with _errors(path):
-            sounds = [_opened(path, piece, stack) for piece in pieces]
-        first = sounds[0]
-        for sound in sounds:
-            if (sound.samplerate, sound.channels) != (first.samplerate, first.channels):
-                raise RecordingError(
-                    f"{path}: holds sounds one after the other, of {first.channels} tracks at "
-                    f"{first.samplerate} Hz and of {sound.channels} at {sound.samplerate} Hz; "
-                    "save each as a file of its own"
-                )
+            sound, n_samples = _opened(path, piece, stack)
         yield RawRecording(
-            n_channels=int(first.channels),
-            n_samples=sum(int(sound.frames) for sound in sounds),
-            rate=float(first.samplerate),
-            fractional=first.subtype not in ("FLOAT", "DOUBLE"),
+            n_channels=int(sound.channels),
+            n_samples=n_samples,
+            rate=float(sound.samplerate),
+            fractional=sound.subtype not in ("FLOAT", "DOUBLE"),
             description=bext_description(path),
-            comment=first.comment,
-            read=_reading(path, sounds),
+            comment=sound.comment,
+            read=_reading(path, sound, n_samples),
             notes=tuple(notes),
         )
 
@@ -94,13 +84,12 @@ FORMAT = Format(
 )
 
 
-def _reading(path: Path, sounds: Sequence[Any]) -> Read:
-    """Give what reads sounds that follow one another; refused where one breaks off before."""
-    ends = list(accumulate(int(sound.frames) for sound in sounds))
-    positions = [0] * len(sounds)
+def _reading(path: Path, sound: Any, n_samples: int) -> Read:
+    """Give what reads a sound; refused where it breaks off before its end."""
+    position = 0
 
-    def block(i: int, start: int, n: int) -> NDArray[np.float64]:
-        sound, position = sounds[i], positions[i]
+    def block(start: int, n: int) -> NDArray[np.float64]:
+        nonlocal position
         if start != position and sound.format in _EXACT:
             position = sound.seek(start)
         elif start < position:
@@ -108,23 +97,21 @@ def _reading(path: Path, sounds: Sequence[Any]) -> Read:
         while position < start and (passed := len(sound.read(min(_BLOCK, start - position)))):
             position += passed
         found: NDArray[np.float64] = sound.read(n, dtype="float64", always_2d=True)
-        positions[i] = position + len(found)
+        position += len(found)
         return found
 
     def read(first: int, last: int) -> NDArray[np.float64]:
-        samples, done = np.empty((sounds[0].channels, last - first)), first
+        samples, done = np.empty((sound.channels, last - first)), first
         with _errors(path):
-            for i, end in enumerate(ends):
-                start = end - int(sounds[i].frames)
-                while start <= done < min(end, last):
-                    found = block(i, done - start, min(_BLOCK, min(end, last) - done))
-                    if not len(found):
-                        raise RecordingError(
-                            f"{path}: is truncated; its header announces {ends[-1]} samples, "
-                            f"{done} can be read"
-                        )
-                    samples[:, done - first : done - first + len(found)] = found.T
-                    done += len(found)
+            while done < last:
+                found = block(done, min(_BLOCK, last - done))
+                if not len(found):
+                    raise RecordingError(
+                        f"{path}: is truncated; its header announces {n_samples} samples, "
+                        f"{done} can be read"
+                    )
+                samples[:, done - first : done - first + len(found)] = found.T
+                done += len(found)
         return samples
 
     return read
@@ -139,12 +126,14 @@ def _errors(path: Path) -> Iterator[None]:
         raise RecordingError(f"{path}: is damaged or no sound file ({reason})") from error
 
 
-def _opened(path: Path, piece: Piece, stack: ExitStack) -> Any:
-    """Open a piece of a file, whose name the library takes in UTF-8 alone."""
-    if flac_length(path, piece) == 0:
-        with ExitStack() as counting:
-            n = _count(path, _Quiet(counting.enter_context(PieceFile(path, piece))))
-        piece = with_flac_length(path, piece, n)
+def _opened(path: Path, piece: Piece, stack: ExitStack) -> tuple[Any, int]:
+    """Open the sound of a file, whose name the library takes in UTF-8 alone; tell its length."""
+    n_samples = None
+    if piece.unknown or flac_length(path, piece) == 0:
+        with PieceFile(path, piece) as counted:
+            n_samples = _count(path, _Quiet(counted), piece)
+        if not piece.unknown:
+            piece = with_flac_length(path, piece, n_samples)
     file: Any
     if piece == Piece(0, path.stat().st_size):
         file = path if os.name == "nt" else os.fsencode(path)
@@ -152,20 +141,22 @@ def _opened(path: Path, piece: Piece, stack: ExitStack) -> Any:
         file = stack.enter_context(PieceFile(path, piece))
     with path.open("rb") as start:
         known = (piece.head or start.read(4))[:4] in _OTHERS
-    return stack.enter_context((soundfile.SoundFile if known else _Quiet)(file))
+    sound = stack.enter_context((soundfile.SoundFile if known else _Quiet)(file))
+    return sound, int(sound.frames) if n_samples is None else n_samples
 
 
-def _count(path: Path, sound: Any) -> int:
-    """Decode a sound to its end."""
+def _count(path: Path, sound: Any, piece: Piece) -> int:
+    """Decode a sound to its end; one of unknown length may break off within its last frame."""
     n = 0
     try:
-        while passed := len(sound.read(_BLOCK)):
+        while passed := len(sound.read(_FEW if piece.unknown else _BLOCK)):
             n += passed
     except soundfile.LibsndfileError as error:
-        raise RecordingError(
-            f"{path}: does not say how long it is, and breaks off after {n} samples "
-            f"({n / sound.samplerate:.6g} s; {error.error_string.rstrip('.')})"
-        ) from None
+        if not (piece.unknown and n):
+            raise RecordingError(
+                f"{path}: does not say how long it is, and breaks off after {n} samples "
+                f"({n / sound.samplerate:.6g} s; {error.error_string.rstrip('.')})"
+            ) from None
     finally:
         sound.close()
     return n
