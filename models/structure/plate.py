@@ -1,37 +1,28 @@
 """The baseplate: its modes, how points and moments drive them, the sound that they radiate.
 
-Thin plate (Kirchhoff) in a rigid baffle. Simply supported edges, the default, have modes in closed
-form, so that they cost nothing and can be checked; free and clamped ones and mixtures are solved by
-Ritz (`models.structure.plate_ritz`). Edges hardly change the plate's mean mobility, but much of
-what it radiates: between 200 and 500 Hz free edges make the shipped plate's radiation efficiency 6
-to 13 dB lower, above its critical frequency of 1.2 kHz not at all. The loss factor acts as viscous
-damping of each mode, half of it being the damping ratio, which keeps responses causal. Left out:
-the air's load on the plate, its sides and rear, and the sound that goes round an edge without
-baffle, which weakens the lowest modes of a free-standing plate.
+Thin plate (Kirchhoff) in a rigid baffle, its edges simply supported, so that modes have a closed
+form: they cost nothing and can be checked. Edges hardly change the plate's mean mobility, but much
+of what it radiates: between 200 and 500 Hz free ones would make the shipped plate's radiation
+efficiency 6 to 13 dB lower, above its critical frequency of 1.2 kHz not at all. The loss factor
+acts as viscous damping of each mode, half of it being the damping ratio, which keeps responses
+causal. Left out: the air's load on the plate, its sides and rear, and the sound that goes round an
+edge without baffle, which weakens the lowest modes of a free-standing plate.
 
-A mode shape is a sum of products, one function of x times one of y. Simply supported plates need
-one product of sines a mode; other edges a sum over Legendre polynomials, which follow both waves
-and edge layers with some three functions a wavelength and do not care what the edges are. Both know
-their values, their derivatives and their Fourier transforms, so that whatever radiates sound works
-on either. Functions alternate between even and odd about the middle, beginning with an even one:
-parts of unlike parity never radiate together, which saves three quarters of the integration.
+A mode shape is a product of sines along x and y. They alternate between even and odd about the
+middle, beginning with an even one: parts of unlike parity never radiate together, which saves three
+quarters of the integration of power.
 """
 
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial.legendre import legder, leggauss, legvander
 from numpy.typing import ArrayLike, NDArray
 
 from models.bench import Microphone, Plate
 from models.radiation.rayleigh import rectangle_integral
 from models.show import short_repr
 from models.structure.modal import ModalModel, add_ringing
-from models.structure.plate_ritz import ritz_modes
-
-SPARE_NODES = 24
-"""Nodes beyond half the degree and the wavenumber, for transforms exact to rounding."""
 
 
 @dataclass(frozen=True)
@@ -62,95 +53,6 @@ class SineBasis:
         half = wavenumber[..., None] * (self.length / (2 * np.pi))
         near, far = np.sinc(m / 2 - half), np.sinc(m / 2 + half)
         return np.asarray(sign * self.length / 2 * np.where(even, near + far, near - far))
-
-
-@dataclass(frozen=True)
-class LegendreBasis:
-    """Legendre polynomials of 2 x / length, degrees 0 ... `degree`.
-
-    Examples
-    --------
-    >>> LegendreBasis(0.9, 2).values([0.0, 0.45])
-    array([[ 1. ,  0. , -0.5], [ 1. ,  1. ,  1. ]])
-    """
-
-    length: float
-    degree: int
-
-    def values(self, x: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
-        """Values [-], or first derivatives [1/m], shape (..., n)."""
-        position = np.asarray(x, dtype=np.float64) * (2 / self.length)
-        values = legvander(position, self.degree)
-        if derivative:
-            values = values[..., :-1] @ legder(np.eye(self.degree + 1)) * (2 / self.length)
-        return np.asarray(values, dtype=np.float64)
-
-    def transform(self, wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Cosine or sine transforms [m], shape (..., n).
-
-        They are spherical Bessel functions, by quadrature.
-        """
-        argument = wavenumber * (self.length / 2)
-        nodes = int(self.degree + np.max(argument, initial=0.0)) + 2 * SPARE_NODES
-        position, weighted = _weighted_legendre(16 * (nodes // 16 + 1), self.degree)
-        phase = argument[..., None] * position
-        transforms = np.empty((*argument.shape, self.degree + 1))
-        transforms[..., ::2] = np.cos(phase) @ weighted[:, ::2]
-        transforms[..., 1::2] = np.sin(phase) @ weighted[:, 1::2]
-        return transforms * self.length
-
-
-@lru_cache(maxsize=32)
-def _weighted_legendre(nodes: int, degree: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    position, weight = leggauss(nodes)
-    upper = slice(nodes // 2, None)
-    return position[upper], weight[upper, None] * legvander(position[upper], degree)
-
-
-@dataclass(frozen=True, eq=False)
-class SingleProducts:
-    """Each mode one product: shape (n_modes,) the function along and that across, from 0."""
-
-    along: NDArray[np.int64]
-    across: NDArray[np.int64]
-
-    def combine(
-        self, along: NDArray[np.float64], across: NDArray[np.float64], some: slice
-    ) -> NDArray[np.float64]:
-        """Values of some modes [-], shape (n, m, n_some).
-
-        From those of the functions along the plate, shape (n, n_along), and for each of the n
-        positions m positions across it, shape (n or 1, m, n_across).
-        """
-        return along[:, None, self.along[some]] * across[..., self.across[some]]
-
-    def weighted(self, amplitudes: NDArray[np.complex128]) -> NDArray[np.complex128]:
-        """Amplitude of each product."""
-        products = np.zeros((self.along.max() + 1, self.across.max() + 1), dtype=np.complex128)
-        products[self.along, self.across] = amplitudes
-        return products
-
-
-@dataclass(frozen=True, eq=False)
-class SumsOfProducts:
-    """Each mode a sum of all products: coefficients, shape (n_modes, n_along, n_across)."""
-
-    coefficients: NDArray[np.float64]
-
-    def combine(
-        self, along: NDArray[np.float64], across: NDArray[np.float64], some: slice
-    ) -> NDArray[np.float64]:
-        """Values of some modes [-], shape (n, m, n_some)."""
-        lines = np.tensordot(along, self.coefficients[some], axes=(1, 1))
-        return np.asarray(across @ lines.swapaxes(1, 2))
-
-    def weighted(self, amplitudes: NDArray[np.complex128]) -> NDArray[np.complex128]:
-        """Amplitude of each product."""
-        return np.asarray(np.tensordot(amplitudes, self.coefficients, axes=1))
-
-
-Basis = SineBasis | LegendreBasis
-Products = SingleProducts | SumsOfProducts
 
 
 def supported_modes(
@@ -200,32 +102,30 @@ def supported_modes(
 MODES_AT_ONCE = 32
 """Shapes held in memory together, 15 MB for a plate of half a square metre."""
 
-SUSPENSION = 5.0
-"""Frequency of rigid-body motions: free edges still lie on something soft [Hz]."""
-
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class PlateModes:
-    """Modes of a plate by rising frequency, whatever its edges.
+    """Modes of a plate by rising frequency.
 
     Parameters
     ----------
     plate : Plate
     frequencies, damping_ratios : ndarray, shape (n_modes,)
-        [Hz] and 1. Rigid-body motions, which free edges allow, come first, at 5 Hz.
-    along, across : Basis
+        [Hz] and 1.
+    along, across : SineBasis
         Functions of x and of y.
-    products : Products
-        How the shapes are made of their products.
+    m, n : ndarray of int, shape (n_modes,)
+        Half-waves of each mode along length and width.
     """
 
     plate: Plate
     frequencies: NDArray[np.float64]
     damping_ratios: NDArray[np.float64]
-    along: Basis
-    across: Basis
-    products: Products
+    along: SineBasis
+    across: SineBasis
+    m: NDArray[np.int64]
+    n: NDArray[np.int64]
 
     @property
     def mass(self) -> float:
@@ -259,14 +159,14 @@ class PlateModes:
         self, x: NDArray[np.float64], y: NDArray[np.float64], some: slice
     ) -> NDArray[np.float64]:
         """Give `shape` of some modes on all pairs of x and y, shape (n_x, n_y, n_some)."""
-        return self.products.combine(self.along.values(x), self.across.values(y)[None], some)
+        along = self.along.values(x)[:, self.m[some] - 1]
+        return along[:, None] * self.across.values(y)[None][..., self.n[some] - 1]
 
     def _at(self, x: ArrayLike, y: ArrayLike, derivative: int) -> NDArray[np.float64]:
         where = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        along = self.along.values(where[0].ravel(), derivative)
-        across = self.across.values(where[1].ravel())[:, None]
-        values = self.products.combine(along, across, slice(None))[:, 0]
-        return values.reshape(*where[0].shape, -1)
+        along = self.along.values(where[0].ravel(), derivative)[:, self.m - 1]
+        values = along * self.across.values(where[1].ravel())[:, self.n - 1]
+        return np.asarray(values.reshape(*where[0].shape, -1))
 
 
 @lru_cache(maxsize=8)
@@ -290,25 +190,14 @@ def plate_modes(plate: Plate, highest_frequency: float) -> PlateModes:
     >>> modes = plate_modes(steel, 16e3)
     >>> modes.frequencies[:3].round(1), modes.frequencies.size
     (array([ 78.9, 151.8, 242.8]), 323)
-    >>> free = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0), edges="free")
-    >>> plate_modes(free, 1e3).frequencies[:5].round(1)
-    array([ 5. ,  5. ,  5. , 49.4, 52.7])
     """
     sides, stiffness = (plate.length, plate.width), plate.stiffness_per_mass
-    if set(plate.sides) == {"simply_supported"}:
-        frequencies, m, n = supported_modes(sides, stiffness, highest_frequency)
-        along: Basis = SineBasis(plate.length, int(m.max(initial=1)))
-        across: Basis = SineBasis(plate.width, int(n.max(initial=1)))
-        products: Products = SingleProducts(m - 1, n - 1)
-    else:
-        solved = ritz_modes(sides, plate.sides, plate.poisson_ratio, stiffness, highest_frequency)
-        frequencies = np.where(solved.frequencies == 0.0, SUSPENSION, solved.frequencies)
-        _, n_along, n_across = solved.coefficients.shape
-        along = LegendreBasis(plate.length, n_along - 1)
-        across = LegendreBasis(plate.width, n_across - 1)
-        products = SumsOfProducts(solved.coefficients / 2)
-    ratios = _damping_ratios(plate, frequencies)
-    return PlateModes(plate, frequencies, ratios, along, across, products)
+    frequencies, m, n = supported_modes(sides, stiffness, highest_frequency)
+    along, across = (
+        SineBasis(side, int(count.max(initial=1)))
+        for side, count in zip(sides, (m, n), strict=True)
+    )
+    return PlateModes(plate, frequencies, _damping_ratios(plate, frequencies), along, across, m, n)
 
 
 def _damping_ratios(plate: Plate, frequencies: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 import pytest
 
@@ -74,11 +72,3 @@ def test_a_floor_of_no_kind_is_refused():
         Floor("y", 1.0, 1.2)
     with pytest.raises(ParameterError, match="position_m = inf"):
         Floor("y", float("inf"))
-
-
-def test_modes_of_any_edges_are_heard_alike_from_mirrored_sides():
-    plate = dataclasses.replace(UPRIGHT, edges="free")
-    left, right = (
-        _heard(Microphone((x, 0.1, 0.8)), plate, drive=(x / 5, 0.04)) for x in (-0.4, 0.4)
-    )
-    assert left == pytest.approx(right, abs=1e-9 * np.abs(right).max())
