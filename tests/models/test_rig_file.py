@@ -272,7 +272,6 @@ assumed = ["plate"]
 reference_C = 40
 glass_transition_C = -25.5
 [plate]
-edges = ["clamped", "free", "free", "free"]
 loss_factor = { "1000" = 0.03, "62.5" = 0.05 }
 [microphone]
 position_m = [0.1, 0.2, 0.75]
