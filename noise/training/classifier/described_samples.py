@@ -25,7 +25,7 @@ from models.recording import Channel, Recording
 from noise.labels.windows import window_features
 from noise.training.classifier.augmentation.backgrounds import quiet
 from noise.training.classifier.augmentation.recorder import augmented, recorded
-from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, background_sound
+from noise.training.classifier.background_sounds import WEIGHTS, background_sound
 from noise.training.classifier.bushings import random_run
 from noise.training.classifier.friction_sources.friction_sounds import (
     FRICTION_SOUNDS,
@@ -134,7 +134,7 @@ SHARES = {"bushing": 0.31, "friction": 0.26, "background": 0.30, "quiet": 0.13}
 _LABEL_SHARES = {"creak": 0.41, "squeal": 0.41, "squawk": 0.18}
 """Of the friction sources [-]."""
 
-SOURCES = ("bushing", *_FRICTION, *(f"background:{name}" for name in RECIPES), "quiet")
+SOURCES = ("bushing", *_FRICTION, *(f"background:{name}" for name in WEIGHTS), "quiet")
 """All that is drawn from."""
 
 

@@ -9,20 +9,10 @@ from __future__ import annotations
 import re
 
 from models.errors import ParameterError
+from noise.training.classifier.background_sounds import BACKGROUND_SOUNDS
 
-_ANIMALS = ("cat", "cow", "crow", "dog", "frog", "hen", "pig", "rooster", "sheep", "birds",
-            "cicada", "crickets", "fly")  # fmt: skip
-_HOUSE = ("baby", "snoring", "sipping", "flush", "pouring", "drops", "can", "glass", "keyboard",
-          "vacuum", "washing", "brushing", "fireworks", "fire", "sea", "chainsaw",
-          "clapping")  # fmt: skip
-
-SURROUNDINGS = {
-    "any": (),
-    "car": (*_ANIMALS, *_HOUSE, "hand_saw", "saw"),
-    "rig": (*_ANIMALS, *_HOUSE, "rain", "thunder", "wind", "airplane", "helicopter", "train",
-            "siren", "horn", "bells", "laughing"),
-}  # fmt: skip
-"""First words of what does not sound there, by the name of a place."""
+SURROUNDINGS = ("any", "car", "rig")
+"""Names of places."""
 
 
 def may_sound(kind: str, surroundings: str) -> bool:
@@ -49,5 +39,16 @@ def may_sound(kind: str, surroundings: str) -> bool:
         raise ParameterError(
             f"surroundings {surroundings!r} are unknown; there are {', '.join(SURROUNDINGS)}"
         )
-    words = [kind.lower(), *re.split(r"[^a-z]+", kind.lower())]
-    return not any(word.startswith(SURROUNDINGS[surroundings]) for word in words)
+    kind = kind.lower()
+    if surroundings == "any":
+        return True
+    if kind in BACKGROUND_SOUNDS:
+        return surroundings in BACKGROUND_SOUNDS[kind]["heard"]
+    words = [kind, *re.split(r"[^a-z]+", kind)]
+    elsewhere = tuple(
+        word
+        for name, row in BACKGROUND_SOUNDS.items()
+        if surroundings not in row["heard"]
+        for word in (name.partition("_")[0], *row.get("also", ()))
+    )
+    return not any(word.startswith(elsewhere) for word in words)

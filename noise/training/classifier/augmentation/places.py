@@ -28,10 +28,8 @@ from scipy.signal import fftconvolve
 
 from features.kernels.levels import a_weighting
 from noise.training.classifier.augmentation.rooms import in_a_room
-from noise.training.classifier.background_sounds.blows import slam
+from noise.training.classifier.background_sounds import background_sound
 from noise.training.classifier.background_sounds.building import blow, placed, wavering
-from noise.training.classifier.background_sounds.people import speech
-from noise.training.classifier.background_sounds.signals import music
 from noise.training.draws import log_uniform, wandering
 
 _SHAPE_SPREAD = 4.0
@@ -417,9 +415,9 @@ def place(
     name = among[int(rng.integers(len(among)))]
     sound = HALLS[name](n, rate, rng) if name in HALLS else cabin(name, n, rate, rng)
     level = a_weighted(sound, rate).std()
-    for event in (speech, music, slam, _indicator):
+    for event in ("speech", "music", "slam", "indicator"):
         if rng.random() < (0.1 if peopled else 0.04):
-            other = event(n, rate, rng)
+            other = background_sound(n, rate, rng, event, alone=True)
             own = a_weighted(other, rate).std()
             strength = rng.uniform(-15.0, 3.0) if peopled else rng.uniform(-25.0, -14.0)
             sound = sound + 10.0 ** (strength / 20.0) * level / (own + 1e-12) * other
@@ -528,15 +526,3 @@ def _longest(sounds: NDArray[np.bool_], duration: float) -> tuple[float, float]:
     best = int((ends - starts).argmax())
     end = duration if ends[best] == sounds.size else int(ends[best]) * _FRAME
     return int(starts[best]) * _FRAME, end
-
-
-def _indicator(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Return the ticking of a turn signal: a higher and a lower click in turn."""
-    step = 0.5 / rng.uniform(1.2, 1.7)
-    times = np.arange(0.5 * step * rng.random(), n / rate, step)
-    sound = np.zeros(n)
-    for part in (times[::2], times[1::2]):
-        if part.size:
-            click = blow(rate, (600.0, 4000.0), (0.002, 0.02), rng, noise=0.5)
-            sound += fftconvolve(placed(n, part, np.ones(part.size), rate), click)[:n]
-    return sound

@@ -1,9 +1,10 @@
-"""Building blocks of background sounds: pulses, voices, resonances, blows, envelopes."""
+"""Building blocks of background sounds: tones, voices, resonances, blows, envelopes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,32 +109,55 @@ def through_formants(
     return np.asarray(sound)
 
 
-def arch(n: int, rng: np.random.Generator, attack: float = 0.15) -> NDArray[np.float64]:
-    """Envelope of a call: it rises, holds, and fades.
+def envelope(
+    sound: NDArray[np.float64],
+    shape: Mapping[str, Any],
+    rate: float,
+    draw: Callable[[Any], float],
+) -> NDArray[np.float64]:
+    """Give an event its envelope.
 
     Parameters
     ----------
-    n : int
-        Number of samples.
-    rng : numpy.random.Generator
-    attack : float
-        Share of the length in which it rises [-].
+    sound : ndarray, shape (n,)
+        [any unit]
+    shape : mapping
+        ``arch``, a call that rises within that share, holds and fades; ``hann`` to a power;
+        ``decay_s``, ``soft_s`` edges [s]; ``rise``, ``after`` and ``fall`` in shares.
+    rate : float
+        [Hz]
+    draw : callable
+        Number of a range.
 
     Returns
     -------
     ndarray, shape (n,)
-        [-]
+        [unit of `sound`]
 
     Examples
     --------
-    >>> arch(5, np.random.default_rng(0))[[0, -1]].tolist()
-    [0.0, 0.0]
+    >>> envelope(np.ones(5), {"hann": 1.0}, 48e3, float).tolist()
+    [0.0, 0.5, 1.0, 0.5, 0.0]
     """
-    x = np.linspace(0.0, 1.0, n)
-    rise, fall = rng.uniform(0.3, 1.5) * attack, rng.uniform(0.1, 0.7)
-    return np.asarray(
-        np.minimum(1.0, np.minimum(x / rise, (1.0 - x) / fall)) ** rng.uniform(0.5, 2)
-    )
+    n = sound.size
+    x, time = np.linspace(0.0, 1.0, n), np.arange(n) / rate
+    after = draw(shape.get("after", 0.0))
+    if "arch" in shape:
+        rise, fall = draw([0.3, 1.5]) * draw(shape["arch"]), draw([0.1, 0.7])
+        sound = sound * np.minimum(1.0, np.minimum(x / rise, (1.0 - x) / fall)) ** draw([0.5, 2.0])
+    if "hann" in shape:
+        sound = sound * np.hanning(n) ** draw(shape["hann"])
+    if "decay_s" in shape:
+        sound = sound * np.exp(-time / draw(shape["decay_s"]))
+    if "fall" in shape:
+        fallen = np.exp(-np.maximum(x - after, 0.0) / draw(shape["fall"]))
+        sound = sound * fallen * (x >= after)
+    if "rise" in shape:
+        end = draw(shape["rise"])
+        sound = sound * x / end * (x <= end)
+    if "soft_s" in shape:
+        sound = sound * np.minimum(1.0, np.minimum(time, time[::-1]) / draw(shape["soft_s"]))
+    return sound
 
 
 def voiced(
@@ -186,49 +210,6 @@ def voiced(
     return np.asarray(sound / (np.abs(sound).max() + 1e-300))
 
 
-def repeated(
-    n: int,
-    rate: float,
-    lengths: tuple[float, float],
-    gaps: tuple[float, float],
-    make: Callable[[int], NDArray[np.float64]],
-    rng: np.random.Generator,
-) -> NDArray[np.float64]:
-    """Draw calls one after the other, of lengths and gaps in seconds; the first may have begun.
-
-    Parameters
-    ----------
-    n : int
-        Number of samples.
-    rate : float
-        [Hz]
-    lengths, gaps : pair of float
-        [s]
-    make : callable
-        Call of so many samples, an ndarray of shape (m,).
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [unit of the calls]
-
-    Examples
-    --------
-    >>> rng = np.random.default_rng(0)
-    >>> bool(repeated(4800, 48e3, (0.01, 0.02), (0.01, 0.02), np.ones, rng).min() == 0.0)
-    True
-    """
-    sound = np.zeros(n)
-    start = int(rng.uniform(0.0, min(gaps[1], 0.3)) * rate)
-    while start < n:
-        m = max(64, int(log_uniform(*lengths, rng) * rate))
-        part = make(m)[: n - start] * 10.0 ** (rng.uniform(-6.0, 0.0) / 20.0)
-        sound[start : start + part.size] += part
-        start += m + int(log_uniform(*gaps, rng) * rate)
-    return sound
-
-
 def placed(
     n: int, times: NDArray[np.float64], strength: NDArray[np.float64], rate: float
 ) -> NDArray[np.float64]:
@@ -270,6 +251,7 @@ def blow(
     *,
     n_modes: int = 8,
     noise: float = 0.5,
+    ratios: Sequence[float] = (),
 ) -> NDArray[np.float64]:
     """One blow: modes in a band [Hz] that die within decay times (to 1/e) [s], and a noisy knock.
 
@@ -285,6 +267,8 @@ def blow(
     n_modes : int
     noise : float
         Most of the knock, over the modes [-].
+    ratios : sequence of float
+        Of a bell: frequencies of its modes, over one in the band; the higher ones die sooner.
 
     Returns
     -------
@@ -296,12 +280,12 @@ def blow(
     >>> blow(48e3, (500.0, 3000.0), (0.005, 0.02), np.random.default_rng(0)).ndim
     1
     """
-    longest = 7.0 * decay[1]
+    longest = min(7.0 * decay[1], 3.0)
     time = np.arange(max(16, int(longest * rate))) / rate
     sound = np.zeros(time.size)
-    for _ in range(n_modes):
-        frequency = min(log_uniform(*band, rng), 0.45 * rate)
-        lasting = log_uniform(*decay, rng)
+    for ratio in ratios or [1.0] * n_modes:
+        frequency = min(ratio * log_uniform(*band, rng), 0.45 * rate)
+        lasting = log_uniform(*decay, rng) / (0.5 + 0.5 * ratio)
         sound += rng.normal() * np.exp(-time / lasting) * np.sin(2 * np.pi * frequency * time)
     sound /= np.abs(sound).max() + 1e-12
     knock = rng.standard_normal(time.size) * np.exp(-time / rng.uniform(0.0005, 0.01))

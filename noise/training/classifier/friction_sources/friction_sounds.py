@@ -37,7 +37,7 @@ from noise.training.classifier.friction_sources.modal_body import (
     random_body,
 )
 from noise.training.classifier.friction_sources.slider import Slips, random_drive, slide
-from noise.training.draws import coloured_noise, log_uniform, wandering
+from noise.training.draws import coloured_noise, log_uniform, low_pass, wandering
 
 _TABLE = resources.files(__package__) / "friction_sounds.toml"
 
@@ -227,6 +227,10 @@ def _struck(
             body[: part.size] += part
         struck = fftconvolve(force, body)[:n]
         # The contact itself is heard as well, as a click without a body's voice.
+        if "radiates_above_hz" in row:
+            corner = log_uniform(*row["radiates_above_hz"], rng)
+            for _ in range(2):
+                struck = struck - low_pass(struck, corner, rate)
         click = np.diff(force, prepend=0.0)
         direct = 10.0 ** (rng.uniform(-30.0, 0.0) / 20.0) * float(np.abs(struck).max())
         struck = struck + direct * click / (np.abs(click).max() + 1e-300)
@@ -330,7 +334,8 @@ def _sawtooth(
     sound = through / (through.std() + 1e-12)
     sound = sound + rng.uniform(*row["direct"]) * direct / (direct.std() + 1e-12)
     hiss = coloured_noise(n, rng.uniform(0.2, 1.5), rng)
-    return np.asarray(sound + sound.std() * 10.0 ** (rng.uniform(-40.0, -10.0) / 20.0) * hiss)
+    level = 10.0 ** (rng.uniform(*row.get("hiss_db", (-40.0, -10.0))) / 20.0)
+    return np.asarray(sound + sound.std() * level * hiss)
 
 
 def _modes(

@@ -1,0 +1,400 @@
+"""Sounds of a row of ``background_sounds.toml``: layers of tones, noise, voices and blows in time.
+
+The rows say how a sound of its kind comes about. What tells a throat's call from a squeal: a pitch
+that glides by octaves within a call, formants that stay while it does, a call's own envelope. What
+tells a rough one from a squawk or a creak: periods that double and break, and noise in time with
+them. Blows come singly, at a steady beat, or wholly at random; a machine's tones hang together. A
+bubble rings at the frequency that its radius gives and rises as it nears the surface (Minnaert
+1933).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from noise.training.classifier.background_sounds.building import (
+    blow,
+    envelope,
+    harmonics,
+    placed,
+    resonance,
+    through_formants,
+    voiced,
+    wavering,
+)
+from noise.training.draws import coloured_noise, log_uniform, wandering
+
+Sound = NDArray[np.float64]
+Row = Mapping[str, Any]
+
+
+class Draws(dict[str, float]):
+    """Numbers drawn by their ranges, some of them under a name for others to refer to."""
+
+    def __init__(self, rng: np.random.Generator, names: Mapping[str, float] | None = None) -> None:
+        super().__init__(names or {})
+        self.rng = rng
+
+    def __call__(self, spec: Any) -> float:
+        """Draw a number.
+
+        Examples
+        --------
+        >>> draws = Draws(np.random.default_rng(0)).with_names({"low": 3.0})
+        >>> draws({"one": [2.0], "times": "low"}), draws("low"), 0.0 <= draws([0, 1]) <= 1.0
+        (6.0, 3.0, True)
+        """
+        if isinstance(spec, str):
+            return self[spec]
+        if isinstance(spec, list):
+            return float(self.rng.uniform(*map(self, spec)))
+        if not isinstance(spec, dict):
+            return float(spec)
+        if "log" in spec:
+            number = log_uniform(*spec["log"], self.rng)
+        elif "db" in spec:
+            number = 10.0 ** (self.rng.uniform(*spec["db"]) / 20.0)
+        elif "one" in spec:
+            number = float(self.rng.choice(spec["one"]))
+        else:
+            number = float(self.rng.uniform(*spec["uniform"]))
+        return number * self.get(spec.get("times", ""), 1.0) / self.get(spec.get("over", ""), 1.0)
+
+    def with_names(self, specs: Row | None) -> Draws:
+        """Return the same with further numbers under their names."""
+        more = Draws(self.rng, self)
+        for name, spec in (specs or {}).items():
+            more[name] = more(spec)
+        return more
+
+    def whole(self, spec: Any) -> int:
+        """Draw a whole number, both ends included."""
+        if isinstance(spec, list):
+            return int(self.rng.integers(spec[0], spec[1] + 1))
+        return int(self(spec))
+
+
+def synthesised(row: Row, n: int, rate: float, rng: np.random.Generator) -> Sound:
+    """Draw `n` samples of the sound of a row.
+
+    Parameters
+    ----------
+    row : mapping
+        As those of ``background_sounds.toml``.
+    n : int
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> row = {"layer": [{"source": "harmonics", "pitch": 440.0, "n": 1}]}
+    >>> tone = synthesised(row, 48_000, 48e3, np.random.default_rng(0))
+    >>> int(np.abs(np.fft.rfft(tone)).argmax())
+    440
+    """
+    draws = Draws(rng).with_names(row.get("shared"))
+    kinds = row.get("kinds", {"": 1.0})
+    kind = str(rng.choice(list(kinds), p=np.array(list(kinds.values())) / sum(kinds.values())))
+    sound = np.zeros(n)
+    for layer in row["layer"]:
+        if layer.get("kind", kind) != kind or rng.random() >= layer.get("chance", 1.0):
+            continue
+        for i in range(draws.whole(layer.get("copies", 1))):
+            own = draws.with_names(layer.get("let"))
+            part = _changed(_in_time(layer, n, rate, own), layer, rate, own)
+            level = own(layer.get("further", 1.0) if i else 1.0)
+            sound += level * own(layer.get("level", 1.0)) * part / (part.std() + 1e-12)
+    if rng.random() < row.get("through", {}).get("chance", 0.0):
+        sound = _through(sound, {"through": row["through"]["resonances"]}, rate, draws)
+    return _changed(sound, row, rate, draws) + 1e-5 * rng.standard_normal(n)
+
+
+def _in_time(layer: Row, n: int, rate: float, draws: Draws) -> Sound:
+    """Put the events of a layer where they belong."""
+
+    def event(m: int, turn: int) -> Sound:
+        each = draws.with_names(layer.get("each"))
+        parts = layer.get("parts", [layer])
+        if "either" in layer:
+            parts = [parts[int(draws.rng.choice(len(parts), p=layer["either"]))]]
+        made = [_made(part, m, rate, each, turn) for part in parts]
+        sound = np.zeros(max(part.size for part in made))
+        for part, sounding in zip(parts, made, strict=True):
+            level = each(part.get("level", 1.0)) if len(made) > 1 or "either" in layer else 1.0
+            sound[: sounding.size] += level * sounding / (np.abs(sounding).max() + 1e-12)
+        return envelope(sound, layer.get("shape", {}), rate, each) if "parts" in layer else sound
+
+    if "repeat" in layer:
+        return repeated(n, rate, layer["repeat"], event, draws)
+    if "at" not in layer:
+        return event(n, 0)
+    sound, when = np.zeros(n), layer["at"]
+    times = event_times(when, n / rate, draws)
+    length = when.get("length_s", 0.1)
+    alike = [event(int(draws(length) * rate), k) for k in range(when.get("same", 0))]
+    strength = _strengths(when, times.size, draws)
+    for k, (time, factor) in enumerate(zip(times, strength, strict=True)):
+        at = int(time * rate)
+        if 0 <= at < n:
+            part = alike[k % len(alike)] if alike else event(int(draws(length) * rate), k)
+            sound[at : at + part.size] += factor * part[: n - at]
+    return sound
+
+
+def repeated(
+    n: int, rate: float, when: Row, make: Callable[[int, int], Sound], draws: Draws
+) -> Sound:
+    """Draw events one after the other; the first may have begun.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    when : mapping
+        ``lengths`` and ``gaps`` [s]; further keys as in the table.
+    make : callable
+        Event of so many samples, an ndarray of shape (m,), and its number.
+    draws : Draws
+
+    Examples
+    --------
+    >>> draws = Draws(np.random.default_rng(0))
+    >>> when = {"lengths": [0.01, 0.02], "gaps": [0.01, 0.02]}
+    >>> sound = repeated(4800, 48e3, when, lambda m, _: np.ones(m), draws)
+    >>> bool(sound.min() == 0.0 < sound.max())
+    True
+    """
+    sound, rng = np.zeros(n), draws.rng
+    unit = draws(when.get("unit", 1.0))
+    gaps, lengths = ([unit * draws(end) for end in when[key]] for key in ("gaps", "lengths"))
+    groups = draws.whole(when["on"]) if "on" in when and rng.random() < 0.5 else 0
+    start, turn = int(rng.uniform(0.0, min(gaps[1], 0.3)) * rate), 0
+    while start < n:
+        length = rng.choice(lengths) if when.get("whole") else log_uniform(*_ends(lengths), rng)
+        m = max(64, int(length * rate))
+        if not groups or turn % (groups + 2) < groups:
+            part = make(m, turn)[: n - start]
+            factor = 1.0 if when.get("even") else 10.0 ** (rng.uniform(-6.0, 0.0) / 20.0)
+            sound[start : start + part.size] += factor * part
+        start += m + int(log_uniform(*_ends(gaps), rng) * rate)
+        turn += 1
+    return sound
+
+
+def _ends(pair: list[float]) -> tuple[float, float]:
+    return min(pair), max(pair)
+
+
+def event_times(when: Row, duration: float, draws: Draws) -> Sound:
+    """Draw times [s]: at a beat, at random, after gaps of a gamma distribution, or after a start.
+
+    Examples
+    --------
+    >>> event_times({"beat": 4.0}, 1.0, Draws(np.random.default_rng(0))).round(2).tolist()
+    [0.16, 0.41, 0.66, 0.91, 1.16, 1.41]
+    """
+    rng = draws.rng
+    if "beat" in when:
+        pace, jitter = draws(when["beat"]), draws(when.get("jitter", 0.0))
+        count = int(duration * pace) + 2
+        times = (np.arange(count) + rng.random() + jitter * rng.standard_normal(count)) / pace
+        times = times[np.arange(count) % 8 < draws.whole(when.get("on", 8))]
+    elif "gamma" in when:
+        pace, shape = draws(when["gamma"]), draws(when["irregular"]) ** -2.0
+        times = np.cumsum(rng.gamma(shape, 1.0 / (shape * pace), int(2 * pace * duration) + 4))
+    elif "random" in when:
+        count = rng.poisson(min(draws(when["random"]) * duration, 1e5)) + 1
+        times = rng.uniform(0.0, duration, count)
+    else:
+        start, spread = draws(when["start"]) * duration, draws(when["spread"])
+        times = start + np.r_[0.0, rng.exponential(spread, draws.whole(when["count"]) - 1)]
+    if "echo" in when:
+        times = np.r_[times, times + draws(when["echo"]) * rng.uniform(0.9, 1.1, times.size)]
+    return times
+
+
+def _strengths(when: Row, count: int, draws: Draws) -> Sound:
+    if "pareto" in when:
+        size = np.minimum(draws.rng.pareto(draws(when["pareto"]), count) + 0.05, 60.0)
+        return np.asarray(size * draws.rng.choice((-1.0, 1.0), count))
+    return draws.rng.lognormal(0.0, draws(when.get("scatter", 0.0)), count)
+
+
+def _made(part: Row, m: int, rate: float, draws: Draws, turn: int) -> Sound:
+    """Make an event of `m` samples; a blow is as long as it rings."""
+    rng, source = draws.rng, part["source"]
+    if source == "blow":
+        ratios = part.get("ratios", ())
+        band, decay = (tuple(map(draws, part[key])) for key in ("band", "decay"))
+        return blow(rate, (band[0], band[1]), (decay[0], decay[1]), rng, ratios=ratios,
+                    n_modes=part.get("modes", 8), noise=draws(part.get("knock", 0.5)))  # fmt: skip
+    if source == "bubble":
+        sound = _bubble(m, rate, rng)
+    elif source == "noise":
+        sound = coloured_noise(m, draws(part["slope"]), rng)
+    elif source == "hits":
+        times = event_times(part["hits"], m / rate, draws)
+        sound = placed(m, times, _strengths(part["hits"], times.size, draws), rate)
+    else:
+        sound = _toned(part, m, rate, draws, turn)
+    if source != "voice" and "formants" in part:
+        sound = through_formants(sound, tuple(map(draws, part["formants"])), rate, rng)
+    for change in part.get("before", ()):
+        sound = sound * _course(change, m, rate, draws)
+    return envelope(_through(sound, part, rate, draws), part.get("shape", {}), rate, draws)
+
+
+def _toned(part: Row, m: int, rate: float, draws: Draws, turn: int) -> Sound:
+    pitch = pitch_course(part["pitch"], m, rate, draws, turn)
+    if part["source"] == "voice":
+        formants = tuple(draws(part.get("size", 1.0)) * draws(f) for f in part["formants"])
+        roughness, breath = draws(part["roughness"]), draws(part["breath"])
+        return voiced(m, rate, pitch, formants, draws.rng, roughness=roughness, breath=breath)
+    if part["source"] == "firing":
+        return _firing(pitch, rate, draws.rng)
+    sound, roll_off = np.zeros(m), draws(part.get("roll_off", 1.0))
+    for ratio in part.get("chord", [1.0]):
+        note = np.minimum(draws(ratio) * pitch, 0.45 * rate)
+        sound += harmonics(note, rate, roll_off, n_most=draws.whole(part.get("n", 30)))
+    return sound
+
+
+def _firing(pitch: Sound, rate: float, rng: np.random.Generator) -> Sound:
+    """Return firing pulses of unequal strength through an exhaust, with noise in time."""
+    phase = 2 * np.pi * np.cumsum(pitch) / rate
+    phase += 0.5 * rng.random() ** 3 * coloured_noise(pitch.size, 1.8, rng)
+    unequal = 1.0 + rng.uniform(0.0, 0.6) * np.sin(phase / float(rng.choice((2.0, 3.0, 4.0))))
+    beat = np.exp(rng.uniform(0.5, 8.0) * (np.cos(phase) - 1.0)) * unequal
+    source = np.gradient(beat)
+    noise = coloured_noise(pitch.size, rng.uniform(0.2, 1.5), rng)
+    sound = source / (source.std() + 1e-12) + rng.uniform(0.0, 1.5) * beat * noise
+    for _ in range(3):
+        centre, width = log_uniform(80.0, 2500.0, rng), rng.uniform(60.0, 500.0)
+        sound = sound + rng.uniform(0.0, 2.0) * resonance(sound, centre, width, rate)
+    return np.asarray(sound + rng.uniform(0.02, 0.7) * sound.std() * noise)
+
+
+def _bubble(m: int, rate: float, rng: np.random.Generator) -> Sound:
+    """Return a chirp that rises by up to an octave and dies away."""
+    time = np.arange(max(m, 16)) / rate
+    start = log_uniform(400.0, 5000.0, rng)
+    rise = rng.uniform(0.0, 1.0) * time / time[-1]
+    phase = 2 * np.pi * np.cumsum(np.minimum(start * np.exp2(rise), 0.45 * rate)) / rate
+    sound = np.sin(phase) * np.exp(-5.0 * time / time[-1])
+    sound[: max(2, int(0.0005 * rate))] += rng.normal(0.0, 0.5)
+    return np.asarray(sound)
+
+
+def pitch_course(spec: Any, m: int, rate: float, draws: Draws, turn: int = 0) -> Sound:
+    """Draw the pitch [Hz] of an event of `m` samples.
+
+    Examples
+    --------
+    >>> pitch_course(440.0, 3, 48e3, Draws(np.random.default_rng(0))).tolist()
+    [440.0, 440.0, 440.0]
+    """
+    if not isinstance(spec, dict) or not {"at", "semitones"} & set(spec):
+        return np.full(m, min(draws(spec), 0.45 * rate))
+    rng, x, time = draws.rng, np.linspace(0.0, 1.0, m), np.arange(m) / rate
+    octaves = np.zeros(m)
+    if spec.get("glide"):
+        size = 1.0 if rng.random() < 0.6 else 0.2  # some calls hold their pitch
+        peak = rng.uniform(0.1, 0.6)
+        rising = np.sin(0.5 * np.pi * x / peak)
+        arch = np.where(x < peak, rising, np.cos(0.5 * np.pi * (x - peak) / (1.0 - peak)))
+        octaves += size * (rng.uniform(-0.15, 1.0) * arch + rng.uniform(-0.5, 0.3) * (x - 0.5))
+    octaves += draws(spec.get("bend", 0.0)) * x + draws(spec.get("hump", 0.0)) * np.sin(np.pi * x)
+    if "tremble" in spec:
+        depth, pace = map(draws, spec["tremble"])
+        octaves += depth * np.sin(2 * np.pi * (pace * time + rng.random()))
+    if "cycle" in spec:
+        turned = draws(spec["cycle"][2]) * (time + 3.0 * rng.random()) % 1.0
+        form = {"saw": turned, "square": (turned > 0.5).astype(float),
+                "sine": 0.5 + 0.5 * np.sin(2 * np.pi * turned)}[spec["cycle"][0]]  # fmt: skip
+        octaves += draws(spec["cycle"][1]) * form
+    pitch = np.exp2(octaves)
+    if "wander" in spec:
+        depth, pace = map(draws, spec["wander"])
+        pitch = pitch * wavering(m, rate, pace, depth, rng)
+    if "semitones" in spec:
+        note = int(draws(spec["low"])) + int(rng.integers(spec["semitones"]))
+        pitch = pitch * 55.0 * 2.0 ** (note / 12.0)
+    else:
+        pitch = pitch * draws(spec["at"])
+    if "turn" in spec and turn % 2:
+        pitch = pitch * draws(spec["turn"])
+    return np.asarray(np.clip(pitch, 5.0, 0.45 * rate))
+
+
+def _through(sound: Sound, part: Row, rate: float, draws: Draws) -> Sound:
+    """Add resonances of a sound, each of its strength, to what goes past them."""
+    if "through" not in part:
+        return sound
+    level = sound.std() + 1e-12
+    heard = draws(part.get("direct", 1.0)) * sound
+    for centre, width, gain in part["through"]:
+        rung = resonance(sound, draws(centre), draws(width), rate)
+        heard = heard + max(draws(gain), 0.0) * level * rung / (rung.std() + 1e-12)
+    return np.asarray(heard)
+
+
+def _changed(sound: Sound, row: Row, rate: float, draws: Draws) -> Sound:
+    for change in row.get("changes", ()):
+        sound = sound * _course(change, sound.size, rate, draws)
+    return sound
+
+
+def _course(change: Row, n: int, rate: float, draws: Draws) -> Sound:
+    """Draw a factor over time."""
+    ((kind, specs),) = change.items()
+    rng, time = draws.rng, np.arange(n) / rate
+    if kind == "strokes":  # forth and back of different strength
+        pace = draws(specs)
+        x = time * pace + rng.random() + 0.15 * wandering(n, rate, pace, rng)
+        stroke = np.abs(np.sin(np.pi * x)) ** rng.uniform(0.4, 2.0)
+        return np.asarray(0.03 + stroke * np.where(x.astype(int) % 2, rng.uniform(0.1, 1.0), 1.0))
+    if kind == "signed":
+        return wandering(n, rate, draws(specs), rng)
+    if kind == "bubbling":
+        popping = np.maximum(rng.standard_normal(n), 0.0)
+        gate = np.abs(resonance(popping - popping.mean(), draws(specs), 40.0, rate))
+        return np.asarray(0.1 + gate / (gate.max() + 1e-12))
+    numbers = _numbers(specs, draws)
+    first, second = next(numbers), next(numbers)
+    if kind == "wander":
+        return wavering(n, rate, second, first, rng)
+    if kind == "noise":
+        return np.asarray(np.exp(first * coloured_noise(n, second, rng)))
+    if kind == "sine":
+        return np.asarray(1.0 + first * np.sin(2 * np.pi * (second * time + rng.random())))
+    if kind == "beat":
+        phase = 2 * np.pi * np.cumsum(second * wavering(n, rate, 0.5, 0.03, rng)) / rate
+        return np.asarray(np.exp(first * (np.cos(phase) - 1.0)))
+    if kind == "after":
+        since = time - first * n / rate
+        return np.asarray(np.where(since > 0.0, np.exp(-np.maximum(since, 0.0) / second), 0.0))
+    if kind == "teeth":
+        speed = np.abs(np.sin(np.pi * next(numbers) * time))
+        strike = np.exp(first * (np.cos(2 * np.pi * np.cumsum(speed) / rate * second) - 1.0))
+        return np.asarray(rng.uniform(0.1, 1.0) + strike)
+    on, period = round(next(numbers)), round(next(numbers))  # pulsed
+    pulse = (time + rng.random()) * first
+    place = pulse % 1.0
+    inside = np.where(place < second, np.sin(np.pi * place / second), 0.0) ** rng.uniform(0.5, 1.5)
+    return np.asarray(inside * (pulse.astype(int) % max(period, on) < on))
+
+
+def _numbers(specs: list[Any], draws: Draws) -> Iterator[float]:
+    return map(draws, specs)
