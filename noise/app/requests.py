@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from models.errors import ParameterError
+from models.schema import Quantity
 
 _SHOWN = 40
 """Characters of a value that a message shows."""
@@ -58,10 +59,10 @@ def number(
             found = int(value) if whole else float(value)
         except ValueError:
             found = math.nan
-    if not low <= found <= high or (whole and not isinstance(found, int)):
-        kind = "a whole number" if whole else "a number"
-        bounds = f"from {low:g} to {high:g}" if math.isfinite(high) else f"from {low:g} on"
-        raise ParameterError(f"{key} {str(value)[:_SHOWN]!r}: must be {kind} {bounds}")
+    bounds = Quantity(key, low=low, high=high, closed=True)
+    if not bounds.possible(found) or (whole and not isinstance(found, int)):
+        wanted = bounds.wanted.replace("a number", "a whole number" if whole else "a number")
+        raise ParameterError(f"{key} {str(value)[:_SHOWN]!r}: must be {wanted}")
     return found
 
 

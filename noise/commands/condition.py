@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from models.condition import CONDITION as QUANTITIES, FIXED
 from models.errors import ParameterError
+from models.foreign_file import LARGEST_TEXT, reading
 from models.rig import LawSpec, Rig, parse_spec
 from models.rig_file import material_names
 from noise.base.progress import note, say
@@ -27,21 +28,49 @@ from noise.base.remarks import (
     use_remarks,
 )
 from noise.base.user_effects import effect_library
-from noise.commands.options import CHANGE, Group, Option, changed
-from noise.commands.shaft import shaft_motion, speed, swing
-from noise.commands.values import number
+from noise.commands.options import CHANGE, Group, Option, changed, number, number_or_none
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from models.foreign_table import ForeignTable
     from models.recording import Recording
     from sim.effects.effect import Effect
     from sim.run import Run
-    from sim.shaft import ShaftMotion
+    from sim.shaft import LoggedSpeed, ShaftMotion
 
 DEFAULT_MATERIAL = "fluorocarbon"
 DEFAULT_SECONDS = 1.0
 _FIT, _SUPPORT, _TEMPERATURE = (
     QUANTITIES[name] for name in ("interference", "support_stiffness", "temperature")
 )
+
+
+def speed(text: str) -> float | tuple[float, float] | Path:
+    """Read a speed [rad/s], the two ends of a ramp, or the path of a log."""
+    start, dots, end = text.partition("..")
+    if dots and number_or_none(start) is not None and number_or_none(end) is not None:
+        return number()(start), number()(end)
+    if number_or_none(text) is not None:
+        return number()(text)
+    if not Path(text).is_file():
+        raise ArgumentTypeError(
+            f"is {text!r}, expected a number in rad/s, a ramp such as 0..10, or a CSV file that "
+            "exists"
+        )
+    return Path(text)
+
+
+def swing(text: str) -> tuple[float, float]:
+    """Read amplitude [degree] and frequency [Hz] of an oscillation."""
+    try:
+        degrees, frequency = (number(above=0.0)(part) for part in text.split(","))
+    except (ArgumentTypeError, ValueError):
+        raise ArgumentTypeError(
+            f"is {text!r}, expected degrees and Hz, both above 0, such as 15,2"
+        ) from None
+    return degrees, frequency
 
 
 def _support_stiffness(text: str) -> float:
@@ -315,3 +344,66 @@ def _note_idle(path: Path | None, rig: Rig, library: Mapping[str, Effect]) -> No
     own = sorted(set(library) - set(EFFECTS))
     if own and not any(spec.name in own for spec in rig.effects):
         note(f"--effects {path} defines {', '.join(own)}; --effect {own[0]} turns it on")
+
+
+def shaft_motion(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:
+    """Return how the shaft turns, and that in words.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        With ``speed`` and ``oscillate``, of which one is given.
+    seconds : float
+        Length of the run [s].
+    """
+    from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
+
+    if options.oscillate is not None:
+        degrees, frequency = options.oscillate
+        words = f"swinging +-{degrees:g} degrees at {frequency:g} Hz"
+        return Oscillation(math.radians(degrees), frequency), words
+    if isinstance(options.speed, tuple):
+        start, end = options.speed
+        return SpeedRamp(start, end, seconds), f"{start:g} to {end:g} rad/s"
+    if isinstance(options.speed, Path):
+        return _logged_speed(options.speed, seconds), f"speed as logged in {options.speed.name}"
+    return ConstantSpeed(options.speed), f"{options.speed:g} rad/s"
+
+
+def _logged_speed(path: Path, seconds: float) -> LoggedSpeed:
+    from models.foreign_table import read_table
+    from sim.shaft import LoggedSpeed
+
+    where = f"--speed {path}"
+    with reading(path, "CSV table", where=where, largest=LARGEST_TEXT):
+        table = read_table(path)
+    try:
+        time, speed = _log_columns(table)
+        logged = LoggedSpeed(time, speed)
+    except ParameterError as error:
+        raise ParameterError(f"{where}: {error}") from None
+    if time[0] > 0.0 or time[-1] < seconds:
+        note(
+            f"--speed {path} covers {time[0]:g} to {time[-1]:g} s, the run 0 to {seconds:g} s; "
+            "where the log says nothing its nearest speed is held"
+        )
+    elif time[-1] > seconds:
+        note(f"--speed {path} lasts {time[-1]:g} s, the run takes its first {seconds:g} s")
+    return logged
+
+
+def _log_columns(table: ForeignTable) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Time [s] and speed [rad/s] by their headings; the first two columns where there are none."""
+    from models.units import quantity_of_unit
+
+    if not any(table.names):
+        return table.values[:, 0], table.values[:, 1]
+    found = {}
+    for name, unit, column in zip(table.names, table.units, table.values.T, strict=True):
+        quantity, factor = quantity_of_unit(unit) or (name.lower(), 1.0)
+        found.setdefault("speed" if quantity == "speed_rad_s" else quantity, factor * column)
+    if not {"time", "speed"} <= set(found):
+        raise ParameterError(
+            f"has the columns {', '.join(table.names)}, expected time_s and speed_rad_s"
+        )
+    return found["time"], found["speed"]

@@ -11,9 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.progress import note
-from noise.commands.batch import BATCH, check_batch, run_batch
+from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_recordings, run_batch
 from noise.commands.options import CALIBRATION, OneOf, Option, full_scale_of, seed
-from noise.commands.plots import PLOT, check_plots, draw_recordings
 
 if TYPE_CHECKING:
     from models.blocks import RecordingBlocks

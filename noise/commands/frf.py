@@ -13,8 +13,7 @@ from models.errors import ParameterError, RecordingError
 from noise.base.files import atomic, check_target
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
-from noise.commands.options import Option, refuse, seed
-from noise.commands.values import band, number, one_of
+from noise.commands.options import Option, band, number, one_of, refuse, seed
 
 if TYPE_CHECKING:
     import numpy as np

@@ -16,10 +16,8 @@ from models.errors import ParameterError
 from noise.base.files import check_target, export_paths, locked
 from noise.base.progress import counted, note
 from noise.base.tables import TABLE_ENDINGS, write_table
-from noise.commands.batch import BATCH, check_batch, run_batch
-from noise.commands.options import CALIBRATION, Option, full_scale_of, seed
-from noise.commands.plots import PLOT, check_plots, draw_recordings
-from noise.commands.values import number
+from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_recordings, run_batch
+from noise.commands.options import CALIBRATION, Option, full_scale_of, number, seed
 
 if TYPE_CHECKING:
     from noise.labels.labelling import Labelling

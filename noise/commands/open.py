@@ -6,8 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from models.errors import ParameterError
-from noise.commands.options import Option, seed
-from noise.commands.values import whole_number
+from noise.commands.options import Option, seed, whole_number
 
 DESCRIPTION = (
     "Open recordings, a label table or a rig in a local app: listen, see, correct labels, hear "

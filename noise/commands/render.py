@@ -12,8 +12,17 @@ from models.errors import BushingNoiseError, ParameterError, RecordingError
 from noise.base.files import check_target
 from noise.base.progress import counted, note, say, track
 from noise.commands.condition import CONDITION
-from noise.commands.options import CALIBRATION, OneOf, Option, check_folder, refuse, seed
-from noise.commands.values import band, number, one_of
+from noise.commands.options import (
+    CALIBRATION,
+    OneOf,
+    Option,
+    band,
+    check_folder,
+    number,
+    one_of,
+    refuse,
+    seed,
+)
 
 if TYPE_CHECKING:
     from models.recording import Recording

@@ -7,8 +7,15 @@ from pathlib import Path
 
 from noise.base.files import check_target
 from noise.base.progress import counted, note, say
-from noise.commands.options import CALIBRATION, Option, full_scale_of, refuse, seed
-from noise.commands.values import number, whole_number
+from noise.commands.options import (
+    CALIBRATION,
+    Option,
+    full_scale_of,
+    number,
+    refuse,
+    seed,
+    whole_number,
+)
 
 DESCRIPTION = (
     "Put recordings, labels, screens and diagnoses on one page that needs nothing else: to be "

@@ -11,8 +11,18 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from models.rig import Rig
 from noise.base.progress import Steps, say, steps
-from noise.commands.options import CHANGE, Group, OneOf, Option, changed, check_folder, seed
-from noise.commands.values import MOST_WORKERS, number, whole_number
+from noise.commands.options import (
+    CHANGE,
+    MOST_WORKERS,
+    Group,
+    OneOf,
+    Option,
+    changed,
+    check_folder,
+    number,
+    seed,
+    whole_number,
+)
 
 if TYPE_CHECKING:
     from noise.batch import Journal

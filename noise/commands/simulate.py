@@ -15,12 +15,14 @@ from noise.base.files import check_target
 from noise.base.progress import note, say
 from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.condition import CONDITION, is_long, run_arguments, with_notes
-from noise.commands.options import Option, seed
-from noise.commands.values import whole_number
+from noise.commands.options import Option, seed, whole_number
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
+    import os
+
     from models.recording import Recording
+    from sim.blocks import BlockRun
     from sim.run import Run
 
 
@@ -149,7 +151,6 @@ def _write_or_tell(path: Path | None, recording: Recording) -> None:
 
 def _write_in_blocks(path: Path, arguments: Mapping[str, Any], notes: tuple[str, ...]) -> int:
     from noise.base.remarks import NEVER_SLIPS
-    from noise.long_run import write_run
     from sim.blocks import simulate_blocks
 
     made = simulate_blocks(**arguments)
@@ -158,6 +159,58 @@ def _write_in_blocks(path: Path, arguments: Mapping[str, Any], notes: tuple[str,
         note(NEVER_SLIPS)
     _print_names(written)
     return 0
+
+
+def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...] = ()) -> Path:
+    """Compute a run and write it, block by block, into a WAV file with its sidecar.
+
+    Parameters
+    ----------
+    path : path-like
+        ``run07`` and ``run07.wav`` are the same; parent folders are made.
+    run : BlockRun
+        Of `sim.blocks.simulate_blocks`; a WAV file holds 4 GiB, 2.4 h at 30 kHz.
+    notes : tuple of str
+        For the sidecar, which also says so where nothing ever slips.
+
+    Returns
+    -------
+    Path
+        The WAV file.
+
+    Raises
+    ------
+    ParameterError
+        The motion cannot be solved, or the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from models.rig_file import load_material_rig
+    >>> from noise.recordings import read_recording
+    >>> from sim.blocks import simulate_blocks
+    >>> run = simulate_blocks(load_material_rig("PDMS"), 5.0, seconds=0.2)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     read_recording(write_run(Path(folder) / "run07", run)).duration
+    0.2
+    """
+    import numpy as np
+
+    from models.recording import Recording
+    from noise.base.remarks import NEVER_SLIPS
+    from noise.recordings.wav import write_blocks
+
+    about = Recording(
+        np.zeros((len(run.channels), 0)), run.rate, run.channels, run.condition, notes=notes
+    )
+    return write_blocks(
+        path,
+        run.blocks,
+        run.n_samples,
+        about,
+        lambda: (NEVER_SLIPS,) if run.watch.never_slips else (),
+    )
 
 
 def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any]) -> None:

@@ -12,8 +12,7 @@ from models.errors import ParameterError
 from noise.base.files import check_target
 from noise.base.progress import Steps, counted, say, steps, track
 from noise.base.tables import TABLE_ENDINGS
-from noise.commands.options import Option, refuse, seed
-from noise.commands.values import one_of, whole_number
+from noise.commands.options import Option, one_of, refuse, seed, whole_number
 
 if TYPE_CHECKING:
     from noise.classifier import Classifier

@@ -16,7 +16,7 @@ from models.recording import Channel, Recording
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from models.transfer_functions.filtering import convolve
-from noise.long_run import write_run
+from noise.commands.simulate import write_run
 from noise.recordings import read_recording
 from noise.recordings.wav import write_blocks
 from sim.acquisition import Acquisition, Decimation
@@ -182,7 +182,7 @@ def test_memory_stays_below_300_MB_and_does_not_grow(tmp_path):  # noqa: N802
     code = f"""
 from pathlib import Path
 from models.rig_file import load_material_rig
-from noise.long_run import write_run
+from noise.commands.simulate import write_run
 from sim.blocks import simulate_blocks
 for seconds in (20.0, 90.0):
     write_run({str(tmp_path / "run")!r}, simulate_blocks(load_material_rig("fluorocarbon"), 2.5,
