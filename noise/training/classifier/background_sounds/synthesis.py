@@ -145,9 +145,10 @@ def _in_time(layer: Row, n: int, rate: float, draws: Draws) -> Sound:
     strength = _strengths(when, times.size, draws)
     for k, (time, factor) in enumerate(zip(times, strength, strict=True)):
         at = int(time * rate)
-        if 0 <= at < n:
+        if at < n:
             part = alike[k % len(alike)] if alike else event(int(draws(length) * rate), k)
-            sound[at : at + part.size] += factor * part[: n - at]
+            part = part[max(0, -at) : n - at]  # what was struck before still rings
+            sound[max(0, at) : max(0, at) + part.size] += factor * part
     return sound
 
 
@@ -203,14 +204,14 @@ def event_times(when: Row, duration: float, draws: Draws) -> Sound:
     Examples
     --------
     >>> event_times({"beat": 4.0}, 1.0, Draws(np.random.default_rng(0))).round(2).tolist()
-    [0.16, 0.41, 0.66, 0.91, 1.16, 1.41]
+    [-0.09, 0.16, 0.41, 0.66, 0.91, 1.16]
     """
     rng = draws.rng
     if "beat" in when:
         pace, jitter = draws(when["beat"]), draws(when.get("jitter", 0.0))
-        count = int(duration * pace) + 2
-        times = (np.arange(count) + rng.random() + jitter * rng.standard_normal(count)) / pace
-        times = times[np.arange(count) % 8 < draws.whole(when.get("on", 8))]
+        beats = np.arange(-1, int(duration * pace) + 1)
+        times = (beats + rng.random() + jitter * rng.standard_normal(beats.size)) / pace
+        times = times[beats % 8 < draws.whole(when.get("on", 8))]
     elif "gamma" in when:
         pace, shape = draws(when["gamma"]), draws(when["irregular"]) ** -2.0
         times = np.cumsum(rng.gamma(shape, 1.0 / (shape * pace), int(2 * pace * duration) + 4))
