@@ -189,8 +189,8 @@ def _amount(given: Any, name: str, target: str, where: str) -> _Amount:
                 by = 1.0 + float(found["number"].replace(" ", "")) / 100.0
         if not 0.0 < by < math.inf:
             raise ParameterError(
-                f"{stated} is no change; write a factor above 0 such as 'x2', a percentage above "
-                "-100 % with its sign such as '-20 %', or a number"
+                f"{stated} is not a valid change; write a factor above 0 such as 'x2', a "
+                "percentage above -100 % with its sign such as '-20 %', or a number"
             )
         return _Amount(factor=by)
     to = number({name: given}, name, where, low=-math.inf)

@@ -98,7 +98,7 @@ class Recording:
     Raises
     ------
     ParameterError
-        Samples that are not one row a channel, two channels of one name, or a rate that is none.
+        Samples that are not one row per channel, two channels of one name, or a rate that is none.
 
     Examples
     --------
@@ -120,7 +120,7 @@ class Recording:
         if self.samples.ndim != 2 or len(self.samples) != len(self.channels):
             raise ParameterError(
                 f"recording {self.name!r}: samples of shape {self.samples.shape} do not fit "
-                f"{len(self.channels)} channels; give one row a channel"
+                f"{len(self.channels)} channels; give one row per channel"
             )
         if len(set(self.channel_names)) < len(self.channels):
             raise ParameterError(f"recording {self.name!r}: two channels have the same name")

@@ -159,9 +159,9 @@ def read_toml(path: Path, where: str) -> dict[str, Any]:
     Raises
     ------
     ParameterError
-        If the file cannot be read or is no TOML.
+        If the file cannot be read or is not valid TOML.
     """
-    with reading(path, "TOML", where=where, largest=LARGEST_TOML):
+    with reading(path, "valid TOML file", where=where, largest=LARGEST_TOML):
         return parse_toml(path.read_text(encoding="utf-8"))
 
 

@@ -21,9 +21,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from models.errors import BushingNoiseError, RecordingError
-from noise.base.progress import discard, note, say
+from noise.base.progress import discard, note, say, set_verbosity
 from noise.commands import COMMANDS, load_command
-from noise.commands.options import add_options, option_names
+from noise.commands.options import COMMON, add_options, option_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -90,14 +90,14 @@ def _report_errors(arguments: list[str]) -> int:
         if _is_of_the_machine(error):
             return _failed(str(error), _CANNOT_GO_ON)
         if isinstance(error, RecordingError):  # the only input that there was
-            say(f"{_NAME}: refused: {error}")
+            say(f"{_NAME}: refused: {error}", error=True)
             return _REFUSED
         return _failed(str(error))
     except MemoryError:
         message = "this needs more memory than there is; try a shorter recording"
         return _failed(message, _CANNOT_GO_ON)
     except KeyboardInterrupt:
-        say(f"{_NAME}: interrupted")
+        say(f"{_NAME}: interrupted", error=True)
         return _INTERRUPTED
     except BrokenPipeError:
         raise
@@ -142,9 +142,10 @@ def _run(arguments: list[str]) -> int:
         return stop.code if isinstance(stop.code, int) else 0
     if unknown:
         options_there = f"see {_NAME} {options.command} --help"
-        known = ["--help", *option_names(load_command(options.command).OPTIONS)]
+        known = ["--help", *option_names([*load_command(options.command).OPTIONS, *COMMON])]
         meant = _meant(unknown[0].partition("=")[0], known)
         return _failed(f"unrecognized: {' '.join(unknown)}{meant} ({options_there})")
+    set_verbosity(quiet=options.quiet, verbose=options.verbose)
     return load_command(options.command).run(options)
 
 
@@ -155,7 +156,7 @@ def _meant(word: str, known: Iterable[str]) -> str:
 
 
 def _failed(message: str, code: int = _USAGE_ERROR) -> int:
-    say(f"{_NAME}: error: {message}")
+    say(f"{_NAME}: error: {message}", error=True)
     return code
 
 
@@ -205,7 +206,7 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
             module = load_command(name)
             command.description = module.DESCRIPTION
             command.epilog = getattr(module, "EPILOG", None)
-            add_options(command, module.OPTIONS)
+            add_options(command, [*module.OPTIONS, *COMMON])
     return parser
 
 

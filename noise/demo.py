@@ -75,7 +75,7 @@ _RATE = 48_000
 """Of the sounds for listening [Hz]."""
 
 
-def run_demo(out: Path, *, seed: int = 0) -> None:
+def run_demo(out: Path, *, seed: int = 0) -> list[dict[str, object]]:
     """Simulate, render, label and show the four cases.
 
     Parameters
@@ -85,6 +85,11 @@ def run_demo(out: Path, *, seed: int = 0) -> None:
         and ``report.html``.
     seed : int
         Of the sensors' noise.
+
+    Returns
+    -------
+    list of dict
+        Rows of the label table.
 
     Raises
     ------
@@ -130,6 +135,7 @@ def run_demo(out: Path, *, seed: int = 0) -> None:
             "the recordings alone."
         ),
     )
+    return rows
 
 
 def _entry(case: Case, recording: Recording, segments: list[Segment], audio: Path) -> ReportEntry:

@@ -163,7 +163,7 @@ class Modes:
         )
 
     def to_pandas(self) -> DataFrame:
-        """Return one row a mode as a data frame of pandas.
+        """Return one row per mode as a data frame of pandas.
 
         Returns
         -------

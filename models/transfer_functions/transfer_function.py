@@ -158,7 +158,7 @@ class TransferFunction:
         return axes
 
     def to_pandas(self) -> DataFrame:
-        """Return one row a line as a data frame of pandas, in the columns of its CSV file.
+        """Return one row per line as a data frame of pandas, in the columns of its CSV file.
 
         Returns
         -------

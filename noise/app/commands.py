@@ -19,7 +19,7 @@ _NICE = 10
 _PATIENCE = 10.0
 """A command that is told to end writes what it has, which takes no longer [s]."""
 
-_OF = re.compile(r".*: (\d+) of (\d+)")
+_OF = re.compile(r".*: (\d+) of (\d+)(, .* left)?")
 """A line of progress."""
 
 _KEPT = 20

@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import AsyncIterator
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cache
 from multiprocessing import get_context
 from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any
@@ -19,17 +20,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from features.kernels.levels import sound_levels
+from models.condition import Condition
 from models.errors import ParameterError
+from models.recording import Channel, Recording
 from noise.app.design import Design, design_of
 from noise.app.design_controls import Base
 from noise.app.design_player import BLOCK, HEADER, RATE, REFUSED, play
 from noise.app.requests import number
+from noise.app.worker_process import WorkerProcess
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
+    from noise.classifier import Classifier
+
 _METER = RATE // BLOCK
-"""Blocks over which the level is told: a second."""
+"""Blocks of the second whose level and noise are shown."""
+
+_NICE = 12
+"""By how much the sound goes before its name."""
 
 _MOST_RUNS = 4
 """That go on at once: of pages that are open."""
@@ -46,11 +55,13 @@ class _Stream:
     loop: asyncio.AbstractEventLoop
     queue: asyncio.Queue[bytes | None] = field(default_factory=asyncio.Queue)
     heard: deque[bytes] = field(default_factory=lambda: deque(maxlen=_METER))
+    speed: float = 0.0
 
     def put(self, message: bytes) -> None:
         """Hand on what the player made; an empty message ends the stream."""
         if message and HEADER.unpack_from(message)[0] != REFUSED:
             self.heard.append(message[HEADER.size : HEADER.size + 4 * BLOCK])
+            self.speed = HEADER.unpack_from(message)[5]
         given_up = not message or self.queue.qsize() > _UNREAD
         with suppress(RuntimeError):  # the loop has ended
             self.loop.call_soon_threadsafe(self.queue.put_nowait, None if given_up else message)
@@ -70,6 +81,9 @@ class LiveSounds:
         self._lock = Lock()
         self._streams: dict[int, _Stream] = {}
         self._link: Connection | None = None
+        self._names: WorkerProcess[tuple[int, float, bytes], dict[str, object]] = WorkerProcess(
+            f"{__name__}:name_of", _NICE
+        )
 
     def get_ready(self) -> None:
         """Start the player, which takes a while, if there is none."""
@@ -89,6 +103,7 @@ class LiveSounds:
 
     def stop(self) -> None:
         """End all streams and the player."""
+        self._names.stop()
         with self._lock:
             link, self._link = self._link, None
         if link is not None:
@@ -153,19 +168,26 @@ class LiveSounds:
         self._known(run)
         self._tell("sooner", run, float(seconds))
 
-    def levels(self, number: int) -> dict[str, float | None]:
-        """Return levels of the last second of a run, as the tables have them [dB re 20 uPa]."""
+    def levels(self, number: int) -> dict[str, object]:
+        """Return levels of the last second of a run [dB re 20 uPa], and the noise in it.
+
+        The name is that of the second before, since it takes as long as that to be found.
+        """
         stream = self._streams.get(number)
         heard = b"".join(stream.heard.copy()) if stream is not None else b""
         pressure = np.frombuffer(heard, "<f4").astype(np.float64)
         if pressure.size < RATE // 4:
             return {"level_db": None, "level_dba": None, "l_afmax_dba": None}
+        newest = self._names.newest
+        name = newest[1] if newest is not None and newest[0][0] == number else None
+        if stream is not None and len(stream.heard) == _METER and not self._names.busy:
+            self._names.ask((number, stream.speed, heard))
         found = sound_levels(pressure, RATE)
         told = {
             "level_db": found.level, "level_dba": found.level_a, "l_afmax_dba": found.level_af_max,
         }  # fmt: skip
-        return {
-            name: round(value, 1) if math.isfinite(value) else None for name, value in told.items()
+        return (name or {}) | {
+            key: round(value, 1) if math.isfinite(value) else None for key, value in told.items()
         }
 
     def _known(self, number: int) -> None:
@@ -189,6 +211,38 @@ class LiveSounds:
                 self._link = None
         for stream in list(self._streams.values()):
             stream.put(b"")
+
+
+def name_of(asked: tuple[int, float, bytes]) -> dict[str, object]:
+    """Return the label and the frequency [Hz] of a run's last second, by the classifier.
+
+    Parameters
+    ----------
+    asked : tuple of (int, float, bytes)
+        Number of the run, speed [rad/s], sound pressure as 32-bit floats [Pa].
+
+    Examples
+    --------
+    >>> name_of((1, 5.0, bytes(4 * 48000)))
+    {'label': 'none', 'frequency_hz': None}
+    """
+    from noise.labels.segments import file_label, label_recording
+
+    _, speed, heard = asked
+    pressure = np.frombuffer(heard, "<f4").astype(np.float64)
+    run = Recording(
+        pressure[None], RATE, (Channel("pressure"),), Condition(speed=speed), calibrated=True
+    )
+    found = file_label(label_recording(run, _classifier()))
+    return {"label": found.label, "frequency_hz": found.frequency}
+
+
+@cache
+def _classifier() -> Classifier:
+    """Return the shipped classifier; loaded once, in the process that names."""
+    from noise.classifier import load_classifier
+
+    return load_classifier()
 
 
 def _whole(asked: dict[str, Any], key: str) -> int:

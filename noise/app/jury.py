@@ -30,7 +30,7 @@ COLUMNS = (
     *("jury", "listener", "question", "played", "seed"),
     *("order", "first", "second", "vote", "seconds", "time"),
 )
-"""Of the table of votes, one row a comparison; those that wait have no vote."""
+"""Of the table of votes, one row per comparison; those that wait have no vote."""
 
 SCALE_COLUMNS = (
     *("jury", "listener", "question", "played", "sound", "value", "low_95", "high_95"),

@@ -55,8 +55,10 @@ _RATE = 48000
 
 def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
-    folder = opened.folder if opened.table is None else opened.table.absolute().parent
-    votes = Votes(folder / "votes.csv")
+    votes = Votes(opened.folder / "votes.csv")
+    if opened.table is not None:  # where votes were written before
+        before = opened.table.absolute().with_name("votes.csv")
+        votes = Votes(before) if before.exists() else votes
     playing = JuryPlaying(opened, SoundCache(opened))
     by_name: dict[str, list[int]] = {}
     for job in opened.jobs:

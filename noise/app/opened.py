@@ -32,7 +32,8 @@ class Opened:
     rigs : tuple of Path
         Rig files.
     folder : Path
-        Where what is saved goes.
+        Where designs and votes are saved: beside the rig file, else beside the folder of
+        recordings, never in it.
     sources : tuple of Path
         Recordings and folders that the recordings were found in.
     samples : int, optional
@@ -66,7 +67,11 @@ class Opened:
 
 
 def open_paths(
-    paths: Sequence[Path], table: Path | None = None, samples: int | None = None, seed: int = 0
+    paths: Sequence[Path],
+    table: Path | None = None,
+    samples: int | None = None,
+    seed: int = 0,
+    save: Path | None = None,
 ) -> Opened:
     """Find recordings, label table and rig files.
 
@@ -82,6 +87,8 @@ def open_paths(
         Simulated samples to learn from beside corrections [-].
     seed : int
         Of random orders.
+    save : Path, optional
+        `Opened.folder`, where that is to be another one.
 
     Raises
     ------
@@ -118,4 +125,8 @@ def open_paths(
     folder = first if first.is_dir() else first.parent
     if table is None and jobs:
         table = tables[0] if tables else folder / _TABLE
-    return Opened(tuple(jobs), table, tuple(rigs), folder, tuple(sounds), samples, seed)
+    if save is None and rigs:
+        save = rigs[0].absolute().parent
+    elif save is None and sounds:
+        save = folder.parent
+    return Opened(tuple(jobs), table, tuple(rigs), save or folder, tuple(sounds), samples, seed)

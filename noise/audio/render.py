@@ -43,7 +43,7 @@ COLUMNS = (
     *("true_peak_dbtp", "loudness_lufs"),
     *LEVEL_COLUMNS,
 )
-"""Of the table of levels, one row a part of a file."""
+"""Of the table of levels, one row per part of a file."""
 
 
 @dataclass(frozen=True, eq=False)

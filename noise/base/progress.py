@@ -29,25 +29,54 @@ LINES = "BUSHING_NOISE_PROGRESS_LINES"
 _EVERY = 1.0
 """Between two such lines [s]."""
 
+_LONG = 5.0
+"""From which on work is told how long it will take [s]; a bar always tells it."""
+
 _Item = TypeVar("_Item")
 
 _TICK = 0.5
 """After which a bar shows anew how long it has taken [s]."""
 
 
-def say(text: str) -> None:
+def set_verbosity(*, quiet: bool = False, verbose: bool = False) -> None:
+    """Say less or more: with `quiet` errors alone, with `verbose` the time of each line.
+
+    Examples
+    --------
+    >>> set_verbosity()
+    """
+    _verbosity.quiet, _verbosity.since = quiet, time.monotonic() if verbose else None
+
+
+class _Verbosity:
+    quiet = False
+    since: float | None = None
+
+
+_verbosity = _Verbosity()
+
+
+def say(text: str, *, error: bool = False) -> None:
     """Print one line on standard error.
 
     Line breaks inside `text` become spaces, and what would control the terminal is shown as its
     code.
 
+    Parameters
+    ----------
+    text : str
+    error : bool
+        Whether it is printed with ``--quiet``, too.
+
     Examples
     --------
     >>> say("reading 12 recordings")
     """
-    if sys.stderr is None:  # closed by the caller
+    if sys.stderr is None or (_verbosity.quiet and not error):  # None: closed by the caller
         return
     line = readable(" ".join(text.split("\n")))
+    if _verbosity.since is not None:
+        line = f"[{time.monotonic() - _verbosity.since:7.2f} s] {line}"
     try:
         if "tqdm" in sys.modules:
             from tqdm import tqdm
@@ -216,16 +245,21 @@ def _ticking(bar: tqdm[object]) -> Iterator[None]:
 
 
 def _on_terminal() -> bool:
-    return sys.stderr is not None and sys.stderr.isatty()
+    return sys.stderr is not None and sys.stderr.isatty() and not _verbosity.quiet
 
 
 def _in_lines(items: Iterable[_Item], doing: str, total: int | None) -> Iterator[_Item]:
-    said = time.monotonic()
+    began = said = time.monotonic()
     for number, item in enumerate(items, 1):
         yield item
-        if time.monotonic() - said >= _EVERY:
-            said = time.monotonic()
-            say(f"{doing}: {number}" + ("" if total is None else f" of {total}"))
+        now = time.monotonic()
+        if now - said < _EVERY:
+            continue
+        said, text = now, f"{doing}: {number}"
+        if total is not None:
+            left = (now - began) * (total - number) / number
+            text += f" of {total}" + f", about {left:.0f} s left" * (now - began >= _LONG)
+        say(text)
 
 
 _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")

@@ -264,6 +264,11 @@ def _remarks(
 ) -> tuple[str, ...]:
     low, high = (1e3 * limit for limit in rig.interference_range)
     found = []
+    if options.speed is not None and (top := shaft.top_speed(_or(options.seconds, 1.0))) > _FAST:
+        found.append(
+            f"--speed is in rad/s: {top:.3g} rad/s are {top * 30.0 / math.pi:.4g} rpm; if you mean "
+            f"{top:.3g} rpm, give --speed {top * math.pi / 30.0:.3g}"
+        )
     if not low * (1.0 - 1e-9) <= interference_mm <= high * (1.0 + 1e-9):
         nearest = low if interference_mm < low else high
         found.append(
@@ -283,6 +288,9 @@ def _remarks(
     found.append(temperature_remark(rig, options.temperature))
     return tuple(text for text in found if text)
 
+
+_FAST = 30.0
+"""Above which a speed may be meant as rpm [rad/s]."""
 
 _LEAST_SAMPLES = 16
 """What `noise.recordings` takes for a recording."""

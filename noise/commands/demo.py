@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from argparse import Namespace
 from pathlib import Path
 
@@ -15,11 +17,13 @@ DESCRIPTION = (
     "Run the whole chain: simulate a creak, a squawk, a squeal and a silent run, make them "
     "audible, compute their features, label them, and write a report. The folder then holds "
     "recordings/, audio/, features.csv, labels.csv, report.html, and hits/, blows of a hammer "
-    "on the modelled clamp for `bushing-noise frf`."
+    "on the modelled clamp for `bushing-noise frf`. It prints the label and the level of each "
+    "recording and where the report is, and opens the report where there is a display."
 )
 
 OPTIONS = (
     Option("--out FOLDER", Path, Path(_DEFAULT_OUT)).help("folder for the results"),
+    Option("--no-browser").help("do not open the report"),
     seed("seed of the sensors' noise"),
 )
 
@@ -29,7 +33,23 @@ def run(options: Namespace) -> int:
     check_folder(options.out)
     say(f"writing the demonstration into {options.out}")
     from noise.demo import run_demo
+    from noise.labels.summary import result_lines
 
-    run_demo(options.out, seed=options.seed)
-    print(options.out / "report.html")
+    rows = run_demo(options.out, seed=options.seed)
+    page = options.out / "report.html"
+    for line in result_lines(rows):
+        print(line)
+    print(page)
+    if not options.no_browser and has_display():
+        import webbrowser
+
+        webbrowser.open(page.absolute().as_uri())
     return 0
+
+
+def has_display() -> bool:
+    """Whether somebody sits before a screen: a terminal, and a display where it needs one."""
+    if not (sys.stdout is not None and sys.stdout.isatty()):
+        return False
+    needs = sys.platform not in ("win32", "darwin")
+    return not needs or any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))

@@ -26,7 +26,7 @@ _PITCH_COLUMNS = ("pressure_pitch", "pressure_pitch_range", "pressure_voiced_sha
 
 
 DESCRIPTION = (
-    "Compute the features of recordings: one row a recording, in SI units, levels in dB. "
+    "Compute the features of recordings: one row per recording, in SI units, levels in dB. "
     "What a recording cannot tell is empty; a file that cannot be read has the reason in the "
     "column error. A recording of 2^21 samples or more (44 s at 48 kHz) is described in pieces, "
     "and a note says so."
@@ -40,7 +40,7 @@ OPTIONS = (
             "one, of the first pressure channel (about one second a second of sound)"
         ),
         Option("--windows").help(
-            "one row a window of half a second, every quarter of a second, with start and end in "
+            "one row per window of 0.5 s, every 0.25 s, with start and end in "
             "seconds and what the classifier of `bushing-noise label` is given of it, in the units "
             "that features.WINDOW_FEATURES and, for the torque, features.FEATURES state"
         ),

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 DESCRIPTION = (
-    "Label recordings: one row a segment with the label creak, squawk, squeal, none or "
+    "Label recordings: one row per segment with the label creak, squawk, squeal, none or "
     "unknown, its probability, frequency in Hz and level in dB re 20 uPa (dBFS where not "
     "calibrated), A-weighted and over the background, and the operating condition it belongs "
     "to: logged, or inferred from a creak, squawk or squeal with bounds of 90 %, assuming a "

@@ -6,13 +6,13 @@ from argparse import Namespace
 from pathlib import Path
 
 from models.errors import ParameterError
-from noise.commands.options import Option, seed, whole_number
+from noise.commands.options import Option, check_folder, seed, whole_number
 
 DESCRIPTION = (
     "Open recordings, a label table or a rig in a local app: listen, see, correct labels, hear "
     "a design while it is changed, compare sounds blind. Its address is the first line on "
     "standard output; only this machine reaches it, and only by that address. It stops by the "
-    "button Stop, or by Ctrl-C here. Corrections and votes are written at once."
+    "button Quit, or by Ctrl-C here. Corrections and votes are written at once."
 )
 
 EPILOG = (
@@ -27,6 +27,10 @@ OPTIONS = (
     ),
     Option("--out TABLE", Path).help(
         "label table to write (default: the one that is named, or labels.csv in the folder)"
+    ),
+    Option("--save-to FOLDER", Path).help(
+        "where designs and votes are saved (default: beside the rig file, else beside the folder "
+        "of recordings)"
     ),
     Option("--port PORT", whole_number(0, most=65535), 0).help(
         "to listen on (default: one that is free)"
@@ -45,7 +49,9 @@ def run(options: Namespace) -> int:
     from noise.app.opened import open_paths
     from noise.app.server import serve
 
-    opened = open_paths(options.paths, options.out, options.samples, options.seed)
+    if options.save_to is not None:
+        check_folder(options.save_to, "--save-to")
+    opened = open_paths(options.paths, options.out, options.samples, options.seed, options.save_to)
 
     def ready(address: str) -> None:
         print(address, flush=True)

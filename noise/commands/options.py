@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from models.errors import BushingNoiseError, ParameterError
 from models.schema import Quantity
 from noise.base.files import check_target
-from noise.base.progress import say
+from noise.base.progress import note, say
 
 if TYPE_CHECKING:
     from models.rig import Rig
@@ -279,6 +279,14 @@ def seed(use: str) -> Option:
     return Option("--seed N", whole_number(0), 0).help(f"{use} (a whole number; default: 0)")
 
 
+COMMON = (
+    OneOf(
+        Option("--quiet").help("print errors only: no progress, no notes"),
+        Option("--verbose").help("print how much time has passed before each line"),
+    ),
+)
+"""Options of all commands."""
+
 CHANGE = Option("--change NAME=AMOUNT", change, repeated=True).help(
     "change the rig as [change] in its file does: damping=x2, critical_torque=-20%, "
     "damping_Nms_rad=0.09, ageing_time=x2 or slip_pulse.amplitude=x0.5; wall_mm, length_mm, "
@@ -314,6 +322,12 @@ def full_scale_of(options: argparse.Namespace) -> PascalPerFullScale | None:
         The calibrator's recording cannot be used, or one option is given without the other.
     """
     stated: float | None = options.full_scale
+    if stated is not None and _LEAST_LEVEL <= stated <= _MOST_LEVEL:
+        pascal = 20e-6 * math.sqrt(2.0) * 10.0 ** (stated / 20.0)
+        note(
+            f"--full-scale {stated:g} is in Pa, an extremely loud sound; if you mean {stated:g} dB "
+            f"of a sine at full scale, give --full-scale {pascal:.4g}"
+        )
     if (options.calibrator is None) != (options.level is None):
         raise ParameterError(
             "--calibrator needs --level, the level that it gives in dB, and --level a --calibrator"
@@ -333,6 +347,10 @@ def full_scale_of(options: argparse.Namespace) -> PascalPerFullScale | None:
         )
     values = tuple(tone.full_scale for tone in tones)
     return values[0] if len(values) == 1 else values
+
+
+_LEAST_LEVEL, _MOST_LEVEL = 60.0, 170.0
+"""Of sound levels that are taken for pascals by mistake [dB]."""
 
 
 def changed(rig: Rig, changes: Sequence[tuple[str, str | float]] | None) -> Rig:
@@ -382,4 +400,4 @@ def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None
 def refuse(error: object, name: str | Path = "") -> None:
     """Say that an input is refused, and why; `name` stands before what does not name it."""
     named = f"{name}: " if Path(name).name not in str(error) else ""
-    say(f"bushing-noise: refused: {named}{error}")
+    say(f"bushing-noise: refused: {named}{error}", error=True)

@@ -55,6 +55,7 @@ OPTIONS = (
         "sampling rate in Hz, a whole number from 1000 to 400000"
     ),
     Option("--out RUN", Path).help("write RUN.wav (32-bit float, in the units above) and RUN.json"),
+    Option("--force").help("replace RUN.wav even if this program did not write it"),
     Option("--plot FILE", Path).help(
         "draw the run into FILE, .png, .svg or .pdf: torque, displacement and sliding speed "
         "over time, phase plane, torque against sliding speed, autospectra; of runs up to 60 s"
@@ -75,6 +76,8 @@ def run(options: Namespace) -> int:
     """Simulate; write the recording and the picture, or print the summary."""
     if options.out is not None:
         check_target(options.out)
+        if not options.force:
+            _check_own(options.out)
     if options.plot is not None:
         _check_plot(options.plot)
     if options.sound_power is not None:
@@ -232,6 +235,22 @@ def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any])
         say("the plate radiates no sound")
     else:
         say(f"sound power {total:.1f} dB(A) re 1 pW in a baffle")
+
+
+def _check_own(out: Path) -> None:
+    """Refuse to replace a recording that this program did not write: its sidecar tells."""
+    wav = out if out.suffix.lower() == ".wav" else out.with_name(f"{out.name}.wav")
+    if not wav.exists():
+        return
+    try:
+        sidecar = json.loads(wav.with_suffix(".json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        sidecar = {}
+    if not isinstance(sidecar, dict) or "wav_crc32" not in sidecar:
+        raise ParameterError(
+            f"--out {out}: {wav.name} is there and was not written by this program; give another "
+            "name, or --force to replace it"
+        )
 
 
 def _check_plot(path: Path) -> None:

@@ -244,7 +244,7 @@ def choose_law(
         fits[name] = fit_law(sketch, hopeless=sketch.away > _HOPELESS * least)
         everything = _with_held(fits[name], subjects, trained, held)
         missed[name] = float(np.exp(np.mean(np.log(everything.missed))))
-        progress(f"law {name}: misses {100.0 * missed[name]:.1f} % of the oscillation")
+        progress(f"law {name}: leaves {100.0 * missed[name]:.1f} % of the oscillation unexplained")
     rigs = {name: fit.model.rig(fit.vector, base, material) for name, fit in fits.items()}
     best = min(missed, key=lambda name: missed[name])
     scales = [repeats_scale(rigs[best], one, seed) for one in recordings]

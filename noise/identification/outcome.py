@@ -204,7 +204,7 @@ class Identification:
         raise KeyError(name)
 
     def to_pandas(self) -> DataFrame:
-        """Return one row a number as a data frame of pandas, as ``identification.json`` names it.
+        """Return one row per number as a data frame of pandas, as ``identification.json`` names it.
 
         Returns
         -------

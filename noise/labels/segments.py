@@ -96,7 +96,7 @@ class Segments(list[Segment]):
     """
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the labels over time, one row a track.
+        """Draw the labels over time, one row per track.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class Segments(list[Segment]):
         return draw_tracks(tracks, ax)
 
     def to_pandas(self) -> DataFrame:
-        """Return one row a segment as a data frame of pandas, in the columns of a label table.
+        """Return one row per segment as a data frame of pandas, in the columns of a label table.
 
         Returns
         -------

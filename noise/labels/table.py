@@ -1,4 +1,4 @@
-"""The label table: one row a segment, written, shown and read in any of its formats.
+"""The label table: one row per segment, written, shown and read in any of its formats.
 
 A table of one's own making will do as well, as long as it has the columns ``file`` and ``label``;
 the others of the label table are empty where it has none. Columns of one's own stay in it.
@@ -67,7 +67,7 @@ _SUPPORT = "support_stiffness_Nm_rad"
 
 
 class LabelTable(list[dict[str, object]]):
-    """The label table of recordings: one row a segment, by `COLUMNS`.
+    """The label table of recordings: one row per segment, by `COLUMNS`.
 
     A table of polars is made of it as of any list of dictionaries; one of pandas as well, or with
     the columns' order kept by `to_pandas`.
@@ -103,7 +103,7 @@ class LabelTable(list[dict[str, object]]):
         write_table(path, (*COLUMNS, *own_columns(self)), self)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the labels over time, one row a file.
+        """Draw the labels over time, one row per file.
 
         Parameters
         ----------

@@ -550,11 +550,11 @@ def _effect_label(diagnosis: Diagnosis, fitted: EffectFinding) -> str:
 
 def _closed_so_far(before: float, gap: float, floor: float, fitted: bool) -> str:
     if before <= floor:
-        return "The nominal gap is no larger than the floor, so there is nothing to close."
+        return "The gap of the rig file is no larger than the floor; there is nothing to explain."
     if not fitted:
         return ""
     share = percent(closed_fraction(before, gap, floor))
-    return f"Refitted parameters close {share} of the closable gap."
+    return f"Refitted parameters explain {share} of the deviation."
 
 
 def _known(value: float | None, otherwise: float) -> float:

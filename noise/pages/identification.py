@@ -377,8 +377,8 @@ def _answer(found: Identification) -> list[str]:
     chosen = next(score for score in found.laws if score.law == found.law)
     return [
         f"Law of friction: {found.law.replace('_', ' ')} ({_WORDS[found.law]}); within a cycle it "
-        f"misses {100.0 * chosen.missed:.1f} % of the oscillation, and over a run it leaves "
-        f"{chosen.held_out:.2f} floors on recordings that its fit has not seen.",
+        f"leaves {100.0 * chosen.missed:.1f} % of the oscillation unexplained. Recordings that its "
+        f"fit has not seen deviate by {chosen.held_out:.2f} floors.",
         *stiffness,
     ]
 

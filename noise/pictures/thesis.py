@@ -198,7 +198,7 @@ def _simulated(shown: Runs, case: Case) -> Run:
 
 
 def torque_spectra(number: str, shown: Runs) -> Figure:
-    """Draw autospectra of the recorded torque, a row a run."""
+    """Draw autospectra of the recorded torque, a row per run."""
     with styled():
         figure = new_figure(1.0 + 2.0 * len(shown.cases), f"Figure {number}: {shown.material}")
         rows = figure.subplots(len(shown.cases), 1, sharex=True)

@@ -66,7 +66,7 @@ class Sweep:
         return self.features[name]
 
     def to_pandas(self) -> DataFrame:
-        """Return one row a run, with its condition and its features, as a data frame of pandas."""
+        """Return one row per run, with its condition and features, as a data frame of pandas."""
         rows: list[dict[str, Any]] = []
         for index, at in enumerate(self.conditions.ravel()):
             support = at.support_stiffness

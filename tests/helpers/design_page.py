@@ -75,10 +75,10 @@ class DesignPage:
         self.until(f"{DESIGN}.sound.heardSerial !== undefined")
 
     def marked(self):
-        """Headings of what is marked as not of the numbers shown."""
+        """Headings of what is marked as of the previous design."""
         return self.page.evaluate(
             "[...document.querySelectorAll('#view-design h2')].filter((one) =>"
-            " getComputedStyle(one, '::after').content.includes('not of these numbers'))"
+            " getComputedStyle(one, '::after').content.includes('of the previous design'))"
             ".map((one) => one.textContent)"
         )
 

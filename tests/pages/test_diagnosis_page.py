@@ -115,11 +115,11 @@ def test_each_bar_begins_where_the_one_above_ends(made):
 
 def test_the_waterfall_says_how_much_is_closed_and_how_sure_that_is():
     assert waterfall(one_effect())[1].words == (
-        "The fit closes 96 % of the closable gap (90 % interval 91 % to 99 %), and 90 % of what "
-        "refitted parameters leave."
+        "The fit explains 96 % of the deviation (90 % interval 91 % to 99 %), and 90 % of what "
+        "refitted parameters leave unexplained."
     )
     words = waterfall(parameters())[1].words
-    assert words == "Refitted parameters close 97 % of the closable gap."
+    assert words == "Refitted parameters explain 97 % of the deviation."
 
 
 def test_the_verdict_leads_the_causes_and_none_is_lost():

@@ -414,7 +414,7 @@ def _made(
     }
     kinetic, critical = (factors.get(name, 1.0) for name in ("kinetic_torque", "critical_torque"))
     least = max(kinetic * fit.kinetic_torque / fit.critical_torque for fit in case.rig.fits)
-    if critical < least * (1.0 + _ROUNDING):  # a contact breaks at no less than it slides at
+    if critical < least * (1.0 + _ROUNDING):  # it is at least the kinetic torque
         factors["critical_torque"] = least * (1.0 + _ROUNDING)
     stated = [spec for spec in model.effects if is_stated(comparison, spec)]
     further = [comparison.runs.active(spec) for spec in model.effects if spec not in stated]

@@ -265,9 +265,8 @@ def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, t
     notes = []
     if told:
         notes.append(
-            f"noise of the sensors (white, RMS), by the recordings: {', '.join(told)}; a hiss of "
-            "the room that is in all recordings counts as theirs, unless [sensors] of the rig file "
-            "states less"
+            f"noise of the sensors (white, RMS), by the recordings: {', '.join(told)}; constant "
+            "room noise is counted as sensor noise, unless [sensors] of the rig file states less"
         )
     if steps:
         notes.append(f"steps of the converter, by the recordings: {', '.join(steps)}")

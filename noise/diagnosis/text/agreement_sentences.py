@@ -25,6 +25,8 @@ assumed."""
 _MOST_NAMED = 4
 """Recordings that are named in a sentence; assumed."""
 
+_AS_REPEATS = "times as much as repeat measurements do"
+
 
 def agreement_sentence(diagnosis: Diagnosis) -> str:
     """Say whether the rig file describes the rig, at which conditions and in which channels not.
@@ -47,45 +49,46 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
     >>> slow = Agreement("run01.wav", 1.0, 2.79e-4, 1.1, {"torque": 0.9, "pressure": 1.3})
     >>> fast = Agreement("run02.wav", 4.0, 2.79e-4, 6.1, {"torque": 8.0, "pressure": 1.2})
     >>> agreement_sentence(replace(nothing, agreement=(slow,)))
-    'The rig file describes the rig: the recording is 1.1 times as far off as repeats are.'
+    'The rig file describes the rig: the recording deviates 1.1 times as much as repeat measurements
+      do.'
     >>> agreement_sentence(replace(nothing, verdict=("unknown",), agreement=(slow, fast)))
-    'The rig file describes the rig at 1 of 2 recordings, not above 1 rad/s: there it is up to 6.1
-      times as far off as repeats are, in the torque (together 0.9 floors, p = 0.60).'
+    'The rig file describes the rig at 1 of 2 recordings, not above 1 rad/s: there it deviates
+      up to 6.1 times as much as repeat measurements do, in the torque (together 0.9 floors,
+      p = 0.60).'
     """
     found = diagnosis.agreement
     if not found:
         return ""
     far, n = far_ones(diagnosis), len(found)
-    which = "the recording is" if n == 1 else f"its {n} recordings are"
+    which = "the recording deviates" if n == 1 else f"its {n} recordings deviate"
     reach = _reach(found)
     if not far:
         start = "The rig file describes the rig"
         if diagnosis.verdict:
             start += " but for a difference that shows only on a closer look"
-        return f"{start}: {which} {reach} times as far off as repeats are{_whole(diagnosis)}."
+        return f"{start}: {which} {reach} {_AS_REPEATS}{_whole(diagnosis)}."
     channels = f", in the {joined(_channels(far))}" if _channels(far) else ""
     if not diagnosis.verdict:  # what one recording does may be chance, and together it is
         roughly = " only roughly" if len(far) == n else ""
         farthest = max(far, key=lambda one: one.gap).recording
         return (
-            f"The rig file describes the rig{roughly}: {which} {reach} times as far off as repeats "
-            f"are, {farthest} the farthest{channels}; another recording of its condition tells "
-            "whether that is chance."
+            f"The rig file describes the rig{roughly}: {which} {reach} {_AS_REPEATS}, {farthest} "
+            f"most{channels}. Another recording of its condition shows whether that is chance."
         )
     if len(far) == n:
         return (
-            f"The rig file does not describe the rig: {which} {reach} times as far off as repeats "
-            f"are{channels}{_whole(diagnosis)}."
+            f"The rig file does not describe the rig: {which} {reach} {_AS_REPEATS}"
+            f"{channels}{_whole(diagnosis)}."
         )
     return (
         f"The rig file describes the rig at {n - len(far)} of {n} recordings, not "
-        f"{_where(found)}: there it is up to {floors(max(one.gap for one in far))} times as far "
-        f"off as repeats are{channels}{_whole(diagnosis)}."
+        f"{_where(found)}: there it deviates up to {floors(max(one.gap for one in far))} "
+        f"{_AS_REPEATS}{channels}{_whole(diagnosis)}."
     )
 
 
 def far_ones(diagnosis: Diagnosis) -> list[Agreement]:
-    """Return the recordings that are farther off than repeats are.
+    """Return the recordings that deviate more than repeat measurements do.
 
     Examples
     --------
@@ -114,7 +117,7 @@ def remainder_sentence(diagnosis: Diagnosis) -> str:
     >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
     >>> left = Remainder(3.04, ("torque",), (100.0, 450.0))
     >>> remainder_sentence(replace(nothing, verdict=("partial_slip",), remainder=left))
-    'With it the gap is still 3.0 floors, most in the torque from 100 Hz to 450 Hz: it acts in
+    'With it the gap is still 3.0 floors, most in the torque from 100 Hz to 450 Hz. It acts in
       another way than was tried, or something else is missing as well.'
     """
     left = diagnosis.remainder
@@ -126,12 +129,12 @@ def remainder_sentence(diagnosis: Diagnosis) -> str:
         where += f" from {frequency(low)} to {frequency(high)}"
     if diagnosis.verdict == ("parameters",):
         return (
-            f"With refitted parameters the gap is still {floors(left.gap)} floors, {where}: "
-            "something else is missing as well."
+            f"With refitted parameters the gap is still {floors(left.gap)} floors, {where}. "
+            "Something else is missing as well."
         )
-    them, acts = ("it", "it acts") if len(diagnosis.verdict) == 1 else ("them", "they act")
+    them, acts = ("it", "It acts") if len(diagnosis.verdict) == 1 else ("them", "They act")
     return (
-        f"With {them} the gap is still {floors(left.gap)} floors, {where}: {acts} in another way "
+        f"With {them} the gap is still {floors(left.gap)} floors, {where}. {acts} in another way "
         "than was tried, or something else is missing as well."
     )
 

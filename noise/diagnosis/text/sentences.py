@@ -168,29 +168,31 @@ def closed_sentence(finding: EffectFinding) -> str:
     >>> from noise.diagnosis.findings import EffectFinding
     >>> closed_sentence(EffectFinding("mains_hum", "measurement", 0.9, closed=0.96, closed_low=0.91,
     ...                               closed_high=0.99))
-    'The fit closes 96 % of the closable gap (90 % interval 91 % to 99 %).'
+    'The fit explains 96 % of the deviation (90 % interval 91 % to 99 %).'
     >>> closed_sentence(EffectFinding("mains_hum", "measurement", 0.9, gap_before=1.9,
     ...                               gap_after=2.3, closed=-0.4))
-    'The fit closes nothing of the closable gap: held-out recordings are 1.9 floors off without it,
-      2.3 with it.'
+    'The fit explains nothing of the deviation: held-out recordings deviate by 1.9 floors without
+      it, by 2.3 with it.'
     """
     before, after = floors(finding.gap_before), floors(finding.gap_after)
     if finding.closed is None:
         if finding.gap_before is None or finding.gap_after is None:
             return ""
         return (
-            "How much the fit closes cannot be told: held-out recordings are hardly off without it "
+            "How much the fit explains is not known: held-out recordings hardly deviate without it "
             f"({before} floors; {after} with it)."
         )
-    words = closed_words(finding, " of the closable gap", "90 % interval ")
+    words = closed_words(finding, " of the deviation", "90 % interval ")
     if finding.closed <= _NOTHING:
         if finding.gap_before is not None and finding.gap_after is not None:
-            words += f": held-out recordings are {before} floors off without it, {after} with it"
+            words += (
+                f": held-out recordings deviate by {before} floors without it, by {after} with it"
+            )
     elif finding.closed_by_effect is not None:
         share = finding.closed_by_effect
         left = percent(share) if share > _NOTHING else "nothing"
-        words += f", and {left} of what refitted parameters leave"
-    return f"The fit closes {words}."
+        words += f", and {left} of what refitted parameters leave unexplained"
+    return f"The fit explains {words}."
 
 
 def equivalence_sentences(diagnosis: Diagnosis) -> list[str]:
@@ -204,7 +206,7 @@ def equivalence_sentences(diagnosis: Diagnosis) -> list[str]:
 def _unfitted(diagnosis: Diagnosis) -> str:
     if not diagnosis.verdict or diagnosis.held_out:
         return ""
-    return "Nothing has been fitted: whether a known effect closes the gap is not known."
+    return "Nothing has been fitted, so it is not known whether an effect explains the deviation."
 
 
 def _conditions(limits: str) -> str:

@@ -208,7 +208,7 @@ def increase_margin(
     Parameters
     ----------
     margin_of : callable
-        Of parameters, shape (n, d), a row a design; returns n margins, which may be infinite.
+        Of parameters, shape (n, d), a row per design; returns n margins, which may be infinite.
     variables : sequence of DesignVariable, length d
     gain : float
         By which the margin shall grow, above 0, in its unit, such as [rad/s].
@@ -270,7 +270,7 @@ def remove_noise(
     Parameters
     ----------
     label_of : callable
-        Of parameters, shape (n, d), a row a design; returns n labels.
+        Of parameters, shape (n, d), a row per design; returns n labels.
     variables : sequence of DesignVariable, length d
     noises : collection of str
         The labels that shall not be.

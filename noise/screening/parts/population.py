@@ -85,7 +85,7 @@ def outcomes(
     ----------
     design : Design
     factors : array_like, shape (n, d)
-        On the nominal parameters, one row a bushing.
+        On the nominal parameters, one row per bushing.
     names : sequence of str, length d
         Of the columns, from `noise.screening.design.tolerances.PARAMETERS`.
     point : UsePoint, optional

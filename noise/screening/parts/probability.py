@@ -90,7 +90,7 @@ def label_probabilities(
     Parameters
     ----------
     labels_of : callable
-        Of parameters, shape (n, d), a row a part; returns n labels.
+        Of parameters, shape (n, d), a row per part; returns n labels.
     distributions : mapping of str to Distribution, length d
     rng : numpy.random.Generator
         Of the scramblings.
@@ -151,7 +151,7 @@ def label_probabilities(
 
 
 def _estimate(hits: NDArray[np.bool_], confidence: float) -> Estimate:
-    """Share of hits and its interval; `hits` has a row a scrambling."""
+    """Share of hits and its interval; `hits` has a row per scrambling."""
     share = float(hits.mean())
     samples = hits.size / _design_effect(hits)
     inside, outside = share * samples, (1.0 - share) * samples

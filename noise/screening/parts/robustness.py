@@ -80,7 +80,7 @@ def sobol_indices(
     Parameters
     ----------
     output : callable
-        Of parameters, shape (n, d), a row a part; returns n finite numbers. It is called once,
+        Of parameters, shape (n, d), a row per part; returns n finite numbers. It is called once,
         with ``samples * (d + 2)`` rows.
     distributions : mapping of str to Distribution, length d
     rng : numpy.random.Generator

@@ -45,7 +45,8 @@ def plain_words(found: DesignMap, margin: float, never_slips: str = "") -> str:
     >>> screen(["PDMS"], use).standings[0].words
     'quiet at all 3 points of use; nothing vibrates'
     >>> screen(["fluorocarbon-thesis"], use).standings[0].words
-    'squawks from 2 to 5 rad/s; quiet above; at worst the use reaches 3 rad/s into what vibrates'
+    'squawks from 2 to 5 rad/s; quiet above; worst case: up to 3 rad/s of the operating range
+      vibrates'
     """
     if never_slips:
         return f"{never_slips}; quiet" if found.grid.frequency else never_slips
@@ -132,12 +133,12 @@ def _margin(margin: float, use: tuple[float, float]) -> list[str]:
     if margin == math.inf:
         return ["nothing vibrates"]
     if margin > 0.0:
-        return [f"margin {margin:.3g} rad/s to what vibrates"]
+        return [f"margin {margin:.3g} rad/s to the vibrating range"]
     if margin == 0.0:
-        return ["no margin to what vibrates"]
+        return ["no margin to the vibrating range"]
     if -margin >= use[1] - use[0]:
-        return ["at worst every speed of use vibrates"]
-    return [f"at worst the use reaches {-margin:.3g} rad/s into what vibrates"]
+        return ["worst case: the whole operating range vibrates"]
+    return [f"worst case: up to {-margin:.3g} rad/s of the operating range vibrates"]
 
 
 def _range(speed: NDArray[np.float64]) -> str:

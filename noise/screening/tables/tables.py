@@ -29,10 +29,10 @@ def screening_tables(screening: Screening) -> dict[str, Table]:
     Returns
     -------
     dict of str to (tuple of str, list of dict)
-        Columns and rows by the name of the file: ``map.csv`` with a row a point,
+        Columns and rows by the name of the file: ``map.csv`` with a row per point,
         ``critical_speeds.csv`` with one a temperature, fit and support, ``designs.csv`` with the
         quietest first and those refused last, ``sensitivities.csv`` of Sobol' indices of the margin
-        with a row a parameter, and ``advice.csv`` of changes that widen the margin, then of those
+        with a row per parameter, and ``advice.csv`` of changes that widen the margin, then of those
         that end the noise.
 
     Examples

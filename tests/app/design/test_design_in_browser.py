@@ -37,13 +37,14 @@ def test_what_the_loudspeaker_gets_is_what_simulate_gives(browser, app, tmp_path
     opened = DesignPage(browser, app, tapped=True)
     opened.page.evaluate(f"{DESIGN}.sound.fullScale = {FULL_SCALE}")  # or it grows meanwhile
     opened.play()
-    pieces = opened.heard(1500, 8)
+    pieces = opened.heard(1500, 16)
     assert opened.sound("fullScale") == FULL_SCALE
     run = simulate_blocks(
         load_rig(tmp_path / "mine.toml"), 5.0, seconds=1.0, acquisition=Acquisition(rate=RATE)
     )
     expected = np.hstack(list(run.blocks))[2]
     # On a busy machine blocks come late and silence is between them: what fits best is whole.
+    pieces = pieces[(pieces != 0.0).all(axis=1)]
     fits = [np.abs(piece - simulated(piece, expected)).max() for piece in pieces]
     best = int(np.argmin(fits))
     at, gain = place(pieces[best], expected)
@@ -86,6 +87,6 @@ def test_it_fits_and_everybody_can_use_it(browser, app, width):
     )
     assert len(columns) == (2 if width == 1280 else 1)
     assert accessibility_errors(opened.page) == []
-    assert opened.marked() == ["What is heard", "Torque", "Spectrum", "Map"]
+    assert opened.marked() == ["Spectrum", "Map", "Torque"]
     opened.forgive_refusals()
     opened.close()

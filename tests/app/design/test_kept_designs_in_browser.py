@@ -44,6 +44,6 @@ def test_another_base_keeps_the_condition_and_tells_what_it_drops(browser, app):
     assert opened.page.evaluate(f"{DESIGN}.stated()") == before
     assert (opened.value("base"), opened.value("change-damping")) == ("rig 0", "1.5")
     opened.page.get_by_role("button", name="Redo").click()
-    opened.page.get_by_text("Done again.").wait_for()
+    opened.page.get_by_text("Redone.").wait_for()
     assert opened.page.evaluate(f"{DESIGN}.stated()") == after
     opened.close()

@@ -3,16 +3,19 @@ import { api } from "../api.js";
 import { made } from "../dom.js";
 
 const AGAIN = 700, AFTER = 1000; // ms
+const USUAL = 20; // that the first map takes [s]
 
 export class Chart {
   constructor(panel, design) {
     this.design = design;
     this.box = made("div", { className: "chart" });
-    this.said = made("p", { className: "soft", textContent: "The map comes when nothing has changed for a second." });
+    this.said = made("p", { className: "soft" });
+    this.progress = made("progress", { max: 1, ariaLabel: "Map", hidden: true });
+    this.took = USUAL;
     this.ask = made("button", { type: "button", textContent: "What would end the noise?" });
     this.helps = made("ul", { className: "helps" });
     this.ask.addEventListener("click", () => this.help());
-    panel.append(made("section", { className: "shown" }, made("h2", { textContent: "Map" }), this.box, this.said),
+    panel.append(made("section", { className: "shown" }, made("h2", { textContent: "Map" }), this.box, this.progress, this.said),
       made("section", {}, made("h2", { textContent: "What to change" }), made("div", { className: "tools" }, this.ask), this.helps));
   }
 
@@ -22,14 +25,25 @@ export class Chart {
     this.box.classList.toggle("old", Boolean(this.known));
     this.helps.replaceChildren();
     this.later = setTimeout(() => this.#follow(), AFTER);
+    if (!this.progress.hidden) return;
+    this.said.textContent = `Map updates about ${Math.ceil(this.took)} s after the last change.`;
     this.point();
   }
 
   async #follow() {
     const stated = this.design.stated(), mine = this.following = {};
-    const answer = await asked("design/chart", stated, () => mine === this.following && !this.design.hidden());
+    const began = performance.now();
+    const answer = await asked("design/chart", stated, () => {
+      if (mine !== this.following || this.design.hidden()) return false;
+      const since = (performance.now() - began) / 1000, left = Math.ceil(this.took - since);
+      Object.assign(this.progress, { hidden: false, value: Math.min(0.95, since / this.took) });
+      this.said.textContent = left > 0 ? `Computing the map: about ${left} s left.` : "Computing the map: nearly done.";
+      return true;
+    });
     if (!answer) return;
-    this.said.textContent = answer.error || "Cr creak, Sk squawk, Sl squeal: at constant speed, at this support and temperature; simulated at some points, told by stability at others.";
+    this.progress.hidden = true;
+    this.took = Math.max(2, (performance.now() - began) / 1000);
+    this.said.textContent = answer.error || "Cr creak, Sk squawk, Sl squeal. At constant speed, for this support and temperature; partly simulated, partly from stability analysis.";
     if (!answer.found) return;
     this.known = true;
     this.box.classList.remove("old");
@@ -53,16 +67,19 @@ export class Chart {
   async help() {
     const stated = this.design.stated(), mine = this.helping = {}, heard = this.design.speed;
     const constant = this.design.controls.values.get("motion") === "constant";
-    this.helps.replaceChildren(made("li", { textContent: "Being simulated, some seconds ..." }));
+    this.ask.disabled = true;
+    this.ask.textContent = "Searching, some seconds ...";
     const answer = await asked("design/helps", constant || !heard ? stated : { ...stated, speed: Number(heard.toFixed(2)) }, () => mine === this.helping && JSON.stringify(stated) === JSON.stringify(this.design.stated()));
+    this.ask.disabled = false;
+    this.ask.textContent = "What would end the noise?";
     if (!answer) return;
     if (!answer.found) {
       this.helps.replaceChildren(made("li", { textContent: answer.error }));
       return;
     }
-    const { noise, speed_rad_s: speed, changes } = answer.found, at = `turning evenly at ${Number(speed.toPrecision(3))} rad/s`;
+    const { noise, speed_rad_s: speed, changes } = answer.found, at = `at a constant ${Number(speed.toPrecision(3))} rad/s`;
     if (!changes.length) {
-      const why = ["creak", "squawk", "squeal"].includes(noise) ? `No single change within reason ends the ${noise}, ${at}.` : `There is no noise, ${at}.`;
+      const why = ["creak", "squawk", "squeal"].includes(noise) ? `No single change of a plausible size ends the ${noise} ${at}.` : `There is no noise to end ${at}.`;
       this.helps.replaceChildren(made("li", { textContent: why }));
       return;
     }
@@ -75,7 +92,7 @@ export class Chart {
         const value = this.design.controls.values.get(key) * factor;
         this.design.put({ ...stated, values: { ...stated.values, [key]: Number(value.toPrecision(4)) } });
       });
-      return made("li", {}, press, ` ends the ${noise}, ${at}${steady ? "" : "; a little more brings it back"}`);
+      return made("li", {}, press, ` ends the ${noise} ${at}${steady ? "" : "; a slightly larger change brings it back"}`);
     }));
   }
 }

@@ -1,5 +1,5 @@
 // Torque over time and spectrum of the pressure, of what was heard last.
-import { sheet } from "../labels/timeline.js";
+import { DEEP, LINE, sheet, SOFT } from "../labels/timeline.js";
 import { ticks } from "../shared/player.js";
 
 const REFERENCE = 2e-5, SIZE = 8192, FLOOR = 0, TOP = 100; // Pa, samples, dB
@@ -33,40 +33,32 @@ export class Drawings extends EventTarget {
   }
 
   #torque() {
-    const { pen, width, height } = sheet(this.screens.torque), of = this.torque;
+    const of = this.torque;
     let low = Infinity, high = -Infinity;
     for (const one of of) { low = Math.min(low, one); high = Math.max(high, one); }
     const centre = (low + high) / 2, half = Math.max((high - low) / 2, 0.05 * Math.abs(centre), 0.5) * 1.1;
-    const y = (value) => height / 2 - (value - centre) / half * height / 2;
-    grid(pen, width, height, ticks(centre - half, centre + half, 4).found.map((value) => [y(value), `${value} Nm`]), []);
-    pen.beginPath();
-    for (let i = 0; i < of.length; i++) pen.lineTo(i / (of.length - 1) * width, y(of[i]));
-    pen.strokeStyle = "#0b57a4";
-    pen.lineWidth = 1.5;
-    pen.stroke();
+    const rows = ticks(centre - half, centre + half, 3).found.map((value) => [(value - centre + half) / (2 * half), `${value}`]);
+    const columns = [0, 50, 100, 150, 200].map((time) => [time / 1000 / SHOWN, `${time}`]);
+    const { x, y, pen } = axes(this.screens.torque, rows, columns, "N m", "ms");
+    curve(pen, Array.from(of, (value, i) => [x(i / (of.length - 1)), y((value - centre + half) / (2 * half))]));
   }
 
   #spectrum() {
-    const { pen, width, height } = sheet(this.screens.spectrum);
     const power = powers(this.pressure);
     this.mean ??= power.slice();
     for (let i = 0; i < power.length; i++) this.mean[i] += 0.3 * (power[i] - this.mean[i]);
-    const x = (f) => Math.log(f / LOWEST) / Math.log(HIGHEST / LOWEST) * width;
-    const y = (level) => height * (1 - (level - FLOOR) / (TOP - FLOOR));
-    const lines = [0, 20, 40, 60, 80].map((level) => [y(level), `${level} dB`]);
-    const marks = [100, 1000, 10000].map((f) => [x(f), f < 1000 ? `${f} Hz` : `${f / 1000} kHz`]);
-    grid(pen, width, height, lines, marks);
-    pen.beginPath();
+    const rows = [0, 20, 40, 60, 80, 100].map((level) => [(level - FLOOR) / (TOP - FLOOR), `${level}`]);
+    const columns = [50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000].map((f) => [Math.log(f / LOWEST) / Math.log(HIGHEST / LOWEST), f < 1000 ? `${f}` : `${f / 1000}k`]);
+    const { x, y, pen, width } = axes(this.screens.spectrum, rows, columns, "dB re 20 µPa", "Hz");
+    const points = [];
     for (let column = 0; column < width; column++) {
       const from = LOWEST * (HIGHEST / LOWEST) ** (column / width), to = LOWEST * (HIGHEST / LOWEST) ** ((column + 1) / width);
       const first = Math.max(1, Math.round(from * SIZE / this.rate)), last = Math.max(first, Math.round(to * SIZE / this.rate) - 1);
       let most = 0;
       for (let i = first; i <= last && i < this.mean.length; i++) most = Math.max(most, this.mean[i]);
-      pen.lineTo(column, y(Math.max(FLOOR - 10, 10 * Math.log10(most / REFERENCE ** 2 + 1e-30))));
+      points.push([x(column / width), y(Math.max(0, (10 * Math.log10(most / REFERENCE ** 2 + 1e-30) - FLOOR) / (TOP - FLOOR)))]);
     }
-    pen.strokeStyle = "#0b57a4";
-    pen.lineWidth = 1.5;
-    pen.stroke();
+    curve(pen, points);
   }
 }
 
@@ -76,17 +68,33 @@ function push(held, more) {
   held.set(more, held.length - more.length);
 }
 
-function grid(pen, width, height, across, along) {
-  pen.strokeStyle = "#d9dee3";
-  pen.fillStyle = "#55606b";
-  pen.lineWidth = 1;
-  pen.font = "11px system-ui, sans-serif";
+const LEFT = 34, BELOW = 16, ABOVE = 14; // room for numbers and units [px]
+
+// An empty diagram, its numbers outside of it; [share of the axis, text] of each row and column.
+function axes(canvas, rows, columns, up, along) {
+  const { pen, width: whole, height: full } = sheet(canvas), width = whole - LEFT - 8, height = full - BELOW - ABOVE;
+  const x = (share) => LEFT + share * width, y = (share) => ABOVE + (1 - share) * height;
+  Object.assign(pen, { strokeStyle: LINE, fillStyle: SOFT, lineWidth: 1, textBaseline: "middle", textAlign: "right" });
+  pen.strokeRect(LEFT, ABOVE, width, height);
   pen.beginPath();
-  for (const [y] of across) { pen.moveTo(0, y); pen.lineTo(width, y); }
-  for (const [x] of along) { pen.moveTo(x, 0); pen.lineTo(x, height); }
+  for (const [share, text] of rows) { pen.moveTo(LEFT, y(share)); pen.lineTo(LEFT + width, y(share)); pen.fillText(text.replace("-", "−"), LEFT - 4, y(share)); }
+  pen.textAlign = "center";
+  for (const [share, text] of columns) { pen.moveTo(x(share), ABOVE); pen.lineTo(x(share), ABOVE + height); pen.fillText(text, Math.min(x(share), whole - 10), full - BELOW / 2); }
   pen.stroke();
-  for (const [y, text] of across) if (y > 12) pen.fillText(text, 3, y - 3);
-  for (const [x, text] of along) pen.fillText(text, x + 3, height - 4);
+  pen.textAlign = "left";
+  pen.fillText(up, LEFT, 6);
+  pen.fillText(along, 2, full - BELOW / 2);
+  pen.beginPath();
+  pen.rect(LEFT, ABOVE, width, height);
+  pen.clip();
+  return { x, y, pen, width };
+}
+
+function curve(pen, points) {
+  pen.beginPath();
+  for (const point of points) pen.lineTo(...point);
+  Object.assign(pen, { strokeStyle: DEEP, lineWidth: 1.5 });
+  pen.stroke();
 }
 
 const window_ = Float64Array.from({ length: SIZE }, (_, i) => 0.5 - 0.5 * Math.cos(2 * Math.PI * i / SIZE));

@@ -10,7 +10,7 @@ export class Saving {
     const save = made("button", { type: "button", textContent: "Save rig file" });
     save.addEventListener("click", () => this.#save());
     this.name.addEventListener("input", () => { this.again = null; });
-    panel.append(made("section", { className: "saving" }, made("h2", { textContent: "Save it" }),
+    panel.append(made("section", { className: "saving" }, made("h2", { textContent: "Save" }),
       made("div", { className: "tools" }, made("label", { htmlFor: "design-name", textContent: "Name" }), this.name, save), this.text));
   }
 
@@ -20,7 +20,7 @@ export class Saving {
     try {
       const { file, command } = await api("design/rig", { ...this.design.stated(), name, replace: this.again === name }, () => {});
       this.again = null;
-      this.text.textContent = `Saved as ${file}; ${command}`;
+      this.text.textContent = `Saved as ${file}. To simulate it: ${command}`;
     } catch (error) {
       this.text.textContent = error.message;
       this.again = /is there already/.test(error.message) ? name : null;

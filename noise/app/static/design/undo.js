@@ -9,7 +9,7 @@ export class Undo {
     this.button.addEventListener("click", async () => {
       const { before, again } = this.offered, now = state();
       await restore(before);
-      this.offer(again ? "Done again." : "Undone.", now, !again);
+      this.offer(again ? "Redone." : "Undone.", now, !again);
     });
     panel.append(made("div", { className: "undo" }, this.said, this.button));
   }

@@ -4,6 +4,7 @@ import { made, stylesheet } from "../dom.js";
 import { Chart } from "./chart.js";
 import { Controls } from "./controls.js";
 import { Drawings } from "./drawings.js";
+import { listen } from "../labels/keys.js";
 import { Saving } from "./saving.js";
 import { keep, kept } from "./session.js";
 import { Sound } from "./sound.js";
@@ -20,28 +21,25 @@ export async function mount(panel) {
   base.append(...about.bases.map(({ id, name }) => made("option", { value: id, textContent: name })));
   const play = made("button", { type: "button", className: "play", textContent: "Play", disabled: true }); // until there is a design
   const slots = ["A", "B"].map((name) => made("button", { type: "button", className: "slot", textContent: name, ariaPressed: String(name === "A") }));
-  const copy = made("button", { type: "button", textContent: "Copy to the other", title: "Let the other design be as this one is" });
-  const reset = made("button", { type: "button", textContent: "As the base" });
-  const tools = made("div", { className: "tools", role: "group", ariaLabel: "Design" });
-  tools.append(play, made("span", { className: "group" }, ...slots), copy, reset);
+  const copy = made("button", { type: "button" });
+  const reset = made("button", { type: "button", textContent: "Reset to base" });
+  const tools = made("div", { className: "tools", role: "group", ariaLabel: "Play and compare" });
+  tools.append(play, made("span", { className: "group" }, ...slots), copy, reset, made("span", { className: "soft", textContent: "keys Space, A, B" }));
   const start = made("div", { className: "row choice" }, made("label", { htmlFor: "design-base", textContent: "Base" }), base);
   const rows = made("div", { className: "controls" });
-  const level = made("p", { className: "level" }), gain = made("p", { className: "gain" });
-  const scale = made("input", { id: "design-full-scale", type: "number", min: 0.1, max: 1000, step: "any", title: "of your loudspeaker, where that is known: then it is as loud as it would be" });
-  const fit = made("button", { type: "button", textContent: "Fit the gain anew" });
+  const name = made("p", { className: "name" }), level = made("p", { className: "level" }), gain = made("span", { className: "gain" });
+  const scale = made("input", { id: "design-full-scale", type: "number", min: 0.1, max: 1000, step: "any", title: "Sound pressure of full scale. Set that of your loudspeaker to hear the true level." });
+  const fit = made("button", { type: "button", textContent: "Reset playback level" });
   const torque = made("canvas", { className: "torque", role: "img", ariaLabel: "Torque of the last fifth of a second" });
   const spectrum = made("canvas", { className: "spectrum", role: "img", ariaLabel: "Spectrum of the sound pressure" });
-  const remarks = made("ul", { className: "remarks", ariaLabel: "To be known" });
+  const remarks = made("ul", { className: "remarks", ariaLabel: "Remarks" });
   const notice = made("div");
-  left.append(tools, start, notice, rows);
-  right.append(
-    made("section", { className: "shown heard" }, made("h2", { textContent: "What is heard" }), level, made("div", { className: "tools" }, made("label", { htmlFor: "design-full-scale", textContent: "Full scale, Pa" }), scale, gain, fit), remarks),
-    made("section", { className: "shown" }, made("h2", { textContent: "Torque" }), torque),
-    made("section", { className: "shown" }, made("h2", { textContent: "Spectrum" }), spectrum),
-  );
   const refusal = made("p", { className: "refusal", role: "status" });
+  left.append(start, notice, rows);
+  right.append(tools, refusal, made("section", { className: "shown heard", ariaLabel: "What is heard" }, name, level, remarks),
+    made("section", { className: "shown" }, made("h2", { textContent: "Spectrum" }), spectrum));
   view.append(left, right);
-  panel.replaceChildren(view, refusal);
+  panel.replaceChildren(view);
 
   const controls = new Controls(rows), sound = new Sound(about), drawings = new Drawings(about, torque, spectrum);
   const design = { sound, controls, drawings, about };
@@ -54,6 +52,9 @@ export async function mount(panel) {
   design.both = () => ({ ...states, [slot]: design.stated() });
   design.hidden = () => panel.hidden;
   const chart = new Chart(right, design);
+  right.append(
+    made("section", { className: "shown" }, made("h2", { textContent: "Torque" }), torque),
+    made("section", {}, made("h2", { textContent: "Playback level" }), made("div", { className: "tools" }, made("label", { htmlFor: "design-full-scale", textContent: "Full scale, Pa" }), scale, gain, fit)));
   new Saving(right, design);
 
   const state = () => ({ slot, states: { ...states } });
@@ -73,7 +74,12 @@ export async function mount(panel) {
     return true;
   }
 
+  function other() { return slot === "A" ? "B" : "A"; }
+
   function changed() {
+    copy.textContent = `Copy ${slot} to ${other()}`;
+    reset.disabled = !Object.keys(controls.changed).length;
+    reset.title = reset.disabled ? "Nothing differs from the base" : "Drop all changes of this design";
     states[slot] = design.stated();
     keep(about.session, state());
     sound.change(states[slot]);
@@ -98,7 +104,7 @@ export async function mount(panel) {
   function judge(serial, why = "") {
     if (serial !== sound.serial || (!why && serial === sound.refusedSerial)) return;
     view.classList.toggle("refused", Boolean(why));
-    const words = why && `What is heard and shown is not of these numbers: ${why}`;
+    const words = why && `These values are not possible; you still hear the previous design. ${why}`;
     if (refusal.textContent !== words) refusal.textContent = words;
   }
 
@@ -126,7 +132,7 @@ export async function mount(panel) {
     changed();
     const { name, heard } = baseOf(shown), texts = [];
     if (dropped) texts.push(`Dropped with ${left.name}: ${dropped}.`);
-    if (heard && controls.words((one) => one.condition)) texts.push(`Motion and condition stay; ${name} was saved at others, which “As the base” takes.`);
+    if (heard && controls.words((one) => one.condition)) texts.push(`Motion and condition stay as they are; “Reset to base” takes those that ${name} was saved with.`);
     if (texts.length) undo.offer(texts.join(" "), before);
   }
   design.put = put;
@@ -136,10 +142,10 @@ export async function mount(panel) {
   base.addEventListener("change", rebase);
   for (const one of slots) one.addEventListener("click", () => choose(one.textContent));
   copy.addEventListener("click", () => {
-    const before = state(), other = slot === "A" ? "B" : "A";
-    states[other] = states[slot];
+    const before = state();
+    states[other()] = states[slot];
     keep(about.session, state());
-    undo.offer(`${other} is as ${slot} is.`, before);
+    undo.offer(`${other()} is now a copy of ${slot}.`, before);
   });
   reset.addEventListener("click", () => {
     const before = state(), dropped = controls.words();
@@ -153,18 +159,18 @@ export async function mount(panel) {
     if (asked >= 0.1 && asked <= 1000) sound.fit(asked);
     else scale.value = sound.fullScale;
   });
-  play.addEventListener("click", () => {
-    if (sound.playing) {
-      sound.stop();
-    } else {
-      sound.start();
-      level.textContent = "Begins; the very first time that takes a while.";
-    }
-  });
+  const toggle = () => {
+    if (sound.playing) return sound.stop();
+    sound.start();
+    name.textContent = "Starting ...";
+    level.textContent = "The first start takes some seconds.";
+  };
+  play.addEventListener("click", toggle);
+  listen(view, { " ": () => { if (!play.disabled) toggle(); }, a: () => choose("A"), b: () => choose("B") });
   sound.addEventListener("change", () => {
     if (!sound.playing) {
       design.speed = undefined;
-      level.textContent = "Not playing.";
+      silent();
     }
     play.textContent = sound.playing ? "Stop sound" : "Play";
     scale.value = sound.fullScale;
@@ -182,24 +188,30 @@ export async function mount(panel) {
   setInterval(async () => {
     if (!sound.playing || panel.hidden) return;
     const found = await api(`design/levels?run=${sound.run}`).catch(() => null);
-    if (found && sound.playing) level.textContent = words(found, sound.fullScale);
+    if (found && sound.playing) [name.textContent, level.textContent] = words(found, sound.fullScale);
   }, LEVELS_EVERY);
   document.addEventListener("view-shown", ({ detail }) => {
     if (detail === "design") chart.changed();
     else sound.stop();
   });
 
-  level.textContent = "Not playing.";
+  function silent() {
+    name.textContent = "Not playing";
+    level.textContent = "Press Play to hear the design and to see its name and level.";
+  }
+  silent();
   await restore(kept(about.session) ?? { slot, states: { [slot]: { base: about.bases[0].id, values: {} } } });
   play.disabled = false;
   design.ready = true;
   return design;
 }
 
-// Level in the air, and whether it is heard at the gain it is played at.
-function words({ level_dba: level, l_afmax_dba: most }, fullScale) {
-  if (level === null) return "Level: of the first second, soon.";
+// What is heard, "squawk, 255 Hz, 72 dB(A)", and whether it can be heard at the gain it is played at.
+function words({ label, frequency_hz: frequency, level_dba: level, l_afmax_dba: most }, fullScale) {
+  if (level === null) return ["Listening ...", "The name and the level are those of the last second."];
+  const called = { none: "none: no creak, squawk or squeal", unknown: "unknown noise", undefined: "naming ..." }[label] ?? label;
+  const tone = label === "none" || !frequency ? [] : [`${frequency.toFixed(0)} Hz`];
   const played = most - 20 * Math.log10(fullScale / 2e-5), quiet = played < -48;
-  const inaudible = level < 0 ? "; below 0 dB(A), which nobody hears" : quiet ? "; nearly inaudible at this gain" : "";
-  return `${level.toFixed(1)} dB(A), L_AFmax ${most.toFixed(1)} dB(A) re 20 µPa in the last second${inaudible}`;
+  const inaudible = level < 0 ? "; inaudible, as it is below 0 dB(A)" : quiet ? "; nearly inaudible at this playback level" : "";
+  return [[called, ...tone, `${level.toFixed(0)} dB(A)`].join(", "), `Last second: ${level.toFixed(1)} dB(A), at most ${most.toFixed(1)} dB(A) Fast, re 20 µPa${inaudible}`];
 }

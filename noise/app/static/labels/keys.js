@@ -39,7 +39,7 @@ export function listen(element, actions) {
     if (event.altKey || event.defaultPrevented) return;
     if (!element.isConnected || element.closest("[hidden]") || document.querySelector("dialog[open]")) return;
     const { target } = event;
-    if (target.matches("input, select, textarea, [contenteditable]")) return;
+    if (target.matches("input:not([type=range]), select, textarea, [contenteditable]")) return;
     const at = target.closest("button, summary, [role=tab], [role=listbox]");
     if (at && (event.key === " " || event.key === "Enter") && !element.querySelector(".lanes")?.contains(at)) return;
     if (at?.matches("[role=tab]") && event.key.startsWith("Arrow")) return;

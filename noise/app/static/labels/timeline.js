@@ -69,10 +69,9 @@ export function sheet(canvas) {
   const { clientWidth: width, clientHeight: height } = canvas;
   const fine = window.devicePixelRatio || 1;
   const [w, h] = [Math.round(width * fine), Math.round(height * fine)];
-  if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, { width: w, height: h });
+  Object.assign(canvas, { width: w, height: h }); // which empties it
   const pen = canvas.getContext("2d");
   pen.setTransform(fine, 0, 0, fine, 0, 0);
-  pen.clearRect(0, 0, width, height);
   pen.font = "11px system-ui, sans-serif";
   return { pen, width, height };
 }
