@@ -81,17 +81,6 @@ def test_radiation_leaves_torque_and_acceleration_alone(name, strength):
         assert not np.allclose(one["pressure"], other["pressure"], rtol=0.01)
 
 
-def test_beam_modes_reach_acceleration_and_sound_but_not_the_torque():
-    spec = LawSpec("beam_modes", {})
-    one, other = (
-        simulate(replace(RIG, effects=effects), 1.0, interference=0.381e-3, seconds=0.2).recording
-        for effects in (RIG.effects, (*RIG.effects, spec))
-    )
-    assert np.array_equal(one["torque"], other["torque"])
-    assert not np.array_equal(one["acceleration"], other["acceleration"])
-    assert not np.array_equal(one["pressure"], other["pressure"])
-
-
 # In blocks, and together
 
 
@@ -115,16 +104,6 @@ def test_the_order_in_which_they_are_named_does_not_matter(plain):
     one, other = changed_chain(plain, steady, rng), changed_chain(plain, steady[::-1], rng)
     for path in PATHS:
         assert difference(one, other, path) < 1e-12
-
-
-def test_they_draw_no_numbers_from_the_other_effects():
-    scatter = LawSpec("critical_torque_scatter", {})
-    room = LawSpec("room_reflections", {"form": "diffuse"})
-    one, other = (
-        simulate(replace(RIG, effects=effects), 2.0, seconds=0.1, settling=0.0).recording["torque"]
-        for effects in ((scatter,), (room, scatter))
-    )
-    assert np.array_equal(one, other)
 
 
 def test_an_effect_of_the_users_own_can_change_the_chain():

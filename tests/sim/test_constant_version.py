@@ -45,15 +45,6 @@ def test_a_creak_is_irregular(speed):
     assert tonal < flatness
 
 
-@pytest.mark.parametrize(
-    "material", ["PDMS", "fluorocarbon-thesis", "natural-rubber-film", "natural-rubber"]
-)
-def test_what_does_not_scatter_by_chance_stays(material):
-    rig = load_material_rig(material)
-    kept = [spec.name for spec in constant_version(rig).effects]
-    assert kept == [s.name for s in rig.effects if s.name != "critical_torque_scatter"]
-
-
 def test_an_effect_of_the_users_own_stays():
     own = LawSpec("rattle", {})
     rig = replace(load_material_rig("PDMS"), effects=(own, LawSpec("speed_fluctuation", {})))

@@ -1,6 +1,7 @@
 """Friction laws with an inner state, and the regimes of the calibrated rig."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from sim.analysis.regime import Regime, friction_regime
 from sim.bushing import lumped_bushing
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed, Oscillation
+from tests.helpers.rig_measures import slip_rates
 
 FLUOROCARBON = load_material_rig("fluorocarbon")
 PDMS = load_material_rig("PDMS")
@@ -34,12 +36,6 @@ def strongest_line(run):
     return np.fft.rfftfreq(torque.size, 1.0 / run.rate)[spectrum.argmax()]
 
 
-@pytest.mark.parametrize("speed", [0.25, 1.0, 5.0, 17.0])
-def test_steady_sliding_of_pdms_gives_the_torque_of_its_law(speed):
-    run = motion(PDMS, speed, interference=0.381e-3, seconds=0.5)
-    assert run.torque[-1] == pytest.approx(3.0 * (1.0 + 0.12 * speed), rel=1e-6)
-
-
 def test_pdms_triples_its_torque_and_never_oscillates():
     runs = [motion(PDMS, speed, 0.254e-3, seconds=0.5) for speed in (0.25, 5.0, 17.0)]
     assert all(friction_regime(run) is Regime.STEADY_SLIDING for run in runs)
@@ -53,12 +49,6 @@ def test_a_contact_that_never_ages_does_not_weaken():
     kinetic = rig.fit(0.279e-3).kinetic_torque
     assert slow == pytest.approx(kinetic, rel=1e-3)
     assert fast == pytest.approx(kinetic, rel=1e-3)
-
-
-def test_friction_never_gives_energy_to_the_shaft_and_bushing_together():
-    run = motion(FLUOROCARBON, 5.0, seconds=0.5)
-    # What the contact dissipates, less what its bending stores, is never negative in the mean.
-    assert np.mean(run.friction_torque * run.sliding_speed) > 0.0
 
 
 @pytest.mark.parametrize(
@@ -100,3 +90,10 @@ def test_an_oscillating_shaft_makes_the_torque_follow_its_direction():
     quarter = run.torque.size // 4
     assert run.torque[: quarter // 2].mean() > 10.0
     assert run.torque[2 * quarter : 2 * quarter + quarter // 2].mean() < -10.0
+
+
+def test_slips_at_the_tightest_fit_become_more_frequent_slowly_and_never_pass_the_torsional_mode():
+    rates = slip_rates(FLUOROCARBON)
+    assert all(later > earlier for earlier, later in pairwise(rates))
+    assert rates[1] / rates[-1] > 0.7  # a constant drop of the torque makes it about a quarter
+    assert max(rates) < 257.0

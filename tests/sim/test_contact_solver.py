@@ -128,28 +128,6 @@ def test_statistics_of_chaos_are_those_of_a_sixteenth_of_the_step(condition):
     assert_same_statistics(condition, "contact_with_memory", 1.0, 2.1)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("condition", CONDITIONS)
-@pytest.mark.parametrize("speed", [1.0, 5.0])
-@pytest.mark.parametrize("name", NAMES)
-def test_statistics_of_any_law_are_those_of_a_sixteenth_of_the_step(name, speed, condition):
-    assert_same_statistics(condition, name, speed, 8.1)
-
-
-@pytest.mark.parametrize("stiffness", [1.0, 1700.0, 1e5])
-@pytest.mark.parametrize("viscous", [0.0, 10.0])
-@pytest.mark.parametrize("speed", [0.25, 20.0])
-def test_lugre_stays_bounded_in_all_its_range(stiffness, viscous, speed):
-    given = {
-        "contact_stiffness_per_torque": stiffness,
-        "contact_damping_per_torque": 1e-2,
-        "stribeck_speed": 1e-2,
-        "viscous_share_per_speed": viscous,
-    }
-    states = solve("three times that", "lugre", speed, 0.01, given=given)
-    assert np.abs(states[:, 1]).max() < 45.0 + 1.2 * viscous * speed * 21.744
-
-
 def steep(gain, speed):
     effects = activated(
         (LawSpec("velocity_strengthening", {"gain": gain, "speed": speed}),), EFFECTS
@@ -158,12 +136,6 @@ def steep(gain, speed):
         THESIS, ConstantSpeed(1.0), interference=0.279e-3, support_stiffness=3745.0, seconds=0.1,
         rate=30e3, effects=effects,
     )  # fmt: skip
-
-
-def test_a_steep_rise_with_speed_is_stable():
-    torque = steep(5.0, 1.0).torque
-    assert torque[-1] < 8.0 * 6.0
-    assert (np.diff(torque) > -1e-6).all()
 
 
 def test_what_is_too_steep_is_refused_by_name():
@@ -197,21 +169,3 @@ def test_an_end_that_lasts_less_than_a_step_is_not_missed():
         solve("calibrated", "coulomb", 5.0, 0.05, refined=n, hooks=hooks)[:, 1] for n in (1, 16)
     )
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-3 * fine.mean()
-
-
-def test_each_of_five_effects_has_states_of_its_own():
-    names = (
-        "velocity_strengthening", "critical_torque_scatter", "amplitude_softening",
-        "viscoelastic_stiffness", "frictional_heating",
-    )  # fmt: skip
-
-    def torque(order):
-        return simulate_motion(
-            THESIS, ConstantSpeed(1.0), interference=0.279e-3, support_stiffness=3745.0,
-            seconds=0.05, rate=30e3, effects=[EFFECTS[name].active({}) for name in order],
-            rng=np.random.default_rng(0),
-        ).torque  # fmt: skip
-
-    given, turned = torque(names), torque((names[-1], *names[:-1]))
-    assert np.abs(given - turned).max() < 0.05 * given.std()
-    assert np.abs(given - torque(names[:-1])).max() > 0.01 * given.std()

@@ -254,22 +254,6 @@ def test_a_graze_of_the_critical_torque_is_seen_within_a_step(step, way):
         assert (len(events) > 0) == breaks
 
 
-def test_equal_torques_slide_without_chatter():
-    system = LumpedBushing(1 / 65000, 1 / 1200, 665.0, 3745.0, 0.04, 0.04).packed()
-    states, direction, events = solve_stick_slip(system, 8.0, 8.0, np.full(30001, 3.0), STEP)
-    assert len(events) < 50
-    assert (direction[-1000:] == 1).all()
-    assert states[-1000:, 1] == pytest.approx(8.0, abs=1e-6)
-
-
-def test_steady_sliding_stays_as_it_is():
-    system = LumpedBushing(1 / 65000, 1 / 1200, 665.0, 3745.0, 0.04, 0.04).packed()
-    at_rest = [8.0 / 665.0 + 8.0 / 3745.0, 0.0, 8.0 / 3745.0, 0.0]
-    states, _, events = free(system, at_rest, 5.0, 100_000, STEP, kinetic=8.0, critical=10.7)
-    assert len(events) == 0
-    assert np.abs(states[-1, 2:] - at_rest).max() < 1e-12
-
-
 @pytest.mark.parametrize("step", [1e-3, 3e-4, 7e-6])
 def test_any_output_rate_gives_the_same_motion(step):
     system = LumpedBushing(1 / 65000, 1 / 1200, 665.0, 3745.0, 0.04, 0.04).packed()

@@ -62,18 +62,6 @@ def test_effects_act_in_the_order_in_which_they_are_named():
     assert peak(clip, hum) > 0.7 * peak(hum)
 
 
-def test_all_effects_of_the_measurement_compose_with_the_recording():
-    rig = load_material_rig("fluorocarbon")
-    rig = replace(rig, effects=tuple(LawSpec(name) for name in MEASUREMENT))
-    plain = simulate(replace(rig, effects=()), 5.0, seconds=0.1)
-    faulty = simulate(rig, 5.0, seconds=0.1)
-    assert faulty.recording.channel_names == plain.recording.channel_names
-    assert np.isfinite(faulty.recording.samples).all()
-    assert np.array_equal(faulty.motion.torque, plain.motion.torque)
-    assert np.array_equal(faulty.pressure, plain.pressure)
-    assert not np.allclose(faulty.recording["pressure"], plain.recording["pressure"])
-
-
 # Noise.
 
 
@@ -99,12 +87,6 @@ def test_noise_falls_by_so_many_decibel_an_octave(form, slope):
     inside = (frequency > 100.0) & (frequency < 20e3)
     octaves, levels = np.log2(frequency[inside]), 10.0 * np.log10(density[inside])
     assert np.polyfit(octaves, levels, 1)[0] == pytest.approx(slope, abs=0.1)
-
-
-def test_channels_do_not_share_their_noise():
-    silence = {"torque": np.zeros(9600), "acceleration": np.zeros(9600)}
-    noise = read(silence, "background_noise")
-    assert abs(np.corrcoef(noise["torque"], noise["acceleration"])[0, 1]) < 0.05
 
 
 # Hum.

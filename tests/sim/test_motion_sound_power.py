@@ -73,27 +73,10 @@ def test_white_torque_radiates_the_sum_of_its_bands():
     assert 10 * np.log10(found.radiated[13] / expected) == pytest.approx(0, abs=0.5)
 
 
-def test_twice_the_torque_is_four_times_the_power():
-    one = power_of(2214.0).level
-    two = power_of(2214.0, lambda time: tone(time, 2.0 * AMPLITUDE)).level
-    assert two.max() - one.max() == pytest.approx(20 * np.log10(2), abs=1e-3)
-
-
 def test_a_constant_torque_is_silent_and_its_table_is_empty():
     power = power_of(2214.0, lambda time: np.full(time.size, 8.0))
     rows = sound_power_rows(power)
     assert {row[name] for row in rows for name in POWER_COLUMNS[1:]} == {None}
-
-
-@pytest.mark.slow
-def test_pulses_of_the_anchors_are_heard_in_the_power():
-    rig = load_material_rig("fluorocarbon")  # whose slips strike the anchors
-    motion = simulate(rig, 1.0, interference=0.381e-3, seconds=0.5).motion
-    with_pulses, without = (
-        motion_sound_power(of, motion, interference=0.381e-3, support_stiffness=2214.0)
-        for of in (rig, replace(rig, effects=()))
-    )
-    assert with_pulses.level[-1] > without.level[-1] + 6.0
 
 
 def test_a_run_too_short_for_the_lowest_band_is_refused():

@@ -5,11 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.condition import KnownCondition
 from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
-from noise.diagnosis.simulated.repeats import plan_repeat
 from sim.run import (
     DIAGNOSIS,
     SCREENING,
@@ -58,9 +56,3 @@ def test_the_stages_one_by_one_are_the_run():
 def test_presets_are_what_shipped_models_have_seen(timing, rate, fine, settling):
     assert (timing.rate(rate), timing.settling) == (fine, settling)
     assert timing.rate(rate) == timing.decimation(rate) * rate
-
-
-def test_a_repeat_is_planned_as_the_diagnosis_has_it():
-    at = KnownCondition(1.0, *AT.values())
-    plan = plan_repeat(RIG, at, (), rate=DIAGNOSIS.rate(25.6e3), seconds=0.4)
-    assert (plan.n_settling, plan.n_kept) == (19200, 30720)

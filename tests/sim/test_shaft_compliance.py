@@ -90,21 +90,6 @@ def test_shaft_and_elastomer_are_springs_in_series():
     assert rise == pytest.approx(1.0 / (kappa + 1.0 / 665.0), rel=0.01)
 
 
-def test_a_softer_shaft_slips_less_often():
-    counts = [
-        np.count_nonzero(np.diff(np.abs(solve(hook(compliance=k), samples=27000)[1])) > 0)
-        for k in (1e-6, 5e-4, 2e-3)
-    ]
-    assert counts == sorted(counts, reverse=True)
-    assert counts[0] > 1.5 * counts[-1]
-
-
-def test_the_shaft_end_keeps_up_with_its_drive_in_the_mean():
-    states, _ = solve(hook(compliance=1e-3), samples=45000)
-    assert states[9000:, 6].mean() == pytest.approx(1.0, abs=0.02)
-    assert np.ptp(states[9000:, 6]) > 1.0
-
-
 def test_what_the_drive_gives_is_stored_or_dissipated():
     kappa = 1e-3
     effect = hook(compliance=kappa)
@@ -119,9 +104,3 @@ def test_what_the_drive_gives_is_stored_or_dissipated():
     damped = np.sum((torque - lag / kappa) * (1.0 - end)) / RATE
     assert damped > 0.0
     assert given - stored == pytest.approx(damped, rel=0.05)
-
-
-def test_a_drive_that_starts_to_turn_makes_the_end_lag():
-    ramp = np.minimum(np.arange(3000) / RATE / 5e-3, 1.0)
-    states, _ = solve(hook(compliance=1e-3, inertia=1e-3), speed=ramp, samples=3000)
-    assert states[100, 6] < ramp[100]

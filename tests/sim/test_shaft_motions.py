@@ -13,15 +13,6 @@ def test_an_oscillation_swings_by_its_amplitude():
     assert np.abs(angle).max() == pytest.approx(0.26, rel=1e-3)
 
 
-def test_a_ramp_is_held_beyond_its_ends():
-    ramp = SpeedRamp(2.0, -4.0, 2.0)
-    assert ramp.speed(np.array([0.0, 1.0, 2.0, 9.0])).tolist() == [2.0, -1.0, -4.0, -4.0]
-
-
-def test_constant_speed_is_constant_even_where_given_as_an_integer():
-    assert ConstantSpeed(5).speed(np.zeros(3)).dtype == float
-
-
 @pytest.mark.parametrize(
     ("time", "speed", "message"),
     [

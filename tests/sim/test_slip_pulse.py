@@ -24,14 +24,6 @@ def force(motion, **given):
     return active.effect.force(motion, active.form, active.values)
 
 
-def test_force_is_proportional_to_the_amplitude():
-    motion = run()
-    single = force(motion, amplitude=10.0)
-    double = force(motion, amplitude=20.0)
-    assert single.any()
-    assert double == pytest.approx(2.0 * single)
-
-
 def test_slips_that_stay_below_the_threshold_strike_nothing():
     settled = run(2.5, 0.279e-3).since(14_400)
     assert torque_drops(settled.torque, 1.0)[0].size > 10

@@ -38,15 +38,6 @@ def test_sliding_loses_its_stability_at_the_slope_that_the_modes_damping_bears(s
     assert gentle.growth < 0.0 < steep.growth
 
 
-def test_with_the_clamp_fixed_the_slope_is_that_of_the_elastomers_damping():
-    fixed = THESIS.elastomer_damping_share * 0.085
-    gentle, steep = (
-        steady_sliding(weakened(-factor * fixed, scale=100.0), 5.0, 0.279e-3, np.inf)
-        for factor in (0.99, 1.01)
-    )
-    assert gentle.growth < 0.0 < steep.growth
-
-
 @pytest.mark.parametrize("support", [2214.0, 3745.0, np.inf])
 def test_a_constant_torque_slides_stably_at_any_speed_however_it_sticks_and_slips(support):
     assert steady_sliding(THESIS, SPEEDS, 0.279e-3, support).stable.all()
@@ -91,11 +82,6 @@ def test_every_law_has_a_finite_growth_with_and_without_clamp(law):
     assert found.growth.shape == (2, SPEEDS.size)
     assert np.isfinite(found.growth).all()
     assert (found.frequency >= 0.0).all()
-
-
-def test_friction_that_rises_with_speed_is_stable_everywhere():
-    rig = replace(THESIS, friction=LawSpec("viscous"))
-    assert steady_sliding(rig, SPEEDS).stable.all()
 
 
 @pytest.mark.parametrize("effect", [e.name for e in EFFECTS.values() if e.contact is not None])

@@ -34,11 +34,6 @@ def test_at_the_reference_temperature_a_run_is_to_the_bit_as_without():
     assert np.array_equal(run.recording.samples, plain.recording.samples)
 
 
-def test_a_material_that_does_not_say_how_stays_as_it_is():
-    thesis = load_material_rig("fluorocarbon-thesis")
-    assert at_temperature(thesis, 80.0) is thesis
-
-
 def test_what_is_at_a_temperature_stays_there():
     cold = at_temperature(RIG, 5.0)
     assert at_temperature(cold, 80.0) is cold
@@ -55,12 +50,6 @@ def test_the_cold_is_noisier_than_the_heat():
     cold, warm = (critical_speeds(at_temperature(RIG, t), *AT, (1.0, 5.0, 13.0)) for t in (15, 80))
     assert cold.v_crit2 >= 5.0
     assert warm.v_crit2 == 0.0
-
-
-def test_by_stability_too():
-    cold, warm = (steady_sliding(at_temperature(RIG, t), [1.0, 2.5, 5.0], *AT) for t in (15, 80))
-    assert not cold.stable.any()
-    assert warm.stable.all()
 
 
 def test_silicone_is_silent_from_5_to_80_degrees_and_rubs_less_when_warm():

@@ -112,12 +112,6 @@ def test_a_file_whose_effects_are_all_off_is_noted(effects_file, capsys):
     assert "defines zero_offset; --effect zero_offset turns it on" in capsys.readouterr().err
 
 
-def test_a_parameter_of_the_users_effect_is_checked_as_all_are(effects_file, capsys):
-    path = effects_file(OFFSET)
-    line = refusal(capsys, "--effects", path, "--effect", "zero_offset:offset=51")
-    assert "--effect: effect 'zero_offset': offset = 51 Nm is out of range" in line
-
-
 def test_render_simulates_with_the_users_effect_and_refuses_it_for_a_recording(
     effects_file, tmp_path, capsys
 ):
@@ -162,11 +156,6 @@ def test_a_file_that_cannot_be_used_is_refused_before_the_work(effects_file, cap
     assert said in line
 
 
-@pytest.mark.parametrize("name", ["missing.py", "."])
-def test_a_file_that_is_none_is_refused(capsys, tmp_path, name):
-    assert "no Python file" in refusal(capsys, "--effects", str(tmp_path / name))
-
-
 @pytest.mark.parametrize(
     ("body", "said"),
     [
@@ -207,23 +196,3 @@ def test_the_help_names_the_effects_and_loads_nothing_that_computes():
     assert said.stdout.splitlines()[-1] == "[]"
     assert "speed_fluctuation" in said.stdout
     assert "clipping" in said.stdout
-
-
-@pytest.mark.parametrize(
-    ("right", "wrong", "cause"),
-    [
-        ('("constant",), OFFSET', '("constant",), 5', "parameters = 5 is no mapping"),
-        ('("constant",)', "5", "forms = 5 is no tuple of texts"),
-        ('strength="offset"', "strength=[]", "strength = [] is no text"),
-        ("0.5,", "[0.5],", "parameter offset: default = [0.5] is no number"),
-        ('"zero_offset"', "7", "name = 7 is no text"),
-        ("Stage.MEASUREMENT", "None", "stage = None is no Stage"),
-        ("sensors=sensors", "sensors=1", "sensors = 1 is no function"),
-    ],
-)
-def test_what_is_declared_in_other_types_is_told(effects_file, capsys, right, wrong, cause):
-    assert right in OFFSET
-    path = effects_file(OFFSET.replace(right, wrong))
-    assert main(["simulate", *CONDITION, "--effects", path, "--out", "run"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert cause in line
