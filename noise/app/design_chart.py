@@ -11,21 +11,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.rig import Rig
 from noise.app.requests import number
 from noise.base.labels import NAMED
 from noise.pages.maps import MAP_SIZE, ConditionMap, areas_of, axis_of, cells_of
 from noise.pages.page import map_html
-from noise.screening.design.design import Design as Screened, Use
-from noise.screening.map.batches import batch_evaluator
-from noise.screening.map.grid import shared_grid
-from noise.screening.map.mapping import map_design
-from noise.screening.parts.advice import remove_noise
-from noise.screening.parts.population import outcomes
-from noise.screening.parts.robustness import DESIGN_VARIABLES
-from noise.screening.parts.variation import UsePoint
+from noise.screening.advice import advise
+from noise.screening.batches import batch_evaluator
+from noise.screening.design import Design as Screened, Use
+from noise.screening.grid import shared_grid
+from noise.screening.mapping import map_design
+from noise.screening.point import evaluate_point
+from noise.screening.vibration import Condition
 
 if TYPE_CHECKING:
     from sim.blocks import Setting
@@ -142,24 +140,10 @@ def suggestions_of(asked: SuggestionRequest) -> dict[str, object]:
     {'noise': 'none', 'speed_rad_s': 5.0, 'changes': []}
     """
     chart = asked.chart
-    design = Screened("design", chart.rig)
-    point = UsePoint(
-        asked.speed, asked.interference, chart.support_stiffness, chart.temperature,
-        (0.5 * asked.speed, asked.speed),
-    )  # fmt: skip
-    fixed = math.isinf(chart.support_stiffness)
-    variables = [v for v in DESIGN_VARIABLES if not (fixed and v.name == "support_stiffness")]
-    names = [variable.name for variable in variables]
-
-    def labels(factors: NDArray[np.float64]) -> NDArray[np.str_]:
-        found = outcomes(design, factors, names=names, point=point, critical="none", workers=1)
-        return found.labels
-
-    noise = str(labels(np.ones((1, len(names))))[0])
-    advice = remove_noise(labels, variables, NAMED) if noise in NAMED else ()
-    enough = sorted((one for one in advice if one.enough), key=lambda one: not one.steady)
+    at = Condition(asked.speed, asked.interference, chart.support_stiffness, chart.temperature)
+    found = evaluate_point(chart.rig, at)
+    offers = advise(chart.rig, at, workers=1) if found.label in NAMED else ()
     changes = [
-        {"name": one.name, "factor": float(f"{one.value:.4g}"), "steady": one.steady}
-        for one in enough
+        {"name": one.name, "factor": one.factor, "steady": True} for one in offers if one.ends
     ]
-    return {"noise": noise, "speed_rad_s": asked.speed, "changes": changes}
+    return {"noise": found.label, "speed_rad_s": asked.speed, "changes": changes}

@@ -11,6 +11,9 @@ from typing import NamedTuple
 LABELS = ("creak", "squawk", "squeal", "none", "unknown")
 """The labels, in the order of all tables of probabilities."""
 
+MAP_LABELS = (*LABELS, "persists")
+"""Those of a screened point, which may sound only where a vibration already runs."""
+
 NAMED = LABELS[:3]
 """Those that are the name of a noise."""
 
@@ -25,7 +28,7 @@ class Look(NamedTuple):
     line : str
         Of its pattern and of its outline.
     pattern : str
-        ``stripes``, ``dots``, ``lines``, ``plain`` or ``crosses``.
+        ``stripes``, ``dots``, ``lines``, ``hatches``, ``plain`` or ``crosses``.
     mark : str
         Where there is no room for the label itself.
     """
@@ -41,9 +44,11 @@ LABEL_LOOKS = {
     "squawk": Look("#e69f00", "#7d5600", "dots", "Sk"),
     "squeal": Look("#b5478a", "#6b1f4e", "lines", "Sl"),
     "none": Look("#c3d4df", "#6f8596", "plain", "\N{EN DASH}"),
+    "persists": Look("#f3dfae", "#7d5600", "hatches", "P"),
     "unknown": Look("#f6f6f6", "#55606b", "crosses", "?"),
 }
-"""By label; vermilion and orange are those of Okabe and Ito (Color universal design, 2008)."""
+"""By label, and of where a vibration only persists once started; vermilion and orange are those of
+Okabe and Ito (Color universal design, 2008)."""
 
 DARK_LABELS = ("creak", "squeal")
 """On whose colours text is white."""

@@ -26,11 +26,11 @@ from noise.commands.options import (
 
 if TYPE_CHECKING:
     from noise.batch import Journal
-    from noise.screening.design.design import Swinging, Use
-    from noise.screening.outcome import Screening
+    from noise.screening.design import Swinging, Use
+    from noise.screening.screen import Screening
 
 
-from noise.screening.design.environments import environment_names
+from noise.screening.environments import environment_names
 
 
 def _simulations(text: str) -> float:
@@ -41,12 +41,12 @@ def _simulations(text: str) -> float:
 
 DESCRIPTION = (
     "Screen bushing designs before tooling: map which noise occurs where over speed, "
-    "interference, support and temperature, with its level; critical speeds by simulation and "
-    "by stability with their margins to the use; grade each design's risk from 1 to 10; tell "
-    "what its tolerances do and which change helps; and rank the designs, the quietest first. "
-    "Only boundaries are simulated finely; the output says how each point is known. A design "
-    "is a rig file with the tables [design] and [tolerances], or the name of a material. The "
-    "ranking is printed."
+    "interference, support and temperature, with its level, and where a vibration persists once "
+    "started; critical speeds with their margins to the use; rank the designs by mean loudness; "
+    "tell which change ends the loudest noise, verified by long runs from rest and from the "
+    "running noise; and how probably a part within its tolerances is noisy. Only boundaries are "
+    "simulated finely; the output says how each point is known. A design is a rig file with the "
+    "tables [design] and [tolerances], or the name of a material. The ranking is printed."
 )
 
 EPILOG = (
@@ -57,8 +57,8 @@ OPTIONS = (
     Option("designs DESIGN", str, count="+").help("design file, or name of a material"),
     Option("--out FOLDER", Path).help(
         "folder for report.html, a page to read and to listen to; map.csv, "
-        "critical_speeds.csv, designs.csv, sensitivities.csv and advice.csv where tolerances are "
-        "looked at, a picture of each map, and copies of the design files for a review"
+        "critical_speeds.csv, designs.csv, advice.csv where something is noisy, sensitivities.csv "
+        "where tolerances are looked at, a picture of each map, and copies of the design files"
     ),
     Option("--sounds N", whole_number(0), 24).help(
         "simulated for report.html, at the same conditions of each design; 0 for none, which "
@@ -95,13 +95,11 @@ OPTIONS = (
     ),
     OneOf(
         Option("--tolerances").help(
-            "tell of all designs how probable each noise is among parts, which tolerance matters "
-            "most and which change helps, with assumed tolerances where none are stated; takes "
-            "some seconds a design and environment (default: of designs that state [tolerances])"
+            "tell of all designs how probably a part is noisy in its use and which tolerance "
+            "matters most, with assumed tolerances where none are stated; takes some ten seconds "
+            "a design and environment (default: of designs that state [tolerances])"
         ),
-        Option("--no-tolerances").help(
-            "tell it of none; the risk number is of all designs either way"
-        ),
+        Option("--no-tolerances").help("tell it of none"),
     ),
     Option("--simulations N", _simulations).help(
         "of each map, more or less, or all for every boundary to the end (default: 500)"
@@ -123,21 +121,21 @@ def run(options: Namespace) -> int:
     if options.out is not None:
         check_folder(options.out, file="map.csv")
     from noise.batch import call_identity, kept_results
-    from noise.screening.design.environments import environment
-    from noise.screening.design.loading import load_designs
+    from noise.screening.design import load_designs
+    from noise.screening.environments import environment
 
     given = _given(options)
     environments = [name for name in options.environment.split(",") if name.strip()]
     for name in environments:
         environment(name)
     load_designs(options.designs, _change(options))  # refused before everything is imported
-    of_each = 2 if options.no_tolerances else 3  # map, grade, parts
+    of_each = 2 if options.no_tolerances else 4  # map, advice, parts, sensitivities
     n_steps = 1 + of_each * len(options.designs) * len(environments)
     table = None if options.out is None else options.out / "map.csv"
     with kept_results(table, call_identity("screening")) as kept:
         with steps("screening", n_steps) as tell:
             found = _screened(options, given, environments, tell, kept)
-        from noise.screening.tables.summary import summary_lines
+        from noise.screening.summary import summary_lines
 
         for name, reason in (*found.refused, *found.failed):
             say(f"{name}: {reason}")
@@ -185,8 +183,8 @@ def _change(options: Namespace) -> Callable[[Rig], Rig] | None:
 
 
 def _given(options: Namespace) -> Use:
-    from noise.screening.design import axis_values as axes
-    from noise.screening.design.design import Use
+    from noise.screening import axis_values as axes
+    from noise.screening.design import Use
 
     fits = axes.axis_values(options.interference, "--interference")
     if fits and fits[-1] > 10.0:
@@ -202,8 +200,8 @@ def _given(options: Namespace) -> Use:
 
 
 def _swinging(text: str) -> Swinging:
-    from noise.screening.design.axis_values import FREQUENCY, text_values
-    from noise.screening.design.design import Swinging
+    from noise.screening.axis_values import FREQUENCY, text_values
+    from noise.screening.design import Swinging
 
     degrees, comma, frequency = text.partition(",")
     if not comma:
@@ -219,8 +217,8 @@ def _write(options: Namespace, found: Screening, tell: Steps) -> list[Path]:
     from noise.pages.screening import write_screening
     from noise.pictures.figure import write_picture
     from noise.pictures.maps import plot_screen
-    from noise.screening.design.design_files import copy_design_file
-    from noise.screening.tables.tables import screening_tables
+    from noise.screening.design import copy_design_file
+    from noise.screening.tables import screening_tables
 
     folder = options.out
     written: list[Path] = []

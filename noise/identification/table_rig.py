@@ -24,7 +24,7 @@ from noise.identification.outcome import Identification, Number
 from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.table_fit import TableFit, fit_table, score_table
 from noise.identification.table_number import TableNumber
-from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
+from noise.screening.environments import FIT_PARAMETERS, scaled_fit
 
 if TYPE_CHECKING:
     from noise.identification.known import Beforehand

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.rig import Rig
-from noise.base.labels import LABEL_LOOKS, LABELS, Look
+from noise.base.labels import LABEL_LOOKS, MAP_LABELS, Look
 from noise.base.progress import counted
 from noise.pages.clips import Entry
 from noise.pages.maps import (
@@ -70,16 +70,13 @@ WAYS = {
         "#f3e2b0", "#a58a3c", "stripes",
         "interpolated between simulated points of one noise",
     ),
-    "stability": Look(
-        "#dcead3", "#7f9a6f", "plain", "silent, as steady sliding is stable there"
-    ),
     "unchanged": Look(
         "#dcdfe8", "#767d92", "dots", "as at another temperature or fit"
     ),
 }  # fmt: skip
 """By how a point is known."""
 
-SAID = {"refined": "interpolated", "stability": "by stability", "unchanged": "as elsewhere"}
+SAID = {"refined": "interpolated", "unchanged": "as elsewhere"}
 """In short, how a point is known whose way of knowing does not say it."""
 
 SUBSTITUTED = Look("none", "#1d2329", "stripes", "the design has no data of its own there")
@@ -186,7 +183,7 @@ class Compared:
         """For the script."""
         return {
             "names": self.names,
-            "labels": LABELS,
+            "labels": MAP_LABELS,
             "steps": LEVEL_STEPS,
             "said": [SAID.get(how, how) for how in self.ways],
             "pair": self.pair,
@@ -359,7 +356,7 @@ def _cell_values(one: ScreenMap, cells: Cells, ways: Sequence[str]) -> dict[str,
     notes = list(dict.fromkeys(["", *(point.note for point in one.points)]))
     return {
         # Numbers of labels; -1 where it was not screened.
-        "label": [-1 if point is None else LABELS.index(point.label) for point in points],
+        "label": [-1 if point is None else MAP_LABELS.index(point.label) for point in points],
         "level": [
             None if point is None or point.level is None else round(point.level, 1)
             for point in points

@@ -20,7 +20,7 @@ from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.foreign_file import LARGEST_JSON, parse_json, reading, refusing
 from models.rig import Rig
 from models.show import short_repr
-from noise.base.labels import LABELS
+from noise.base.labels import MAP_LABELS
 from noise.base.progress import counted
 from noise.base.tables import read_table
 from noise.diagnosis.outcome_json import from_json
@@ -44,8 +44,8 @@ from noise.pages.review_inputs import Inputs, Refusal, recorded_entries, sort_in
 from noise.pages.screen_sounds import ScreenMap, ScreenPoint
 from noise.recordings.folders import is_file
 from noise.recordings.meaning import PascalPerFullScale
-from noise.screening.design.design import load_design
-from noise.screening.design.environments import DRY, environment, in_environment
+from noise.screening.design import load_design
+from noise.screening.environments import DRY, environment, in_environment
 
 
 def rig_of(screened: ScreenMap, folder: Path, designs: Sequence[Path]) -> Rig:
@@ -136,8 +136,9 @@ def _maps(path: Path, rows: Sequence[dict[str, object]]) -> list[ScreenMap]:
         if missing:
             raise RecordingError(f"{where} has no {missing[0]}")
         label = str(row["label"])
-        if label not in LABELS:
-            raise RecordingError(f"{where} has label {label!r}, expected {', '.join(LABELS)}")
+        if label not in MAP_LABELS:
+            named = ", ".join(MAP_LABELS)
+            raise RecordingError(f"{where} has label {label!r}, expected {named}")
         check_name(row["design"], "design", where)
         number = partial(cell_number, row, where=where)
         key = (

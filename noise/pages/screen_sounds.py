@@ -29,12 +29,12 @@ from noise.batch import one_thread
 from noise.pages.clips import RATE, Entry
 from noise.pictures.figure import support_words
 from noise.pictures.recording import recorded_levels
-from noise.screening.map.point import shaft_motion
+from noise.screening.point import shaft_motion
 from sim.acquisition import Acquisition
 from sim.run import simulate
 
 if TYPE_CHECKING:
-    from noise.screening.outcome import Screening
+    from noise.screening.screen import Screening
 
 
 class ScreenPoint(NamedTuple):
@@ -154,7 +154,7 @@ def screen_maps(found: Screening) -> list[ScreenMap]:
 
     Examples
     --------
-    >>> from noise.screening.design.design import Use
+    >>> from noise.screening.design import Use
     >>> from noise.screening.screen import screen
     >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0, math.inf)))
     >>> [one.title for one in screen_maps(found)]
@@ -381,13 +381,15 @@ def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: 
     )
     sound = audible(run.recording, RATE).astype(np.float32)
     note = f"simulated, {a_weighted_level(run.recording['pressure'], RATE):.0f} dB(A)"
+    if point.label == "persists":
+        note += " from rest; a vibration that runs already goes on"
     if point.how == INTERPOLATED:
         level = "" if point.level is None else f", {point.level:.0f} dB(A)"
         note += f"; the screen interpolates {point.label}{level}"
     return Entry(
         title=f"{screened.design}: {point.speed:.3g} rad/s, {point.interference:.3g} mm, "
         f"{screened.where}",
-        rows=({"label": point.label},),
+        rows=({"label": "none" if point.label == "persists" else point.label},),
         condition=replace(run.recording.condition, material=screened.design),
         duration=SECONDS,
         sound=sound,

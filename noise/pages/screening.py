@@ -8,22 +8,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.base.labels import LABEL_LOOKS, LABELS
+from noise.base.labels import LABEL_LOOKS
 from noise.base.progress import counted
 from noise.pages import blocks as b
 from noise.pages.clips import BYTES_A_SECOND, SHORTEST, common_gain, make_clips
 from noise.pages.comparison import compare_designs
 from noise.pages.page import CARD_BYTES, PAGE_BYTES, page_html, shortened_text, write_page
 from noise.pages.screen_sounds import screen_maps
-from noise.screening.design.environments import environment, in_environment
-from noise.screening.tables.summary import conditions_lines, parts_lines, risk_words
+from noise.screening.environments import environment, in_environment
+from noise.screening.standing import SHARED, Standing
+from noise.screening.summary import conditions_lines, detail_lines
+from noise.screening.words import RANKING_RULE, percent
 
 if TYPE_CHECKING:
-    from noise.screening.outcome import Screening
-    from noise.screening.ranking.ranking import Standing
+    from noise.screening.screen import Screening
 
 
-RANKING = ("Rank", "Design", "Noise, of the conditions of use", "Loudest", "Margin", "In words")
+RANKING = ("Rank", "Design", "Noise, of the conditions of use", "Loudest", "Margin", "In its use")
 
 
 def ranking_rows(found: Screening) -> list[list[b.Cell | str]]:
@@ -31,12 +32,12 @@ def ranking_rows(found: Screening) -> list[list[b.Cell | str]]:
 
     Examples
     --------
-    >>> from noise.screening.design.design import Use
+    >>> from noise.screening.design import Use
     >>> from noise.screening.screen import screen
     >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
     >>> rank, design, noise, loudest, *_ = ranking_rows(found)[0]
     >>> rank, design.text, noise.labels, loudest
-    ('1', 'PDMS', (('none', '100 %'),), 'quiet')
+    ('1', 'PDMS', (('none', '100%'),), 'quiet')
     """
     return [_row(one, found) for one in found.standings]
 
@@ -45,23 +46,21 @@ def _row(one: Standing, found: Screening) -> list[b.Cell | str]:
     loudest = "quiet" if one.rank is not None else ""
     if math.isfinite(one.loudest_level):
         loudest = f"{one.loudest_level:.0f} dB(A)"
-    shares = {name: one.shares[name] for name in LABELS if one.shares.get(name)}
+    shares = {name: one.shares[name] for name in SHARED if one.shares.get(name)}
     ends = np.cumsum([0.0, *shares.values()])
     bars = [
         b.Bar(100.0 * begin, 100.0 * share, f"filled {name} {LABEL_LOOKS[name].pattern}")
         for begin, (name, share) in zip(ends, shares.items(), strict=False)
     ]
-    parts = parts_lines(found.statistics_of(one.design, one.environment))
     where = one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}"
-    hint = [f"What to change: {one.hint}"] if one.hint else []
-    notes = [*hint, *parts, *(note for note in one.notes if note != one.never_slips)]
+    details = () if one.never_slips else detail_lines(one, found.maps[0].grid.use)
     return [
         "\N{EN DASH}" if one.rank is None else str(one.rank),
-        b.Cell(one.design, f"{where}; risk {risk_words(one.risk)}"),
-        b.Cell(bars=bars, labels=tuple((name, _percent(share)) for name, share in shares.items())),
+        b.Cell(one.design, where),
+        b.Cell(bars=bars, labels=tuple((name, percent(share)) for name, share in shares.items())),
         loudest,
         _margin(one),
-        b.Cell(one.words, items=tuple(dict.fromkeys(notes))),
+        b.Cell(one.words, items=tuple(details)),
     ]
 
 
@@ -71,10 +70,6 @@ def _margin(one: Standing) -> str:
     if math.isinf(one.margin_v_crit2):
         return "nothing vibrates"
     return f"{one.margin_v_crit2:+.3g} rad/s".replace("-", "\N{MINUS SIGN}")
-
-
-def _percent(share: float) -> str:
-    return "< 1 %" if share < 0.005 else f"{100.0 * share:.0f} %"
 
 
 def write_screening(
@@ -110,7 +105,7 @@ def write_screening(
     --------
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from noise.screening.design.design import Use
+    >>> from noise.screening.design import Use
     >>> from noise.screening.screen import screen
     >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -162,7 +157,7 @@ def write_screening(
             ),
         ],
         footer=f"Screened in {found.seconds + found.statistics_seconds:.1f} s. Labels are those of "
-        "the physics of the motion, levels without room and microphone.",
+        "bushing-noise label, levels without room and microphone.",
         entries=heard,
         clips=clips,
         without_card=heard,
@@ -199,4 +194,4 @@ def _summary(found: Screening) -> str:
     quietest = " and ".join(sorted(names))
     if len({one.design for one in found.standings}) == 1:
         return ""
-    return f"Least risk of noise: {quietest}."
+    return f"Quietest: {quietest}, {RANKING_RULE}."

@@ -22,14 +22,14 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from models.drawing import axes_or_new, styled
-from noise.base.labels import LABEL_COLOURS
+from noise.base.labels import LABEL_LOOKS
 from noise.pictures.figure import new_figure, support_words
 from sim.analysis.regime import Regime
 
 if TYPE_CHECKING:
-    from noise.screening.map.mapping import DesignMap
+    from noise.screening.mapping import DesignMap
 
-_SIMULATED = ("none", "squeal", "squawk", "creak")
+_SIMULATED = ("none", "persists", "squeal", "squawk", "creak")
 _FEW_ROWS = 8
 _LEVELS = 40.0, 100.0
 """Of the colours of levels [dB]."""
@@ -64,7 +64,7 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
 
     Examples
     --------
-    >>> from noise.screening.design.design import Use
+    >>> from noise.screening.design import Use
     >>> from noise.screening.screen import screen
     >>> one = screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,)))
     >>> [axes.get_title("left") for axes in plot_screen(one.maps[0]).axes[:1]]
@@ -158,8 +158,11 @@ def _draw_labels(axes: Axes, found: DesignMap, temperature: int, support: int) -
     speed, rows, few = _places(found)
     label = found.label[temperature, support]
     codes = np.select([label == name for name in _SIMULATED], range(len(_SIMULATED)))
-    colours = ListedColormap([LABEL_COLOURS[name] for name in _SIMULATED])
-    axes.pcolormesh(_edges(speed), _edges(rows), codes, cmap=colours, vmin=-0.5, vmax=3.5)
+    colours = ListedColormap([LABEL_LOOKS[name].colour for name in _SIMULATED])
+    axes.pcolormesh(_edges(speed), _edges(rows), codes, cmap=colours, vmin=-0.5, vmax=4.5)
+    hatched = np.where(label == "persists", 1.0, -1.0)
+    if (label == "persists").any() and min(label.shape) > 1:
+        axes.contourf(speed, rows, hatched, levels=[0.0, 2.0], colors="none", hatches=["///"])
     axes.grid(visible=False)
     _say_quiet(axes, found, temperature, support)
     beyond = _beyond(found)
@@ -199,7 +202,12 @@ def _say_quiet(axes: Axes, found: DesignMap, temperature: int, support: int) -> 
 def _handles(found: DesignMap) -> list[Patch | Line2D]:
     return [
         *(
-            Patch(facecolor=LABEL_COLOURS[label], edgecolor="#444444", label=label)
+            Patch(
+                facecolor=LABEL_LOOKS[label].colour,
+                edgecolor="#444444",
+                label=label,
+                hatch="///" if label == "persists" else None,
+            )
             for label in _SIMULATED[::-1]
         ),
         Line2D([], [], **_STICK, label="stick ends"),

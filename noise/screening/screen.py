@@ -1,24 +1,15 @@
-"""Screening of bushing designs: maps of their noise, margins, risk numbers and a ranking.
+"""Screening of bushing designs: maps of their noise, margins, a ranking and advice.
 
 Each design is mapped in each environment, at constant speed and, where any of them says so or the
-caller does, swinging to and fro, over conditions that all share; then graded, and its parts are
-looked at. A design that cannot be simulated is refused by name, and what else fails is told; the
-others go on.
-
-Designs whose contact never lets go in use, which are quiet for no good reason.
+caller does, swinging to and fro, over conditions that all share. Then the designs are ranked, the
+changes that end the loudest noise of each are sought and verified, and its parts are looked at. A
+design that cannot be simulated is refused by name, and what else fails is told; the others go on.
 
 A shaft that turns on winds the bushing up until the contact slips. Where it would have to wind it
-up further than rubber bears, or longer than a run of the map lasts at the fastest speed of use,
-with every fit and support, nothing is known of the design's noise, and it gets no rank; most often
-a torque or a stiffness is in another unit. A shaft that swings may well never make the contact
-slip, which is a result.
-
-First hint of what would make a design quieter, told from its map and from stability.
-
-A map says with which support and at which interference the use is quietest; stability, a
-hundredth of a second for a whole use, which change of the bushing by a fifth steadies most of it.
-Neither simulates the changed design: what a hint brings is told by screening it, and the smallest
-change that is enough by the advice of its tolerances (`noise.screening.parts.advice`).
+up further than rubber bears, or longer than a few seconds at the fastest speed of use, with every
+fit and support, nothing is known of the design's noise, and it gets no rank; most often a torque or
+a stiffness is in another unit. A shaft that swings may well never make the contact slip, which is
+a result.
 """
 
 from __future__ import annotations
@@ -26,198 +17,208 @@ from __future__ import annotations
 import itertools
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.errors import BushingNoiseError, ParameterError
 from models.rig import Rig, effective_stiffness
+from models.show import short_repr
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.batch import Journal
-from noise.screening.design.design import Design, Swinging, Use
-from noise.screening.design.environments import (
-    DRY,
-    FIT_PARAMETERS,
-    environment,
-    in_environment,
-    scaled_fit,
+from noise.screening.advice import advise
+from noise.screening.batches import Evaluator, batch_evaluator, keeping
+from noise.screening.design import Design, Swinging, Use, load_designs
+from noise.screening.environments import DRY, environment, in_environment
+from noise.screening.grid import Grid, shared_grid, shared_motions
+from noise.screening.mapping import DesignMap, map_design
+from noise.screening.margins import CriticalPoint, critical_points
+from noise.screening.parts import robustness
+from noise.screening.provenance import fits_remark
+from noise.screening.standing import (
+    Standing,
+    condition_at,
+    ranked,
+    refuse_unlike,
+    standing_of,
+    with_advice,
 )
-from noise.screening.design.loading import load_designs
-from noise.screening.map.batches import Evaluator, batch_evaluator, keeping
-from noise.screening.map.grid import Grid, shared_grid, shared_motions
-from noise.screening.map.mapping import DesignMap, growth_rates, map_design
-from noise.screening.map.point import LONGEST_POINT
-from noise.screening.map.provenance import fits_remark
-from noise.screening.outcome import Screening
-from noise.screening.parts.statistics import statistics_of
-from noise.screening.ranking.margins import critical_points
-from noise.screening.ranking.plain_words import fit_words, supports_words
-from noise.screening.ranking.ranking import standings
-from noise.screening.ranking.use_risk import ends_and_middle
+from noise.screening.vibration import Condition
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import never_slips
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from noise.screening.map.grid import Grid
-
-_CHANGE = 0.2
-"""Of a parameter of the bushing, as a share of its value."""
-
-_NO_TORQUE = 1e-12
-"""[N m]"""
-
-_SPEEDS = 17
-"""Of the use, at which stability is asked, at the ends and the middle of the other axes."""
-
-_BETTER = 0.8
-"""Share of what is noisy, or unsteady, that must be left at most for a hint."""
-
-
-def first_hint(rig: Rig, found: DesignMap) -> str:
-    """Say what would make a design quieter; empty where it is quiet or nothing is known to.
-
-    Parameters
-    ----------
-    rig : Rig
-        In the environment of the map.
-    found : DesignMap
-
-    Examples
-    --------
-    >>> from noise.screening.design.design import Use
-    >>> from noise.screening.screen import screen
-    >>> use = Use(speed=(1.0, 5.0, 9.0), support_stiffness=(2214.0,))
-    >>> screen(["PDMS"], use).standings[0].hint
-    ''
-    >>> screen(["fluorocarbon-thesis"], use).standings[0].hint
-    'quietest at 0.178 mm: 33% of the use is noisy, not 44%'
-    """
-    noisy = found.label[..., found.grid.used] != "none"
-    if not noisy.any():
-        return ""
-    return "; ".join(filter(None, (_by_stability(rig, found.grid), _by_map(noisy, found))))
-
-
-def _by_stability(rig: Rig, grid: Grid) -> str:
-    """Name the change that steadies most, of laws that stability tells of, with the shaft turning.
-
-    A constant torque slides stably at any speed, however it sticks and slips.
-    """
-    if grid.frequency:
-        return ""
-    now = _unsteady(rig, grid)
-    if now == 0.0:
-        return ""
-    tried = [
-        (_unsteady(changed, grid), name, change)
-        for name in FIT_PARAMETERS
-        for aimed in (-_CHANGE, _CHANGE)
-        for changed, change in [_changed(rig, name, 1.0 + aimed)]
-        if change
-    ]
-    share, name, change = min(tried)
-    if share > _BETTER * now:
-        return ""
-    return f"{name} {change:+.0%}: by stability {share:.0%} of the use is unsteady, not {now:.0%}"
-
-
-def _unsteady(rig: Rig, grid: Grid) -> float:
-    """Share of the use at which steady sliding cannot last [-]."""
-    axes = tuple(
-        np.array(ends_and_middle(axis))
-        for axis in (grid.temperature, grid.support_stiffness, grid.interference)
-    )
-    return float(np.mean(growth_rates(rig, axes, np.linspace(*grid.use, _SPEEDS)) > 0.0))
-
-
-def _changed(rig: Rig, name: str, factor: float) -> tuple[Rig, float]:
-    """Change a parameter of all fits, no further than until both torques are one.
-
-    The change is told as a share of the value [-].
-    """
-    ratio = min(fit.critical_torque / max(fit.kinetic_torque, _NO_TORQUE) for fit in rig.fits)
-    factor = {
-        "critical_torque": max(factor, 1.0 / ratio),
-        "kinetic_torque": min(factor, ratio),
-    }.get(name, factor)
-    changed = replace(rig, fits=tuple(scaled_fit(fit, {name: factor}) for fit in rig.fits))
-    return changed, factor - 1.0
-
-
-def _by_map(noisy: NDArray[np.bool_], found: DesignMap) -> str:
-    """Name the support or the interference at which the use is quietest by far."""
-    overall = float(noisy.mean())
-    tried = list(_shares(noisy, found))
-    share, where = min(tried, default=(overall, ""))
-    if share > _BETTER * overall:
-        return ""
-    return f"quietest {where}: {share:.0%} of the use is noisy, not {overall:.0%}"
-
-
-def _shares(noisy: NDArray[np.bool_], found: DesignMap) -> Iterator[tuple[float, str]]:
-    grid, own = found.grid, ~found.substituted
-    for i, support in enumerate(grid.support_stiffness):
-        yield float(noisy[:, i].mean()), supports_words([support])
-    for i, fit in enumerate(grid.interference):
-        if own[:, :, i].any():
-            yield float(noisy[:, :, i].mean()), fit_words([fit])
-
-
-_MOST_TWIST = 2.0
-"""Of a bushing [rad]: one half as thick as its radius is then sheared by 400 %, and tears."""
-
-
-def why_never_slipping(rig: Rig, grid: Grid) -> str:
-    """Say why the contact slips at no point of a map; empty where it does.
-
-    Parameters
-    ----------
-    rig : Rig
-        In its environment.
-    grid : Grid
-
-    Examples
-    --------
-    >>> from noise.screening.design.design import Use, load_design
-    >>> from noise.screening.map.grid import grid_of
-    >>> design = load_design("fluorocarbon-thesis")
-    >>> grid = grid_of(design, Use(speed=(5.0,), interference=(0.279e-3,)))
-    >>> why_never_slipping(design.rig, grid)
-    ''
-    >>> in_nmm = design.rig.changed(critical_torque="x1000", kinetic_torque="x1000")
-    >>> why_never_slipping(in_nmm, grid)
-    'never slips: the contact holds 10700 Nm, for which the shaft winds the bushing up by 16.1 rad'
-    """
-    twist, torque, interference, support = min(
-        (fit.critical_torque / effective_stiffness(fit, support), fit.critical_torque, at, support)
-        for at, support in itertools.product(grid.interference, grid.support_stiffness)
-        for fit in (rig.fit(at),)
-    )
-    swing = bool(grid.frequency)
-    fastest = grid.use[1]
-    way = fastest / (2.0 * math.pi * min(grid.frequency)) if swing else fastest * LONGEST_POINT
-    if twist <= (way if swing else min(way, _MOST_TWIST)):
-        return ""
-    if not swing and twist <= _MOST_TWIST:
-        motion = motion_from_rest(rig, fastest, interference, support, seconds=LONGEST_POINT)
-        if not never_slips(motion):
-            return ""
-    return (
-        f"never slips: the contact holds {torque:g} Nm, for which the shaft winds the bushing up "
-        f"by {twist:.3g} rad"
-    )
-
+    from matplotlib.axes import Axes
+    from pandas import DataFrame
 
 DEFAULT_SIMULATIONS = 500
-"""Of a map, more or less: what two cores do of the calibrated fluorocarbon in eight seconds."""
+"""Of a map, more or less."""
 
 _ONE_SWING = 2
 """Motions up to which no swing needs a name: constant speed and one swing."""
+
+_LONGEST_WINDING = 2.0
+"""[s]"""
+
+_ELSEWHERE = 6
+"""Other noisy conditions of use at which advice is tried."""
+
+_FAILURES = (BushingNoiseError, ArithmeticError, ValueError)
+"""Singular matrices are among these; anything else is a defect of the program."""
+
+
+@short_repr
+@dataclass(frozen=True)
+class Screening:
+    """What a screen found.
+
+    Parameters
+    ----------
+    designs : tuple of Design
+        Those that were screened, as they were: named, and changed where a change was given.
+    maps : tuple of DesignMap
+        One for each design, environment and motion; all designs have the same grids.
+    critical : tuple of CriticalPoint
+        Critical speeds and margins, by simulation and by stability.
+    standings : tuple of Standing
+        The designs ranked, the quietest first; one for each map.
+    refused : tuple of (str, str)
+        Designs that could not be screened, and why.
+    files : tuple of (str, Path)
+        Files that designs were read from, by the names that the screen calls them.
+    seconds, statistics_seconds : float
+        How long the maps took, and advice and tolerances [s].
+
+    Examples
+    --------
+    >>> from noise.screening.design import Use
+    >>> from noise.screening.screen import screen
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
+    >>> found.refused, found.standings[0].shares["none"]
+    ((), 1.0)
+    """
+
+    designs: tuple[Design, ...]
+    maps: tuple[DesignMap, ...]
+    critical: tuple[CriticalPoint, ...]
+    standings: tuple[Standing, ...]
+    refused: tuple[tuple[str, str], ...]
+    files: tuple[tuple[str, Path], ...]
+    seconds: float
+    statistics_seconds: float
+
+    def count(self, how: str) -> int:
+        """How many points of all maps are known in a way: `DesignMap.how`."""
+        return sum(found.count(how) for found in self.maps)
+
+    @property
+    def points(self) -> int:
+        """How many points the maps have."""
+        return sum(found.label.size for found in self.maps)
+
+    @property
+    def conditions(self) -> tuple[Grid, ...]:
+        """Conditions that all designs are compared over, one for each environment and motion."""
+        first = self.maps[0].design
+        return tuple(found.grid for found in self.maps if found.design == first)
+
+    @property
+    def substituted(self) -> dict[str, int]:
+        """How many points of each design rest on data interpolated or held, by the design's name.
+
+        What stands in is said by `noise.screening.provenance.RULE`, and of each point by the map's
+        `note`.
+        """
+        counts = {found.design: 0 for found in self.maps}
+        for found in self.maps:
+            counts[found.design] += int(np.sum(found.substituted))
+        return {name: count for name, count in counts.items() if count}
+
+    @property
+    def failed(self) -> tuple[tuple[str, str], ...]:
+        """Designs of which something could not be told, and what and why."""
+        return tuple((one.design, why) for one in self.standings for why in one.failed)
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        *,
+        number: int = 0,
+        support: int = 0,
+        temperature: int = 0,
+    ) -> Axes:
+        """Draw which noise a design makes where, with one support.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+        number : int
+            Of the map among `maps`, from 0.
+        support, temperature : int
+            Which of the map's, from 0.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            There is no such map, support or temperature.
+
+        Examples
+        --------
+        >>> from matplotlib.figure import Figure
+        >>> from noise.screening.design import Use
+        >>> from noise.screening.screen import screen
+        >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
+        >>> found.plot(Figure().subplots()).get_ylabel()
+        'Interference [mm]'
+        """
+        from noise.pictures.maps import plot_map
+
+        _check_index("map", number, len(self.maps))
+        found = self.maps[number]
+        _check_index("support", support, len(found.grid.support_stiffness))
+        _check_index("temperature", temperature, len(found.grid.temperature))
+        return plot_map(found, ax, support=support, temperature=temperature)
+
+    def to_pandas(self, table: str = "designs") -> DataFrame:
+        """Return one of the tables that ``bushing-noise screen --out`` writes, as a data frame.
+
+        Parameters
+        ----------
+        table : str
+            ``designs``, ``map``, ``critical_speeds``; ``advice`` where something is noisy, and
+            ``sensitivities`` where tolerances were looked at.
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Raises
+        ------
+        ParameterError
+            There is no such table, or pandas is not installed.
+        """
+        from models.show import data_frame
+        from noise.screening.tables import screening_tables
+
+        tables = screening_tables(self)
+        if f"{table}.csv" not in tables:
+            there = ", ".join(name.removesuffix(".csv") for name in tables)
+            raise ParameterError(f"there is no table {table!r}; there are {there}")
+        return data_frame(*tables[f"{table}.csv"])
+
+
+def _check_index(what: str, index: int, there: int) -> None:
+    if not 0 <= index < there:
+        raise ParameterError(f"there is no {what} {index}; there are 0 to {there - 1}")
 
 
 def screen(
@@ -235,7 +236,7 @@ def screen(
     progress: Callable[[str], None] = lambda _: None,
     kept: Journal | None = None,
 ) -> Screening:
-    """Map bushing designs over their conditions, and rank them.
+    """Map bushing designs over their conditions, rank them, and tell what would end their noise.
 
     Parameters
     ----------
@@ -245,7 +246,7 @@ def screen(
         Conditions of the maps, in place of the designs' own; with speeds alone, or with a swing
         alone, only that is mapped.
     environments : sequence of str
-        Of `noise.screening.design.environments`.
+        Of `noise.screening.environments`.
     loudness : bool
         Whether to tell loudness as well; needs the extra ``sound-quality``.
     tolerances : bool, optional
@@ -277,12 +278,10 @@ def screen(
 
     Examples
     --------
-    >>> from noise.screening.design.design import Use
+    >>> from noise.screening.design import Use
     >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0, 9.0), support_stiffness=(2214.0,)))
     >>> found.standings[0].shares["none"], found.critical[0].margin_v_crit2
     (1.0, inf)
-    >>> found.standings[0].risk
-    1
     """
     started = time.perf_counter()
     if not designs:
@@ -330,38 +329,126 @@ def screen(
     if not maps:
         raise ParameterError(refused[0][1])
     mapped = time.perf_counter()
-    critical = tuple(point for found in maps for point in critical_points(found))
-    rigs = [in_environment(screened[one.design].rig, environment(one.environment)) for one in maps]
-    never_slipping = [
-        why_never_slipping(rig, each.grid) for rig, each in zip(rigs, maps, strict=True)
-    ]
-    first: dict[tuple[str, str], tuple[DesignMap, str]] = {}
-    for each, why in zip(maps, never_slipping, strict=True):
-        first.setdefault((each.design, each.environment), (each, why))
-    streams = (rng or np.random.default_rng(0)).spawn(len(first))
-    statistics = tuple(
-        statistics_of(
-            screened[each.design],
-            each,
-            stream,
-            tolerances=tolerances,
-            slips=not why,
-            workers=workers,
-            progress=progress,
-        )
-        for (each, why), stream in zip(first.values(), streams, strict=True)
-    )
-    hints = [first_hint(rig, each) for rig, each in zip(rigs, maps, strict=True)]
+    refuse_unlike(maps)
+    critical: list[CriticalPoint] = []
+    standings: list[Standing] = []
+    rng = rng or np.random.default_rng(0)
+    for each, stream in zip(maps, rng.spawn(len(maps)), strict=True):
+        design = screened[each.design]
+        rig = in_environment(design.rig, environment(each.environment))
+        points = critical_points(each)
+        standing = standing_of(each, points, why_never_slipping(rig, each.grid))
+        notes = remarks[each.design, each.environment]
+        standing = replace(standing, notes=(*notes, *filter(None, [standing.never_slips])))
+        critical += points
+        standings.append(
+            standing
+            if standing.never_slips or each.motion != "steady"
+            else _advised(standing, each, replace(design, rig=rig), stream, tolerances=tolerances,
+                          workers=workers, progress=progress)
+        )  # fmt: skip
     return Screening(
         designs=tuple(screened.values()),
         maps=tuple(maps),
-        critical=critical,
-        statistics=statistics,
-        standings=standings(maps, critical, statistics, never_slipping, hints, remarks),
+        critical=tuple(critical),
+        standings=ranked(standings),
         refused=tuple(refused),
         files=tuple(one for one in files if one[0] in screened),
         seconds=mapped - started,
         statistics_seconds=time.perf_counter() - mapped,
+    )
+
+
+def _advised(
+    one: Standing,
+    found: DesignMap,
+    design: Design,
+    rng: np.random.Generator,
+    *,
+    tolerances: bool | None,
+    workers: int,
+    progress: Callable[[str], None],
+) -> Standing:
+    """Add what would end the loudest noise, and what tolerances do; what fails is told."""
+    where = f"{one.design}, {one.environment}"
+    failed: list[str] = []
+    try:
+        if one.loudest is not None:
+            progress(f"advice for {where}")
+            others = _other_noisy(found, one.loudest)
+            one = with_advice(one, advise(design.rig, one.loudest, others, workers=workers))
+    except _FAILURES as error:
+        failed.append(f"advice: {error}")
+    if bool(design.tolerances) if tolerances is None else tolerances:
+        grid = found.grid
+        slowest, fastest = grid.use
+        used = Use((slowest or 0.02 * fastest, fastest), grid.interference,
+                   grid.support_stiffness, grid.temperature)  # fmt: skip
+        try:
+            stands = robustness(
+                replace(design, use=used), rng, at=one.loudest, workers=workers, progress=progress
+            )
+            one = replace(one, robustness=stands)
+        except _FAILURES as error:
+            failed.append(f"tolerances: {error}")
+    return replace(one, failed=tuple(failed))
+
+
+def _other_noisy(found: DesignMap, loudest: Condition) -> list[Condition]:
+    """Choose some simulated noisy conditions of use, from all over the map."""
+    used = found.grid.used
+    noisy = np.argwhere(
+        (found.sound[..., used] != "none") & (found.how[..., used] == "simulated")
+    ).tolist()
+    chosen = [condition_at(found.grid, at) for at in noisy]
+    chosen = [at for at in chosen if at != loudest]
+    if len(chosen) <= _ELSEWHERE:
+        return chosen
+    return [chosen[i] for i in np.linspace(0, len(chosen) - 1, _ELSEWHERE).astype(int)]
+
+
+_MOST_TWIST = 2.0
+"""Of a bushing [rad]: one half as thick as its radius is then sheared by 400 %, and tears."""
+
+
+def why_never_slipping(rig: Rig, grid: Grid) -> str:
+    """Say why the contact slips at no point of a map; empty where it does.
+
+    Parameters
+    ----------
+    rig : Rig
+        In its environment.
+    grid : Grid
+
+    Examples
+    --------
+    >>> from noise.screening.design import Use, load_design
+    >>> from noise.screening.grid import grid_of
+    >>> design = load_design("fluorocarbon-thesis")
+    >>> grid = grid_of(design, Use(speed=(5.0,), interference=(0.279e-3,)))
+    >>> why_never_slipping(design.rig, grid)
+    ''
+    >>> in_nmm = design.rig.changed(critical_torque="x1000", kinetic_torque="x1000")
+    >>> why_never_slipping(in_nmm, grid)
+    'never slips: the contact holds 10700 Nm, for which the shaft winds the bushing up by 16.1 rad'
+    """
+    twist, torque, interference, support = min(
+        (fit.critical_torque / effective_stiffness(fit, support), fit.critical_torque, at, support)
+        for at, support in itertools.product(grid.interference, grid.support_stiffness)
+        for fit in (rig.fit(at),)
+    )
+    swing = bool(grid.frequency)
+    fastest = grid.use[1]
+    way = fastest / (2.0 * math.pi * min(grid.frequency)) if swing else fastest * _LONGEST_WINDING
+    if twist <= (way if swing else min(way, _MOST_TWIST)):
+        return ""
+    if not swing and twist <= _MOST_TWIST:
+        motion = motion_from_rest(rig, fastest, interference, support, seconds=_LONGEST_WINDING)
+        if not never_slips(motion):
+            return ""
+    return (
+        f"never slips: the contact holds {torque:g} Nm, for which the shaft winds the bushing up "
+        f"by {twist:.3g} rad"
     )
 
 
@@ -400,7 +487,7 @@ def _mapped(
     rig = in_environment(design.rig, environment(where))
     found = map_design(rig, grid, evaluate, design=design.name, environment=where, most=simulations)
     if loudness:
-        from noise.screening.map.loudness import with_loudness
+        from noise.screening.loudness import with_loudness
 
         found = with_loudness(found, rig)
     return found

@@ -17,9 +17,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.rig_file import load_material_rig
-from noise.screening.design.axis_values import spread
-from noise.screening.design.design import Use
-from noise.screening.map.point import evaluate_point
+from noise.screening.axis_values import spread
+from noise.screening.design import Use
+from noise.screening.point import evaluate_point
 from noise.screening.screen import screen
 from sim.analysis.critical_speeds import regime_at
 from sim.analysis.regime import LEAST_OSCILLATION

@@ -7,7 +7,7 @@ import pytest
 import noise
 from models.rig_file import load_material_rig, load_rig, material_names
 from noise.cli import main
-from noise.screening.design.design import load_design
+from noise.screening.design import load_design
 from sim.effects import EFFECTS
 
 

@@ -25,7 +25,7 @@ from noise.diagnosis.improvement import Improvement
 from noise.diagnosis.run import diagnose
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
 from noise.diagnosis.text.improved_sentences import improved_commands
-from noise.screening.design.design import load_design
+from noise.screening.design import load_design
 from sim.effects import EFFECTS
 from tests.helpers.answered_diagnoses import as_the_contract_has_it
 from tests.helpers.small_rigs import RIG, RIG_FILE, at, run, write_case

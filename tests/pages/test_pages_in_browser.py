@@ -14,7 +14,7 @@ from noise.identification.law_candidates import CANDIDATES
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.review import review
 from noise.pages.screening import write_screening
-from noise.screening.design.design import Design, Use
+from noise.screening.design import Design, Use
 from noise.screening.screen import screen
 from tests.blind.identify.rigs import make_rig, write_rig
 from tests.helpers.browser import OpenedPage, accessibility_errors

@@ -16,7 +16,7 @@ from noise.pages.comparison import compare_designs
 from noise.pages.maps import cells_of, common_cells
 from noise.pages.screen_sounds import chosen_points, screen_maps, shared_points
 from noise.pages.screening import RANKING, ranking_rows, write_screening
-from noise.screening.design.design import Design, Use
+from noise.screening.design import Design, Use
 from noise.screening.screen import screen
 
 QUICK = Use(speed=(1.0, 5.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))

@@ -5,7 +5,7 @@ import pytest
 from matplotlib.colors import to_hex
 
 from noise.pictures.maps import plot_screen
-from noise.screening.design.design import Use
+from noise.screening.design import Use
 from noise.screening.screen import screen
 
 

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.screening.design.axis_values import axis_values, spread, text_values
-from noise.screening.design.design import load_design
-from noise.screening.design.environments import environment, environment_names, in_environment
-from noise.screening.design.tolerances import Tolerance, read_tolerances
-from noise.screening.map.grid import grid_of
-from noise.screening.parts.variation import nominal_values, use_point, varied
+from noise.screening.axis_values import axis_values, spread, text_values
+from noise.screening.design import load_design
+from noise.screening.environments import environment, environment_names, in_environment
+from noise.screening.grid import grid_of
+from noise.screening.parts import middle_of_use
+from noise.screening.tolerances import Tolerance, nominal_values, read_tolerances, varied
 
 DESIGN = """\
 name = "rig"
@@ -144,8 +144,8 @@ def test_tolerances_become_factors_on_the_nominal_value():
 
 def test_a_varied_design_changes_what_is_named_and_nothing_else():
     design = load_design("fluorocarbon-thesis")
-    point = use_point(design)
-    before = nominal_values(design, point)
+    point = middle_of_use(design)
+    before = nominal_values(design.rig, point)
     factors = {"elastomer_stiffness": 1.1, "interference": 0.9, "temperature": 1.1}
     rig, moved = varied(design.rig, point, factors)
     assert rig.fit(0.279e-3).elastomer_stiffness == pytest.approx(665.0 * 1.1)
@@ -159,7 +159,7 @@ def test_a_varied_design_changes_what_is_named_and_nothing_else():
 
 def test_a_critical_torque_is_never_below_the_kinetic_one():
     design = load_design("fluorocarbon-thesis")
-    rig, _ = varied(design.rig, use_point(design), {"critical_torque": 0.5})
+    rig, _ = varied(design.rig, middle_of_use(design), {"critical_torque": 0.5})
     assert all(fit.critical_torque == fit.kinetic_torque for fit in rig.fits)
 
 
@@ -167,7 +167,7 @@ def test_a_critical_torque_is_never_below_the_kinetic_one():
 def test_a_factor_that_cannot_be_used_is_refused(factors):
     design = load_design("PDMS")
     with pytest.raises(ParameterError):
-        varied(design.rig, use_point(design), factors)
+        varied(design.rig, middle_of_use(design), factors)
 
 
 @pytest.mark.parametrize("name", [n for n in environment_names() if n != "dry"])

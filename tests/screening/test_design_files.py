@@ -1,7 +1,7 @@
 """Copies of design files beside a screen: each is the design that was screened."""
 
 from models.rig_file import load_rig
-from noise.screening.design.design_files import copy_design_file
+from noise.screening.design import copy_design_file
 
 
 def written(path, text):

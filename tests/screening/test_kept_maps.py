@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from models.rig_file import load_material_rig
-from noise.screening.design.design import Design, Use
-from noise.screening.map.batches import keeping
-from noise.screening.map.grid import grid_of
-from noise.screening.map.mapping import map_design
+from noise.screening.batches import keeping
+from noise.screening.design import Design, Use
+from noise.screening.grid import grid_of
+from noise.screening.mapping import map_design
 from tests.helpers.kept import staying_results
 
 USE = Use(interference=(0.254e-3, 0.3e-3, 0.381e-3), support_stiffness=(2214.0,))
@@ -28,9 +28,9 @@ class Judge:
         self.left -= 1
         self.n_points += batch.speed.size
         loud = batch.speed < 5.0 + sum(batch.rig.fit(0.3e-3).damping.values())
-        rows = np.where(loud, 2.0, 0.0)[:, None] * np.ones(4)
-        rows[:, 2:] = np.where(loud, batch.speed / 3.0, np.nan)[:, None]
-        return rows
+        codes = np.where(loud[:, None], [2.0, 2.0, 0.0, 2.0], 0.0)
+        level = np.where(loud, batch.speed / 3.0, np.nan)
+        return np.column_stack([codes, level, level])
 
 
 def mapped(judge, folder, change=1.0):

@@ -8,18 +8,17 @@ import pytest
 
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
-from noise.noise_definition import is_ambiguous, run_criteria
-from noise.screening.design.design import Design, Swinging, Use
-from noise.screening.map.batches import batch_evaluator
-from noise.screening.map.grid import grid_of
-from noise.screening.map.mapping import map_design
-from noise.screening.map.point import evaluate_point
+from noise.screening.batches import batch_evaluator
+from noise.screening.design import Design, Swinging, Use
+from noise.screening.grid import grid_of
+from noise.screening.mapping import map_design
+from noise.screening.point import evaluate_point
 from noise.screening.screen import screen
-from noise.screening.tables.summary import summary_lines
+from noise.screening.summary import summary_lines
+from noise.screening.tables import screening_tables
+from noise.screening.vibration import Condition
 from sim.analysis.critical_speeds import critical_speeds
-from sim.rig_effects import constant_version
-from sim.run import simulate
-from sim.shaft import Oscillation
+from tests.screening.long_runs import label_after
 
 SUPPORTS = (2214.0, 3745.0, math.inf)
 FLUOROCARBON = load_material_rig("fluorocarbon")
@@ -38,7 +37,6 @@ def test_pdms_is_silent_everywhere():
     assert (found.label == "none").all()
     assert (found.regime == "steady sliding").all()
     assert found.count("simulated") < 0.2 * found.label.size
-    assert found.count("stability") == found.label.size - found.count("simulated")
 
 
 def test_natural_rubber_chatters_without_its_film_and_not_on_it():
@@ -68,26 +66,22 @@ def test_natural_rubber_chatters_without_its_film_and_not_on_it():
     ],
 )
 def test_a_point_is_labelled_as_the_thesis_heard_it(interference, support, speed, noise):
-    found = evaluate_point(
-        FLUOROCARBON, speed, interference=interference, support_stiffness=support
-    )
-    assert found.label == noise
+    found = evaluate_point(FLUOROCARBON, Condition(speed, interference, support))
+    assert ("none" if found.persists else found.label) == noise
 
 
-def test_points_are_labelled_as_whole_recordings_are():
-    rng = np.random.default_rng(7)
-    alike = []
-    for _ in range(6):
-        where = {
-            "interference": rng.uniform(0.178e-3, 0.381e-3),
-            "support_stiffness": float(rng.choice([2214.0, 3745.0])),
-        }
-        speed = rng.uniform(0.5, 12.5)
-        criteria = run_criteria(simulate(FLUOROCARBON, speed, **where))
-        if not is_ambiguous(criteria):
-            alike.append(evaluate_point(FLUOROCARBON, speed, **where).label == criteria.label)
-    assert len(alike) > 3
-    assert all(alike)
+@pytest.mark.parametrize("material", ["fluorocarbon", "natural-rubber", "fluorocarbon-thesis"])
+def test_points_are_labelled_as_recordings_of_them_are(material):
+    rng, rig = np.random.default_rng(7), load_material_rig(material)
+    for _ in range(4):
+        at = Condition(
+            rng.uniform(0.5, 6.0),
+            float(rng.choice(rig.interference_range)),
+            float(rng.choice(SUPPORTS)),
+        )
+        found = evaluate_point(rig, at)
+        heard = label_after(rig, at, [at.speed], seconds=3.0)
+        assert heard == ("none" if found.persists else found.label)
 
 
 def test_critical_speeds_are_those_of_the_search_to_a_step_of_the_map():
@@ -98,10 +92,11 @@ def test_critical_speeds_are_those_of_the_search_to_a_step_of_the_map():
     for point, support in zip(found.critical, supports, strict=True):
         searched = critical_speeds(FLUOROCARBON, fit, support, speeds)
         assert point.v_crit1 == pytest.approx(searched.v_crit1, abs=0.26)
-        # From rest vibration goes on up to half a rad/s beyond where steady sliding turns stable.
-        assert -0.5 <= point.v_crit2 - searched.v_crit2 <= 0.26
-        assert -0.8 <= point.v_crit2_stability - searched.v_crit2 <= 0.3
-        assert point.margin_v_crit2 == pytest.approx(2.0 - point.v_crit2)
+        assert point.v_crit1_high - point.v_crit1 in (0.25, math.inf)
+        # A vibration that only persists counts, which the search from rest does not see.
+        assert point.v_crit2 >= searched.v_crit2 - 0.26
+        assert point.v_crit2_stability <= point.v_crit2
+        assert point.margin_v_crit2 <= 2.0 - point.v_crit2 or math.isinf(point.v_crit2)
 
 
 def test_a_constant_torque_sticks_and_slips_where_stability_sees_nothing():
@@ -151,11 +146,9 @@ def test_a_map_over_temperature_is_noisy_in_the_cold_and_silent_in_the_heat():
 
 
 def test_a_bar_that_swings_on_the_road_makes_noise_where_its_rubber_does():
-    swing = Oscillation(math.radians(15), 2.0)
-    loud = evaluate_point(FLUOROCARBON, swing, interference=0.381e-3, support_stiffness=2214.0)
-    still = evaluate_point(
-        load_material_rig("PDMS"), swing, interference=0.381e-3, support_stiffness=2214.0
-    )
+    swing = Condition(2.0 * math.pi * 2.0 * math.radians(15), 0.381e-3, 2214.0, frequency=2.0)
+    loud = evaluate_point(FLUOROCARBON, swing)
+    still = evaluate_point(load_material_rig("PDMS"), swing)
     assert loud.label == "creak"
     assert (still.label, still.regime.value) == ("none", "steady sliding")
     assert math.isnan(still.level)
@@ -181,7 +174,7 @@ def test_the_design_that_is_quieter_by_construction_is_ranked_first():
     use = Use(speed=(2.0, 5.0, 8.0), interference=(0.279e-3,), support_stiffness=(2214.0, 3745.0))
     found = screen([Design("as it is", FLUOROCARBON), quiet], use)
     assert [(one.rank, one.design) for one in found.standings] == [(1, "damped"), (2, "as it is")]
-    assert found.standings[0].exposure < found.standings[1].exposure
+    assert found.standings[0].mean_loudness < found.standings[1].mean_loudness
     assert found.standings[0].margin_stability > found.standings[1].margin_stability
 
 
@@ -220,12 +213,25 @@ def test_loudness_is_that_of_the_loudest_point_of_a_region():
     assert heard[1] / heard[0] == pytest.approx(2.0 ** (difference / 10.0))
 
 
-def test_a_map_is_of_the_constant_version_and_says_so():
-    rig = load_material_rig("fluorocarbon")
-    at = {"interference": 0.381e-3, "support_stiffness": 2214.0}
-    assert evaluate_point(rig, 2.5, **at) == evaluate_point(constant_version(rig), 2.5, **at)
-    use = Use(speed=(1.0, 5.0), interference=(0.381e-3,), support_stiffness=(2214.0,))
-    said = " ".join(summary_lines(screen(["fluorocarbon"], use)))
-    assert said.count("are of the constant version, without critical_torque_scatter") == 1
-    use = replace(use, interference=(0.279e-3,))
-    assert "constant version" not in " ".join(summary_lines(screen(["PDMS"], use)))
+HELD = Design("held", load_material_rig("fluorocarbon-thesis").changed(critical_torque="x1000"))
+
+
+def test_a_contact_that_never_slips_gets_no_rank_and_comes_last():
+    use = Use(speed=(1.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
+    found = screen([HELD, "PDMS"], use)
+    assert [(one.design, one.rank) for one in found.standings] == [("PDMS", 1), ("held", None)]
+    line = next(line for line in summary_lines(found) if "held" in line)
+    assert "no rank; never slips" in line
+    _, rows = screening_tables(found)["designs.csv"]
+    assert "never slips" in rows[-1]["error"]
+
+
+def test_in_a_swing_it_is_a_result():
+    swing = Use(
+        swinging=Swinging(math.radians(10.0), (1.0,)),
+        interference=(0.279e-3,),
+        support_stiffness=(2214.0,),
+    )
+    best, other = screen(["fluorocarbon-thesis", HELD], swing).standings
+    assert (best.design, best.rank, other.rank) == ("held", 1, 2)
+    assert best.words.endswith("; quiet")

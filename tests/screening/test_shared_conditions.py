@@ -11,15 +11,15 @@ from hypothesis import HealthCheck, example, given, settings, strategies as st
 from models.errors import ParameterError
 from models.rig import Fit, damping_at
 from models.rig_file import load_material_rig
-from noise.screening.design.design import Design, Swinging, Use, load_design
-from noise.screening.map.grid import grid_of, shared_grid, shared_motions
-from noise.screening.map.point import evaluate_point
-from noise.screening.map.provenance import point_notes, rows_of
-from noise.screening.parts.statistics import Statistics
-from noise.screening.ranking.ranking import refuse_unlike, standings
+from noise.screening.design import Design, Swinging, Use, load_design
+from noise.screening.grid import grid_of, shared_grid, shared_motions
+from noise.screening.point import evaluate_point
+from noise.screening.provenance import point_notes, rows_of
 from noise.screening.screen import screen
-from noise.screening.tables.summary import summary_lines
-from noise.screening.tables.tables import screening_tables
+from noise.screening.standing import refuse_unlike
+from noise.screening.summary import summary_lines
+from noise.screening.tables import screening_tables
+from noise.screening.vibration import Condition
 
 THESIS = load_material_rig("fluorocarbon-thesis")
 FLUOROCARBON = load_material_rig("fluorocarbon")
@@ -61,14 +61,9 @@ def bushings(draw):
 
 def judged(batch):
     """Noise by the speed alone, in no time."""
-    rows = np.full((batch.speed.size, 4), np.nan)
-    rows[:, :2] = np.where(batch.speed < 5.0, 2.0, 0.0)[:, None]
-    rows[:, 2:] = np.where(batch.speed < 5.0, 60.0, np.nan)[:, None]
-    return rows
-
-
-def graded(design, mapped, *_, **__):
-    return Statistics(design.name, mapped.environment, risk=4)
+    loud = (batch.speed < 5.0)[:, None]
+    codes = np.where(loud, [2.0, 2.0, 0.0, 2.0], 0.0)
+    return np.hstack([codes, np.where(loud, [60.0, 62.0], np.nan)])
 
 
 @pytest.fixture
@@ -80,9 +75,8 @@ def quick(monkeypatch):
         yield judged
 
     monkeypatch.setattr("noise.screening.screen.batch_evaluator", evaluator)
-    monkeypatch.setattr("noise.screening.screen.statistics_of", graded)
+    monkeypatch.setattr("noise.screening.screen.advise", lambda *_, **__: ())
     monkeypatch.setattr("noise.screening.screen.why_never_slipping", lambda *_: "")
-    monkeypatch.setattr("noise.screening.screen.first_hint", lambda *_: "")
 
 
 @settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -142,7 +136,7 @@ def test_maps_over_other_points_are_not_ranked(quick):
     one, other = found.maps
     fewer = replace(other, grid=replace(other.grid, support_stiffness=(2214.0,)))
     with pytest.raises(ParameterError, match="not mapped over the same points"):
-        standings((one, fewer), found.critical, found.statistics)
+        refuse_unlike((one, fewer))
 
 
 SINGLE = Design(
@@ -195,12 +189,12 @@ def test_a_fit_that_is_held_makes_the_same_noise_and_is_not_simulated_twice():
     assert found.count("simulated") == 4
     assert (found.how[0, 0, (0, 3)] == "unchanged").all()
     for row, interference in enumerate(fits):
-        one = evaluate_point(FLUOROCARBON, 2.0, interference=interference, support_stiffness=2214.0)
+        one = evaluate_point(FLUOROCARBON, Condition(2.0, interference, 2214.0))
         assert one.label == found.label[0, 0, row, 0]
         assert one.level == found.level[0, 0, row, 0]
 
 
-def test_a_copy_by_base_has_the_same_map_bit_for_bit(tmp_path, monkeypatch):
+def test_a_copy_by_base_has_the_same_map_bit_for_bit(tmp_path):
     path = tmp_path / "copy.toml"
     path.write_text('base = "fluorocarbon"\n[design]\nname = "copy"\n', encoding="utf-8")
     assert load_design(path).rig == FLUOROCARBON
@@ -209,7 +203,6 @@ def test_a_copy_by_base_has_the_same_map_bit_for_bit(tmp_path, monkeypatch):
         interference=(0.279e-3, 0.35e-3),
         support_stiffness=(3745.0,),
     )
-    monkeypatch.setattr("noise.screening.screen.statistics_of", graded)
     original, copy = screen(["fluorocarbon", path], use).maps
     for name in ("regime", "label", "level", "level_max", "how", "growth", "note"):
         np.testing.assert_array_equal(getattr(original, name), getattr(copy, name))

@@ -13,14 +13,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage
+from scipy.signal import resample_poly
 
 from features.sound_quality import SHORTEST, loudness_n5
 from models.rig import Rig
-from noise.screening.map.point import point_sound, shaft_motion
-from noise.screening.ranking.ranking import loudness_weight
+from noise.screening.point import point_sound
+from noise.screening.standing import loudness_weight
+from noise.screening.vibration import Condition
 
 if TYPE_CHECKING:
-    from noise.screening.map.mapping import DesignMap
+    from noise.screening.mapping import DesignMap
 
 
 _MOST_REGIONS = 6
@@ -56,23 +58,24 @@ def with_loudness(found: DesignMap, rig: Rig) -> DesignMap:
     for where, label in _regions(found):
         t, k, i, v = where
         grid = found.grid
-        sound = point_sound(
-            rig,
-            shaft_motion(grid.speed[v], grid.frequency[v] if grid.frequency else None),
-            interference=grid.interference[i],
-            support_stiffness=grid.support_stiffness[k],
-            temperature=grid.temperature[t],
+        at = Condition(
+            grid.speed[v],
+            grid.interference[i],
+            grid.support_stiffness[k],
+            grid.temperature[t],
+            grid.frequency[v] if grid.frequency else None,
         )
-        rate = sound.motion.rate
-        cycles = int(np.ceil(SHORTEST * rate / sound.pressure.size))  # of a fast swing
-        n5 = loudness_n5(np.tile(sound.pressure, cycles), rate)
+        rate, pressure = point_sound(rig, at)
+        pressure, rate = resample_poly(pressure, 8, 5), 1.6 * rate  # what the procedure is for
+        cycles = int(np.ceil(SHORTEST * rate / pressure.size))  # of a fast swing
+        n5 = loudness_n5(np.tile(pressure, cycles), rate)
         heard.append(_LoudPoint(label, float(found.level_max[where]), n5))
     loudness = np.full(found.level_max.shape, np.nan)
     for label in {one.label for one in heard}:
         of_label = [one for one in heard if one.label == label]
         levels = np.array([one.level for one in of_label])
         sones = np.array([one.loudness for one in of_label])
-        cells = (found.label == label) & np.isfinite(found.level_max)
+        cells = (found.sound == label) & np.isfinite(found.level_max)
         level = found.level_max[cells]
         nearest = np.abs(level[:, None] - levels).argmin(axis=1)
         loudness[cells] = sones[nearest] * loudness_weight(40.0 + level - levels[nearest])
@@ -82,8 +85,8 @@ def with_loudness(found: DesignMap, rig: Rig) -> DesignMap:
 def _regions(found: DesignMap) -> list[tuple[tuple[int, ...], str]]:
     """Loudest points of the largest regions, at least one of each label, and their labels."""
     regions: list[tuple[int, tuple[int, ...], str]] = []
-    for label in np.unique(found.label[found.label != "none"]):
-        numbers, _ = ndimage.label(found.label == label)
+    for label in np.unique(found.sound[found.sound != "none"]):
+        numbers, _ = ndimage.label(found.sound == label)
         counts = np.bincount(numbers.ravel())[1:]
         for rank, number in enumerate(np.argsort(counts)[::-1][:_MOST_REGIONS]):
             level = np.where(numbers == number + 1, found.level_max, -np.inf)

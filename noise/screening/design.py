@@ -22,25 +22,28 @@ taken from the rig: its fits, its supports.
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+import re
+import shutil
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from models.errors import ParameterError
+from models.errors import BushingNoiseError, ParameterError
 from models.foreign_file import refusing
 from models.rig import Rig
-from models.rig_file import load_material_rig, material_names, read_toml, rig_from
+from models.rig_file import base_name, load_material_rig, material_names, read_toml, rig_from
 from models.schema import as_table, as_text, number, refuse_unknown
 from models.show import short_repr
-from noise.screening.design.axis_values import (
+from noise.screening.axis_values import (
     FREQUENCY,
     SPEED,
     SUPPORT,
     TEMPERATURE,
     axis_values,
 )
-from noise.screening.design.tolerances import Tolerance, read_tolerances
+from noise.screening.tolerances import Tolerance, read_tolerances
 
 _USE_KEYS = {
     "name",
@@ -218,3 +221,152 @@ def _swinging(given: object, where: str) -> Swinging | None:
         raise ParameterError(f"{where}: frequency_hz is missing")
     frequency = axis_values(table["frequency_hz"], f"{where}: frequency_hz", FREQUENCY)
     return Swinging(math.radians(degrees), frequency)
+
+
+def load_designs(
+    designs: Sequence[str | Path | Design], change: Callable[[Rig], Rig] | None = None
+) -> tuple[dict[str, Design], list[tuple[str, str]], list[tuple[str, Path]]]:
+    """Read designs.
+
+    Parameters
+    ----------
+    designs : sequence of str, Path or Design
+        Design files, names of materials, or designs.
+    change : callable, optional
+        Makes another rig of that of each design.
+
+    Returns
+    -------
+    dict of str to Design
+        By their names; two of one name are told apart by a number.
+    list of (str, str)
+        Those that are refused, and why.
+    list of (str, Path)
+        Names of designs, and the files that they are as they stand in.
+
+    Raises
+    ------
+    ParameterError
+        All are refused.
+
+    Examples
+    --------
+    >>> loaded, refused, files = load_designs(["PDMS", "PDMS", "cheese"])
+    >>> list(loaded), [name for name, _ in refused], files
+    (['PDMS', 'PDMS (2)'], ['cheese'], [])
+    """
+    loaded: dict[str, Design] = {}
+    refused: list[tuple[str, str]] = []
+    files: list[tuple[str, Path]] = []
+    for one in designs:
+        try:
+            design = one if isinstance(one, Design) else load_design(one)
+            if change is not None:
+                design = replace(design, rig=change(design.rig))
+        except BushingNoiseError as error:
+            refused.append((one.name if isinstance(one, Design) else str(one), str(error)))
+            continue
+        design = _with_name_of_its_own(design, set(loaded))
+        loaded[design.name] = design
+        if change is None and not isinstance(one, Design) and Path(one).is_file():
+            files.append((design.name, Path(one)))
+    if not loaded:
+        raise ParameterError(refused[0][1])
+    return loaded, refused, files
+
+
+def _with_name_of_its_own(design: Design, taken: set[str]) -> Design:
+    """Two designs of one name are told apart by a number."""
+    name, number = design.name, 2
+    while name in taken:
+        name, number = f"{design.name} ({number})", number + 1
+    return replace(design, name=name)
+
+
+def copy_design_file(name: str, source: Path, folder: Path) -> Path:
+    """Copy a design's file to ``folder/NAME.toml``, with the responses that it names.
+
+    Responses named by a path of the file's own folder go with it. One named by a way out of that
+    folder would not be found from the copy, which is refused. A base out of that folder, or with
+    such a base of its own, is named by the copy from where it lies.
+
+    Parameters
+    ----------
+    name : str
+        What the screen calls the design.
+    source, folder : Path
+
+    Returns
+    -------
+    Path
+        The copy.
+
+    Raises
+    ------
+    ParameterError
+        The name is none of a file, or the copy is no design; the message says so.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as made:
+    ...     source = Path(made) / "mine.toml"
+    ...     size = source.write_text('material = "PDMS"', encoding="utf-8")
+    ...     copy_design_file("soft", source, Path(made) / "designs").name
+    'soft.toml'
+    """
+    target = folder / f"{name}.toml"
+    where = f"design {source}: cannot be copied to {target}"
+    if Path(name).name != name:
+        raise ParameterError(f"{where}: the design's name is none of a file")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in _named_files(source):
+            if not path.is_absolute() and ".." not in path.parts:
+                (folder / path).parent.mkdir(parents=True, exist_ok=True)
+                _copied(source.parent / path, folder / path)
+        if (base := _base_elsewhere(source)) is None:
+            _copied(source, target)
+        else:
+            named = f"base = {json.dumps(base_name(base, folder), ensure_ascii=False)}"
+            text = source.read_text(encoding="utf-8")
+            target.write_text(_BASE.sub(lambda _: named, text, count=1), encoding="utf-8")
+        load_design(target)
+    except OSError as error:
+        raise ParameterError(f"{where}: {error.strerror or error}") from None
+    except BushingNoiseError as error:
+        target.unlink(missing_ok=True)
+        raise ParameterError(f"{where}: {error}") from None
+    return target
+
+
+_BASE = re.compile(r"""^base\s*=\s*(?:"[^"]*"|'[^']*')""", re.MULTILINE)
+"""How a file names its base, before any table."""
+
+
+def _base_elsewhere(source: Path) -> Path | None:
+    """Return the base of a file where the way to it, or to its own, leads out of a folder."""
+    named = Path(read_toml(source, f"design {source}").get("base", ""))
+    base = source.parent / named
+    if named.is_absolute() or not base.is_file():
+        return None
+    return base if ".." in named.parts or _base_elsewhere(base) is not None else None
+
+
+def _copied(source: Path, target: Path) -> None:
+    if not (target.exists() and source.samefile(target)):
+        shutil.copyfile(source, target)
+
+
+def _named_files(source: Path) -> list[Path]:
+    content = read_toml(source, f"design {source}")
+    found = [
+        Path(value)
+        for table in content.get("measured_response", [])
+        for key, value in table.items()
+        if key.startswith("torque_to_") and isinstance(value, str)
+    ]
+    base = Path(content.get("base", ""))
+    if base.suffix and (source.parent / base).is_file() and _base_elsewhere(source) is None:
+        found += [base, *(base.parent / named for named in _named_files(source.parent / base))]
+    return found

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from models.condition import FIXED
 from models.rig import Rig
 from models.show import short_repr
-from noise.screening.design.axis_values import SPEED_STEP, axis_words, spread
-from noise.screening.design.design import Design, Swinging, Use
-from noise.screening.design.environments import DRY, environment
+from noise.screening.axis_values import SPEED_STEP, axis_words, spread
+from noise.screening.design import Design, Swinging, Use
+from noise.screening.environments import DRY, environment
 
 DEFAULT_SPEEDS = (0.25, 13.0)
 """Limits of use where nobody says any: the range that the thesis measured [rad/s]."""
@@ -117,7 +117,7 @@ def grid_of(
 
     Examples
     --------
-    >>> from noise.screening.design.design import load_design
+    >>> from noise.screening.design import load_design
     >>> grid_of(load_design("natural-rubber")).shape
     (1, 3, 1, 103)
     """
@@ -151,7 +151,7 @@ def shared_grid(
 
     Examples
     --------
-    >>> from noise.screening.design.design import load_design
+    >>> from noise.screening.design import load_design
     >>> grid = shared_grid([load_design("natural-rubber"), load_design("PDMS")])
     >>> [round(1e3 * fit, 3) for fit in grid.interference]
     [0.127, 0.254, 0.381]
@@ -195,7 +195,7 @@ def shared_motions(designs: Sequence[Design], given: Use | None = None) -> list[
 
     Examples
     --------
-    >>> from noise.screening.design.design import load_design
+    >>> from noise.screening.design import load_design
     >>> shared_motions([load_design("PDMS")], Use(swinging=Swinging(0.26, (1.0, 2.0))))
     [Swinging(amplitude=0.26, frequency=(1.0, 2.0))]
     """

@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.condition import FIXED
-from noise.screening.design.axis_values import axis_words
+from noise.screening.axis_values import axis_words
 
 if TYPE_CHECKING:
     from models.rig import Fit, Rig
-    from noise.screening.map.grid import Grid
+    from noise.screening.grid import Grid
 
 
 RULE = (
@@ -55,8 +55,8 @@ def point_notes(rig: Rig, grid: Grid) -> NDArray[np.object_]:
 
     Examples
     --------
-    >>> from noise.screening.design.design import Use, load_design
-    >>> from noise.screening.map.grid import grid_of
+    >>> from noise.screening.design import Use, load_design
+    >>> from noise.screening.grid import grid_of
     >>> design = load_design("fluorocarbon")
     >>> use = Use(speed=(5.0,), interference=(0.3e-3,), support_stiffness=(2214.0, 3000.0))
     >>> for note in point_notes(design.rig, grid_of(design, use)).flat:

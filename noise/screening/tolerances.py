@@ -11,17 +11,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
+from models.rig import LawSpec, Rig, damping_at
 from models.schema import as_table, number, refuse_unknown
 from models.units import ABSOLUTE_ZERO
+from noise.screening.environments import FIT_PARAMETERS, scaled_fit
+from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from models.rig import LawSpec
-    from noise.screening.parts.sampling import Distribution
-
+    from noise.screening.vibration import Condition
 
 PARAMETERS = {
     "elastomer_stiffness": "Nm/rad",
@@ -48,8 +49,6 @@ def unit_of(name: str) -> str:
     effect, dot, parameter = name.partition(".")
     if not dot:
         return PARAMETERS[name]
-    from sim.effects import EFFECTS  # only files with effects that vary need it
-
     known = EFFECTS[effect].parameters if effect in EFFECTS else {}
     return known[parameter].unit if parameter in known else ""
 
@@ -86,7 +85,7 @@ class Tolerance:
     first: float
     second: float = math.nan
 
-    def factor(self, nominal: float) -> Distribution:
+    def factor(self, nominal: float) -> Any:
         """Distribution of the factor on a nominal value.
 
         A normal distribution so wide that it would reach to zero is taken as lognormal.
@@ -98,8 +97,8 @@ class Tolerance:
 
         Returns
         -------
-        Distribution
-            Of `scipy.stats`; its median is 1 unless there are limits.
+        rv_frozen
+            Distribution of `scipy.stats`; its median is 1 unless there are limits.
         """
         from scipy import stats
 
@@ -107,14 +106,11 @@ class Tolerance:
         scale = nominal + offset
         if self.kind == "limits":
             low, high = (round((each + offset) / scale, 12) for each in (self.first, self.second))
-            factor: Distribution = stats.uniform(low, high - low)
-            return factor
+            return stats.uniform(low, high - low)
         spread = self.first if self.kind == "relative" else round(self.first / scale, 12)
         if spread < _WIDEST_NORMAL:
-            factor = stats.norm(1.0, max(spread, _NARROWEST))
-        else:
-            factor = stats.lognorm(math.sqrt(math.log1p(spread**2)))
-        return factor
+            return stats.norm(1.0, max(spread, _NARROWEST))
+        return stats.lognorm(math.sqrt(math.log1p(spread**2)))
 
 
 def read_tolerances(
@@ -174,3 +170,106 @@ def _tolerance(name: str, entry: object, where: str) -> Tolerance:
         kind = kinds.pop()
         return Tolerance(name, kind, number(entry, kind, inside, closed=True))
     raise ParameterError(f"{inside}: give a number, or one of relative, absolute, low and high")
+
+
+def nominal_values(rig: Rig, at: Condition) -> dict[str, float]:
+    """Nominal values of all that can vary, in the units of `PARAMETERS`.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from noise.screening.vibration import Condition
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> nominal_values(rig, Condition(5.0, 0.279e-3, 2214.0))["critical_torque"]
+    10.7
+    """
+    fit = rig.fit(at.interference)
+    return {
+        "elastomer_stiffness": fit.elastomer_stiffness,
+        "damping": damping_at(fit, at.support_stiffness),
+        "critical_torque": fit.critical_torque,
+        "kinetic_torque": fit.kinetic_torque,
+        "support_stiffness": at.support_stiffness,
+        "interference": 1e3 * at.interference,
+        "temperature": at.temperature,
+        "speed": at.speed,
+        "elastomer_inertia": rig.elastomer_inertia,
+        **{
+            f"{spec.name}.{key}": value
+            for spec in rig.effects
+            for key, value in spec.parameters.items()
+            if not isinstance(value, str)
+        },
+    }
+
+
+def varied(rig: Rig, at: Condition, factors: Mapping[str, float]) -> tuple[Rig, Condition]:
+    """Return rig and condition with parameters changed.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+    factors : mapping of str to float
+        By the names of `PARAMETERS` [-]. That of the temperature
+        is one of absolute temperature; a critical torque is at least the kinetic one. A parameter
+        of an effect, by ``EFFECT.PARAMETER``, goes no farther than the effect has it.
+
+    Raises
+    ------
+    ParameterError
+        A name that cannot vary, or a factor that is not positive and finite.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from noise.screening.vibration import Condition
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> rig, _ = varied(rig, Condition(5.0, 0.279e-3, 2214.0), {"kinetic_torque": 1.1})
+    >>> round(rig.fit(0.279e-3).kinetic_torque, 6)
+    8.8
+    """
+    for name, factor in factors.items():
+        if name not in PARAMETERS and not _is_stated(rig, name):
+            raise ParameterError(f"{name!r} cannot vary; what can is {', '.join(PARAMETERS)}")
+        if not 0.0 < factor < math.inf:
+            raise ParameterError(f"the factor {factor:g} on {name} must be above 0 and finite")
+    if any(name in factors for name in FIT_PARAMETERS):
+        rig = replace(rig, fits=tuple(scaled_fit(fit, factors) for fit in rig.fits))
+    rig = replace(
+        rig,
+        elastomer_inertia=rig.elastomer_inertia * factors.get("elastomer_inertia", 1.0),
+        effects=tuple(_scaled_effect(spec, factors) for spec in rig.effects),
+    )
+    absolute = at.temperature - ABSOLUTE_ZERO
+    at = replace(
+        at,
+        speed=at.speed * factors.get("speed", 1.0),
+        interference=at.interference * factors.get("interference", 1.0),
+        support_stiffness=at.support_stiffness * factors.get("support_stiffness", 1.0),
+        temperature=absolute * factors.get("temperature", 1.0) + ABSOLUTE_ZERO
+        if "temperature" in factors
+        else at.temperature,
+    )
+    return rig, at
+
+
+def _is_stated(rig: Rig, name: str) -> bool:
+    effect, _, key = name.partition(".")
+    return any(
+        spec.name == effect and isinstance(spec.parameters.get(key), int | float)
+        for spec in rig.effects
+    )
+
+
+def _scaled_effect(spec: LawSpec, factors: Mapping[str, float]) -> LawSpec:
+    known = EFFECTS[spec.name].parameters if spec.name in EFFECTS else {}
+    scaled: dict[str, float | str] = {}
+    for key, value in spec.parameters.items():
+        factor = factors.get(f"{spec.name}.{key}")
+        scaled[key] = value
+        if factor is not None and not isinstance(value, str):
+            scaled[key] = value * factor
+            if key in known:
+                scaled[key] = min(max(value * factor, known[key].low), known[key].high)
+    return replace(spec, parameters=scaled)

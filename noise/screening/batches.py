@@ -20,7 +20,8 @@ from models.errors import BushingNoiseError, ParameterError
 from models.rig import Rig
 from noise.batch import Journal, one_thread
 from noise.batch.cluster import cluster
-from noise.screening.map.point import REGIMES, evaluate_point, shaft_motion
+from noise.screening.point import REGIMES, evaluate_point
+from noise.screening.vibration import Condition
 
 LABELS = ("none", "creak", "squawk", "squeal")
 """Of a point, in the order of their codes."""
@@ -63,7 +64,8 @@ class Batch:
 
 
 Evaluator = Callable[[Batch], "NDArray[np.float64]"]
-"""Returns codes of regime and label, L_Aeq and L_AFmax [dB], of each point; shape (n, 4)."""
+"""Returns of each point, shape (n, 6): codes of regime and label, whether that persists only, code
+of the label by physics, L_Aeq and L_AFmax [dB]."""
 
 
 @contextmanager
@@ -80,7 +82,7 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
     Yields
     ------
     callable
-        From a `Batch` to an array of shape (n, 4).
+        From a `Batch` to an array of shape (n, 6).
 
     Raises
     ------
@@ -93,7 +95,7 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
     >>> one, rig = np.ones(1), load_material_rig("PDMS")
     >>> with batch_evaluator() as evaluate:
     ...     evaluate(Batch(rig, one, np.nan * one, 3e-4 * one, 2e3 * one, one))
-    array([[ 0.,  0., nan, nan]])
+    array([[ 0.,  0.,  0.,  0., nan, nan]])
     """
     if scheduler is None:
 
@@ -137,7 +139,7 @@ def keeping(evaluate: Evaluator, lines: Journal) -> Evaluator:
     Returns
     -------
     callable
-        From a `Batch` to an array of shape (n, 4), as `evaluate`.
+        From a `Batch` to an array of shape (n, 6), as `evaluate`.
     """
 
     def kept(batch: Batch) -> NDArray[np.float64]:
@@ -159,7 +161,7 @@ def _pieces(batch: Batch, size: int) -> list[NDArray[np.int64]]:
 def _joined(
     batch: Batch, pieces: list[NDArray[np.int64]], found: list[NDArray[np.float64]]
 ) -> NDArray[np.float64]:
-    rows = np.empty((batch.speed.size, 4))
+    rows = np.empty((batch.speed.size, 6))
     for piece, values in zip(pieces, found, strict=True):
         rows[piece] = values
     return rows
@@ -174,16 +176,18 @@ def _evaluate_on_cluster(batch: Batch) -> NDArray[np.float64] | str:
 
 
 def _evaluate(batch: Batch) -> NDArray[np.float64]:
-    rows = np.empty((batch.speed.size, 4))
+    rows = np.empty((batch.speed.size, 6))
     for i in range(batch.speed.size):
-        speed, frequency = float(batch.speed[i]), float(batch.frequency[i])
-        found = evaluate_point(
-            batch.rig,
-            shaft_motion(speed, frequency if math.isfinite(frequency) else None),
-            interference=float(batch.interference[i]),
-            support_stiffness=float(batch.support_stiffness[i]),
-            temperature=float(batch.temperature[i]),
+        frequency = float(batch.frequency[i])
+        at = Condition(
+            float(batch.speed[i]),
+            float(batch.interference[i]),
+            float(batch.support_stiffness[i]),
+            float(batch.temperature[i]),
+            frequency if math.isfinite(frequency) else None,
         )
+        found = evaluate_point(batch.rig, at)
         codes = REGIMES.index(found.regime), LABELS.index(found.label)
-        rows[i] = *codes, found.level, found.level_max
+        physics = LABELS.index(found.physics)
+        rows[i] = *codes, found.persists, physics, found.level, found.level_max
     return rows

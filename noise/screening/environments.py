@@ -53,9 +53,7 @@ class Environment:
 
 @lru_cache(maxsize=1)
 def _environments() -> dict[str, Environment]:
-    text = (resources.files("noise.screening.design") / "environments.toml").read_text(
-        encoding="utf-8"
-    )
+    text = (resources.files("noise.screening") / "environments.toml").read_text(encoding="utf-8")
     return {
         name: Environment(
             name=name,

@@ -1,0 +1,229 @@
+"""Advice: which change of one parameter ends a noise, by runs of the bushing as it would be made.
+
+Of each parameter the changes that a drawing can carry, whole steps of 5 and 10 %, are tried
+outwards from the design, as far as a rig file accepts them. A change ends the noise if the
+vibration dies with it from rest, from the noise that is running as the change sets in, and from the
+changed rig's own nearest noise (`noise.screening.vibration`). It is offered if that also holds of a
+change smaller by `MARGIN` and of the next larger one, so that no offer stands on an edge. Where no
+step of a parameter does it, the advice says so. One parameter is changed at a time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from joblib import Parallel, delayed
+
+from models.errors import ParameterError
+from models.rig import Rig
+from noise.batch import one_thread
+from noise.screening.environments import FIT_PARAMETERS
+from noise.screening.tolerances import PARAMETERS, nominal_values
+from noise.screening.vibration import LONGEST, Condition, Course, growth_at, running, vibration_at
+
+STEPS = (5, 10, 15, 20, 25, 30, 40, 50, 60, 70, 80, 90, 100, 120, 150, 200)
+"""Changes that are tried, up and, to a half, down [%]."""
+
+MOST_DOWN = 50
+"""[%]"""
+
+MARGIN = 2
+"""By how much less than what is offered a change may be [%]."""
+
+
+@dataclass(frozen=True)
+class Offer:
+    """What changing one parameter one way does about a noise.
+
+    Parameters
+    ----------
+    name : str
+        Of `noise.screening.tolerances.PARAMETERS`.
+    nominal : float
+        Value as it is, in the unit of `PARAMETERS`, such as [Nm].
+    percent : int
+        Change that ends the noise, or where none does the largest that was tried [%].
+    ends : bool
+        Whether it ends the noise, from rest and from running noise.
+    limit : str
+        Why no larger change was tried; empty where the steps end.
+    quiet_elsewhere, elsewhere : int
+        At how many of the other noisy conditions looked at the same change ends the noise as well,
+        and how many these are.
+    """
+
+    name: str
+    nominal: float
+    percent: int
+    ends: bool
+    limit: str = ""
+    quiet_elsewhere: int = 0
+    elsewhere: int = 0
+
+    @property
+    def factor(self) -> float:
+        """On the nominal value [-]."""
+        return 1.0 + self.percent / 100.0
+
+    @property
+    def value(self) -> float:
+        """After the change, in the unit of the nominal value, such as [Nm]."""
+        return self.nominal * self.factor
+
+    @property
+    def words(self) -> str:
+        """The change, as a drawing has it.
+
+        Examples
+        --------
+        >>> Offer("critical_torque", 10.7, -20, True).words
+        'critical torque -20 % to 8.56 Nm'
+        """
+        to = f"{self.value:.4g} {PARAMETERS[self.name]}"
+        return f"{self.name.replace('_', ' ')} {self.percent:+d} % to {to}"
+
+
+def changed(rig: Rig, at: Condition, name: str, percent: float) -> tuple[Rig, Condition]:
+    """Change a parameter, as a rig file or an option would have it.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+    name : str
+        A parameter of the fits, ``interference`` or ``support_stiffness``.
+    percent : float
+        [%]
+
+    Raises
+    ------
+    ParameterError
+        A rig file with this change is refused, or the rig has no data for it.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> rig, at = load_material_rig("fluorocarbon-thesis"), Condition(5.0, 0.279e-3, 2214.0)
+    >>> round(changed(rig, at, "critical_torque", -20)[0].fit(0.279e-3).critical_torque, 2)
+    8.56
+    >>> changed(rig, at, "critical_torque", -30)
+    Traceback (most recent call last):
+    models.errors.ParameterError: ...
+    """
+    if name in FIT_PARAMETERS:
+        return rig.changed(**{name: f"{percent:+g} %"}), at
+    value = getattr(at, name) * (1.0 + percent / 100.0)
+    if name == "interference":
+        low, high = rig.interference_range
+        if not low <= value <= high:
+            raise ParameterError(
+                f"fits are given from {1e3 * low:g} to {1e3 * high:g} mm, not for {1e3 * value:.3g}"
+            )
+    return rig, replace(at, **{name: value})
+
+
+def advise(
+    rig: Rig, at: Condition, elsewhere: Sequence[Condition] = (), *, workers: int = -1
+) -> tuple[Offer, ...]:
+    """Find the changes that end the noise at a condition.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+        Of constant speed, at which it is noisy.
+    elsewhere : sequence of Condition
+        Other noisy conditions, at which the offers that end the noise are tried as well.
+    workers : int
+        Threads; -1 is one a core.
+
+    Returns
+    -------
+    tuple of Offer
+        Those that end the noise first, of these the quietest elsewhere and then the smallest
+        change; of each parameter and way one. None where nothing vibrates.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> advise(load_material_rig("PDMS"), Condition(5.0, 0.279e-3, 2214.0))
+    ()
+    """
+    noise = vibration_at(rig, at).course
+    if not noise.lasts:
+        return ()
+    names = [*FIT_PARAMETERS, "support_stiffness", "interference"]
+    if math.isinf(at.support_stiffness):
+        names.remove("support_stiffness")
+    with one_thread():
+        work = Parallel(n_jobs=workers, prefer="threads")
+        offers: list[Offer] = work(
+            delayed(_offer)(rig, at, noise, name, way) for name in names for way in (-1, 1)
+        )
+        tried = [(i, other) for i, offer in enumerate(offers) if offer.ends for other in elsewhere]
+        quiet = work(delayed(_ends_at)(rig, other, offers[i]) for i, other in tried)
+    counted = [
+        replace(
+            offer,
+            quiet_elsewhere=sum(q for q, (j, _) in zip(quiet, tried, strict=True) if i == j),
+            elsewhere=len(elsewhere) if offer.ends else 0,
+        )
+        for i, offer in enumerate(offers)
+    ]
+    return tuple(sorted(counted, key=_order))
+
+
+def _order(offer: Offer) -> tuple[bool, int, int]:
+    return not offer.ends, -offer.quiet_elsewhere, abs(offer.percent)
+
+
+def _offer(rig: Rig, at: Condition, noise: Course, name: str, way: int) -> Offer:
+    """Step one parameter one way until the noise ends with a margin."""
+    nominal = nominal_values(rig, at)[name]
+    steps = [way * step for step in STEPS if way > 0 or step <= MOST_DOWN]
+    known: dict[int, bool] = {}
+    limit = ""
+
+    def ends(percent: int) -> bool:
+        if percent not in known:
+            known[percent] = _dies(*changed(rig, at, name, percent), noise)
+        return known[percent]
+
+    last = 0
+    for i, percent in enumerate(steps):
+        try:
+            changed(rig, at, name, percent)
+        except ParameterError as error:
+            limit = str(error)
+            break
+        last = percent
+        if not (ends(percent) and ends(percent - way * MARGIN)):
+            continue
+        try:
+            beyond = i + 1 == len(steps) or ends(steps[i + 1])
+        except ParameterError:
+            beyond = True
+        if beyond:
+            return Offer(name, nominal, percent, True)
+    return Offer(name, nominal, last, False, limit)
+
+
+def _dies(rig: Rig, at: Condition, noise: Course | None = None) -> bool:
+    """Whether a vibration dies from every start."""
+    growth = growth_at(rig, at)
+    if growth > 0.0:  # which the least disturbance follows
+        return False
+    if noise is not None and running(rig, at, growth, started=noise, longest=LONGEST).lasts:
+        return False
+    return not vibration_at(rig, at, from_rest=True).course.lasts
+
+
+def _ends_at(rig: Rig, at: Condition, offer: Offer) -> bool:
+    """Whether an offer ends the noise at another condition."""
+    noise = vibration_at(rig, at).course
+    try:
+        return _dies(*changed(rig, at, offer.name, offer.percent), noise if noise.lasts else None)
+    except ParameterError:
+        return False

@@ -1,1 +1,0 @@
-"""Bushing designs: their use, environments and tolerances."""

@@ -1,1 +1,0 @@
-"""The map of a design: points over speed, interference and support, simulated and refined."""

@@ -1,0 +1,461 @@
+"""Map of one design in one environment: regime, noise and level at each condition of a grid.
+
+The map is a stack of planes of interference and speed. Each plane begins as coarse cells whose
+corners are simulated; a cell in which not all points simulated so far agree is cut in halves along
+both axes, until all agree or nothing is left between the corners. What lies inside a cell that
+agrees is taken to be alike, and its level is interpolated among simulated points of the same kind.
+Boundaries of silence are followed first, then those between noises, then those of regimes.
+
+Linear stability is asked of every point, which costs next to nothing. Where it says that steady
+sliding cannot last while every point simulated about it was quiet, the cell is cut. It is not
+trusted further: a vibration may persist where sliding is stable (`noise.screening.vibration`).
+
+Where the material does not say how temperature acts the map of one temperature is that of all, and
+where the properties of the nearest fit are held so is the row of that fit; the copies say so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from models.rig import Rig
+from models.show import short_repr
+from noise.screening.batches import LABELS, Batch, Evaluator
+from noise.screening.grid import Grid
+from noise.screening.point import REGIMES
+from noise.screening.provenance import is_substituted, point_notes, rows_of
+from sim.analysis.stability import steady_sliding
+from sim.temperature import at_temperature
+
+Cell = tuple[int, int, int, int, int]
+"""Plane, first and last row, first and last column."""
+
+PERSISTS = "persists"
+"""Label of a point at which a vibration goes on, but none breaks out from rest."""
+
+HOW = ("simulated", "refined", "unchanged")
+"""How a point is known: run, as the simulated points about it, as at another temperature or fit."""
+
+STRIDE = 8
+"""Points from corner to corner of the coarse cells."""
+
+_FEW_ROWS = 8
+"""Of a plane, up to which no row tells anything of the next."""
+
+_POINTS_A_CUT = 3
+"""That cutting a cell simulates, more or less: five, of which neighbours share four."""
+
+_SPEED_APART, _FIT_APART = 1.0, 0.05e-3
+"""Largest distance of corners of coarse cells [rad/s] and [m]: a list of few speeds is simulated
+wholly, since what lies that far apart tells nothing of what lies between."""
+
+_NEAREST = 4
+"""Simulated points that an interpolated level is made of."""
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class DesignMap:
+    """What a design does over a grid; all arrays but the axes have the grid's shape.
+
+    Parameters
+    ----------
+    design, environment : str
+    motion : str
+        ``steady`` or ``swinging``.
+    grid : Grid
+        Shape (n_temperatures, n_supports, n_fits, n_speeds).
+    regime, label : ndarray of str, shape of the grid
+        The label is ``none``, a noise that breaks out from rest, or ``persists``.
+    sound, physics : ndarray of str, shape of the grid
+        What is heard once it vibrates, and the name of that by the physics of the motion.
+    level, level_max : ndarray, shape of the grid
+        L_Aeq and L_AFmax [dB re 20 uPa]; NaN where the contact slides steadily.
+    loudness : ndarray, shape of the grid
+        N5 [sone]; NaN where it was not asked for.
+    how : ndarray of str, shape of the grid
+        Of `HOW`.
+    growth : ndarray, shape of the grid
+        Of a small vibration about steady sliding [1/s]; NaN where the shaft swings.
+    note : ndarray of str, shape of the grid
+        What is not the design's own there, by `noise.screening.provenance.point_notes`: data
+        interpolated or held, a speed beyond those fitted; empty where nothing is.
+    open : int
+        Points beside a boundary that were left to their nearest neighbour.
+    """
+
+    design: str
+    environment: str
+    motion: str
+    grid: Grid
+    regime: NDArray[np.str_]
+    label: NDArray[np.str_]
+    sound: NDArray[np.str_]
+    physics: NDArray[np.str_]
+    level: NDArray[np.float64]
+    level_max: NDArray[np.float64]
+    loudness: NDArray[np.float64]
+    how: NDArray[np.str_]
+    growth: NDArray[np.float64]
+    note: NDArray[np.object_]
+    open: int
+
+    @property
+    def substituted(self) -> NDArray[np.bool_]:
+        """At which points data interpolated or held stand in for the design's own."""
+        return np.vectorize(is_substituted, otypes=[bool])(self.note)
+
+    def count(self, how: str) -> int:
+        """How many points are known in a way."""
+        return int(np.sum(self.how == how))
+
+
+def map_design(
+    rig: Rig,
+    grid: Grid,
+    evaluate: Evaluator,
+    *,
+    design: str,
+    environment: str = "dry",
+    most: int | None = None,
+    stride: int | None = None,
+) -> DesignMap:
+    """Map a design over a grid.
+
+    Parameters
+    ----------
+    rig : Rig
+        In its environment.
+    grid : Grid
+    evaluate : callable
+        Of `noise.screening.batches.batch_evaluator`.
+    design, environment : str
+        Names.
+    most : int, optional
+        Simulations, more or less.
+    stride : int, optional
+        Points from corner to corner of the coarse cells; 1 simulates all.
+
+    Returns
+    -------
+    DesignMap
+
+    Raises
+    ------
+    ParameterError
+        If a condition cannot be simulated.
+    """
+    known_by = (
+        np.arange(grid.shape[0]) if rig.temperature else np.zeros(grid.shape[0], dtype=int),
+        np.array(rows_of(rig, grid.interference)),
+    )
+    temperature, interference = (
+        np.array(axis)[np.unique(known)]
+        for axis, known in zip((grid.temperature, grid.interference), known_by, strict=True)
+    )
+    support, speed = np.array(grid.support_stiffness), np.array(grid.speed)
+    shape = (temperature.size, support.size, interference.size, speed.size)
+    planes = (shape[0] * shape[1], shape[2], shape[3])
+    values = np.full((4, *planes), np.nan)  # label by physics, persists, levels
+    swings = bool(grid.frequency)
+    frequency = np.array(grid.frequency) if swings else np.full(speed.size, np.nan)
+
+    def simulate(points: NDArray[np.int64]) -> NDArray[np.int64]:
+        plane, row, column = points.T
+        rows = evaluate(
+            Batch(
+                rig, speed[column], frequency[column], interference[row],
+                support[plane % shape[1]], temperature[plane // shape[1]],
+            )
+        )  # fmt: skip
+        values[:, plane, row, column] = rows[:, [3, 2, 4, 5]].T
+        kind = rows[:, 1] + len(LABELS) * rows[:, 2]
+        return (kind * len(REGIMES) + rows[:, 0]).astype(np.int64)
+
+    growth = np.full(shape, np.nan)
+    if not swings:
+        growth = growth_rates(rig, temperature, support, interference, speed)
+    found = refined_map(
+        planes,
+        simulate,
+        grows=growth.reshape(planes) > 0.0,
+        most=most,
+        stride=(
+            stride or _stride(interference, _FIT_APART),
+            stride or _stride(speed, _SPEED_APART),
+        ),
+    )
+    code = found.codes.reshape(shape)
+    kind = code // len(REGIMES)
+    sound = np.array(LABELS)[kind % len(LABELS)]
+    physics = interpolated(values[0], found, nearest=1).reshape(shape).astype(int)
+    level, level_max = (interpolated(one, found).reshape(shape) for one in values[2:])
+    mapped = DesignMap(
+        design=design,
+        environment=environment,
+        motion="swinging" if swings else "steady",
+        grid=grid,
+        regime=np.array([str(regime.value) for regime in REGIMES])[code % len(REGIMES)],
+        label=np.where(kind >= len(LABELS), PERSISTS, sound),
+        sound=sound,
+        physics=np.array(LABELS)[physics],
+        level=level,
+        level_max=level_max,
+        loudness=np.full(shape, np.nan),
+        how=np.where(found.simulated.reshape(shape), HOW[0], HOW[1]).astype("U9"),
+        growth=growth,
+        note=point_notes(rig, grid),
+        open=found.open,
+    )
+    return _copied(mapped, *known_by)
+
+
+def _stride(values: NDArray[np.float64], apart: float) -> int:
+    """Points from corner to corner of coarse cells that are no larger than `apart`."""
+    if values.size < 2:
+        return STRIDE
+    return max(1, min(STRIDE, round(apart / float(np.diff(values).max()))))
+
+
+def growth_rates(
+    rig: Rig,
+    temperature: NDArray[np.float64],
+    support: NDArray[np.float64],
+    interference: NDArray[np.float64],
+    speed: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Growth of a small vibration about steady sliding over a grid.
+
+    Parameters
+    ----------
+    rig : Rig
+    temperature, support, interference, speed : ndarray, one-dimensional
+        [degree Celsius], [Nm/rad], [m] and [rad/s]
+
+    Returns
+    -------
+    ndarray, shape (n_temperatures, n_supports, n_fits, n_speeds)
+        [1/s]
+    """
+    at = interference[:, None], support[:, None, None]
+    return np.stack(
+        [steady_sliding(at_temperature(rig, float(t)), speed, *at).growth for t in temperature]
+    )
+
+
+def _copied(found: DesignMap, *known_by: NDArray[np.int64]) -> DesignMap:
+    """Repeat a map at all temperatures and fits, by those that each is known by."""
+    at = [np.unique(known, return_inverse=True)[1] for known in known_by]
+    own = [known == np.arange(known.size) for known in known_by]
+    names = (
+        "regime", "label", "sound", "physics", "level", "level_max", "loudness", "how", "growth",
+    )  # fmt: skip
+    copies: dict[str, Any] = {name: getattr(found, name)[at[0]][:, :, at[1]] for name in names}
+    copied = ~(own[0][:, None, None, None] & own[1][:, None])
+    copies["how"] = np.where(copied, HOW[2], copies["how"])
+    return replace(found, **copies)
+
+
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """Codes of a map and where they come from.
+
+    Parameters
+    ----------
+    codes : ndarray of int, shape (n_planes, n_rows, n_columns)
+        0 is silence; of noises the kind times the number of regimes, and the regime.
+    simulated : ndarray of bool, same shape
+    open : int
+        Points beside a boundary that were left to their nearest neighbour.
+    """
+
+    codes: NDArray[np.int64]
+    simulated: NDArray[np.bool_]
+    open: int
+
+
+def refined_map(
+    shape: tuple[int, int, int],
+    simulate: Callable[[NDArray[np.int64]], NDArray[np.int64]],
+    *,
+    grows: NDArray[np.bool_] | None = None,
+    stride: tuple[int, int] = (STRIDE, STRIDE),
+    most: int | None = None,
+) -> Refined:
+    """Fill a map with as few simulations as its boundaries need.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Planes, rows and columns.
+    simulate : callable
+        ``simulate(points)``: codes of the points, rows of (plane, row, column).
+    grows : ndarray of bool, `shape`, optional
+        Where steady sliding cannot last, so that a cell is not silent whatever its corners are.
+    stride : tuple of int
+        Points from corner to corner of the coarse cells; of rows and of columns.
+    most : int, optional
+        Simulations, more or less; what remains open then is left to its nearest neighbour.
+
+    Returns
+    -------
+    Refined
+
+    Examples
+    --------
+    >>> found = refined_map((1, 1, 100), lambda points: 3 * (points[:, 2] > 62))
+    >>> int((found.codes > 0).sum()), int(found.simulated.sum())
+    (37, 16)
+    """
+    planes, rows, columns = shape
+    codes = np.full(shape, -1, dtype=np.int64)
+    cells: list[Cell] = [
+        (plane, top, bottom, left, right)
+        for plane in range(planes)
+        for top, bottom in _rows(rows, stride[0])
+        for left, right in _intervals(columns, stride[1])
+    ]
+    settled: list[Cell] = []
+    spent = 0
+    while cells:
+        wanted = np.unique(np.concatenate([_corners(cell) for cell in cells]), axis=0)
+        wanted = wanted[codes[tuple(wanted.T)] < 0]
+        if wanted.size:
+            codes[tuple(wanted.T)] = simulate(wanted)
+            spent += len(wanted)
+        # A corner may stand in the side of a cell that agreed before it was there.
+        ranked = [(_urgency(codes, grows, cell), cell) for cell in (*settled, *cells)]
+        open_cells = [(urgency, cell) for urgency, cell in ranked if urgency and _halves(cell)]
+        most_urgent = max((urgency for urgency, _ in open_cells), default=None)
+        cut = [cell for urgency, cell in open_cells if urgency == most_urgent]
+        if most is not None:
+            cut = _spread_over(cut, max(0, most - spent) // _POINTS_A_CUT)
+        taken = set(cut)
+        settled = [cell for _, cell in ranked if cell not in taken]
+        cells = [part for cell in cut for part in _halves(cell)]
+    simulated = codes >= 0
+    for cell in settled:
+        if not _urgency(codes, grows, cell):
+            inside = _inside(cell)
+            known = codes[inside]
+            codes[inside] = np.where(known < 0, known.max(), known)
+    n_open = int((codes < 0).sum())
+    for plane in codes:  # to the nearest point that is known
+        holes, known = np.argwhere(plane < 0), np.argwhere(plane >= 0)
+        if holes.size:
+            plane[tuple(holes.T)] = plane[tuple(known[cKDTree(known).query(holes)[1]].T)]
+    return Refined(codes, simulated, n_open)
+
+
+def _urgency(
+    codes: NDArray[np.int64], grows: NDArray[np.bool_] | None, cell: Cell
+) -> tuple[int, int] | None:
+    """How urgent it is to cut a cell: what differs in it, and its size; None where nothing does."""
+    inside = _inside(cell)
+    found = codes[inside]
+    values = found[found >= 0]
+    size = max(cell[2] - cell[1], cell[4] - cell[3])
+    silent = values < len(REGIMES)
+    if np.all(values == values[0]):
+        unstable = grows is not None and bool(grows[inside][found < 0].any())
+        return (3, size) if values[0] == 0 and unstable else None
+    if np.any(silent != silent[0]):
+        return 3, size
+    kinds = values // len(REGIMES)
+    return (2 if np.any(kinds != kinds[0]) else 1), size
+
+
+def _spread_over(cells: list[Cell], room: int) -> list[Cell]:
+    """As many cells as there is room for, from all over the map."""
+    if len(cells) <= room:
+        return cells
+    return [cells[i] for i in np.linspace(0, len(cells) - 1, room).astype(int)]
+
+
+def _intervals(n: int, stride: int) -> list[tuple[int, int]]:
+    """Split 0 .. n - 1 into intervals of about `stride` with common ends."""
+    if n == 1:
+        return [(0, 0)]
+    pieces = max(1, round((n - 1) / stride))
+    ends = np.unique(np.linspace(0, n - 1, pieces + 1).round().astype(int)).tolist()
+    return list(pairwise(ends))
+
+
+def _rows(n: int, stride: int) -> list[tuple[int, int]]:
+    """Few rows lie far apart: each is a line by itself."""
+    return [(row, row) for row in range(n)] if n <= _FEW_ROWS else _intervals(n, stride)
+
+
+def _corners(cell: Cell) -> NDArray[np.int64]:
+    plane, top, bottom, left, right = cell
+    return np.array([(plane, row, column) for row in (top, bottom) for column in (left, right)])
+
+
+def _inside(cell: Cell) -> tuple[int, slice, slice]:
+    plane, top, bottom, left, right = cell
+    return plane, slice(top, bottom + 1), slice(left, right + 1)
+
+
+def _halves(cell: Cell) -> list[Cell]:
+    """Cut a cell along both axes; nothing where no point lies between its corners."""
+    plane, top, bottom, left, right = cell
+    if bottom - top < 2 and right - left < 2:
+        return []
+    rows, columns = _cut(top, bottom), _cut(left, right)
+    return [(plane, *row, *column) for row in rows for column in columns]
+
+
+def _cut(first: int, last: int) -> list[tuple[int, int]]:
+    if last - first < 2:
+        return [(first, last)]
+    middle = (first + last) // 2
+    return [(first, middle), (middle, last)]
+
+
+def interpolated(
+    values: NDArray[np.float64], found: Refined, *, nearest: int = _NEAREST
+) -> NDArray[np.float64]:
+    """Interpolate numbers of simulated points to the others of the same code in the same plane.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_planes, n_rows, n_columns)
+        In any unit, such as [dB]; any at points that were not simulated.
+    found : Refined
+    nearest : int
+        Points that are averaged, weighted by the inverse square of their distance.
+
+    Returns
+    -------
+    ndarray, same shape
+        In the unit of the values.
+
+    Examples
+    --------
+    >>> codes, simulated = np.zeros((1, 1, 5), dtype=int), np.array([[[1, 0, 0, 0, 1]]]) > 0
+    >>> levels = np.array([[[60.0, 0.0, 0.0, 0.0, 80.0]]])
+    >>> interpolated(levels, Refined(codes, simulated, 0)).round()
+    array([[[60., 62., 70., 78., 80.]]])
+    """
+    filled = values.copy()
+    for plane, codes in enumerate(found.codes):
+        known = np.argwhere(found.simulated[plane])
+        of_known = codes[tuple(known.T)]
+        for code in np.unique(codes):
+            holes = np.argwhere((codes == code) & ~found.simulated[plane])
+            near = known[of_known == code]
+            if not (holes.size and near.size):
+                continue
+            distance, which = cKDTree(near).query(holes, k=min(nearest, len(near)))
+            distance, which = distance.reshape(len(holes), -1), which.reshape(len(holes), -1)
+            weight = distance**-2
+            of_near = values[plane][tuple(near[which].transpose(2, 0, 1))]
+            filled[plane][tuple(holes.T)] = (weight * of_near).sum(1) / weight.sum(1)
+    return filled

@@ -1,0 +1,241 @@
+"""Parts within their tolerances: how probably one is noisy in its use, and which tolerance matters.
+
+Parts are drawn as scrambled Sobol' points. A part is noisy if anywhere among the speeds of its use
+a vibration lasts that is heard, whether it breaks out or only persists: it is tried where the
+nominal design is loudest, where its own sliding is least stable, and at the ends of the use. The
+interval of that probability is that of Clopper and Pearson, which covers at least what it states.
+
+Which tolerance matters is told by Sobol' indices of the largest growth of a vibration over the use
+(`scipy.stats.sobol_indices` and its bootstrap). A constant kinetic torque has no such growth, and
+gets none.
+
+A file that states no tolerances gets those of `ASSUMED`, and the answer says so.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from joblib import Parallel, delayed
+from numpy.typing import NDArray
+from scipy import stats
+
+from models.rig import Rig
+from models.show import short_repr
+from noise.batch import one_thread
+from noise.screening.design import Design
+from noise.screening.grid import grid_of
+from noise.screening.point import is_noisy
+from noise.screening.tolerances import Tolerance, nominal_values, varied
+from noise.screening.vibration import Condition
+from sim.analysis.stability import steady_sliding
+from sim.friction import friction_law
+from sim.temperature import at_temperature
+
+ASSUMED = (
+    Tolerance("elastomer_stiffness", "relative", 0.05),
+    Tolerance("damping", "relative", 0.1),
+    Tolerance("critical_torque", "relative", 0.05),
+    Tolerance("kinetic_torque", "relative", 0.05),
+    Tolerance("support_stiffness", "relative", 0.03),
+    Tolerance("interference", "relative", 0.03),
+)
+"""Tolerances where a design states none: orders of magnitude for moulded rubber, no source."""
+
+_SPEEDS = 9
+"""Of the use, at which growth is asked."""
+
+_PARTS = 128
+_INDICES = 128
+"""Samples of the Sobol' indices, times the number of tolerances and two."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """An estimate and its 95 % confidence interval [-]."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How far one tolerance makes the growth of vibration scatter.
+
+    Parameters
+    ----------
+    name : str
+        Of the parameter.
+    first, total : Estimate
+        Sobol' indices: the share of the variance that goes when the parameter no longer scatters,
+        and the share that stays when it alone does [-].
+    """
+
+    name: str
+    first: Estimate
+    total: Estimate
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class Robustness:
+    """What a design's tolerances do.
+
+    Parameters
+    ----------
+    design : str
+    at : Condition
+        Fit, support and temperature that the parts scatter about; the nominal design's loudest.
+    noisy : Estimate
+        Probability that a part is noisy anywhere in its use [-].
+    sensitivities : tuple of Sensitivity
+        What matters most first; empty where friction has no slope.
+    assumed : bool
+        Whether the tolerances are `ASSUMED` rather than the design's own.
+
+    Examples
+    --------
+    >>> from noise.screening.design import load_design
+    >>> found = robustness(load_design("PDMS"), np.random.default_rng(0), parts=16)
+    >>> found.noisy.value, found.assumed
+    (0.0, True)
+    """
+
+    design: str
+    at: Condition
+    noisy: Estimate
+    sensitivities: tuple[Sensitivity, ...]
+    assumed: bool
+
+
+def middle_of_use(design: Design) -> Condition:
+    """Return the middle of a design's use: of its speeds, fits, supports and temperatures.
+
+    Examples
+    --------
+    >>> from noise.screening.design import load_design
+    >>> middle_of_use(load_design("fluorocarbon")).support_stiffness
+    3745.0
+    """
+    grid = grid_of(design)
+    fit, support, temperature = (
+        axis[(len(axis) - 1) // 2]
+        for axis in (grid.interference, grid.support_stiffness, grid.temperature)
+    )
+    return Condition(0.5 * sum(grid.use), fit, support, temperature)
+
+
+def robustness(
+    design: Design,
+    rng: np.random.Generator,
+    *,
+    at: Condition | None = None,
+    parts: int = _PARTS,
+    workers: int = -1,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Robustness:
+    """Tell what a design's tolerances do.
+
+    Parameters
+    ----------
+    design : Design
+        Its rig in its environment.
+    rng : numpy.random.Generator
+        Of the parts.
+    at : Condition
+        That the parts scatter about, with the speed at which the nominal design is loudest; by
+        default the middle of its use.
+    parts : int
+        A power of two.
+    workers : int
+        Threads; -1 is one a core.
+    progress : callable
+        Is told what is being done.
+
+    Returns
+    -------
+    Robustness
+
+    Raises
+    ------
+    ParameterError
+        A part cannot be simulated.
+    """
+    at = at or middle_of_use(design)
+    use = grid_of(design).use
+    speeds = np.linspace(max(use[0], 0.02 * use[1]), use[1], _SPEEDS)
+    nominal = nominal_values(design.rig, at)
+    spread = {one.name: one.factor(nominal[one.name]) for one in design.tolerances or ASSUMED}
+    sampled = stats.qmc.Sobol(len(spread), rng=rng).random(parts)
+    factors = np.column_stack(
+        [one.ppf(column) for one, column in zip(spread.values(), sampled.T, strict=True)]
+    )
+
+    def part(row: NDArray[np.float64]) -> tuple[Rig, Condition]:
+        return varied(design.rig, at, dict(zip(spread, row.tolist(), strict=True)))
+
+    def noisy(row: NDArray[np.float64]) -> bool:
+        rig, own = part(row)
+        worst = float(speeds[_growth(rig, own, speeds).argmax()])
+        tried = dict.fromkeys([own.speed, worst, float(speeds[0]), float(speeds[-1])])
+        return any(is_noisy(rig, replace(own, speed=speed)) for speed in tried)
+
+    progress(f"{parts} parts of {design.name}")
+    with one_thread():
+        found = Parallel(n_jobs=workers, prefer="threads")(delayed(noisy)(row) for row in factors)
+    k = int(sum(found))
+    interval = stats.binomtest(k, parts).proportion_ci(0.95, method="exact")
+    sensitivities: tuple[Sensitivity, ...] = ()
+    if friction_law(design.rig.friction.name).torque is not None:
+        progress(f"sensitivities of {design.name}")
+        sensitivities = _sensitivities(
+            lambda row: float(_growth(*part(row), speeds).max()), spread, rng
+        )
+    return Robustness(
+        design=design.name,
+        at=at,
+        noisy=Estimate(k / parts, float(interval.low), float(interval.high)),
+        sensitivities=sensitivities,
+        assumed=not design.tolerances,
+    )
+
+
+def _growth(rig: Rig, at: Condition, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+    hot = at_temperature(rig, at.temperature)
+    return steady_sliding(hot, speeds, at.interference, at.support_stiffness).growth
+
+
+def _sensitivities(
+    output: Callable[[NDArray[np.float64]], float],
+    spread: dict[str, Any],
+    rng: np.random.Generator,
+) -> tuple[Sensitivity, ...]:
+    """Sobol' indices of an output of parts, the largest total index first."""
+
+    def outputs(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.array([output(row) for row in rows.T])
+
+    if len(spread) < 2:
+        one = Estimate(1.0, 1.0, 1.0)
+        return tuple(Sensitivity(name, one, one) for name in spread)
+    found = stats.sobol_indices(func=outputs, n=_INDICES, dists=list(spread.values()), rng=rng)
+    drawn = found.bootstrap(n_resamples=200)
+    indices = [
+        Sensitivity(
+            name,
+            *(
+                Estimate(*(0.0 if math.isnan(x) else float(x) for x in (value[i], low[i], high[i])))
+                for value, (low, high) in (
+                    (found.first_order, drawn.first_order.confidence_interval),
+                    (found.total_order, drawn.total_order.confidence_interval),
+                )
+            ),
+        )
+        for i, name in enumerate(spread)
+    ]
+    return tuple(sorted(indices, key=lambda index: -index.total.value))

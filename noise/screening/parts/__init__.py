@@ -1,1 +1,0 @@
-"""Parts within their tolerances: probability of each noise, sensitivities, advice."""

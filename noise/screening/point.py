@@ -1,0 +1,331 @@
+"""Evaluation of one point of a map: whether it vibrates, and what is heard of it.
+
+Whether a vibration dies, persists or breaks out is told by `noise.screening.vibration`. What sounds
+has the name that `noise.labels` gives a recording of it, by the classifier that ships. The name by
+the physics of the motion (`noise.noise_definition`) stands beside it: friction may strike the plate
+as in a creak while the ear, and the classifier, hear the lines of a squawk.
+
+A bar on the road swings: it runs from one turning on, a whole cycle is heard, and names and regimes
+are those of the two intervals in which it moves at half its peak speed or more, whichever is
+livelier. Every turning sticks, which by itself is neither regime nor noise.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from features.kernels.levels import weighted_levels
+from models.condition import Condition as Stated
+from models.radiation.impulse_responses import ImpulseResponses
+from models.radiation.rig_response import impulse_responses
+from models.recording import Recording
+from models.rig import Rig, damping_at
+from noise.classifier import Classifier, load_classifier
+from noise.labels.segments import file_label, label_recording
+from noise.noise_definition import LEAST_LEVEL, NoiseCriteria, noise_criteria
+from noise.screening.vibration import RATE, Condition, oscillation, vibration_at
+from sim.acquisition import Acquisition, sample
+from sim.analysis.regime import Regime
+from sim.analysis.slips import motion_slips
+from sim.chain import changed_chain
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.motion import Motion, simulate_motion
+from sim.run import (
+    Sound,
+    apply_sensor_effects,
+    radiate_motion,
+    sensor_channels,
+    sensor_signals,
+)
+from sim.shaft import Oscillation
+from sim.temperature import at_temperature
+
+REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
+"""In the order of their codes."""
+
+JUDGED = 0.75
+"""Last part of a run that is heard: two windows of the classifier [s]."""
+
+_RINGING = 0.4
+"""Before that, which the structure remembers [s]."""
+
+_REGIME = 0.4
+"""Last part of a motion in which slips are sought [s]."""
+
+_FAST_SHARE = 0.5
+"""Of the peak speed, above which a swing is judged."""
+
+_DAMPING_STEP = 0.04
+"""Relative, of the beams' damping between the structures that are made: 0.2 dB at a resonance."""
+
+
+@dataclass(frozen=True)
+class PointResult:
+    """What is known of a simulated point.
+
+    Parameters
+    ----------
+    regime : Regime
+    label : str
+        ``creak``, ``squawk``, ``squeal`` or ``none``: what `noise.labels` hears.
+    persists : bool
+        Whether that sounds only where the vibration already runs.
+    physics : str
+        The name by `noise.noise_definition`.
+    level, level_max : float
+        L_Aeq and L_AFmax of the sound [dB re 20 uPa]; NaN where nothing sounds.
+    """
+
+    regime: Regime
+    label: str
+    persists: bool
+    physics: str
+    level: float
+    level_max: float
+
+
+SILENT = PointResult(Regime.STEADY_SLIDING, "none", False, "none", math.nan, math.nan)
+"""Of a condition at which every vibration dies."""
+
+
+def shaft_motion(speed: float, frequency: float | None) -> float | Oscillation:
+    """Return how the shaft turns at a point: steadily, or swinging as fast as that at most.
+
+    Parameters
+    ----------
+    speed : float
+        The largest [rad/s].
+    frequency : float, optional
+        Of the swing [Hz].
+
+    Examples
+    --------
+    >>> shaft_motion(5.0, None), shaft_motion(math.pi, 2.0).amplitude
+    (5.0, 0.25)
+    """
+    if frequency is None:
+        return speed
+    return Oscillation(speed / (2.0 * math.pi * frequency), frequency)
+
+
+def evaluate_point(rig: Rig, at: Condition) -> PointResult:
+    """Simulate a point, and tell its regime, its noise and its level.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+
+    Returns
+    -------
+    PointResult
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon")
+    >>> evaluate_point(rig, Condition(10.0, 0.279e-3, 3745.0)).label
+    'squeal'
+    """
+    if at.frequency is None:
+        found = vibration_at(rig, at)
+        if not found.course.lasts:
+            return SILENT
+        return heard_of(rig, at, found.course.motion, persists=found.state == "persists")
+    return heard_of(rig, at, _motion(rig, at))
+
+
+def is_noisy(rig: Rig, at: Condition) -> bool:
+    """Whether a vibration lasts at a condition, and is heard; costs half of what its name does."""
+    course = vibration_at(rig, at).course
+    if not course.lasts:
+        return False
+    start = max(0, course.motion.torque.size - round((JUDGED + _RINGING) * RATE))
+    sound = _sound(at_temperature(rig, at.temperature), at, course.motion.since(start))
+    heard = sound.pressure[-round(JUDGED * RATE) :]
+    levels = weighted_levels(lambda first, last: heard[first:last], heard.size, RATE)
+    return levels.level_a >= LEAST_LEVEL
+
+
+def heard_of(rig: Rig, at: Condition, motion: Motion, *, persists: bool = False) -> PointResult:
+    """Tell what is heard of a motion at a condition.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+    motion : Motion
+        Its last part is judged; of a swing all but the first quarter of a cycle.
+    persists : bool
+        What the result says of it.
+
+    Returns
+    -------
+    PointResult
+    """
+    swings = at.frequency is not None
+    n = motion.torque.size
+    if at.frequency is not None:
+        start = round(0.25 / at.frequency * RATE)
+    else:
+        motion = motion.since(max(0, n - round((JUDGED + _RINGING) * RATE)))
+        start = motion.torque.size - round(JUDGED * RATE)
+    intervals = fast_intervals(motion.since(start), swings=swings)
+    if all(oscillation(interval.torque) <= 1.0 for interval in intervals):
+        return SILENT
+    rig = at_temperature(rig, at.temperature)
+    sound = _sound(rig, at, motion)
+    pressure, pulses = sound.pressure[start:], sound.pulse_pressure[start:]
+    levels = weighted_levels(lambda first, last: pressure[first:last], pressure.size, RATE)
+    criteria, interval = _liveliest(pressure, pulses, intervals)
+    slips = motion_slips(interval.since(-round(_REGIME * RATE))).times.size > 0
+    physics = criteria.label
+    if swings and physics == "creak" and criteria.blows < 0.0:
+        physics = "squawk"  # lines that follow the speed, which no single spectrum shows
+    label = physics
+    if not swings and levels.level_a >= LEAST_LEVEL:
+        label = _label(rig, at, motion, sound, start)
+        label = physics if label == "unknown" else label
+    return PointResult(
+        regime=Regime.STICK_SLIP if slips else Regime.QUASI_HARMONIC,
+        label=label,
+        persists=persists and label != "none",
+        physics=physics,
+        level=levels.level_a,
+        level_max=levels.level_af_max,
+    )
+
+
+@lru_cache(maxsize=1)
+def _classifier() -> Classifier:
+    return load_classifier()
+
+
+def _label(rig: Rig, at: Condition, motion: Motion, sound: Sound, start: int) -> str:
+    """Name by the classifier, of a recording as `sim.run.simulate` makes it."""
+    rng = np.random.default_rng(0)
+    signals = sensor_signals(motion, sound, start)
+    signals = apply_sensor_effects(signals, activated(rig.effects, EFFECTS), RATE, rng)
+    sampled = sample(signals, 1, Acquisition(rate=RATE).over(rig.sensors), rng)
+    condition = Stated(
+        speed=at.speed, interference=at.interference, support_stiffness=at.support_stiffness,
+        material=rig.material, temperature=at.temperature,
+    )  # fmt: skip
+    recording = Recording(
+        np.stack(list(sampled.values())), RATE, sensor_channels(rig), condition=condition
+    )
+    return file_label(label_recording(recording, _classifier())).label
+
+
+def _sound(rig: Rig, at: Condition, motion: Motion) -> Sound:
+    effects = activated(rig.effects, EFFECTS)
+    paths = _paths(rig, at.interference, at.support_stiffness)
+    paths = changed_chain(paths, effects, np.random.default_rng(0))
+    return radiate_motion(motion, paths, effects)
+
+
+def point_sound(rig: Rig, at: Condition) -> tuple[float, NDArray[np.float64]]:
+    """Return the sound of a point that sounds.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+
+    Returns
+    -------
+    rate : float
+        [Hz]
+    pressure : ndarray, shape (n,)
+        [Pa]
+    """
+    motion = _motion(rig, at) if at.frequency else vibration_at(rig, at).course.motion
+    sound = _sound(at_temperature(rig, at.temperature), at, motion)
+    return RATE, sound.pressure[round((0.25 / at.frequency if at.frequency else 0.5) * RATE) :]
+
+
+def _motion(rig: Rig, at: Condition) -> Motion:
+    """Motion of a swing, from one turning on for a cycle and a quarter."""
+    assert at.frequency is not None
+    return simulate_motion(
+        at_temperature(rig, at.temperature), shaft_motion(at.speed, at.frequency),
+        interference=at.interference, support_stiffness=at.support_stiffness,
+        seconds=1.25 / at.frequency, rate=RATE, tolerance=1e-5,
+    )  # fmt: skip
+
+
+def fast_intervals(motion: Motion, *, swings: bool) -> list[Motion]:
+    """List the parts of a motion that are nearly of one speed.
+
+    Where the shaft turns back its torque turns from one side to the other, which is neither
+    vibration nor noise. In between, the slow trend of the torque with the speed is taken off.
+
+    Parameters
+    ----------
+    motion : Motion
+        Of a whole swing, or at constant speed.
+    swings : bool
+
+    Returns
+    -------
+    list of Motion
+        All of it, or the two longest intervals at half the peak speed or more.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.motion import simulate_motion
+    >>> from sim.shaft import Oscillation
+    >>> motion = simulate_motion(load_material_rig("PDMS"), Oscillation(0.26, 4.0), rate=30e3,
+    ...                          interference=0.3e-3, support_stiffness=2214.0, seconds=0.25)
+    >>> [round(part.torque.size / motion.rate, 3) for part in fast_intervals(motion, swings=True)]
+    [0.083, 0.042]
+    """
+    if not swings:
+        return [motion]
+    fast = np.abs(motion.shaft_speed) >= _FAST_SHARE * np.abs(motion.shaft_speed).max()
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], fast, [False]]).astype(int)))
+    pieces = sorted(edges.reshape(-1, 2), key=lambda edge: edge[0] - edge[1])[:2]
+    return [_piece(motion, first, last) for first, last in pieces]
+
+
+def _piece(motion: Motion, first: int, last: int) -> Motion:
+    """Part of a motion, without the slow trend of its torque over a swing."""
+    values = {
+        field.name: getattr(motion, field.name)[first:last]
+        for field in fields(motion)
+        if field.name != "rate"
+    }
+    time = np.linspace(-1.0, 1.0, last - first)
+    trend = np.polynomial.Polynomial.fit(time, values["torque"], 3)(time)
+    values["torque"] = values["torque"] - trend + trend.mean()
+    return replace(motion, **values)
+
+
+def _paths(rig: Rig, interference: float, support_stiffness: float) -> ImpulseResponses:
+    """Responses of the structure, the beams' damping rounded so that few are made."""
+    damping = damping_at(rig.fit(interference), support_stiffness)
+    of_beams = (1.0 - rig.elastomer_damping_share) * damping
+    if of_beams > 0.0 and math.isfinite(support_stiffness):
+        rounded = math.exp(round(math.log(of_beams) / _DAMPING_STEP) * _DAMPING_STEP)
+        rig = replace(rig, elastomer_damping_share=1.0 - rounded / damping)
+    return impulse_responses(rig, interference, support_stiffness, RATE)
+
+
+def _liveliest(
+    pressure: NDArray[np.float64], pulse_pressure: NDArray[np.float64], intervals: list[Motion]
+) -> tuple[NoiseCriteria, Motion]:
+    """Criteria of the liveliest interval, with the sound of all, and that interval."""
+    found = [(noise_criteria(one, pressure, pulse_pressure), one) for one in intervals]
+    return max(found, key=lambda one: one[0].audible)

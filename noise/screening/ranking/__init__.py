@@ -1,1 +1,0 @@
-"""Designs compared: margins to the use, risk numbers, the ranking."""

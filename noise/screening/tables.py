@@ -1,0 +1,179 @@
+"""Tables of a screening: map, critical speeds, designs, advice and sensitivities."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from noise.screening.standing import SHARED
+from noise.screening.tolerances import PARAMETERS
+
+if TYPE_CHECKING:
+    from noise.screening.screen import Screening
+
+Columns = Mapping[str, Callable[..., object]]
+Table = tuple[tuple[str, ...], list[dict[str, object]]]
+
+
+def screening_tables(screening: Screening) -> dict[str, Table]:
+    """Return all tables of a screening; the last two only where there is something in them.
+
+    Returns
+    -------
+    dict of str to (tuple of str, list of dict)
+        Columns and rows by the name of the file: ``map.csv`` with a row a point,
+        ``critical_speeds.csv`` with one a temperature, fit and support, ``designs.csv`` with the
+        quietest first and those refused last, ``advice.csv`` of changes and whether they end the
+        loudest noise of use, and ``sensitivities.csv`` of Sobol' indices with a row a tolerance.
+
+    Examples
+    --------
+    >>> from noise.screening.design import Use
+    >>> from noise.screening.screen import screen
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,)))
+    >>> columns, rows = screening_tables(found)["designs.csv"]
+    >>> columns[:3], rows[0]["mean_loudness_sone"]
+    (('rank', 'design', 'environment'), 0.0)
+    """
+    points = ((found, at) for found in screening.maps for at in np.ndindex(found.label.shape))
+    columns, rows = _table(_DESIGNS, ((one,) for one in screening.standings))
+    rows += [{"design": name, "error": reason} for name, reason in screening.refused]
+    tables = {
+        "map.csv": _table(_MAP, points),
+        "critical_speeds.csv": _table(_CRITICAL, ((point,) for point in screening.critical)),
+        "designs.csv": (columns, rows),
+    }
+    offers = [(one, offer) for one in screening.standings for offer in one.offers]
+    if offers:
+        tables["advice.csv"] = _table(_ADVICE, offers)
+    robust = [(one, one.robustness) for one in screening.standings if one.robustness is not None]
+    if robust:
+        sensitivities = ((*both, index) for both in robust for index in both[1].sensitivities)
+        tables["sensitivities.csv"] = _table(_SENSITIVITIES, sensitivities)
+    return tables
+
+
+def _table(columns: Columns, items: Iterable[tuple[Any, ...]]) -> Table:
+    return tuple(columns), [{name: cell(*item) for name, cell in columns.items()} for item in items]
+
+
+def _short(value: float) -> float:
+    return value if math.isnan(value) else float(f"{value:.6g}")
+
+
+def _support(stiffness: float) -> float | str:
+    return "fixed" if math.isinf(stiffness) else stiffness
+
+
+def _loudest(axis: str, scale: float = 1.0) -> Callable[..., object]:
+    def cell(one: Any) -> object:
+        return None if one.loudest is None else _short(scale * getattr(one.loudest, axis))
+
+    return cell
+
+
+def _bounds(name: str, estimate: Callable[..., Any]) -> Columns:
+    """Columns of an estimate and of the ends of its interval."""
+
+    def cell(attribute: str) -> Callable[..., object]:
+        def rounded(*item: object) -> float | None:
+            found = estimate(*item)
+            return None if found is None else round(getattr(found, attribute), 4)
+
+        return rounded
+
+    return {
+        f"{name}{ending}": cell(attribute)
+        for ending, attribute in {"": "value", "_low": "low", "_high": "high"}.items()
+    }
+
+
+def _speeds(*names: str) -> Columns:
+    return {f"{name}_rad_s": lambda one, name=name: _short(getattr(one, name)) for name in names}
+
+
+_OF_DESIGN: Columns = {
+    "design": lambda one, *_: one.design,
+    "environment": lambda one, *_: one.environment,
+}
+
+_MAP: Columns = {
+    **_OF_DESIGN,
+    "motion": lambda found, _: found.motion,
+    "temperature_C": lambda found, at: found.grid.temperature[at[0]],
+    "speed_rad_s": lambda found, at: _short(found.grid.speed[at[3]]),
+    "frequency_hz": lambda found, at: found.grid.frequency[at[3]] if found.grid.frequency else None,
+    "interference_mm": lambda found, at: _short(1e3 * found.grid.interference[at[2]]),
+    "support_stiffness_Nm_rad": lambda found, at: _support(found.grid.support_stiffness[at[1]]),
+    "regime": lambda found, at: str(found.regime[at]),
+    "label": lambda found, at: str(found.label[at]),
+    "sound": lambda found, at: str(found.sound[at]),
+    "label_by_physics": lambda found, at: str(found.physics[at]),
+    "growth_1_s": lambda found, at: round(float(found.growth[at]), 3),
+    "level_dba": lambda found, at: round(float(found.level[at]), 2),
+    "l_afmax_dba": lambda found, at: round(float(found.level_max[at]), 2),
+    "loudness_n5_sone": lambda found, at: round(float(found.loudness[at]), 3),
+    "how": lambda found, at: str(found.how[at]),
+    "note": lambda found, at: found.note[at] or None,
+}
+
+_MARGINS = "margin_v_crit1", "margin_v_crit2", "margin_stability"
+
+_CRITICAL: Columns = {
+    **_OF_DESIGN,
+    "temperature_C": lambda point: point.temperature,
+    "interference_mm": lambda point: _short(1e3 * point.interference),
+    "support_stiffness_Nm_rad": lambda point: _support(point.support_stiffness),
+    **_speeds("v_crit1", "v_crit1_high", "v_crit2", "v_crit2_high", "v_crit2_stability", *_MARGINS),
+}
+
+_DESIGNS: Columns = {
+    "rank": lambda one: one.rank,
+    **_OF_DESIGN,
+    "motion": lambda one: one.motion,
+    "mean_loudness_sone": lambda one: _short(one.mean_loudness),
+    **{f"share_{label}": lambda one, label=label: round(one.shares[label], 4) for label in SHARED},
+    "loudest_label": lambda one: one.loudest_label,
+    "loudest_level_dba": lambda one: round(one.loudest_level, 2),
+    "loudest_l_afmax_dba": lambda one: round(one.loudest_level_max, 2),
+    "loudest_speed_rad_s": _loudest("speed"),
+    "loudest_interference_mm": _loudest("interference", 1e3),
+    "loudest_support_stiffness_Nm_rad": _loudest("support_stiffness"),
+    **_speeds("v_crit1", "v_crit2", "v_crit2_high", *_MARGINS),
+    "tolerances": lambda one: (
+        None if one.robustness is None else "assumed" if one.robustness.assumed else "stated"
+    ),
+    **_bounds("p_noisy_part", lambda one: one.robustness and one.robustness.noisy),
+    "words": lambda one: one.words,
+    "advice": lambda one: one.advice or None,
+    "notes": lambda one: "; ".join(one.notes) or None,
+    "error": lambda one: "; ".join(filter(None, (one.never_slips, *one.failed))) or None,
+}
+
+_ADVICE: Columns = {
+    **_OF_DESIGN,
+    "label": lambda one, _: one.loudest_label,
+    "speed_rad_s": lambda one, _: _short(one.loudest.speed),
+    "interference_mm": lambda one, _: _short(1e3 * one.loudest.interference),
+    "support_stiffness_Nm_rad": lambda one, _: _support(one.loudest.support_stiffness),
+    "parameter": lambda _, offer: offer.name,
+    "unit": lambda _, offer: PARAMETERS[offer.name],
+    "nominal": lambda _, offer: _short(offer.nominal),
+    "advised": lambda _, offer: _short(offer.value) if offer.ends else None,
+    "change_percent": lambda _, offer: offer.percent,
+    "ends_noise": lambda _, offer: offer.ends,
+    "quiet_elsewhere": lambda _, offer: offer.quiet_elsewhere if offer.ends else None,
+    "elsewhere": lambda _, offer: offer.elsewhere if offer.ends else None,
+    "limit": lambda _, offer: offer.limit or None,
+}
+
+_SENSITIVITIES: Columns = {
+    **_OF_DESIGN,
+    "tolerances": lambda _, robust, __: "assumed" if robust.assumed else "stated",
+    "parameter": lambda *item: item[-1].name,
+    **_bounds("first", lambda *item: item[-1].first),
+    **_bounds("total", lambda *item: item[-1].total),
+}

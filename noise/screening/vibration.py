@@ -1,0 +1,290 @@
+"""Vibration at one condition: whether it dies, persists once started, or breaks out from rest.
+
+Stable sliding and a limit cycle may coexist: where the instability of sliding is subcritical, a
+vibration that already runs goes on at speeds at which none begins (A. Papangelo, M. Ciavarella,
+N. Hoffmann, *Subcritical bifurcation in a self-excited single-degree-of-freedom system with
+velocity weakening-strengthening friction law*, Nonlinear Dynamics 90, 2017). So a condition is run
+from rest and from a running vibration. The latter is a continuation: the rig runs where its sliding
+is unstable, at the nearest such speed, and the shaft is then brought to the speed in question.
+
+The eigenvalue of steady sliding (`sim.analysis.stability`) says which runs are needed. Where it
+grows, no vibration dies. Where it falls, a run that starts vibrating and dies settles the matter.
+A run ends when growth or decay of the torque's oscillation, measured over blocks, makes its end
+certain, and after `LONGEST` at most.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.rig import Rig
+from sim.analysis.regime import LEAST_OSCILLATION
+from sim.analysis.stability import steady_sliding
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.motion import Motion, MotionSolver, steps_beyond
+from sim.temperature import at_temperature
+
+RATE = 30e3
+"""Of motion and sound [Hz]; creaks reach 15 kHz."""
+
+LONGEST = 20.0
+"""A run lasts no longer [s]."""
+
+BLOCK = 0.2
+"""Of which an oscillation is measured [s]."""
+
+_TOLERANCE = 1e-5
+_FOLLOWED = 3
+"""Blocks over which growth or decay is measured."""
+
+_STARTED = 0.4
+"""How long a rig vibrates before its speed is changed [s]."""
+
+_RAMP = 0.05
+"""In which the speed is changed [s]."""
+
+_SLOW = 0.25
+"""Share of the speed at which a contact most likely sticks and slips if it does at any [-]."""
+
+_SURE = 10.0
+"""Growth from which on sliding soon vibrates [1/s]."""
+
+_HORIZON = 20.0
+"""A vibration lasts if at its decay it would be there after that time [s]."""
+
+_STEADY = 1.02
+"""Ratio of a vibration's size to an earlier one, below which it does not grow [-]."""
+
+_DEAD = 0.1
+"""Share of the least oscillation below which a vibration in stable sliding is over [-]."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One condition of a map, in SI units.
+
+    Parameters
+    ----------
+    speed : float
+        Of the shaft [rad/s]; where it swings the largest.
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    temperature : float
+        [degree Celsius]
+    frequency : float, optional
+        Of the swing [Hz]; None where the shaft turns at constant speed.
+    """
+
+    speed: float
+    interference: float
+    support_stiffness: float
+    temperature: float = 23.0
+    frequency: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """How a vibration goes on.
+
+    Parameters
+    ----------
+    lasts : bool
+        Whether it is still there, and neither dies nor is about to.
+    seconds : float
+        After which that was certain [s].
+    motion : Motion
+        All of the run.
+    solver : MotionSolver
+        From which the run goes on.
+    """
+
+    lasts: bool
+    seconds: float
+    motion: Motion
+    solver: MotionSolver
+
+
+@dataclass(frozen=True, eq=False)
+class Vibration:
+    """What becomes of a condition.
+
+    Parameters
+    ----------
+    state : str
+        ``none`` where a running vibration dies, ``persists`` where it goes on but none breaks out
+        from rest, ``breaks out`` elsewhere.
+    growth : float
+        Of a small vibration about steady sliding [1/s].
+    course : Course
+        Of the vibration where there is one, else of how it died.
+    """
+
+    state: str
+    growth: float
+    course: Course
+
+
+def vibration_at(
+    rig: Rig, at: Condition, *, from_rest: bool = False, longest: float = LONGEST
+) -> Vibration:
+    """Tell what becomes of a vibration at a condition of constant speed.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+    from_rest : bool
+        Whether to run from rest as well where a vibration that runs dies, which is harder to kill.
+    longest : float
+        A run lasts no longer [s].
+
+    Returns
+    -------
+    Vibration
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon")
+    >>> states = [vibration_at(rig, Condition(v, 0.279e-3, 2214.0)).state for v in (5.0, 13.0)]
+    >>> states
+    ['breaks out', 'none']
+    """
+    growth = growth_at(rig, at)
+    if growth > 0.0:
+        course = _followed(_solver(rig, at), at, growth, longest=longest)
+        if not course.lasts:  # it grows so slowly that only what runs already shows where it ends
+            course = running(rig, at, growth, longest=longest)
+        return Vibration("breaks out" if course.lasts else "none", growth, course)
+    course = running(rig, at, growth, longest=longest)
+    # A contact that is stuck at rest may vibrate though no speed makes its sliding unstable.
+    if not course.lasts and not from_rest and _unstable_speed(rig, at) is not None:
+        return Vibration("none", growth, course)
+    rested = _followed(_solver(rig, at), at, growth, longest=longest)
+    if rested.lasts:
+        return Vibration("breaks out", growth, rested)
+    return Vibration("persists" if course.lasts else "none", growth, course)
+
+
+def growth_at(rig: Rig, at: Condition) -> float:
+    """Growth of a small vibration about steady sliding [1/s]."""
+    rig = at_temperature(rig, at.temperature)
+    return float(steady_sliding(rig, at.speed, at.interference, at.support_stiffness).growth)
+
+
+def running(
+    rig: Rig, at: Condition, growth: float, *, started: Course | None = None, longest: float
+) -> Course:
+    """Follow a vibration that already runs when a condition is reached.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+    growth : float
+        Of a small vibration there [1/s].
+    started : Course, optional
+        Vibration of another rig at the same speed, which goes on in this one; by default the
+        rig's own at the nearest speed at which sliding is unstable.
+    longest : float
+        The run lasts no longer [s].
+
+    Returns
+    -------
+    Course
+    """
+    if started is not None:
+        solver = _solver(rig, at)
+        solver.go_on_from(started.solver, at.speed)
+        return _followed(solver, at, growth, longest=longest)
+    start = _unstable_speed(rig, at) or _SLOW * at.speed
+    solver = _solver(rig, replace(at, speed=start), top_speed=max(start, at.speed))
+    n, beyond = round(_STARTED * RATE), steps_beyond(RATE)
+    ramp = np.linspace(start, at.speed, round(_RAMP * RATE))
+    drive = np.concatenate([np.full(n, start), ramp, np.full(beyond, float(at.speed))])
+    before = solver.advance(drive, n + ramp.size)
+    return _followed(solver, at, growth, longest=longest, before=before)
+
+
+def _unstable_speed(rig: Rig, at: Condition) -> float | None:
+    """Nearest speed at which sliding is unstable [rad/s], surely so if there is one."""
+    speed = at.speed * np.concatenate([np.arange(0.98, 0.2, -0.04), np.arange(1.04, 1.6, 0.06)])
+    hot = at_temperature(rig, at.temperature)
+    growth = steady_sliding(hot, speed, at.interference, at.support_stiffness).growth
+    near = np.flatnonzero(growth > _SURE)
+    if near.size:
+        return float(speed[near[np.argmin(np.abs(speed[near] - at.speed))]])
+    return float(speed[growth.argmax()]) if growth.max() > 0.0 else None
+
+
+def _solver(rig: Rig, at: Condition, *, top_speed: float | None = None) -> MotionSolver:
+    rig = at_temperature(rig, at.temperature)
+    return MotionSolver(
+        rig, at.interference, at.support_stiffness, RATE, activated(rig.effects, EFFECTS),
+        np.random.default_rng(0), start_speed=at.speed, top_speed=top_speed or at.speed,
+        tolerance=_TOLERANCE,
+    )  # fmt: skip
+
+
+def _followed(
+    solver: MotionSolver,
+    at: Condition,
+    growth: float,
+    *,
+    longest: float,
+    before: Motion | None = None,
+) -> Course:
+    """Run in blocks until it is certain whether the vibration dies or lasts."""
+    n = round(BLOCK * RATE)
+    drive = np.full(n + steps_beyond(RATE), float(at.speed))
+    parts = [] if before is None else [before]
+    sizes: list[float] = []
+    lasts = False
+    while len(sizes) * BLOCK < longest:
+        parts.append(solver.advance(drive, n))
+        sizes.append(oscillation(parts[-1].torque))
+        if (certain := _outcome(np.array(sizes), growth)) is not None:
+            lasts = certain
+            break
+    else:
+        lasts = sizes[-1] > 1.0
+    return Course(lasts, len(sizes) * BLOCK, _joined(parts), solver)
+
+
+def _outcome(sizes: NDArray[np.float64], growth: float) -> bool | None:
+    """Whether a vibration lasts, by the size of its blocks so far; None where that is open."""
+    if growth <= 0.0 and sizes[-1] < _DEAD:
+        return False
+    if sizes.size < 2 * _FOLLOWED:
+        return None
+    half = sizes.size // 2
+    early, late = np.median(sizes[half - half // 2 - 1 : half]), np.median(sizes[-half // 2 :])
+    if late <= 1.0:  # too weak to count, unless it grows
+        return False if growth > 0.0 and late < _STEADY * early else None
+    seconds = 0.75 * half * BLOCK
+    return True if late - 1.0 > (early - late) / seconds * _HORIZON else None
+
+
+def oscillation(torque: NDArray[np.float64]) -> float:
+    """Return the standard deviation of a torque over its mean, re an oscillation's least [-]."""
+    mean = abs(float(np.mean(torque)))
+    return float(np.std(torque)) / (LEAST_OSCILLATION * mean) if mean > 0.0 else math.inf
+
+
+def _joined(parts: list[Motion]) -> Motion:
+    whole = parts[0]
+    for part in parts[1:]:
+        whole = whole.followed_by(part)
+    return whole
