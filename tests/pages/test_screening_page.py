@@ -111,7 +111,7 @@ def by_name(rows):
 def test_a_quiet_design_is_shown_as_quiet_and_a_noisy_one_by_its_shares(two):
     rows = by_name(ranking_rows(two))
     assert (rows["PDMS"]["Rank"], rows["PDMS"]["Loudest"]) == ("1", "quiet")
-    assert rows["PDMS"][RANKING[2]].labels == (("none", "100 %"),)
+    assert rows["PDMS"][RANKING[2]].labels == (("none", "100%"),)
     noisy = rows["fluorocarbon"]
     assert sum(bar.width for bar in noisy[RANKING[2]].bars) == pytest.approx(100.0)
     assert re.fullmatch(r"\d+ dB\(A\)", noisy["Loudest"])
@@ -124,7 +124,7 @@ def test_a_design_that_never_slips_has_no_rank_no_sound_and_says_why(tmp_path):
     found = screen(["fluorocarbon", Design("in Nmm", held)], replace(QUICK, speed=(5.0,)))
     row = by_name(ranking_rows(found))["in Nmm"]
     assert (row["Rank"], row["Margin"], row["Loudest"]) == ("\N{EN DASH}", "", "")
-    assert "never slips" in row["In words"].text
+    assert "never slips" in row["In its use"].text
     page = page_of(found, tmp_path, sounds=2)
     assert "No sounds: never slips" in page.said
     assert {one["title"].partition(":")[0] for one in page.data("about").values()} == {
