@@ -42,7 +42,7 @@ from sim.effects.effect import Effect, Stage
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
-    from noise.diagnosis.fit.hypothesis_fits import Judged
+    from noise.diagnosis.fit.decide import Judged
 
 
 def assumed_fit(rig: Rig, interferences: Sequence[float]) -> str:
@@ -124,11 +124,10 @@ def diagnose_case(
         answer = _stated(case, first, first, nulls, library)
         answer = replace(answer, notes=(*answer.notes, *_unasked(case, library)))
     else:
-        from noise.diagnosis.fit.fits import add_fits  # loads the classifier; no part of a quick
-        from noise.diagnosis.fit.hypothesis_fits import fit_notes, judge  # answer
+        from noise.diagnosis.fit.decide import fit_notes, judge  # no part of a quick answer, and
+        from noise.diagnosis.fit.fits import add_fits  # loads the classifier
 
-        stages = stage_findings(first.table, nulls, first.flat)
-        judged = judge(case, first, stages, library, seed, tell)
+        judged = judge(case, first, library, seed, tell)
         answer = _stated(case, first, judged, nulls, library)
         answer = add_fits(case, answer, judged, posterior, seed, tell)
         answer = replace(answer, notes=(*answer.notes, *fit_notes(judged)))

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.rig import Rig
-from noise.diagnosis.fit.fit_parameters import pattern_search
+from noise.diagnosis.fit.fit import pattern_search
 from noise.identification.quantities import QUANTITIES
 from noise.identification.settled_run import SettledRun, settled_run
 

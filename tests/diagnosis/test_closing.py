@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share
-from noise.diagnosis.fit.fit_parameters import pattern_search
+from noise.diagnosis.fit.closing import closed_interval, closed_share
+from noise.diagnosis.fit.fit import pattern_search
 
 squares = st.lists(st.floats(0.2, 400.0), min_size=1, max_size=6).map(np.array)
 
@@ -18,7 +18,7 @@ squares = st.lists(st.floats(0.2, 400.0), min_size=1, max_size=6).map(np.array)
 def test_an_interval_holds_its_share(before, kept):
     after = before * kept
     share = closed_share(before, after)
-    interval = closed_interval(Scores(before, before, after))
+    interval = closed_interval(before, after)
     assert (share is None) == (interval is None)
     if share is not None:
         low, high = interval
@@ -26,16 +26,13 @@ def test_an_interval_holds_its_share(before, kept):
 
 
 def test_more_recordings_make_an_interval_narrower():
-    few, many = (
-        closed_interval(Scores(np.full(n, 25.0), np.full(n, 20.0), np.full(n, 9.0)))
-        for n in (1, 16)
-    )
+    few, many = (closed_interval(np.full(n, 25.0), np.full(n, 9.0)) for n in (1, 16))
     assert 0.0 < many[1] - many[0] < few[1] - few[0]
 
 
 def test_both_ends_of_an_interval_follow_what_the_fit_leaves():
     before = np.full(3, 36.0)
-    ends = [closed_interval(Scores(before, before, np.full(3, left))) for left in (30.0, 16.0, 4.0)]
+    ends = [closed_interval(before, np.full(3, left)) for left in (30.0, 16.0, 4.0)]
     assert sorted(ends) == ends
     for (_, high), (low, _) in itertools.pairwise(ends):
         assert high < low
@@ -43,7 +40,7 @@ def test_both_ends_of_an_interval_follow_what_the_fit_leaves():
 
 def test_nothing_closes_where_there_is_no_gap():
     assert closed_share(np.ones(3), np.ones(3)) is None
-    assert closed_interval(Scores(np.ones(3), np.ones(3), np.ones(3))) is None
+    assert closed_interval(np.ones(3), np.ones(3)) is None
 
 
 def test_a_search_walks_over_steps_and_stays_within_what_is_finite():

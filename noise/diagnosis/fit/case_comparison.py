@@ -13,17 +13,17 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from copy import copy
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.recording import Recording
-from models.rig import Rig
+from models.rig import LawSpec, Rig
 from noise.diagnosis.evidence.evidence import aligned
 from noise.diagnosis.evidence.summary import CaseTable, same_channels, summary
-from noise.diagnosis.gap.distance import Gap, Reference, group_costs, residual_parts
+from noise.diagnosis.gap.distance import Gap, Reference, group_costs
 from noise.diagnosis.gap.floor import references_of, repeat_gap
 from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
@@ -31,10 +31,6 @@ from noise.diagnosis.simulated.nominal import condition_key
 from noise.diagnosis.simulated.repeats import Scatter
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect
-
-if TYPE_CHECKING:
-    from noise.diagnosis.fit.forms.form import Form
-
 
 T = TypeVar("T")
 
@@ -83,7 +79,7 @@ class CaseComparison:
         Numbers that `residuals` has.
     scale : ndarray, shape (n_names,)
         Their scatter without a cause [unit of the number].
-    forms : dict of (str, str) to Form
+    forms : dict of (str, str) to Effect
         Further forms of effects, by the name of the effect and their own.
     about : Model
         Whose repeats tell the floor; by default those of the rig as its file has it.
@@ -95,7 +91,7 @@ class CaseComparison:
     table: CaseTable
     names: tuple[str, ...]
     scale: NDArray[np.float64]
-    forms: dict[tuple[str, str], Form] = field(default_factory=dict)
+    forms: dict[tuple[str, str], Effect] = field(default_factory=dict)
     about: Model = field(default_factory=Model)
     signatures: list[NDArray[np.float64]] = field(init=False)
     references: list[Reference] = field(init=False)
@@ -151,6 +147,14 @@ class CaseComparison:
     def simulated(self, model: Model, template: Recording, seed: int) -> Recording:
         """Simulate a repeat by a model, at the condition, rate and length of a recording."""
         return self.runs.simulated(model, template, seed)
+
+    def effect_of(self, spec: LawSpec) -> Effect:
+        """Return the effect that a model names, in a form of the simulator's or a further one."""
+        return self.runs.effect_of(spec)
+
+    def is_stated(self, spec: LawSpec) -> bool:
+        """Tell whether a rig file can state an effect as it was fitted."""
+        return (spec.name, str(spec.parameters.get("form"))) not in self.forms
 
     def deviations(self, model: Model, chosen: Sequence[int]) -> list[NDArray[np.float64]]:
         """How far each chosen recording lies from a model, in units of what repeats differ by.
@@ -238,27 +242,6 @@ class CaseComparison:
             return [make(one) for one in given]
         with ThreadPoolExecutor(self._threads) as pool:
             return list(pool.map(make, given))
-
-    def residual_signature(self, model: Model, place: int) -> NDArray[np.float64]:
-        """Tell what the squared misfit of a recording is the sum of the squares of.
-
-        Parameters
-        ----------
-        model : Model
-        place : int
-            Of the recording.
-
-        Returns
-        -------
-        ndarray, shape (n_values,)
-            [-]
-
-        Raises
-        ------
-        ParameterError
-            The model cannot be simulated.
-        """
-        return residual_parts(self._away(model, place, single_run=False))
 
     def _away(self, model: Model, place: int, *, single_run: bool) -> NDArray[np.float64]:
         reference = self.references[place]

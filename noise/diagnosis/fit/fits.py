@@ -19,14 +19,14 @@ import numpy as np
 from features.kernels.levels import a_weighted_level
 from models.errors import ParameterError
 from models.recording import Recording
+from models.rig import LawSpec
 from noise.base import SURE_90
 from noise.classifier import load_classifier
 from noise.diagnosis.evidence.friction_curves import friction_curves
 from noise.diagnosis.findings import EffectFinding, Illustration, LabelsAndLevels, Remainder
 from noise.diagnosis.fit.case_comparison import CaseComparison
-from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, rms
-from noise.diagnosis.fit.fit_effect import strength_of
-from noise.diagnosis.fit.fit_parameters import Fitted
+from noise.diagnosis.fit.closing import closed_interval, closed_share, rms
+from noise.diagnosis.fit.fit import Fitted
 from noise.diagnosis.fit.improve import improved_rig
 from noise.diagnosis.gap.by_channel import worst_places
 from noise.diagnosis.simulated.model_runs import OFFSETS, Model, ModelRuns
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     Simulated = Callable[[Recording], Recording]
     from noise.diagnosis.causes.posterior import Posterior
-    from noise.diagnosis.fit.hypothesis_fits import CaseFits, HypothesisFit, Judged
+    from noise.diagnosis.fit.decide import CaseFits, HypothesisFit, Judged
     from noise.diagnosis.outcome import Diagnosis
     from noise.diagnosis.simulated.model_runs import Model
 
@@ -196,7 +196,8 @@ def add_fits(
     tell("looking for an improved rig")
     improvement = improved_rig(
         case, comparison, fits.fitted_to, held,
-        [fits.alone, *([offered.fitted] if offered is not None else [])], posterior, seed,
+        [fits.alone.model, *([offered.fitted.model] if offered is not None else [])], posterior,
+        seed,
     )  # fmt: skip
     shown = simulated_by(comparison, best.model)
     if improvement is not None:  # the very rig that is offered
@@ -247,13 +248,13 @@ def _finding(
         fits.held_out(squared) for squared in (fits.before, fits.recalibrated, fit.squared)
     )
     spec = next(spec for spec in fitted.model.effects if spec.name == name)
-    interval = closed_interval(Scores(before, recalibrated, after), seed)
+    interval = closed_interval(before, after, seed)
     return EffectFinding(
         name=name,
         stage=comparison.library[name].stage.value,
         probability=judged.probabilities.get(name, 0.0),
         parameters=spec.parameters,
-        strength=_strength(fitted, comparison) if spec is fitted.model.effects[-1] else None,
+        strength=_strength(fitted, spec),
         gap_before=rms(before),
         gap_recalibrated=rms(recalibrated),
         gap_after=rms(after),
@@ -266,19 +267,20 @@ def _finding(
     )
 
 
-def _strength(fitted: Fitted, comparison: CaseComparison) -> tuple[float, float] | None:
-    """Interval of the last effect's strength, of whose logarithm the fit gives an error."""
-    n, spec = len(fitted.model.offsets), fitted.model.effects[-1]
-    value = spec.parameters.get(strength_of(comparison, spec))
-    if not isinstance(value, float) or len(fitted.spread) <= n:
+def _strength(fitted: Fitted, spec: LawSpec) -> tuple[float, float] | None:
+    """Interval of an effect's strength, of whose logarithm the fit gives an error."""
+    strength = fitted.comparison.effect_of(spec).strength
+    spread = fitted.spread.get(f"{spec.name}.{strength}")
+    if spread is None:
         return None
-    factor = float(np.exp(SURE_90 * fitted.spread[n]))
+    value, factor = float(spec.parameters[strength]), math.exp(SURE_90 * spread)
     low, high = sorted((value / factor, value * factor))
     return low, high
 
 
 def _intervals(fitted: Fitted) -> dict[str, tuple[float, float]]:
     return {
-        name: (float(np.exp(x - SURE_90 * s)), float(np.exp(x + SURE_90 * s)))
-        for name, x, s in zip(OFFSETS, fitted.model.offsets, fitted.spread, strict=False)
+        name: (math.exp(x - SURE_90 * spread), math.exp(x + SURE_90 * spread))
+        for name, x in zip(OFFSETS, fitted.model.offsets, strict=True)
+        for spread in [fitted.spread[name]]
     }

@@ -305,31 +305,6 @@ def group_costs(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
     return shares
 
 
-def residual_parts(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return what the mean of `group_costs` is the sum of the squares of, with signs.
-
-    Parameters
-    ----------
-    deviation : ndarray, shape (n_values,)
-        In standard deviations [-].
-
-    Returns
-    -------
-    ndarray, shape (n_values,)
-        [-]; 0 where unknown.
-
-    Examples
-    --------
-    >>> away = np.linspace(-9.0, 9.0, len(_GROUP_OF))
-    >>> bool(np.isclose(np.sum(residual_parts(away) ** 2), np.mean(group_costs(away))))
-    True
-    """
-    cost = np.nan_to_num(_bent(deviation))
-    count = np.bincount(_GROUP_OF, np.isfinite(deviation), len(GROUPS))
-    weight = 1.0 / (np.maximum(count, 1.0) * max(np.count_nonzero(count), 1))
-    return np.asarray(np.sign(np.nan_to_num(deviation)) * np.sqrt(cost * weight[_GROUP_OF]))
-
-
 def _bent(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
     size = np.abs(deviation)
     return np.where(size <= _BEND, size**2, _BEND * (2.0 * size - _BEND))

@@ -40,8 +40,6 @@ from sim.motion import Motion
 from sim.run import DIAGNOSIS, Plan, apply_sensor_effects, sensor_signals
 
 if TYPE_CHECKING:
-    from noise.diagnosis.fit.forms.form import Form
-
     Changed = tuple[Mapping[str, NDArray[np.complex128]], ImpulseResponses | None]
 
 
@@ -139,13 +137,13 @@ class ModelRuns:
     ----------
     rig : Rig
     library : mapping of str to Effect
-    forms : dict of (str, str) to Form
+    forms : dict of (str, str) to Effect
         Further forms of effects, by the name of the effect and their own.
     """
 
     rig: Rig
     library: Mapping[str, Effect]
-    forms: dict[tuple[str, str], Form]
+    forms: dict[tuple[str, str], Effect]
     transfer_functions: TransferFunctionCache = field(init=False)
     _responses: _Cache[ImpulseResponses] = field(init=False, default_factory=lambda: _Cache())
     _changed: _Cache[Changed] = field(init=False, default_factory=lambda: _Cache())
@@ -236,12 +234,14 @@ class ModelRuns:
         active = [self.active(spec) for spec in with_effects(self.rig, model.effects).effects]
         return [one for one in active if not one.is_off]
 
+    def effect_of(self, spec: LawSpec) -> Effect:
+        """Return the effect of a name, in a form of the simulator's own or a further one."""
+        further = self.forms.get((spec.name, str(spec.parameters.get("form"))))
+        return self.library[spec.name] if further is None else further
+
     def active(self, spec: LawSpec) -> ActiveEffect:
-        """Return an effect, in a form of the simulator's own or a further one."""
-        form = self.forms.get((spec.name, str(spec.parameters.get("form"))))
-        if form is not None:
-            return form.active(spec.parameters)
-        return self.library[spec.name].active(spec.parameters)
+        """Return an effect with the numbers of a model."""
+        return self.effect_of(spec).active(spec.parameters)
 
     def _radiated(
         self,

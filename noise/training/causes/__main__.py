@@ -11,7 +11,6 @@ from noise.base.files import check_target
 from noise.base.progress import counted, say, track
 from noise.diagnosis.causes.stage_nulls import learn_stage_nulls
 from noise.training.causes.cases.draw import SHARED
-from noise.training.causes.closing import fitted_cases, learn_closing_odds, write_odds
 from noise.training.causes.fit import null_scale, train_posterior
 from noise.training.causes.report import is_kept, report, with_forms
 from noise.training.causes.store import CHUNK, draw_into, load_cases
@@ -47,20 +46,8 @@ def main() -> int:
     )
     stages.add_argument("folder", type=Path, metavar="FOLDER", help="of draw")
     stages.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
-    closing = commands.add_parser(
-        "closing", help="learn what fits tell of causes, from recordings whose cause is known"
-    )
-    closing.add_argument(
-        "folders", type=Path, nargs="+", metavar="FOLDER",
-        help="with data/CASE (recordings and rig.toml) and answers/CASE.json (its verdict)",
-    )  # fmt: skip
-    closing.add_argument(
-        "--store", type=Path, required=True, metavar="FOLDER",
-        help="of what fits leave, one file a case; cases that are there are not fitted again",
-    )  # fmt: skip
-    closing.add_argument("--out", type=Path, required=True, metavar="FILE.json")
     options = parser.parse_args()
-    does = {"draw": _draw, "train": _train, "stages": _learn_stages, "closing": _learn_closing}
+    does = {"draw": _draw, "train": _train, "stages": _learn_stages}
     try:
         return does[options.command](options)
     except ParameterError as error:
@@ -101,14 +88,6 @@ def _learn_stages(options: argparse.Namespace) -> int:
     names = tuple(sorted({name for case in nulls for name in case.table.names}))
     tables = [case.table for case in nulls]
     learn_stage_nulls(tables, names, null_scale(nulls, names)).save(options.out)
-    print(options.out)
-    return 0
-
-
-def _learn_closing(options: argparse.Namespace) -> int:
-    check_target(options.out)
-    cases = list(track(fitted_cases(options.folders, options.store), "fitting", unit="case"))
-    write_odds(options.out, learn_closing_odds(cases), cases)
     print(options.out)
     return 0
 

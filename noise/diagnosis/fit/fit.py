@@ -1,0 +1,444 @@
+"""Parameters and effects fitted to recordings, by one search that walks over jumps.
+
+Parameters are recalibrated within what a rig file may be wrong by. What that closes by itself is
+told apart, because it may hide the effect that is missing (Kennedy and O'Hagan 2001;
+Brynjarsdottir and O'Hagan 2014). An effect is tried in the simulator's own forms, from weak to
+strong, and in forms that were estimated from the recordings; what comes nearest at a look is
+searched about.
+
+Where a rig changes its regime a cost jumps, and between two jumps it is rough; least squares stop
+there. So each number is tried by a step up and a step down, kept where that helps and tried again
+in the same direction, with steps that shrink (Hooke and Jeeves 1961, J. ACM 8, 212).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.condition import Condition
+from models.errors import ParameterError
+from models.rig import LawSpec
+from noise.diagnosis.cases.strengths import drawn_effect
+from noise.diagnosis.fit.case_comparison import CaseComparison
+from noise.diagnosis.fit.estimated_forms import estimated_forms
+from noise.diagnosis.simulated.model_runs import OFFSETS, Model
+from sim.effects import EFFECTS
+from sim.effects.effect import Effect
+
+PRIOR = 0.12
+"""Relative standard deviation of what a rig file may be wrong by; assumed."""
+
+_HOLD = 0.15
+"""Weight of the prior against the distance of one recording; assumed."""
+
+_SHRINK = (1.0, 0.5, 0.25, 0.125)
+_STEP_OF_OFFSET, _STEP_OF_EFFECT = 0.08, 0.5
+"""Of logarithms."""
+
+_FARTHEST = 4
+"""A step is repeated in one direction so often at most."""
+
+_MOST = 4
+"""Recordings that a fit looks at, of different conditions; assumed."""
+
+_DRAWN = 18
+"""Of the simulator's own forms tried; what a fit may cost settles it, as the next; assumed."""
+
+_LOOKED, _PROMISING = 2, 6
+"""Recordings that candidates are looked at with, and candidates looked at more closely."""
+
+_SETTLING = (1.0, 0.7, 1.4)
+"""Factors on the strength, tried last."""
+
+_BEYOND_DEFAULT = (0.1, 0.3, 1.0, 3.0, 10.0)
+"""Strengths tried of an effect that is not the library's, over its default."""
+
+_SHARES = ("torque", "acceleration", "pressure", "angle")
+"""Parameters that say which channel an effect is on; they are drawn, not searched."""
+
+_BY_NUMBERS = ("channel_delay",)
+"""Effects that change phases, of which a signature knows nothing and the summary does."""
+
+_NUMBERS = 20.0
+"""Weight of the summary's numbers, were all of them hopelessly off; assumed."""
+
+_UNSURE = 0.1
+"""By how much the mean distance of a few repeats is off by chance; assumed."""
+
+_LOOK_OF_OFFSET, _LOOK_OF_EFFECT = 0.04, 0.3
+_LEAST_SURE = 1.5
+"""So far off the cost is looked at for how sure a number is; standard deviation of a logarithm of
+an effect's number at most; assumed."""
+
+
+def pattern_search(
+    cost: Callable[[NDArray[np.float64]], float],
+    start: NDArray[np.float64],
+    steps: NDArray[np.float64],
+    shrink: Sequence[float],
+) -> tuple[NDArray[np.float64], float]:
+    """Search for the least cost about a start.
+
+    Parameters
+    ----------
+    cost : callable
+        Of an ndarray as `start`; may be infinite.
+    start, steps : ndarray, shape (n,)
+        Steps of 0 leave a number as it is [any unit].
+    shrink : sequence of float
+        Factors on the steps, one a round.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        The best that was tried [unit of `start`].
+    float
+        Its cost [unit of the cost].
+
+    Examples
+    --------
+    >>> found, _ = pattern_search(lambda x: float(abs(x - 0.7).sum()), np.zeros(2), np.ones(2),
+    ...                           (1.0, 0.5, 0.25, 0.125))
+    >>> bool(np.all(abs(found - 0.7) < 0.1))
+    True
+    """
+    x, best = start.copy(), cost(start)
+    for factor in shrink:
+        for i in np.flatnonzero(steps):
+            for sign in (1.0, -1.0):
+                improved = False
+                for _ in range(_FARTHEST):
+                    candidate = x.copy()
+                    candidate[i] += sign * factor * steps[i]
+                    tried = cost(candidate)
+                    if tried >= best:
+                        break
+                    x, best, improved = candidate, tried, True
+                if improved:
+                    break
+    return x, best
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A model that was fitted to recordings, and how well its numbers are known.
+
+    Parameters
+    ----------
+    model : Model
+    comparison : CaseComparison
+    few : sequence of int
+        Recordings that the fit looked at.
+    """
+
+    model: Model
+    comparison: CaseComparison
+    few: Sequence[int]
+
+    @cached_property
+    def spread(self) -> dict[str, float]:
+        """Standard deviation of the logarithm of each number, by its name.
+
+        Parameters by their own, numbers of an effect as ``EFFECT.NUMBER``: how far each can be off
+        before the cost tells, which is taken to rise as the square.
+        """
+        best, found = cost_of(self.comparison, self.few, self.model), {}
+        for number in (*_offsets(), *_numbers(self.comparison, self.model)):
+            of_offset = number[0] is None
+            look = _LOOK_OF_OFFSET if of_offset else _LOOK_OF_EFFECT
+            tried = [self._cost_at(number, x) for x in (look, -look)]
+            known = [one for one in tried if math.isfinite(one)]
+            rise = max(sum(known) / len(known) - best, 1e-9) if known else 1e-9
+            most = PRIOR if of_offset else _LEAST_SURE
+            found[_name(self.model, number)] = min(look * math.sqrt(_UNSURE / rise), most)
+        return found
+
+    def _cost_at(self, number: _Number, x: float) -> float:
+        return cost_of(self.comparison, self.few, _moved(self.model, [number], np.array([x])))
+
+
+def split(
+    conditions: Sequence[Condition], gaps: Sequence[float] = ()
+) -> tuple[list[int], list[int]]:
+    """Which recordings are fitted to, and which are held out: whole conditions, about two fifths.
+
+    The fastest is among those held out, and the slowest where there are several: what closes there
+    is foretold and not only filled in. Where no gap shows there but in several others, the one of
+    these with the second largest takes the place of one of them: without a gap nothing closes.
+
+    Parameters
+    ----------
+    conditions : sequence of Condition
+    gaps : sequence of float
+        Of the recordings [floors]; without them none is looked at [-].
+
+    Examples
+    --------
+    >>> from models.condition import Condition
+    >>> at = [Condition(speed=v) for v in (1.0, 2.0, 2.0, 3.0, 4.0)]
+    >>> split(at)
+    ([0, 1, 2, 3], [4])
+    >>> split(at, [4.0, 3.0, 3.0, 1.0, 1.0])
+    ([0, 3, 4], [1, 2])
+    """
+    different = list(dict.fromkeys(conditions))
+    if len(different) == 1:
+        half = max(1, len(conditions) // 2)
+        return list(range(half)), list(range(half, len(conditions))) or [0]
+    by_speed = sorted(different, key=lambda c: (abs(c.speed or 0.0), c.interference or 0.0))
+    count = max(1, 2 * len(different) // 5)
+    out = by_speed[::-2][:count]
+    if len(out) > 1:  # the slowest in the place of the slowest of these
+        out = [*by_speed[::-2][: count - 1], by_speed[0]]
+    largest: dict[Condition, float] = {}
+    for condition, gap in zip(conditions, gaps, strict=False):
+        largest[condition] = max(gap, largest.get(condition, 0.0))
+    showing = sorted((c for c in largest if largest[c] > SHOWS), key=lambda c: -largest[c])
+    if len(showing) > 1 and not set(showing) & set(out):
+        out = [*out[:-1], showing[1]]
+    held = [i for i, c in enumerate(conditions) if c in out]
+    fitted = [i for i, c in enumerate(conditions) if c not in out]
+    return fitted, held
+
+
+SHOWS = 1.5
+"""Floors from which on a gap is worth closing; assumed."""
+
+
+def different(comparison: CaseComparison, chosen: Sequence[int]) -> list[int]:
+    """Choose recordings for a fit: one a condition, as repeats tell it nothing new."""
+    first: dict[Condition, int] = {}
+    for i in chosen:
+        first.setdefault(comparison.recordings[i].condition, i)
+    listed = list(first.values())
+    places = np.linspace(0, len(listed) - 1, min(_MOST, len(listed))).round().astype(int)
+    return [listed[k] for k in places.tolist()]
+
+
+def cost_of(
+    comparison: CaseComparison, few: Sequence[int], model: Model, *, single_run: bool = False
+) -> float:
+    """Mean distance of recordings from a model in floors [-], and what its offsets cost."""
+    held = _HOLD * float(np.sum((np.array(model.offsets) / PRIOR) ** 2)) / len(few)
+    try:
+        if any(spec.name in _BY_NUMBERS for spec in model.effects):
+            held += _NUMBERS * float(np.mean(comparison.residuals(model, few) ** 2))
+    except ParameterError:
+        return math.inf
+    return float(np.mean(comparison.misfits(model, few, single_run=single_run))) + held
+
+
+_Number = tuple[int | None, str, float, float]
+"""Of a model: place of its effect, None for an offset; name; lowest and highest value."""
+
+
+def _offsets() -> list[_Number]:
+    return [(None, name, -math.inf, math.inf) for name in OFFSETS]
+
+
+def _numbers(comparison: CaseComparison, model: Model, *places: int) -> list[_Number]:
+    """Numbers of the effects of a model that are fitted; of some effects or of all."""
+    return [
+        (place, name, declared.low, declared.high)
+        for place in places or range(len(model.effects))
+        for spec in [model.effects[place]]
+        for name, declared in comparison.effect_of(spec).parameters.items()
+        if isinstance(value := spec.parameters.get(name), float | int)
+        and value != 0.0
+        and name not in _SHARES
+    ]
+
+
+def _name(model: Model, number: _Number) -> str:
+    place, name, *_ = number
+    return name if place is None else f"{model.effects[place].name}.{name}"
+
+
+def _moved(model: Model, numbers: Sequence[_Number], x: NDArray[np.float64]) -> Model:
+    """Move numbers by logarithms, within what they may be."""
+    offsets, effects = list(model.offsets), list(model.effects)
+    for (place, name, low, high), log in zip(numbers, x.tolist(), strict=True):
+        if place is None:
+            offsets[OFFSETS.index(name)] += log
+            continue
+        spec = effects[place]
+        value = float(np.clip(float(spec.parameters[name]) * math.exp(log), low, high))
+        effects[place] = LawSpec(spec.name, {**spec.parameters, name: value})
+    return Model(tuple(offsets), tuple(effects))
+
+
+def _searched(
+    comparison: CaseComparison,
+    few: Sequence[int],
+    model: Model,
+    numbers: Sequence[_Number],
+    shrink: Sequence[float],
+) -> Model:
+    """Search about some numbers of a model."""
+    steps = [_STEP_OF_OFFSET if place is None else _STEP_OF_EFFECT for place, *_ in numbers]
+    x, _ = pattern_search(
+        lambda x: cost_of(comparison, few, _moved(model, numbers, x)), np.zeros(len(steps)),
+        np.array(steps), shrink,
+    )  # fmt: skip
+    return _moved(model, numbers, x)
+
+
+def fit_parameters(comparison: CaseComparison, chosen: Sequence[int]) -> Fitted:
+    """Recalibrate the rig's parameters.
+
+    Parameters
+    ----------
+    comparison : CaseComparison
+    chosen : sequence of int
+        Recordings to fit to.
+    """
+    few = different(comparison, chosen)
+    return Fitted(_searched(comparison, few, Model(), _offsets(), _SHRINK), comparison, few)
+
+
+def fit_effects(
+    comparison: CaseComparison,
+    chosen: Sequence[int],
+    names: Sequence[str],
+    start: Model,
+    seed: int = 0,
+    *,
+    begun: Model | None = None,
+    stated: bool = False,
+) -> Fitted:
+    """Fit effects together with the parameters.
+
+    Parameters
+    ----------
+    comparison : CaseComparison
+    chosen : sequence of int
+        Recordings to fit to.
+    names : sequence of str
+        Of effects in the comparison's library, the strongest first.
+    start : Model
+        With the parameters as they were recalibrated alone.
+    seed : int
+        Of what is tried.
+    begun : Model, optional
+        Of a fit of some of the effects, which the others are added to.
+    stated : bool
+        Whether only forms are tried that a rig file can state.
+
+    Raises
+    ------
+    ParameterError
+        No form of an effect can be simulated.
+    """
+    few = different(comparison, chosen)
+    best = begun or Model()
+    there = {spec.name for spec in best.effects}
+    for name in (name for name in names if name not in there):
+        candidates = stated_candidates(comparison.library[name], seed)
+        if not stated:
+            forms = estimated_forms(comparison, chosen, name)
+            comparison.forms.update({(name, form.forms[0]): form for form in forms})
+            candidates += [LawSpec(name, {"form": form.forms[0], "amount": 1.0}) for form in forms]
+        best = _added(comparison, few, best, start.offsets, candidates)
+    if len(names) > 1:  # what the first had to stand for is the others' now
+        for place in range(len(names)):
+            numbers = _numbers(comparison, best, place)
+            best = _searched(comparison, few, best, numbers, _SHRINK[:3])
+    best = _searched(comparison, few, best, _offsets(), _SHRINK[2:])
+    return Fitted(_settled(comparison, few, best), comparison, few)
+
+
+def fit_closer(comparison: CaseComparison, chosen: Sequence[int], model: Model) -> Fitted:
+    """Move the numbers of a fitted model once more, by small steps; offsets of 0 stay.
+
+    Parameters
+    ----------
+    comparison : CaseComparison
+        In whose floors the fit is.
+    chosen : sequence of int
+        Recordings to fit to.
+    model : Model
+    """
+    few = different(comparison, chosen)
+    numbers = _numbers(comparison, model)
+    if any(model.offsets):
+        numbers = [*_offsets(), *numbers]
+    return Fitted(_searched(comparison, few, model, numbers, _SHRINK[1:]), comparison, few)
+
+
+def stated_candidates(effect: Effect, seed: int) -> list[LawSpec]:
+    """Return an effect in the simulator's own forms, as a fit of a seed begins with it.
+
+    The library's are drawn as its cases are, strengths from weak to strong; of others the strength
+    goes over two decades about its default.
+    """
+    if EFFECTS.get(effect.name) is effect:
+        rng, forms = np.random.default_rng([seed, 7]), effect.forms
+        specs = [
+            drawn_effect(effect.name, float(np.exp(rng.uniform(np.log(0.02), 0.0))), rng)
+            for _ in range(_DRAWN)
+        ]
+        return [
+            LawSpec(effect.name, {**spec.parameters, "form": forms[i % len(forms)]})
+            for i, spec in enumerate(specs)
+        ]
+    declared = effect.parameters[effect.strength]
+    size = abs(declared.default) or 1.0
+    signs = (1.0, -1.0) if declared.low < 0.0 else (1.0,)
+    values = {
+        min(max(sign * factor * size, declared.low), declared.high)
+        for sign in signs
+        for factor in _BEYOND_DEFAULT
+    }
+    return [
+        LawSpec(effect.name, {"form": form, effect.strength: value})
+        for form in effect.forms
+        for value in sorted(values - {0.0})
+    ]
+
+
+def _added(
+    comparison: CaseComparison,
+    few: Sequence[int],
+    model: Model,
+    offsets: tuple[float, ...],
+    candidates: Sequence[LawSpec],
+) -> Model:
+    """Add the candidates of one effect; return the best model that comes of it."""
+    looked = [
+        (cost_of(comparison, few[:_LOOKED], one, single_run=True), one)
+        for spec in candidates
+        for one in [replace(model, effects=(*model.effects, spec))]
+    ]
+    looked.sort(key=lambda pair: pair[0])
+    # The effect may be what the parameters had to stand for, or one beside them.
+    starts = []
+    for x in dict.fromkeys((model.offsets, offsets)):
+        shown = [replace(one, offsets=x) for _, one in looked[:_PROMISING]]
+        starts.append(min(shown, key=lambda one: cost_of(comparison, few, one)))
+    place = len(model.effects)
+    refined = [
+        _searched(comparison, few, one, _numbers(comparison, one, place), _SHRINK[:3])
+        for one in starts
+    ]
+    best = min(refined, key=lambda one: cost_of(comparison, few, one))
+    if not math.isfinite(cost_of(comparison, few, best)):
+        comparison.simulated(best, comparison.recordings[few[0]], 0)  # says why
+        raise ParameterError("it breaks down in some of the recordings, in all forms tried")
+    return best
+
+
+def _settled(comparison: CaseComparison, few: Sequence[int], model: Model) -> Model:
+    """Settle the last effect's strength with scattered repeats, as scores are made."""
+    place = len(model.effects) - 1
+    strength = comparison.effect_of(model.effects[place]).strength
+    numbers = [one for one in _numbers(comparison, model, place) if one[1] == strength]
+    if not numbers:
+        return model
+    tried = [_moved(model, numbers, np.log([factor])) for factor in _SETTLING]
+    return min(tried, key=lambda one: float(np.sum(np.sqrt(comparison.squared(one, few)))))

@@ -1,1 +1,0 @@
-"""Further forms of effects for a case: drawn from the library, or estimated from its recordings."""

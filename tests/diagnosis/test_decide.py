@@ -1,0 +1,186 @@
+"""What a fit closes says how likely its hypothesis is, and whether its effects are named."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+
+from models.condition import Condition
+from models.errors import ParameterError
+from noise.diagnosis.causes.verdict import likeliest, normalised
+from noise.diagnosis.fit import decide
+from noise.diagnosis.fit.closing import closed_of, room_of
+from noise.diagnosis.fit.decide import (
+    CaseFits,
+    HypothesisFit,
+    fit_hypotheses,
+    fit_notes,
+    settled,
+    updated,
+)
+from noise.diagnosis.fit.fit import split
+
+PARTIAL, WEAK, PAIR = (
+    frozenset(names)
+    for names in (
+        {"partial_slip"}, {"velocity_weakening"}, {"partial_slip", "velocity_weakening"}
+    )
+)  # fmt: skip
+NONE, PARAMETERS, UNKNOWN = frozenset(), frozenset({"parameters"}), frozenset({"unknown"})
+gaps = st.floats(0.5, 40.0)
+
+
+def squared(gap):
+    """Squared distances of four recordings, the last two held out."""
+    return np.broadcast_to(np.square(gap), 4).copy()
+
+
+def fits_of(before, recalibrated, after, comparison=None):
+    of = {h: HypothesisFit(tuple(h), None, squared(gap)) for h, gap in after.items()}
+    start = SimpleNamespace(model=None)
+    return CaseFits(
+        comparison, (0, 1), (2, 3), start, squared(before), squared(recalibrated), of
+    )  # fmt: skip
+
+
+def chances(more, unknown=0.1, parameters=0.05, none=0.01):
+    return normalised({NONE: none, PARAMETERS: parameters, UNKNOWN: unknown} | more)
+
+
+def test_a_name_whose_fit_closes_the_gap_gains_and_one_whose_fit_makes_it_worse_loses():
+    before = chances({PARTIAL: 0.5}, unknown=0.4)
+    closing, worse = (
+        updated(before, fits_of(6.0, 5.0, {PARTIAL: left})) for left in (1.2, 6.5)
+    )  # fmt: skip
+    assert closing[PARTIAL] / closing[UNKNOWN] > before[PARTIAL] / before[UNKNOWN]
+    assert worse[PARTIAL] / worse[UNKNOWN] < before[PARTIAL] / before[UNKNOWN]
+    assert likeliest(closing) == ("partial_slip",)
+
+
+def test_of_two_likely_names_the_one_that_closes_is_named_whichever_came_first():
+    before = chances({PARTIAL: 0.2, WEAK: 0.5})
+    fits = fits_of(6.0, 5.9, {PARTIAL: 1.1, WEAK: 4.5})
+    assert likeliest(settled(updated(before, fits), fits), fits.of) == ("partial_slip",)
+
+
+@given(gaps, gaps, gaps)
+def test_of_two_fits_the_one_that_leaves_less_is_favoured(recalibrated, one, other):
+    before = chances({PARTIAL: 0.3, WEAK: 0.3})
+    now = updated(before, fits_of(40.0, recalibrated, {PARTIAL: one, WEAK: other}))
+    assert (now[PARTIAL] - now[WEAK]) * (other - one) >= 0.0
+
+
+@given(gaps, gaps)
+def test_shares_stay_within_what_they_are_shares_of(before, after):
+    assert -1.0 <= closed_of(before, after) <= room_of(before) < 1.0
+
+
+def test_where_parameters_close_all_they_gain_and_names_keep_their_odds():
+    before = chances({PARTIAL: 0.5}, unknown=0.4)
+    now = updated(before, fits_of(6.0, 1.0, {PARTIAL: 1.0}))
+    assert now[PARTIAL] / now[UNKNOWN] == pytest.approx(before[PARTIAL] / before[UNKNOWN])
+    assert now[PARAMETERS] / now[UNKNOWN] > before[PARAMETERS] / before[UNKNOWN]
+
+
+def test_a_second_effect_is_named_only_where_it_closes_more():
+    before = chances({PARTIAL: 0.3, PAIR: 0.5})
+    assert likeliest(updated(before, fits_of(8.0, 7.9, {PARTIAL: 1.4, PAIR: 1.4}))) == (
+        "partial_slip",
+    )
+    now = updated(chances({PARTIAL: 0.5, PAIR: 0.3}), fits_of(8.0, 7.9, {PARTIAL: 5.0, PAIR: 1.2}))
+    assert set(likeliest(now)) == PAIR
+
+
+def test_a_gap_as_of_repeats_speaks_for_nothing_being_the_matter():
+    small, large = (
+        updated(chances({PARTIAL: 0.5}, none=0.1), fits_of(gap, gap, {PARTIAL: gap}))[NONE]
+        for gap in (1.0, 6.0)
+    )
+    assert small > large
+
+
+def test_a_fit_that_makes_it_worse_hands_its_chance_to_the_unknown():
+    fits = fits_of(6.0, 5.0, {PARTIAL: 5.5, WEAK: 3.0})
+    before = chances({PARTIAL: 0.6, WEAK: 0.1})
+    now = settled(before, fits)
+    assert likeliest(now, fits.of) == ("unknown",)
+    assert now[UNKNOWN] == pytest.approx(before[UNKNOWN] + before[PARTIAL])
+
+
+def test_a_pair_whose_search_stopped_short_leaves_what_one_of_it_leaves():
+    fits = fits_of(6.0, 5.0, {PARTIAL: 1.5, PAIR: 4.0})
+    assert fits.least(PAIR).tolist() == fits.least(PARTIAL).tolist() == squared(1.5).tolist()
+
+
+@pytest.mark.parametrize(
+    ("before", "recalibrated", "after", "closes"),
+    [
+        (6.0, 5.0, 5.0, False),
+        (6.0, 5.0, [1.0, 1.0, 6.0, 6.0], False),  # only what was fitted to
+        (6.0, 5.0, [6.0, 6.0, 1.0, 1.0], True),
+        (6.0, 1.2, 1.2, True),  # as much as parameters close, of a large gap
+        (6.0, 1.2, 5.0, False),
+        ([6.0, 6.0, 1.0, 1.0], [5.0, 5.0, 1.0, 1.0], [2.0, 2.0, 1.0, 1.0], True),
+        (1.2, 1.1, 1.2, False),
+    ],
+)
+def test_a_name_closes_some_of_the_gap_of_recordings_held_out(before, recalibrated, after, closes):
+    assert fits_of(before, recalibrated, {PARTIAL: after}).closes(PARTIAL) == closes
+
+
+def test_what_is_held_out_has_a_gap_where_more_than_one_condition_has():
+    at = [Condition(speed=v) for v in (1.0, 1.5, 2.0, 2.5, 3.0)]
+    gaps = [1.0, 4.0, 3.0, 1.0, 1.1]
+    fitted, held = split(at, gaps)
+    assert max(gaps[i] for i in held) == 3.0
+    assert max(gaps[i] for i in fitted) == 4.0
+    assert split(at, [4.0, 1.0, 1.0, 1.0, 1.0]) == split(at)
+
+
+@pytest.fixture
+def fitted(monkeypatch):
+    """Gaps that fits leave, in place of fits; what was fitted is noted."""
+    noted = []
+
+    def fit(comparison, chosen, names, start, seed, begun=None):
+        if "transfer_film" in names:
+            raise ParameterError("steps of 1e-07 s cannot follow")
+        assert begun is None or begun < frozenset(names)
+        noted.append(frozenset(names))
+        return SimpleNamespace(model=frozenset(names))
+
+    monkeypatch.setattr(decide, "fit_effects", fit)
+
+    def tried(before, after, always=()):
+        comparison = SimpleNamespace(squared=lambda model, _: squared(after.get(model, 5.9)))
+        return fit_hypotheses(fits_of(6.0, 5.9, {}, comparison), before, always), noted
+
+    return tried
+
+
+def test_no_more_is_fitted_once_one_closes_all(fitted):
+    before = chances({PARTIAL: 0.9, WEAK: 0.05}, unknown=0.04)
+    assert fitted(before, {PARTIAL: 1.0})[1] == [PARTIAL]
+
+
+def test_the_first_three_are_fitted_where_the_likeliest_does_not_close_all(fitted):
+    third = frozenset({"static_ageing"})
+    before = chances({PARTIAL: 0.96, WEAK: 0.01, third: 0.005}, unknown=0.001, parameters=0.001)
+    assert fitted(before, {PARTIAL: 3.0})[1] == [PARTIAL, WEAK, third]
+
+
+def test_effects_of_the_users_own_are_fitted_whatever_their_chance(fitted):
+    before = chances({PARTIAL: 0.01}, parameters=0.9)
+    assert fitted(before, {}, ["background_noise"])[1][0] == {"background_noise"}
+
+
+def test_a_cause_that_cannot_be_simulated_is_left_out_and_ends_no_diagnosis(fitted):
+    film = frozenset({"transfer_film"})
+    fits, noted = fitted(chances({film: 0.6, PARTIAL: 0.3}, unknown=0.04), {PARTIAL: 1.0})
+    assert noted == [PARTIAL]
+    assert fits.impossible == {film: "steps of 1e-07 s cannot follow"}
+    (note,) = fit_notes(SimpleNamespace(fits=fits, among=()))
+    assert note.startswith("transfer_film was not fitted")
