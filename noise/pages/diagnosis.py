@@ -318,7 +318,9 @@ def _cause_row(diagnosis: Diagnosis, name: str, chance: float) -> list[str]:
         unit = known[key].unit if key in known else ""
         fitted.append(f"{parameter_name(key)} {text} {unit}".strip())
     gaps = [number(gap) for gap in _gaps(finding)]
-    return [*row, *gaps, percent(finding.closed_by_effect), "; ".join(fitted) or NOT_DETERMINED]
+    own = finding.closed_by_effect
+    alone = percent(None if own is None else min(own, 1.0))
+    return [*row, *gaps, alone, "; ".join(fitted) or NOT_DETERMINED]
 
 
 def _strength(finding: EffectFinding) -> str:
@@ -553,7 +555,7 @@ def _closed_so_far(before: float, gap: float, floor: float, fitted: bool) -> str
         return "The gap of the rig file is no larger than the floor; there is nothing to explain."
     if not fitted:
         return ""
-    share = percent(closed_fraction(before, gap, floor))
+    share = percent(min(closed_fraction(before, gap, floor), 1.0))
     return f"Refitted parameters explain {share} of the deviation."
 
 

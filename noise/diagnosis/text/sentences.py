@@ -134,7 +134,7 @@ def _surer(diagnosis: Diagnosis) -> str:
 def closed_words(finding: EffectFinding | None, of: str = "", interval: str = "") -> str:
     """Return how much of the gap a fit with an effect closes, with the 90 % interval.
 
-    An interval ends at all of it: what is beyond says only that the floor is unsure as well.
+    Share and interval end at all of it: what is beyond says only that the floor is unsure as well.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def closed_words(finding: EffectFinding | None, of: str = "", interval: str = ""
         return NOT_DETERMINED
     if finding.closed <= _NOTHING:
         return f"nothing{of}"
-    words = f"{percent(finding.closed)}{of}"
+    words = f"{percent(min(finding.closed, 1.0))}{of}"
     if finding.closed_low is None or finding.closed_high is None:
         return words
     low, high = (percent(min(end, 1.0)) for end in (finding.closed_low, finding.closed_high))
@@ -190,7 +190,7 @@ def closed_sentence(finding: EffectFinding) -> str:
             )
     elif finding.closed_by_effect is not None:
         share = finding.closed_by_effect
-        left = percent(share) if share > _NOTHING else "nothing"
+        left = percent(min(share, 1.0)) if share > _NOTHING else "nothing"
         words += f", and {left} of what refitted parameters leave unexplained"
     return f"The fit explains {words}."
 

@@ -1,0 +1,225 @@
+"""No sentence contradicts the table beside it: pages and terminal output of drawn outcomes."""
+
+from __future__ import annotations
+
+import html
+import re
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from noise.diagnosis.findings import Agreement, EffectFinding, StageFinding
+from noise.diagnosis.gap.distance import closed_fraction
+from noise.diagnosis.text.agreement_sentences import far_ones
+from noise.diagnosis.text.found import finding_of
+from noise.diagnosis.text.sentences import answer, closed_sentence
+from noise.identification.outcome import Identification, LawScore, Number
+from noise.identification.table_number import TableNumber
+from noise.labels.summary import result_lines
+from noise.pages.diagnosis import write_diagnosis
+from noise.pages.identification import write_identification
+from noise.screening.map.batches import LABELS
+from noise.screening.map.grid import Grid
+from noise.screening.ranking.plain_words import plain_words
+from tests.helpers.made_diagnoses import KINDS, PARAMETERS, PLACE, STAGES
+
+OUTCOMES = 40
+"""Drawn of each kind."""
+
+TAGS = re.compile(r"<[^>]*>")
+
+
+class Page:
+    """Sentences of a page, and cells of its tables by row."""
+
+    def __init__(self, file):
+        text = file.read_text(encoding="utf-8").replace("\u00a0", " ")
+        text = text.partition("<body")[2]
+        self.rows = [
+            [html.unescape(TAGS.sub(" ", cell)) for cell in re.findall(r"<t[hd].*?</t[hd]>", row)]
+            for row in re.findall(r"<tr.*?</tr>", text, re.DOTALL)
+        ]
+        self.facts = [
+            html.unescape(TAGS.sub(" ", one))
+            for one in re.findall(r"<(?:dd|li)\b.*?</(?:dd|li)>", text, re.DOTALL)
+        ]
+        tables = re.compile(r"<table.*?</table>|<ol class=\"chain.*?</ol>", re.DOTALL)
+        self.beside = html.unescape(TAGS.sub(" ", " ".join(tables.findall(text) + self.facts)))
+        self.words = [html.unescape(TAGS.sub("", one)) for one in re.findall(r"<p.*?</p>", text)]
+
+    def row(self, name):
+        return next(row for row in self.rows if row and row[0].strip().strip("▶ ") == name)
+
+
+def drawn_diagnosis(kind, rng):
+    """A diagnosis of a kind with numbers of its own, those that hang on others as they do."""
+    made = replace(KINDS[kind](), illustrations=(), labels_and_levels=(), improvement=None)
+    n = int(rng.integers(1, 7))
+    gaps = rng.lognormal(0.6, 0.8, n)
+    found = tuple(
+        Agreement(f"run{i}", float(rng.choice([0.5, 1.0, 2.5, 5.0])), 2.79e-4, float(gap),
+                  {"torque": float(gap * rng.uniform(0.3, 1.5)), "pressure": float(gap)})
+        for i, gap in enumerate(gaps)
+    )  # fmt: skip
+    stages = {
+        name: StageFinding(float(rng.lognormal(0.5, 0.7)), 0.2, float(10.0 ** -rng.uniform(0, 4)))
+        for name in STAGES
+    }
+    sure = replace(PLACE, stage=str(rng.choice(list(STAGES))))
+    sure = replace(sure, p_value=stages[sure.stage].p_value)
+    floor = 1.0
+    before = float(rng.uniform(0.8, 12.0))
+    recalibrated = before * float(rng.uniform(0.3, 1.0))
+    effects = [fitted(one, before, recalibrated, floor, rng) for one in made.effects]
+    if kind == "pair":  # of one fit
+        effects = [
+            replace(effects[0], name=one.name, stage=one.stage, probability=one.probability)
+            for one in effects
+        ]
+    chances = {name: float(rng.uniform(0.0, 1.0)) for name in made.probabilities}
+    effects = [replace(one, probability=chances.get(one.name, 0.3)) for one in effects]
+    parameters = {
+        name: tuple(sorted(1.0 + rng.uniform(-0.2, 0.2, 2))) for name in PARAMETERS
+    } if made.parameters else {}  # fmt: skip
+    return replace(
+        made, agreement=found, stages=stages, location=sure if made.location else None,
+        effects=tuple(effects), probabilities=chances, parameters=parameters,
+        gap=before, floor=floor, p_value=float(10.0 ** -rng.uniform(0, 4)),
+    )  # fmt: skip
+
+
+def fitted(one: EffectFinding, before, recalibrated, floor, rng):
+    after = float(rng.uniform(0.2, 1.1) * recalibrated)
+    closed = closed_fraction(before, after, floor) if before > 1.1 * floor else None
+    own = closed_fraction(recalibrated, after, floor) if recalibrated > 1.1 * floor else None
+    spread = sorted(rng.uniform(0.0, 0.2, 2))
+    return replace(
+        one, gap_before=before, gap_recalibrated=recalibrated, gap_after=after, gap_floor=floor,
+        closed=closed, closed_low=None if closed is None else closed - spread[1],
+        closed_high=None if closed is None else closed + spread[0], closed_by_effect=own,
+    )  # fmt: skip
+
+
+def printed(diagnosis):
+    """Sentences that the command prints."""
+    said = [*answer(diagnosis)]
+    finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
+    return [*said, closed_sentence(finding)] if finding is not None else said
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_numbers_of_a_diagnosis_stand_in_its_tables(kind, tmp_path):
+    for seed in range(OUTCOMES):
+        diagnosis = drawn_diagnosis(kind, np.random.default_rng([seed, len(kind)]))
+        write_diagnosis(tmp_path, diagnosis)
+        page = Page(tmp_path / "report.html")
+        gaps = [float(page.row(one.recording)[3]) for one in diagnosis.agreement]
+        for sentence in (*page.words, *printed(diagnosis)):
+            check(sentence, page, diagnosis, gaps)
+
+
+def check(sentence, page, diagnosis, gaps):
+    beside = page.beside
+    for p_value in (
+        () if "p = 0.05 or below" in sentence else re.findall(r"p [=<] [\d.e-]*\d", sentence)
+    ):
+        assert p_value in beside, sentence
+    of_interval = re.search(r"comes out|higher|lower", sentence)
+    listed = re.sub(r"90 % interval|parameters explain (< )?\d+ %", "", sentence)
+    if diagnosis.verdict == ("unknown",):  # a fit that was tried has bars and no row
+        listed = re.sub(r"explains (< )?\d+ % of the deviation( \([^)]*\))?", "", listed)
+    if not of_interval:
+        for share in re.findall(r"[\d.]+ %", listed):
+            assert re.search(rf"(?<![\d.]){re.escape(share)}", beside), (share, sentence)
+    for name in PARAMETERS if of_interval else ():
+        pattern = rf"{name.replace('_', ' ')} comes out ([\d.]+) to ([\d.]+) % (higher|lower)"
+        if found := re.search(pattern, sentence):
+            sign = 1.0 if found[3] == "higher" else -1.0
+            stated = sorted(1.0 + sign * float(end) / 100.0 for end in found.group(1, 2))
+            cell = next(row[1] for row in page.rows if row[0].strip() == name.replace("_", " "))
+            table = [float(end) for end in cell.split(" to ")]
+            assert stated == pytest.approx(table, abs=0.006), sentence
+    if found := re.search(r"deviates? (?:up to )?([\d.]+)(?: to ([\d.]+))? times as", sentence):
+        least, most = float(found[1]), float(found[2] or found[1])
+        assert most == pytest.approx(max(gaps), abs=0.06), sentence
+        if "up to" not in sentence:
+            assert least == pytest.approx(min(gaps), abs=0.06), sentence
+    if found := re.search(r"the rig at (\d+) of (\d+) recordings", sentence):
+        assert (int(found[1]), int(found[2])) == (len(gaps) - len(far_ones(diagnosis)), len(gaps))
+    for gap in re.findall(r"([\d.]+) floors", sentence):
+        numbers = [float(one) for one in re.findall(r"\d+\.\d+|\d+", beside)]
+        assert min(abs(float(gap) - one) for one in numbers) < 0.06, sentence
+    fit = re.search(r"(?:fit.*?|parameters) explains? (\d+) % of the deviation", sentence)
+    if fit and (bars := [row for row in page.rows if row[0].strip() == "what is left"]):
+        before, after = float(page.row("nominal model")[1]), float(bars[0][1])
+        share = min(100.0, 100.0 * (before - after) / (before - 1.0))
+        loose = 1.0 + 2.0 / (before - 1.0)  # of the digits that the table has
+        best = min(diagnosis.effects, key=lambda one: one.gap_after)
+        if best.name == diagnosis.verdict[0] or sentence in page.words:
+            assert float(fit[1]) == pytest.approx(share, abs=loose), sentence
+
+
+def test_numbers_of_an_identification_stand_in_its_tables(tmp_path):
+    for seed in range(OUTCOMES):
+        rng = np.random.default_rng(seed)
+        laws = tuple(
+            LawScore(law, *map(float, rng.uniform(0.0, 1.0, 3)), {})
+            for law in ("constant", "stribeck", "bristle")
+        )
+        value = float(rng.uniform(300.0, 900.0))
+        stiffness = Number(
+            "elastomer_stiffness", "Nm/rad", value, 0.95 * value, 1.04 * value, 3, 0.279e-3
+        )
+        chosen = str(rng.choice([one.law for one in laws]))
+        found = Identification(
+            'base = "fluorocarbon"\n', (stiffness,), laws, chosen, (), margin=1.05,
+            measured=(MEASURED,),
+        )  # fmt: skip
+        write_identification(tmp_path, found)
+        page = Page(tmp_path / "report.html")
+        law = page.row(chosen)
+        (sentence,) = (one for one in page.words if one.startswith("Law of friction:"))
+        assert f"leaves {law[2].strip()} % of the oscillation unexplained" in sentence
+        assert f"deviate by {law[3].strip()} floors" in sentence
+        (sentence,) = (one for one in page.words if "the elastomer has" in one)
+        assert f"{value:.4g} Nm/rad" in sentence
+        cells = " ".join(page.row("elastomer stiffness"))
+        for figure in re.findall(r"\d+\.\d+|\d{2,}", sentence.partition("mm")[2]):
+            assert figure in cells, sentence
+
+
+MEASURED = TableNumber("effective_stiffness", 464.0, 0.279e-3, 2214.0), 470.0
+
+
+def test_what_is_said_of_a_design_is_what_its_map_shows():
+    for seed in range(5 * OUTCOMES):
+        rng = np.random.default_rng(seed)
+        speed = tuple(np.cumsum(rng.integers(1, 4, rng.integers(1, 9))).astype(float).tolist())
+        grid = Grid(speed, (), (2.79e-4, 3.81e-4), (2214.0,), (23.0,), (speed[0], speed[-1]))
+        share = rng.dirichlet(np.full(len(LABELS), 0.5))
+        labels = rng.choice(LABELS, grid.shape, p=share)
+        words = plain_words(SimpleNamespace(grid=grid, label=labels), np.nan)
+        assert words.startswith("quiet at all") == bool((labels == "none").all()), words
+        for name, first, last in re.findall(r"(\w+?)s from ([\d.]+) to ([\d.]+) rad/s", words):
+            there = np.array(speed)[(labels == name).any(axis=(0, 1, 2))]
+            assert (float(first), float(last)) == (there.min(), there.max()), words
+        for name, percent in re.findall(r"(\w+?)s at (\d+)% of the use", words):
+            assert float(percent) == pytest.approx(100.0 * np.mean(labels == name), abs=0.51), words
+
+
+def test_the_line_of_a_file_is_its_longest_row():
+    for seed in range(OUTCOMES):
+        rng = np.random.default_rng(seed)
+        ends = np.cumsum(rng.uniform(0.3, 3.0, 4))
+        rows = [
+            {"file": "a.wav", "label": str(rng.choice(LABELS)), "start_s": float(start),
+             "end_s": float(end), "frequency_hz": 100.0 * i, "level_dba": 60.0 + i}
+            for i, (start, end) in enumerate(zip([0.0, *ends[:-1]], ends, strict=True))
+        ]  # fmt: skip
+        for line in result_lines(rows):
+            label, frequency, level = re.search(r"(\w+) (\d+) Hz +([\d.]+) dB", line).groups()
+            row = rows[round(float(level)) - 60]
+            assert (row["label"], row["frequency_hz"]) == (label, float(frequency)), line
+            assert f"{row['start_s']:.2f}-{row['end_s']:.2f} s" in line
