@@ -9,6 +9,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from noise.screening.map.batches import LABELS
+from noise.screening.map.grid import Grid
+from noise.screening.ranking.plain_words import plain_words
 
 from noise.diagnosis.findings import Agreement, EffectFinding, StageFinding
 from noise.diagnosis.gap.distance import closed_fraction
@@ -20,9 +23,6 @@ from noise.identification.table_number import TableNumber
 from noise.labels.summary import result_lines
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.identification import write_identification
-from noise.screening.map.batches import LABELS
-from noise.screening.map.grid import Grid
-from noise.screening.ranking.plain_words import plain_words
 from tests.helpers.made_diagnoses import KINDS, PARAMETERS, PLACE, STAGES
 
 OUTCOMES = 40
