@@ -66,8 +66,6 @@ def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
 def _checked_effect(effect: Effect, path: Path) -> Effect:
     """Return the effect with its functions checked."""
     where = f"--effects {path}: effect {effect.name!r}"
-    if not effect.forms:
-        raise ParameterError(f"{where}: forms is empty; name at least one")
     if effect.strength not in effect.parameters:
         raise ParameterError(f"{where}: strength = {effect.strength!r} is none of its parameters")
     if not any((effect.drive, effect.contact, effect.force, effect.sensors)):

@@ -6,15 +6,13 @@ anywhere, read by `load_effects`.
 
 import sys
 from collections import ChainMap
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from importlib.util import module_from_spec, spec_from_file_location
-from numbers import Real
 from pathlib import Path
-from typing import Any
 
 from models.errors import ParameterError
 from sim.effects.effect import Effect, Stage
-from sim.parameters import Library, Parameter
+from sim.parameters import Library
 
 __all__ = ["EFFECTS", "Effect", "load_effects"]
 
@@ -53,46 +51,24 @@ def load_effects(path: str | Path) -> Mapping[str, Effect]:
     if not own:
         raise ParameterError(f"effects {path}: defines no Effect; see the README for an example")
     for name, effect in own.items():
-        for field, value, kind in _fields(effect):
-            if not isinstance(value, kind) or (isinstance(value, bool) and kind is Real):
-                raise ParameterError(
-                    f"effects {path}: effect {str(name)[:40]!r}: {field[:60]} = "
-                    f"{repr(value)[:60]} is no {_KINDS[kind]}"
-                )
+        try:
+            _try(effect)
+        except (AttributeError, LookupError, TypeError, ValueError) as error:
+            raise ParameterError(
+                f"effects {path}: effect {name[:40]!r} is not declared as Effect asks: {error}"
+            ) from error
         if name in EFFECTS:
             raise ParameterError(f"effects {path}: {name!r} is a shipped effect; choose a new name")
     return ChainMap(own, EFFECTS)  # type: ignore[arg-type]  # nothing writes to it
 
 
-_KINDS: dict[Any, str] = {
-    Mapping: "mapping from names to Parameter",
-    Parameter: "Parameter",
-    Real: "number",
-    str: "text",
-    tuple: "tuple of texts",
-    Stage: "Stage",
-    bool: "True or False",
-    Callable | None: "function",
-}
-
-
-def _fields(effect: Effect) -> Iterator[tuple[str, object, Any]]:
-    """Fields of an effect, what they hold, and of which kind that is to be."""
-    yield "parameters", effect.parameters, Mapping
-    for name, one in effect.parameters.items():
-        yield f"parameters[{name!r}]", one, Parameter
-        for field in ("default", "low", "high"):
-            yield f"parameter {name}: {field}", getattr(one, field), Real
-        for field in ("unit", "meaning"):
-            yield f"parameter {name}: {field}", getattr(one, field), str
-    yield "stage", effect.stage, Stage
-    yield "forms", effect.forms, tuple
-    for form in effect.forms:
-        yield "form", form, str
-    for field in ("name", "strength"):
-        yield field, getattr(effect, field), str
-    for field in ("in_blocks", "irregular"):
-        yield field, getattr(effect, field), bool
-    yield "n_states", effect.n_states, Real
-    for field in ("drive", "contact", "pack", "force", "chain", "sensors"):
-        yield field, getattr(effect, field), Callable | None
+def _try(effect: Effect) -> None:
+    """Raise whatever comes of a declaration of other types than `Effect` has."""
+    if not (effect.name.strip() and effect.forms):
+        raise ValueError("name or forms is empty")
+    Stage(effect.stage)
+    effect.active({})
+    for name in ("drive", "contact", "pack", "force", "chain", "sensors"):
+        function = getattr(effect, name)
+        if function is not None and not callable(function):
+            raise TypeError(f"{name} = {function!r} is no function")

@@ -24,6 +24,8 @@ from sim.solvers.contact_rates import (
     Limits,
     Rows,
     contact_rates,
+    larger,
+    smaller,
 )
 from sim.solvers.tsitouras import (
     NODES,
@@ -108,7 +110,7 @@ def _bracketed(h, far, low, high, far_low, far_high, side):
     if far_low > 0.0:
         margin = 0.4 * _TIME_TOLERANCE
         secant = low + (high - low) * far_low / (far_low - far_high)
-        h = min(max(secant, low + margin), high - margin)
+        h = smaller(larger(secant, low + margin), high - margin)
     return h, low, high, far_low, far_high, side
 
 
@@ -127,7 +129,7 @@ def _turn_within(start, end_speed, k, h, slide, far_start, far_end):
             break
         x_next = x - far * (x - x_before) / (far - far_before)
         x_before, far_before = x, far
-        x = min(max(x_next, 0.0), 1.0)
+        x = smaller(larger(x_next, 0.0), 1.0)
     return x
 
 
@@ -148,12 +150,12 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
     slope, step, tolerance = drive.slope, drive.step, limits.tolerance
     n, d, output = direction_out.size, u.size, k.shape[1] - 1
     lag = d - N_LAG if hooks.n > 0 else d
-    last = max(drive.speed.size - 2, 0)  # segment of the drive
+    last = larger(drive.speed.size - 2, 0)  # segment of the drive
     t_crit, t_kin = s[8], s[9]
     bushing.contact[CRITICAL], bushing.contact[KINETIC] = t_crit, t_kin
     kink = _KINK * t_kin * s[6]
     # The twist at the critical torque, and the speed that it becomes when released.
-    twist_scale = max(t_crit, t_kin) / s[2]
+    twist_scale = larger(t_crit, t_kin) / s[2]
     speed_scale = twist_scale * math.sqrt(s[2] * s[6])
     per_angle, per_speed = 1.0 / twist_scale, 1.0 / speed_scale
     # How near the end of stick or slip counts as there, by whether it slides.
@@ -178,7 +180,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             length = t1 - t0
             fill_between(u, start, k, rows.weights, (sample * step - t0) / length, length)
             time = (first + sample) * step
-            i = min(sample, last)
+            i = smaller(sample, last)
             stick_time = time - stick_start if mode == 0 else stick_length
             friction, e, holding, critical, caught, shaft = contact_rates(
                 output, (sample - i) * step, i, time, stick_time, mode, bushing, hooks,
@@ -211,9 +213,9 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             i0 += 1
             if abs(slope[i0] - slope[i0 - 1]) > kink:
                 fresh = True
-        aim = min(limits.longest, step_of_stick if mode == 0 and not has_law else step_of_slip)
+        aim = smaller(limits.longest, step_of_stick if mode == 0 and not has_law else step_of_slip)
         i_last, limit = _stretch(drive, last, n, kink, i0, t0 + aim)
-        h = min(aim, limit - t0)
+        h = smaller(aim, limit - t0)
         # Whether stick or slip ends in it: brackets of that, and how far from it they are.
         low, high, far_low, far_high, side = 0.0, -1.0, far_start, 0.0, 0.0
         begin = 0 if fresh else 1
@@ -223,7 +225,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             for stage in range(begin, N_STAGES):
                 fill_stage(u, start, k, stage, h)
                 t = t0 + NODES[stage] * h
-                i = min(max(int(t / step), i0), i_last)
+                i = smaller(larger(int(t / step), i0), i_last)
                 time = first * step + t
                 stick_time = time - stick_start if mode == 0 else stick_length
                 friction, e, holding, critical, caught, shaft = contact_rates(
@@ -307,12 +309,12 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
         if h == aim:
             follows, error_before = h * factor, error
         else:
-            follows = max(aim, h * factor)
+            follows = larger(aim, h * factor)
         far_start, fresh = far, False
         if has_law or mode != 0:
-            step_of_slip = min(follows, limits.longest)
+            step_of_slip = smaller(follows, limits.longest)
         else:
-            step_of_stick = min(follows, limits.longest)
+            step_of_stick = smaller(follows, limits.longest)
             end[1] = k[0, N_STAGES - 1]  # the surface goes with the shaft
         if has_law:
             if ends:  # the sliding turns

@@ -19,23 +19,11 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from sim.contact import N_CONTACT, N_CONTEXT, address_of
+from sim.solvers import contact_rates as at
 from sim.solvers.contact_rates import (
-    ANGLE,
-    DONE,
-    ERROR,
-    FAR,
-    FRESH,
-    MODE,
-    N_CARRIED,
     N_LAG,
     N_MOTION,
-    NEXT_MODE,
     SHORTEST_STEP,
-    SLIDE,
-    STEP_END,
-    STEP_OF_SLIP,
-    STEP_OF_STICK,
-    STEP_START,
     Bushing,
     Drive,
     Hooks,
@@ -138,13 +126,13 @@ class ContactRun:
         self._limits = Limits(LONGEST_STEP / refined, tolerance / refined**5)
         self._step, self._name = step, name
         self._parts = _parts(law, law_state.size, hooks)
-        self._carried = np.zeros(N_CARRIED)
-        self._carried[[STEP_OF_STICK, STEP_OF_SLIP]] = _FIRST_STEP
-        self._carried[FRESH] = 1.0
+        self._carried = np.zeros(at.N_CARRIED)
+        self._carried[[at.STEP_OF_STICK, at.STEP_OF_SLIP]] = _FIRST_STEP
+        self._carried[at.FRESH] = 1.0
         if motion is not None:
             self._rows.end[:4] = motion
             if law is None:
-                self._carried[[MODE, NEXT_MODE]] = math.copysign(1.0, start_speed - motion[1])
+                self._carried[[at.MODE, at.NEXT_MODE]] = math.copysign(1.0, start_speed - motion[1])
         elif law is None:
             self._rows.end[1] = start_speed
         self._rows.end[N_MOTION : N_MOTION + law_state.size] = law_state
@@ -166,15 +154,15 @@ class ContactRun:
         """
         motion = self._rows.end[:N_MOTION].copy()
         if not self._constants[0].law:
-            return motion, float(self._carried[NEXT_MODE])
+            return motion, float(self._carried[at.NEXT_MODE])
         return motion, math.copysign(1.0, shaft_speed - motion[1])
 
     def start_from(self, motion: NDArray[np.float64], direction: float, angle: float) -> None:
         """Start from a motion, as of `motion`, with the shaft at an angle [rad]."""
         self._rows.end[:N_MOTION] = motion
-        self._carried[ANGLE] = angle
+        self._carried[at.ANGLE] = angle
         if not self._constants[0].law:
-            self._carried[[MODE, NEXT_MODE]] = direction
+            self._carried[[at.MODE, at.NEXT_MODE]] = direction
 
     def go_on_from(self, before: ContactRun, shaft_speed: float) -> None:
         """Start where another run has come to: its motion, and the inner states that both have.
@@ -184,7 +172,7 @@ class ContactRun:
         self._constants[0].context[:] = before._constants[0].context
         kept = self._carried.copy()
         self._carried[:] = before._carried
-        self._carried[FRESH] = 1.0  # the forces are others
+        self._carried[at.FRESH] = 1.0  # the forces are others
         if self._parts == before._parts:
             for name in ("start", "end", "stages"):
                 getattr(self._rows, name)[...] = getattr(before._rows, name)
@@ -193,10 +181,18 @@ class ContactRun:
             if key in before._parts:
                 self._rows.end[part] = before._rows.end[before._parts[key]]
         motion, direction = before.motion(shaft_speed)
-        restarted = [STEP_START, STEP_END, STEP_OF_STICK, STEP_OF_SLIP, ERROR, FAR, SLIDE]
+        restarted = [
+            at.STEP_START,
+            at.STEP_END,
+            at.STEP_OF_STICK,
+            at.STEP_OF_SLIP,
+            at.ERROR,
+            at.FAR,
+            at.SLIDE,
+        ]
         self._carried[restarted] = kept[restarted]
-        self._carried[[MODE, NEXT_MODE]] = 0.0
-        self.start_from(motion, direction, float(before._carried[ANGLE]))
+        self._carried[[at.MODE, at.NEXT_MODE]] = 0.0
+        self.start_from(motion, direction, float(before._carried[at.ANGLE]))
 
     def advance(
         self, shaft_speed: NDArray[np.float64], n: int
@@ -213,8 +209,11 @@ class ContactRun:
 
         Returns
         -------
-        states, direction
-            As from `solve_contact`.
+        states : ndarray, shape (n, 7)
+            Friction torque and elastomer torque [Nm], theta1 [rad], theta1' [rad/s], theta2,
+            theta2', speed of the shaft at the bushing [rad/s].
+        direction : ndarray, shape (n,)
+            Of the sliding [-]: +1 or -1, 0 in stick; 0 throughout with a law.
 
         Raises
         ------
@@ -226,7 +225,7 @@ class ContactRun:
             *self._constants, self._drive(shaft_speed, n), self._limits, self._carried, self._rows,
             states, direction,
         )  # fmt: skip
-        if self._carried[DONE] < 0.0:
+        if self._carried[at.DONE] < 0.0:
             raise ParameterError(
                 f"{self._name}: the torque changes so fast with speed, shear or time that steps "
                 f"of {SHORTEST_STEP:g} s cannot follow; make it less steep"
@@ -239,7 +238,7 @@ class ContactRun:
         slope, angle = np.zeros(size), np.zeros(size)
         np.divide(np.diff(speed), self._step, out=slope[: known - 1])
         slope[max(known - 1, 1) :] = slope[max(known - 2, 0)]
-        angle[0] = self._carried[ANGLE]
+        angle[0] = self._carried[at.ANGLE]
         angle[1:known] = 0.5 * self._step * (speed[:-1] + speed[1:])
         np.cumsum(angle[:known], out=angle[:known])
         return Drive(self._step, np.ascontiguousarray(speed), slope, angle)
@@ -297,59 +296,3 @@ def hooks_record(hooks: tuple[Hook, ...], rows: Rows, n_law: int) -> Hooks:
         row[:] = [address_of(hook.function), *(array.ctypes.data for array in arrays)]
         first += hook.n_states
     return Hooks(len(hooks), addresses)
-
-
-def solve_contact(
-    system: NDArray[np.float64],
-    critical_torque: float,
-    kinetic_torque: float,
-    shaft_speed: NDArray[np.float64],
-    step: float,
-    *,
-    law: Any = None,
-    coefficients: NDArray[np.float64] | None = None,
-    law_state: NDArray[np.float64] | None = None,
-    hooks: tuple[Hook, ...] = (),
-    name: str = "friction",
-    tolerance: float = _TOLERANCE,
-    refined: float = 1.0,
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Solve the lumped model from rest.
-
-    Parameters
-    ----------
-    system : ndarray, shape (6,)
-        As of `LumpedBushing.packed`.
-    critical_torque, kinetic_torque : float
-        [Nm]
-    shaft_speed : ndarray, shape (n,)
-        Of the drive at the output times [rad/s], linear between them.
-    step : float
-        Time between outputs [s].
-    law : compiled function, optional
-        Friction law by `sim.contact.LAW_SIGNATURE`; without one the contact truly sticks.
-    coefficients, law_state : ndarray, shape (n,), optional
-        As of the law; its state at the start.
-    hooks : tuple of Hook
-        Effects that act on the contact, in this order.
-    name : str
-        What errors call the friction.
-    tolerance : float
-        Error of a step [-]; `sim.friction.law.FrictionLaw.tolerance` with a law.
-    refined : float
-        Steps are so many times shorter than by default, to tell their error.
-
-    Returns
-    -------
-    states : ndarray, shape (n, 7)
-        Friction torque and elastomer torque [Nm], theta1 [rad], theta1' [rad/s], theta2, theta2',
-        speed of the shaft at the bushing [rad/s].
-    direction : ndarray, shape (n,)
-        Of the sliding [-]: +1 or -1, 0 in stick; 0 throughout with a law.
-    """
-    run = ContactRun(
-        system, critical_torque, kinetic_torque, float(shaft_speed[0]), step, law=law,
-        coefficients=coefficients, law_state=law_state, hooks=hooks, name=name,
-        tolerance=tolerance, refined=refined,
-    )  # fmt: skip
-    return run.advance(shaft_speed, shaft_speed.size)

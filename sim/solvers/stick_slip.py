@@ -41,8 +41,12 @@ def advance_stick_slip(
 
     Parameters
     ----------
-    system, critical_torque, kinetic_torque, step
-        As for `solve_stick_slip`.
+    system : ndarray, shape (6,)
+        As of `LumpedBushing.packed`.
+    critical_torque, kinetic_torque : float
+        [Nm]
+    step : float
+        Time between samples [s].
     shaft_speed : ndarray, shape (n,) or (n + 1,)
         At the samples [rad/s]; the one after them is where the next block starts. Without it the
         run ends here.
@@ -53,8 +57,12 @@ def advance_stick_slip(
 
     Returns
     -------
-    states, direction, events
-        As from `solve_stick_slip`; times are those of the whole run.
+    states : ndarray, shape (n, 6)
+        Friction torque and elastomer torque [Nm], theta1 [rad], theta1' [rad/s], theta2, theta2'.
+    direction : ndarray, shape (n,)
+        Of the sliding: +1 or -1, 0 in stick [-].
+    events : ndarray, shape (n_events,)
+        Times at which stick or slip ended [s], of the whole run.
 
     Raises
     ------
@@ -79,50 +87,3 @@ def advance_stick_slip(
         direction, event_times,
     )  # fmt: skip
     return states.T, direction, event_times[:count].copy()
-
-
-def solve_stick_slip(
-    system: NDArray[np.float64],
-    critical_torque: float,
-    kinetic_torque: float,
-    shaft_speed: NDArray[np.float64],
-    step: float,
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
-    """Solve the lumped model with Coulomb friction from rest.
-
-    Parameters
-    ----------
-    system : ndarray, shape (6,)
-        As of `LumpedBushing.packed`.
-    critical_torque, kinetic_torque : float
-        [Nm]
-    shaft_speed : ndarray, shape (n,)
-        At the output times [rad/s], linear between them; the surfaces stick at the start.
-    step : float
-        Time between outputs [s].
-
-    Returns
-    -------
-    states : ndarray, shape (n, 6)
-        Friction torque and elastomer torque [Nm], theta1 [rad], theta1' [rad/s], theta2, theta2'.
-    direction : ndarray, shape (n,)
-        Of the sliding: +1 or -1, 0 in stick [-].
-    events : ndarray, shape (n_events,)
-        Times at which stick or slip ended [s].
-
-    Raises
-    ------
-    ParameterError
-        If the step is too long for the system.
-
-    Examples
-    --------
-    >>> rig = np.array([1 / 65000, 1 / 1200, 665.0, 3745.0, 0.0425, 0.0425])
-    >>> states, direction, events = solve_stick_slip(rig, 10.7, 8.0, np.full(3000, 1.0), 1e-4)
-    >>> len(events) // 2  # slips in 0.3 s
-    43
-    """
-    state = rest_state(float(shaft_speed[0]))
-    return advance_stick_slip(
-        system, critical_torque, kinetic_torque, shaft_speed, step, state, shaft_speed.size
-    )

@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from models.compilation import PART
-from sim.solvers.contact_rates import N_MOTION, N_STAGES
+from sim.solvers.contact_rates import N_MOTION, N_STAGES, larger, smaller
 
 NODES = np.array([0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0, 1.0])
 """Of the stages, in shares of the step."""
@@ -119,11 +119,11 @@ def step_error(k, h, start, end, first_lag, per_angle, per_speed) -> float:
         total += error
         error = abs(h * error)
         if N_MOTION <= j < first_lag:
-            scale = max(abs(start[j]), abs(end[j])) + h * abs(k[j, 0]) + 1e-300
-            largest = max(largest, error / scale)
+            scale = larger(abs(start[j]), abs(end[j])) + h * abs(k[j, 0]) + 1e-300
+            largest = larger(largest, error / scale)
         else:
             place = j if j < N_MOTION else j - first_lag
-            largest = max(largest, error * (per_angle if place % 2 == 0 else per_speed))
+            largest = larger(largest, error * (per_angle if place % 2 == 0 else per_speed))
     return largest if math.isfinite(total) else math.inf
 
 
@@ -135,9 +135,9 @@ def factor_of_step(error, error_before) -> float:
     half the rejections of one without memory; powers that are roots of roots cost no logarithm.
     """
     if error > 1.0:
-        return max(_SAFETY / math.sqrt(math.sqrt(error)), _LEAST_FACTOR)
-    ratio = math.sqrt(max(error_before, _SMALLEST_ERROR)) / error
-    return min(_SAFETY * math.sqrt(math.sqrt(math.sqrt(ratio))), _MOST_FACTOR)
+        return larger(_SAFETY / math.sqrt(math.sqrt(error)), _LEAST_FACTOR)
+    ratio = math.sqrt(larger(error_before, _SMALLEST_ERROR)) / error
+    return smaller(_SAFETY * math.sqrt(math.sqrt(math.sqrt(ratio))), _MOST_FACTOR)
 
 
 @_inlined

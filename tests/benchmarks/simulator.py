@@ -25,7 +25,7 @@ from sim.motion import simulate_motion
 from sim.rig_effects import constant_version
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
-from sim.solvers.stick_slip import solve_stick_slip
+from tests.helpers.contacts import solve_stick_slip
 
 if TYPE_CHECKING:
     from collections.abc import Callable

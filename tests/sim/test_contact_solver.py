@@ -8,14 +8,12 @@ import pytest
 from models.errors import ParameterError
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
-from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.friction import LAWS, friction_law
+from sim.friction import LAWS
 from sim.motion import simulate_motion
-from sim.parameters import resolve
 from sim.shaft import ConstantSpeed
-from sim.solvers.contact_solver import Hook, solve_contact
+from tests.helpers.contacts import contact_of, hook, solve_contact
 
 THESIS, CALIBRATED = load_material_rig("fluorocarbon-thesis"), load_material_rig("fluorocarbon")
 RATE = 90e3
@@ -33,27 +31,11 @@ FORMS = [
 ]
 
 
-def hook(name, **given):
-    active = EFFECTS[name].active(given)
-    values = active.packed(np.random.default_rng(0))
-    return Hook(active.effect.contact, values, active.effect.n_states)
-
-
 def arguments(condition, name, given=None, hooks=(), stiffness=3745.0):
     """Of the solver, but for the drive and the step."""
     rig, interference = CONDITIONS[condition]
-    law, fit = friction_law(name), rig.fit(interference)
-    own = rig.friction.parameters if rig.friction.name == name and given is None else given or {}
-    coefficients = law.coefficients(resolve(name, law.parameters, own))
-    packed = lumped_bushing(rig, interference, stiffness).packed()
-    options = {
-        "law": law.torque,
-        "coefficients": coefficients,
-        "law_state": law.state(),
-        "hooks": hooks,
-        "tolerance": law.tolerance,
-    }
-    return (packed, fit.critical_torque, fit.kinetic_torque), options
+    torques, options = contact_of(rig, interference, stiffness, name, given)
+    return torques, options | {"hooks": hooks}
 
 
 def solve(condition, name, speed, seconds, *, refined=1, given=None, hooks=(), stiffness=3745.0):

@@ -7,7 +7,8 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from sim.bushing import LumpedBushing
-from sim.solvers.stick_slip import advance_stick_slip, rest_state, solve_stick_slip
+from sim.solvers.stick_slip import advance_stick_slip, rest_state
+from tests.helpers.contacts import solve_stick_slip
 
 STEP = 1 / 30e3
 

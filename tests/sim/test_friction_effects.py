@@ -9,7 +9,6 @@ from hypothesis import given, settings, strategies as st
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.analysis.regime import Regime, friction_regime
-from sim.bushing import lumped_bushing
 from sim.contact import (
     CREEP,
     CRITICAL,
@@ -29,39 +28,20 @@ from sim.contact import (
 )
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.friction import friction_law
 from sim.motion import simulate_motion
-from sim.parameters import resolve
 from sim.shaft import ConstantSpeed
-from sim.solvers.contact_solver import Hook, solve_contact
+from tests.helpers.contacts import contact_of, hook, solve_contact
 
 TRUE_STICK = load_material_rig("fluorocarbon-thesis")
 MEMORY = load_material_rig("fluorocarbon")
 RATE = 90e3
 
 
-def hook(name, seed=0, **given):
-    active = EFFECTS[name].active(given)
-    values = active.packed(np.random.default_rng(seed))
-    return Hook(active.effect.contact, values, active.effect.n_states)
-
-
-def solve(*hooks, rig=TRUE_STICK, speed=1.0, interference=0.279e-3, samples=3000, refined=1):
+def solve(*hooks, rig=TRUE_STICK, samples=3000):
     """Torque and direction by the same solver, with or without effects."""
-    law = friction_law(rig.friction.name)
-    fit = rig.fit(interference)
-    coefficients = law.coefficients(resolve(law.name, law.parameters, rig.friction.parameters))
+    torques, options = contact_of(rig, 0.279e-3, 3745.0)
     states, direction = solve_contact(
-        lumped_bushing(rig, interference, 3745.0).packed(),
-        fit.critical_torque,
-        fit.kinetic_torque,
-        np.full(samples, speed),
-        1.0 / RATE,
-        law=law.torque,
-        coefficients=coefficients,
-        law_state=law.state(),
-        hooks=hooks,
-        refined=refined,
+        *torques, np.full(samples, 1.0), 1.0 / RATE, hooks=hooks, **options
     )
     return states[:, 1], direction
 

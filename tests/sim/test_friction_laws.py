@@ -9,12 +9,11 @@ from numba import float64, int64, njit
 from scipy.optimize import brentq
 
 from models.rig_file import load_material_rig
-from sim.bushing import lumped_bushing
 from sim.contact import CRITICAL, KINETIC, N_CONTACT, address_of, call_law_at
 from sim.friction import LAWS, friction_law
 from sim.friction.maxwell_slip import N_ELEMENTS
 from sim.parameters import resolve
-from sim.solvers.contact_solver import solve_contact
+from tests.helpers.contacts import contact_of, solve_contact
 
 RIG = load_material_rig("fluorocarbon-thesis")
 VIOLENT = load_material_rig("fluorocarbon")  # its critical torque is twice the kinetic one
@@ -71,20 +70,9 @@ def steady(name, speed, given=None, torques=(T_CRIT, T_KIN), angle=0.05):
 
 def on_the_rig(name, speed, given=None, *, seconds, step=STEP, refined=1, rig=RIG,
                interference=0.279e-3, stiffness=2214.0):  # fmt: skip
-    law = friction_law(name)
-    coefficients = law.coefficients(resolve(name, law.parameters, given or {}))
-    fit = rig.fit(interference)
-    return solve_contact(
-        lumped_bushing(rig, interference, stiffness).packed(),
-        fit.critical_torque,
-        fit.kinetic_torque,
-        np.full(round(seconds / step), float(speed)),
-        step,
-        law=law.torque,
-        coefficients=coefficients,
-        law_state=law.state(),
-        refined=refined,
-    )[0]
+    torques, options = contact_of(rig, interference, stiffness, name, given or {})
+    drive = np.full(round(seconds / step), float(speed))
+    return solve_contact(*torques, drive, step, refined=refined, **options)[0]
 
 
 def expected_torque(name, v, given):

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from models.rig_file import load_material_rig
-from sim.bushing import lumped_bushing
 from sim.contact import (
     N_CONTACT,
     N_CONTEXT,
@@ -17,37 +16,16 @@ from sim.contact import (
     call_hook,
 )
 from sim.effects import EFFECTS
-from sim.friction import friction_law
-from sim.parameters import resolve
-from sim.solvers.contact_solver import Hook, solve_contact
+from tests.helpers.contacts import contact_of, hook, solve_contact
 
 TRUE_STICK = load_material_rig("fluorocarbon-thesis")
 EFFECT = EFFECTS["shaft_compliance"]
 RATE = 90e3
 
 
-def hook(name="shaft_compliance", **given):
-    active = EFFECTS[name].active(given)
-    values = active.packed(np.random.default_rng(0))
-    return Hook(active.effect.contact, values, active.effect.n_states)
-
-
-def solve(*hooks, rig=TRUE_STICK, speed=1.0, stiffness=3745.0, samples=3000, refined=1):
-    law = friction_law(rig.friction.name)
-    fit = rig.fit(0.279e-3)
-    coefficients = law.coefficients(resolve(law.name, law.parameters, rig.friction.parameters))
-    return solve_contact(
-        lumped_bushing(rig, 0.279e-3, stiffness).packed(),
-        fit.critical_torque,
-        fit.kinetic_torque,
-        np.broadcast_to(speed, samples).astype(float),
-        1.0 / RATE,
-        law=law.torque,
-        coefficients=coefficients,
-        law_state=law.state(),
-        hooks=hooks,
-        refined=refined,
-    )
+def solve(*hooks, stiffness=3745.0, samples=3000):
+    torques, options = contact_of(TRUE_STICK, 0.279e-3, stiffness)
+    return solve_contact(*torques, np.ones(samples), 1.0 / RATE, hooks=hooks, **options)
 
 
 def shaft_torque(effect, lag, rate):
@@ -58,14 +36,14 @@ def shaft_torque(effect, lag, rate):
 
 
 def test_the_default_shaft_has_the_mode_of_table_3_1():
-    torque, inertia = shaft_torque(hook(), 1e-3, 0.0)
+    torque, inertia = shaft_torque(hook("shaft_compliance"), 1e-3, 0.0)
     assert math.sqrt(torque / 1e-3 / inertia) / (2.0 * math.pi) == pytest.approx(1568.0, rel=2e-3)
 
 
 def test_spring_and_damper_have_the_forms_they_are_named_for():
     kappa = EFFECT.parameters["compliance"].default
     reference = kappa * EFFECT.parameters["reference_torque"].default
-    linear, stiffening, quadratic = (hook(form=form) for form in EFFECT.forms)
+    linear, stiffening, quadratic = (hook("shaft_compliance", form=form) for form in EFFECT.forms)
     for lag in (0.5 * reference, -reference, 2.0 * reference):
         plain = shaft_torque(linear, lag, 0.0)[0]
         assert plain == pytest.approx(lag / kappa)
@@ -82,7 +60,7 @@ def test_spring_and_damper_have_the_forms_they_are_named_for():
 
 def test_shaft_and_elastomer_are_springs_in_series():
     kappa = 1.0 / 665.0
-    effect = hook(compliance=kappa, damping_ratio=1.0)
+    effect = hook("shaft_compliance", compliance=kappa, damping_ratio=1.0)
     states, direction = solve(effect, stiffness=math.inf, samples=4000)
     end = int(np.flatnonzero(direction)[0])
     time = np.arange(end) / RATE
@@ -92,7 +70,7 @@ def test_shaft_and_elastomer_are_springs_in_series():
 
 def test_what_the_drive_gives_is_stored_or_dissipated():
     kappa = 1e-3
-    effect = hook(compliance=kappa)
+    effect = hook("shaft_compliance", compliance=kappa)
     states, _ = solve(effect, samples=18000)
     friction, end = states[:, 0], states[:, 6]
     lag = np.zeros_like(end)

@@ -16,7 +16,7 @@ from sim.bushing import lumped_bushing
 from sim.motion import simulate_motion
 from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
-from sim.solvers.stick_slip import solve_stick_slip
+from tests.helpers.contacts import solve_stick_slip
 
 RATE = 30e3
 OWN = 1e-3

@@ -9,7 +9,7 @@ from models.rig_file import load_material_rig
 from sim.bushing import LumpedBushing
 from sim.motion import simulate_motion
 from sim.shaft import Oscillation
-from sim.solvers.stick_slip import solve_stick_slip
+from tests.helpers.contacts import solve_stick_slip
 
 THESIS = load_material_rig("fluorocarbon-thesis")
 

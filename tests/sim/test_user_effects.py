@@ -135,6 +135,12 @@ def test_render_simulates_with_the_users_effect_and_refuses_it_for_a_recording(
         (OFFSET.replace('strength="offset"', 'strength="size"'), "'size' is none of its param"),
         (OFFSET.replace('("constant",)', "()"), "forms is empty"),
         (OFFSET.replace(", sensors=sensors", ""), "needs one of drive, contact, force and sens"),
+        (OFFSET.replace("sensors=sensors", "sensors=1"), "sensors = 1 is no function"),
+        (OFFSET.replace("0.5,", "[0.5],"), "offset = [0.5] is no number"),
+        (
+            OFFSET.replace('("constant",), OFFSET', '("constant",), 5'),
+            "not declared as Effect asks",
+        ),
         (ECCENTRIC.replace("@njit(HOOK_SIGNATURE)", ""), "contact is not compiled"),
         (ECCENTRIC.replace("math.cos", "mathematics.cos"), "'mathematics' is not defined"),
         (

@@ -6,26 +6,10 @@ from hypothesis import given, settings, strategies as st
 from scipy.integrate import simpson, solve_ivp
 
 from models.rig_file import load_material_rig
-from sim.bushing import lumped_bushing
 from sim.contact import call_law
-from sim.friction import friction_law
-from sim.parameters import resolve
-from sim.solvers.contact_solver import solve_contact
+from tests.helpers.contacts import contact_of, solve_contact
 
 RIG = load_material_rig("fluorocarbon")
-
-
-def arguments(interference, stiffness, name="contact_with_memory"):
-    law, fit = friction_law(name), RIG.fit(interference)
-    own = RIG.friction.parameters if name == RIG.friction.name else {}
-    system = lumped_bushing(RIG, interference, stiffness).packed()
-    options = {
-        "law": law.torque,
-        "coefficients": law.coefficients(resolve(name, law.parameters, own)),
-        "law_state": law.state(),
-        "tolerance": law.tolerance,
-    }
-    return (system, fit.critical_torque, fit.kinetic_torque), options
 
 
 def general(torques, options, speed, times):
@@ -56,7 +40,7 @@ def general(torques, options, speed, times):
     [(0.381e-3, 2214.0, 5.0, 0.02), (0.279e-3, 3745.0, 10.0, 0.01), (0.279e-3, np.inf, 2.5, 0.02)],
 )
 def test_first_slips_agree_with_a_general_solver(interference, stiffness, speed, seconds):
-    torques, options = arguments(interference, stiffness)
+    torques, options = contact_of(RIG, interference, stiffness)
     step, n = 1.0 / 30e3, round(30e3 * seconds)
     states, _ = solve_contact(*torques, np.full(n, speed), step, **options)
     exact = general(torques, options, speed, step * np.arange(n))
@@ -74,7 +58,7 @@ def test_first_slips_agree_with_a_general_solver(interference, stiffness, speed,
 def test_the_work_of_friction_is_what_is_stored_and_what_is_damped(
     interference, stiffness, speed, name
 ):
-    torques, options = arguments(interference, stiffness, name)
+    torques, options = contact_of(RIG, interference, stiffness, name)
     j_e, j_c, k_e, k_b, c_e, c_b = torques[0]
     step, n = 1e-6, 30_001
     states, _ = solve_contact(*torques, np.full(n, speed), step, **options)
