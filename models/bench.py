@@ -1,4 +1,4 @@
-"""The test bench as plain data: beams, baseplate, microphone and what reflects its sound.
+"""The test bench as plain data: beams, baseplate and microphone.
 
 Quantities are in SI units; the keys of rig files, their units and bounds are declared beside the
 fields (`models.schema`).
@@ -15,8 +15,6 @@ from models.schema import (
     Flag,
     Quantity,
     ReadBy,
-    Table,
-    Text,
     Vector,
     number,
     refuse_impossible,
@@ -210,39 +208,6 @@ def refuse_plate(plate: Plate, where: str) -> None:
         )
 
 
-@dataclass(frozen=True)
-class Floor:
-    """A plane that reflects the plate's sound, parallel to two of the axes.
-
-    Sensible are a plane at right angles to the plate, such as the floor beneath a plate that
-    stands upright in a wall: its one image is exact; and a plane over the plate and the microphone,
-    such as a ceiling: its first reflection is kept, straight and by way of the baffle. A floor
-    under a plate that lies flat is behind the baffle, where its sound does not go.
-
-    Parameters
-    ----------
-    normal : "x", "y" or "z"
-    position : float
-        Where it cuts that axis [m].
-    reflection : float
-        Pressure reflected over pressure arriving, -1 to 1 [-].
-
-    Raises
-    ------
-    ParameterError
-        If normal or reflection are none.
-    """
-
-    normal: Annotated[str, Text("normal")]
-    position: Annotated[float, Quantity("position_m", unit="m", low=-math.inf)]
-    reflection: Annotated[float, Quantity("reflection", low=-1.0, high=1.0)] = 1.0
-
-    def __post_init__(self) -> None:
-        if self.normal not in ("x", "y", "z"):
-            raise ParameterError(f'floor: normal = {self.normal!r} must be "x", "y" or "z"')
-        refuse_impossible(self, "floor")
-
-
 @short_repr
 @dataclass(frozen=True)
 class Microphone:
@@ -252,7 +217,6 @@ class Microphone:
     ----------
     position : tuple of 3 floats
         Relative to the middle of the plate's upper surface [m].
-    floor : Floor, optional
 
     Raises
     ------
@@ -261,7 +225,6 @@ class Microphone:
     """
 
     position: Annotated[tuple[float, float, float], Vector("position_m", 3)]
-    floor: Annotated[Floor | None, Table("floor", Floor)] = None
 
     def __post_init__(self) -> None:
         height = self.position[2]
@@ -270,38 +233,3 @@ class Microphone:
                 f"microphone: position has z = {height:g} m, inside or behind the plate, whose "
                 f"surface is z = 0; it must be at least {LEAST_HEIGHT:g} m above the plate"
             )
-
-    def images(self, plate: Plate) -> tuple[tuple[tuple[float, float, float], float], ...]:
-        """Give the positions at which the plate in its baffle is heard, each with its weight.
-
-        Raises
-        ------
-        ParameterError
-            If the floor cuts the plate, or stands between plate and microphone.
-
-        Examples
-        --------
-        >>> upright = Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
-        >>> Microphone((0.1, 0.2, 1.0), Floor("y", -0.5, 0.9)).images(upright)
-        (((0.1, 0.2, 1.0), 1.0), ((0.1, -1.2, 1.0), 0.9))
-        """
-        heard = ((self.position, 1.0),)
-        if self.floor is None:
-            return heard
-        x, y, z = self.position
-        plane, weight = self.floor.position, self.floor.reflection
-        if self.floor.normal == "z":
-            if plane <= z:
-                raise ParameterError(
-                    f"floor: position = {plane:g} m along z must be above the microphone at "
-                    f"{z:g} m; what is behind the plate's baffle reflects nothing"
-                )
-            return (*heard, ((x, y, 2 * plane - z), weight), ((x, y, 2 * plane + z), weight))
-        half, mine = (plate.length / 2, x) if self.floor.normal == "x" else (plate.width / 2, y)
-        if abs(plane) < half or (plane - mine) * plane <= 0.0:
-            raise ParameterError(
-                f"floor: position = {plane:g} m along {self.floor.normal} must have the plate, to "
-                f"+-{half:g} m, and the microphone, at {mine:g} m, on the same side of it"
-            )
-        mirrored = (2 * plane - x, y, z) if self.floor.normal == "x" else (x, 2 * plane - y, z)
-        return (*heard, (mirrored, weight))

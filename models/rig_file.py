@@ -218,10 +218,6 @@ def _laid(content: Mapping[str, Any], folder: Path, where: str, chain: tuple[Pat
         given["material"] = base.material
     rig = read_table(Rig, given, where, base)
     refuse_plate(rig.plate, f"{where}, plate")
-    try:
-        rig.microphone.images(rig.plate)
-    except ParameterError as error:
-        raise ParameterError(f"{where}, microphone, {error}") from None
     depends = rig.temperature
     if depends is not None and not depends.reference > depends.glass_transition:
         raise ParameterError(

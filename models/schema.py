@@ -358,9 +358,9 @@ def read_table(
 
     Examples
     --------
-    >>> from models.bench import Floor
-    >>> read_table(Floor, {"normal": "y", "position_m": -1}, "rig, floor")
-    Floor(normal='y', position=-1.0, reflection=1.0)
+    >>> from models.bench import Microphone
+    >>> read_table(Microphone, {"position_m": [0.0, 0.1, 1.0]}, "rig, microphone")
+    Microphone(position=(0.0, 0.1, 1.0))
     """
     name = where.rpartition(", ")[2]
     table = as_table(table, name, where.removesuffix(f", {name}"))
@@ -401,9 +401,9 @@ def quantities(shown: Any) -> Iterator[tuple[Quantity, list[float]]]:
 
     Examples
     --------
-    >>> from models.bench import Floor
-    >>> [(one.key, values) for one, values in quantities(Floor("y", -1.0))]
-    [('position_m', [-1.0]), ('reflection', [1.0])]
+    >>> from models.bushing import Sleeve
+    >>> [(one.key, values) for one, values in quantities(Sleeve(0.015, 0.0045, 0.04, 7e6))][:2]
+    [('inner_radius_mm', [15.0]), ('wall_mm', [4.5])]
     """
     found: dict[Quantity, list[float]] = {}
     _collect(shown, found)

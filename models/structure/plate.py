@@ -285,10 +285,9 @@ def pressure_response(
     (False, True)
     """
     response = np.zeros((drives.shape[1], n_samples))
-    for position, weight in microphone.images(modes.plate):
-        taps, delay = _mode_taps(modes, position, rate)
-        if delay < n_samples:
-            add_ringing(response, modes, drives, weight * taps / modes.mass, delay, rate)
+    taps, delay = _mode_taps(modes, microphone.position, rate)
+    if delay < n_samples:
+        add_ringing(response, modes, drives, taps / modes.mass, delay, rate)
     return response
 
 

@@ -27,8 +27,9 @@ def test_a_long_sleeve_obeys_lame_in_plane_strain(nu):
     assert sleeve.pressure(delta) == pytest.approx(-stress)
 
 
-@pytest.mark.parametrize("nu", [0.45, 0.499, 0.4995])
-@pytest.mark.parametrize(("wall", "length"), [(0.0045, 0.0408), (0.006, 0.03), (0.003, 0.02)])
+@pytest.mark.parametrize(
+    ("wall", "length", "nu"), [(0.0045, 0.0408, 0.4995), (0.006, 0.03, 0.45), (0.003, 0.02, 0.499)]
+)
 def test_finite_elements_find_the_pressure_of_a_sleeve_with_ends(wall, length, nu):
     sleeve = Sleeve(0.015, wall, length, 7.05e6, nu)
     assert sleeve.pressure(1e-4) == pytest.approx(by_elements(sleeve, 1e-4), rel=0.1)
@@ -98,15 +99,6 @@ def test_a_longer_bushing_bears_more_torque_than_its_length_says(factor):
 
 GLASS = st.floats(-120.0, 20.0)
 ABOVE = st.floats(0.5, 200.0)
-
-
-@given(GLASS, ABOVE)
-def test_at_the_reference_temperature_nothing_is_shifted(glass, above):
-    rubber = TemperatureDependence(glass + above, glass)
-    here = rubber.reference
-    assert rubber.log_shift(here) == 0.0
-    assert rubber.damping_factor(here) == 1.0
-    assert rubber.stiffness_factor(here) == pytest.approx(1.0, rel=1e-15)
 
 
 @given(GLASS, ABOVE, st.floats(0.0, 200.0), st.floats(0.1, 100.0))

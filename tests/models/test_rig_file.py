@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, strategies as st
 
-from models.bench import Floor
+from models.bench import Microphone
 from models.condition import CONDITION
 from models.errors import ParameterError
 from models.rig import Rig, damping_at, parse_spec
@@ -75,13 +75,13 @@ def test_part_of_a_table_replaces_that_part(tmp_path):
         "[plate]\n"
         'loss_factor = { "1000" = 0.03, "100" = 0.05 }\n'
         "[microphone]\n"
-        'floor = { normal = "y", position_m = -0.8, reflection = 0.9 }\n'
+        "position_m = [0.0, 0.1, 0.9]\n"
         "[beams]\nradiate = false\nanchor_rotation_Nm_rad = 500\n"
         'anchor_translation_N_m = "rigid"\nstrike = 0.01\n',
     )
     assert rig.plate.loss_table == ((100.0, 0.05), (1000.0, 0.03))
     assert rig.plate.length == RIG.plate.length
-    assert rig.microphone == replace(RIG.microphone, floor=Floor("y", -0.8, 0.9))
+    assert rig.microphone == Microphone((0.0, 0.1, 0.9))
     assert rig.beams == replace(
         RIG.beams, radiating=False, anchor_rotation=500.0, anchor_translation=math.inf, strike=0.01
     )
@@ -199,9 +199,6 @@ def fit(old, new):
         ("[plate]\nloss_factor = { 100 = 0.1, 1e2 = 0.2 }", ("rising frequencies",)),
         ("[plate]\nloss_factor = 1.5", ("loss_factor = 1.5",)),
         ("[microphone]\nposition_m = [0, 0, -1]", ("z = -1 m", "at least 0.01 m above the plate")),
-        ("[microphone]\nfloor = { normal = 'up', position_m = 1 }", ("floor: normal = 'up'",)),
-        ("[microphone]\nfloor = { normal = 'x', position_m = 0.2 }", ("position = 0.2 m along x",)),
-        ("[microphone]\nfloor = { normal = 'z', position_m = -1 }", ("above the microphone",)),
         ("[beams]\nradiate = 'yes'", ("beams: radiate = 'yes' must be true or false",)),
         ("[beams]\nanchor_rotation_Nm_rad = 'soft'", ('a number above 0 Nm/rad, or "rigid"',)),
         # bushing
@@ -275,7 +272,6 @@ glass_transition_C = -25.5
 loss_factor = { "1000" = 0.03, "62.5" = 0.05 }
 [microphone]
 position_m = [0.1, 0.2, 0.75]
-floor = { normal = "y", position_m = -0.8 }
 [beams]
 radiate = false
 anchor_rotation_Nm_rad = "rigid"

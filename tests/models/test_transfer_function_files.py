@@ -5,7 +5,7 @@ import pytest
 
 from models.errors import ParameterError
 from models.transfer_functions.files import ENDINGS, read_transfer_function, write_transfer_function
-from models.transfer_functions.transfer_function import TransferFunction, check_band
+from models.transfer_functions.transfer_function import TransferFunction
 from models.transfer_functions.uff import (
     TIME_RESPONSE,
     UffFunction,
@@ -108,23 +108,10 @@ def test_a_damaged_file_is_one_line(tmp_path, ending, content):
     assert "\n" not in str(refused.value)
 
 
-def test_an_unknown_ending_names_the_known_ones(tmp_path):
-    with pytest.raises(ParameterError, match=r"\.npz, \.csv, \.uff or \.unv"):
-        read(tmp_path / "beam.mat")
-
-
 def test_a_missing_library_names_the_command_that_installs_it(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "pyuff", None)
     with pytest.raises(ParameterError, match=r'pip install "bushing-noise\[uff\]"'):
         read(tmp_path / "beam.uff")
-
-
-def test_what_does_not_cohere_does_not_count_towards_the_band():
-    frf = TransferFunction(F, H, np.where(F > 200, 0.1, 0.9), "N m", "Pa", "beam.npz")
-    with pytest.raises(ParameterError, match=r"beam.npz: stops at 20\d.* with a coherence of 0.5"):
-        check_band(frf, 10.0, 300.0)
-    with pytest.raises(ParameterError, match=r"starts at 0.78125 Hz; it must reach from 0.5"):
-        check_band(TransferFunction(F, H, None, "N m", "Pa"), 0.5, 300.0)
 
 
 W = 2j * np.pi * F
