@@ -87,8 +87,10 @@ class SuggestionRequest:
         return cls(ChartRequest.of(setting), setting.interference, max(speed, _LEAST))
 
 
-_SPEEDS, _FITS = 16, 7
-_SIMULATIONS = 60
+_STEP, _FITS = 0.25, 5
+"""Of speeds [rad/s], as fine as a boundary is followed; interferences."""
+
+_SIMULATIONS = 100
 _HEIGHT = 200.0
 """Of its drawing [px]."""
 
@@ -111,7 +113,7 @@ def chart_of(asked: ChartRequest) -> dict[str, object]:
     low, high = rig.interference_range
     fastest = rig.fastest_fitted if math.isfinite(rig.fastest_fitted) else _FASTEST
     use = Use(
-        speed=tuple(np.linspace(fastest / 2.0 / _SPEEDS, fastest, _SPEEDS).tolist()),
+        speed=tuple((_STEP * np.arange(1, round(fastest / _STEP) + 1)).tolist()),
         interference=tuple(np.linspace(low, high, _FITS).tolist()) if high > low else (low,),
         support_stiffness=(asked.support_stiffness,),
         temperature=(asked.temperature,),

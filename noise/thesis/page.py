@@ -5,40 +5,10 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Sequence
+from importlib import resources
 
 from noise.thesis.row import COLUMNS, Row
 from noise.thesis.runs import constant_note
-
-_TEXT = """\
-# The thesis's numbers, checked
-
-Written by `bushing-noise thesis --out tests/thesis.md`; do not edit. Numbers of R. S. De Togni,
-*The Role of System Dynamics on the Behavior of Elastomeric Friction*, beside what the program
-computes:
-
-- **listing**: the program of Appendix F run literally, errors included
-- **exact**: the thesis's equations, solved exactly (material `fluorocarbon-thesis`)
-- **calibrated**: the calibrated material (`fluorocarbon`, or PDMS where it says so)
-
-V_crit1 is the last speed of stick-slip, V_crit2 the last with an oscillation of the torque above
-1 % of its mean, both from rest, over 1 s, at speeds 0.25 rad/s apart up to 13 rad/s; 0 is no speed.
-Stick-slip is told by the torque, of all three alike: more than 6 % of its falls are faster than a
-contact that sticks could load it (`sudden_share`). Such falls are the slips that are counted.
-
-Verdicts follow from the numbers and from each row's tolerance. **holds**: within it. **off by
-N %**: beyond it, up to 25 %. **fails**: further. **misprint**: wrong as printed, right as it must
-have been meant. **refuted**: the thesis's equations contradict its own measurement by more than
-25 %. **not checkable**: nothing to compare with. What was measured is judged on the calibrated
-material too; what follows a semicolon is that, where it does not hold. **(in sample)**: parameters
-of what is judged, of the calibrated material where it has a value, were chosen for this number, so
-that it says nothing of what the model predicts.
-
-What was measured counts once, by the row that judges what the program ships, its calibrated
-column. So rows do not count that judge a formula against a measurement which another row counts
-(modes and stiffness on rigid, turning and yielding anchors or of the lumped model, Lame's pressure
-and stiffness), nor those that read a counted number again (harmonics of one slip frequency, V_crit2
-less V_crit1, the regime of Table 5.1 where its V_crit1 has a row).
-"""
 
 _WHY = """\
 ## What is missed, and why
@@ -110,7 +80,7 @@ def thesis_page(rows: Sequence[Row]) -> str:
     counts = ", ".join(f"{word} {count}" for word, count in verdict_counts(rows).items())
     constant = constant_note()
     lines = [
-        _TEXT,
+        (resources.files("noise.thesis") / "page.md").read_text(encoding="utf-8"),
         f"{constant[0].upper()}{constant[1:]}.",
         "",
         f"{len(rows)} rows: {counts}.",
