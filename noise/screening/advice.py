@@ -106,8 +106,8 @@ def changed(rig: Rig, at: Condition, name: str, percent: float) -> tuple[Rig, Co
     --------
     >>> from models.rig_file import load_material_rig
     >>> rig, at = load_material_rig("fluorocarbon-thesis"), Condition(5.0, 0.279e-3, 2214.0)
-    >>> round(changed(rig, at, "critical_torque", -20)[0].fit(0.279e-3).critical_torque, 2)
-    8.56
+    >>> round(changed(rig, at, "critical_torque", -10)[0].fit(0.279e-3).critical_torque, 2)
+    9.63
     >>> changed(rig, at, "critical_torque", -30)
     Traceback (most recent call last):
     models.errors.ParameterError: ...
