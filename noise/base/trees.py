@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numba import njit
@@ -89,65 +89,53 @@ class Trees:
             Nodes.
         """
         found = np.empty((len(x), len(self.roots)), dtype=np.int32)
-        _lead_to_leaves(*self._nodes(), np.ascontiguousarray(x), found)
+        _lead_to_leaves(self._nodes(), np.ascontiguousarray(x), found)
         return found
 
-    def _nodes(self) -> tuple[NDArray[Any], ...]:
-        return self.roots, self.feature, self.threshold, self.children, self.missing_left
+    def _nodes(self) -> _Nodes:
+        return _Nodes(*(getattr(self, name) for name in _Nodes._fields))
+
+
+class _Nodes(NamedTuple):
+    """The arrays of `Trees`, as compiled functions take them."""
+
+    roots: NDArray[np.int32]
+    feature: NDArray[np.int16]
+    threshold: NDArray[np.floating[Any]]
+    children: NDArray[np.int32]
+    missing_left: NDArray[np.bool_]
 
 
 @njit(cache=True, **PART)
-def _leaf(
-    node: int,
-    feature: NDArray[np.int16],
-    threshold: NDArray[np.floating[Any]],
-    children: NDArray[np.int32],
-    missing_left: NDArray[np.bool_],
-    sample: NDArray[np.floating[Any]],
-) -> int:
+def _leaf(node: int, nodes: _Nodes, sample: NDArray[np.floating[Any]]) -> int:
     """Return the leaf that a sample comes to from a tree's root."""
-    while feature[node] != LEAF:
-        value = sample[feature[node]]
-        right = value > threshold[node] or (value != value and not missing_left[node])
-        node = children[node, int(right)]
+    while nodes.feature[node] != LEAF:
+        value = sample[nodes.feature[node]]
+        right = value > nodes.threshold[node] or (value != value and not nodes.missing_left[node])
+        node = nodes.children[node, int(right)]
     return node
 
 
 @njit(cache=True, **COMPILED)
-def _lead_to_leaves(
-    roots: NDArray[np.int32],
-    feature: NDArray[np.int16],
-    threshold: NDArray[np.floating[Any]],
-    children: NDArray[np.int32],
-    missing_left: NDArray[np.bool_],
-    x: NDArray[np.floating[Any]],
-    found: NDArray[np.int32],
-) -> None:
+def _lead_to_leaves(nodes: _Nodes, x: NDArray[np.floating[Any]], found: NDArray[np.int32]) -> None:
     # Tree by tree, so that a tree stays in the cache.
-    for tree in range(roots.size):
+    for tree in range(nodes.roots.size):
         for row in range(x.shape[0]):
-            found[row, tree] = _leaf(
-                roots[tree], feature, threshold, children, missing_left, x[row]
-            )
+            found[row, tree] = _leaf(nodes.roots[tree], nodes, x[row])
 
 
 @njit(cache=True, **COMPILED)
 def _add_leaves(
-    roots: NDArray[np.int32],
-    feature: NDArray[np.int16],
-    threshold: NDArray[np.floating[Any]],
-    children: NDArray[np.int32],
-    missing_left: NDArray[np.bool_],
+    nodes: _Nodes,
     x: NDArray[np.floating[Any]],
     classes: NDArray[np.int16],
     added: NDArray[np.float64],
     scores: NDArray[np.float64],
 ) -> None:
     # Tree by tree: the sums of a row do not depend on how many rows there are.
-    for tree in range(roots.size):
+    for tree in range(nodes.roots.size):
         for row in range(x.shape[0]):
-            leaf = _leaf(roots[tree], feature, threshold, children, missing_left, x[row])
-            scores[row, classes[tree]] += added[leaf]
+            scores[row, classes[tree]] += added[_leaf(nodes.roots[tree], nodes, x[row])]
 
 
 @short_repr
@@ -202,7 +190,7 @@ class BoostedTrees(Trees):
             [-]
         """
         scores = np.tile(self.base.astype(np.float64), (len(x), 1))
-        _add_leaves(*self._nodes(), np.ascontiguousarray(x), self.classes, self.value, scores)
+        _add_leaves(self._nodes(), np.ascontiguousarray(x), self.classes, self.value, scores)
         return scores
 
     def probabilities(self, x: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
