@@ -10,14 +10,13 @@ import soundfile
 from hypothesis import given, strategies as st
 
 from noise.base.progress import note, readable, say
-from noise.base.tables import read_table, write_table
+from noise.base.tables import write_table
 from noise.cli import main
 from noise.labels.corrections import with_corrections
 from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
 
 NO_UTF8 = os.fsdecode(b"caf\xe9.wav")
-FORMULAS = ("=1+1.wav", "+run.wav", "-run.wav", "@run.wav", "'=run.wav", "''-run.wav", "'run.wav")
 
 
 @given(st.text() | st.binary().map(os.fsdecode))
@@ -34,14 +33,6 @@ def test_messages_bring_no_control_characters_to_the_terminal(capsys):
     told = capsys.readouterr().err
     assert told.replace("\n", "").isprintable()
     assert r"\x1b]0;title\x07\x1b[2Jrun.wav: is empty\x9b31m" in told
-
-
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
-def test_names_that_a_spreadsheet_takes_for_formulas_come_back_as_they_were(tmp_path, ending):
-    names = [*FORMULAS, "run.wav"]
-    path = tmp_path / f"t{ending}"
-    write_table(path, ["file", "level"], [{"file": name, "level": -1.5} for name in names])
-    assert [row["file"] for row in read_table(path)[1]] == names
 
 
 @pytest.fixture

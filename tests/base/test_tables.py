@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import csv
 import json
 import math
 import sys
@@ -17,11 +16,6 @@ ROWS = [
     {"file": "a, b.wav", "level_db": np.float64(81.25), "count": np.int64(3), "calibrated": True},
     {"file": "bad.wav", "error": "is empty", "count": None, "calibrated": np.bool_(False)},
 ]
-
-
-def read_csv(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def read_json_lines(path):
@@ -71,7 +65,7 @@ def test_a_table_that_fails_half_way_leaves_the_old_one(tmp_path):
     assert list(tmp_path.iterdir()) == [target]
 
 
-NAMES = ("=1+1.wav", "+cmd.wav", "-2.wav", "@sum.wav", "ärger; 1,5.wav", "'s.wav", r"a\x07b.wav")
+NAMES = ("=1+1.wav", "+r.wav", "-2.wav", "@r.wav", "'=r.wav", "ä; 1,5.wav", "'s.wav", r"a\x07b.wav")
 LEVELS = [{"file": name, "level_db": 59.9 + n, "count": n} for n, name in enumerate(NAMES)]
 
 

@@ -1,6 +1,5 @@
 """``label``, ``features``, ``train``: many recordings into one table, and what stands beside it."""
 
-import csv
 import os
 import pty
 import re
@@ -23,6 +22,7 @@ from noise.labels.summary import result_lines
 from noise.labels.table import COLUMNS, LabelTable, read_label_table
 from noise.labels.windows import FEATURE_NAMES, window_features
 from noise.recordings import read_recording, write_recording
+from tests.helpers.files import csv_rows, pressure_file
 
 
 @pytest.fixture
@@ -30,16 +30,10 @@ def runs(tmp_path, monkeypatch):
     """A folder of three recordings, of which the second is none."""
     hiss = np.random.default_rng(0).normal(size=(1, 4800))
     for name in ("a", "c"):
-        recording = Recording(hiss, 48e3, (Channel("pressure"),), Condition(speed=5.0))
-        write_recording(tmp_path / "runs" / name, recording)
+        pressure_file(tmp_path / "runs" / name, hiss, 48e3, Condition(speed=5.0))
     (tmp_path / "runs" / "b.wav").write_bytes(b"no sound")
     monkeypatch.chdir(tmp_path)
     return tmp_path / "runs"
-
-
-def read_table(path):
-    with Path(path).open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def test_features_name_the_bad_file_in_the_table_and_go_on(runs, capsys):
@@ -50,7 +44,7 @@ def test_features_name_the_bad_file_in_the_table_and_go_on(runs, capsys):
     assert all(Path(plot).read_bytes().startswith(b"\x89PNG") for plot in plots)
     assert f"refused: {Path('runs/b.wav')}: is damaged or no sound file" in err
     assert "3 recordings, 1 refused" in err
-    rows = read_table("new/f.csv")
+    rows = csv_rows("new/f.csv")
     assert [row["file"] for row in rows] == ["a.wav", "b.wav", "c.wav"]
     assert list(rows[0]) == ["file", *recording_feature_names(), "error"]
     assert [bool(row["error"]) for row in rows] == [False, True, False]
@@ -62,7 +56,7 @@ def test_windows_are_listed_as_the_classifier_is_given_them(runs, capsys):
     soundfile.write("runs/two.wav", two, 48_000, subtype="FLOAT")
     write_recording(Path("runs/turning"), Recording(np.zeros((1, 4800)), 48e3, (Channel("angle"),)))
     assert main(["features", "runs", "--windows", "--out", "windows.csv"]) == 1
-    first, damaged, _, silent, *tracks = read_table("windows.csv")
+    first, damaged, _, silent, *tracks = csv_rows("windows.csv")
     assert list(first) == ["file", "channel", "start_s", "end_s", *FEATURE_NAMES, "error"]
     assert "damaged" in damaged["error"]
     assert "has no channel of pressure, acceleration or torque" in silent["error"]
@@ -85,7 +79,7 @@ def test_labels_are_linked_to_conditions_with_a_map_and_label_tracks(runs, capsy
     paths = [line for line in out.splitlines() if "  " not in line]
     assert paths == ["t.csv", "tracks", "map.svg", "map.csv"]
     assert re.search(r"at a sensitivity of 2 .* \d+ false names an hour", err)
-    rows = read_table("t.csv")
+    rows = csv_rows("t.csv")
     assert list(rows[0]) == list(COLUMNS)
     assert [(row["file"], row["speed_rad_s"]) for row in rows] == [
         ("a.wav", "5.0"), ("b.wav", ""), ("c.wav", "5.0"),
@@ -93,7 +87,7 @@ def test_labels_are_linked_to_conditions_with_a_map_and_label_tracks(runs, capsy
     reason = "is damaged or no sound file (Format not recognised)"
     assert rows[1]["error"] == f"{Path('runs/b.wav')}: {reason}"
     assert Path("tracks/a.txt").read_text() == f"0.000000\t0.100000\t{rows[0]['label']}\n"
-    (place,) = read_table("map.csv")
+    (place,) = csv_rows("map.csv")
     assert (place["speed_rad_s_from"], place["recordings"]) == ("4.9", "2")
 
 
@@ -119,11 +113,11 @@ def test_tracks_of_a_plain_sound_file_stand_for_themselves(runs, capsys):
     soundfile.write("runs/d.wav", noise, 48000)
     given = ["runs/a.wav", "runs/d.wav", "--out", "t.csv"]
     assert main(["label", *given]) == 0
-    assert [row["channel"] for row in read_table("t.csv")] == ["all", "1", "2"]
+    assert [row["channel"] for row in csv_rows("t.csv")] == ["all", "1", "2"]
     assert "1 recording without calibration" in capsys.readouterr().err
     assert main(["label", *given, "--full-scale", "2"]) == 0
     assert "without calibration" not in capsys.readouterr().err
-    assert float(read_table("t.csv")[1]["level_db"]) == pytest.approx(
+    assert float(csv_rows("t.csv")[1]["level_db"]) == pytest.approx(
         20 * np.log10(2 * noise[:, 0].std() / 2e-5), abs=0.01
     )
 
@@ -142,7 +136,7 @@ def test_a_calibrator_makes_levels_in_decibels(tmp_path, monkeypatch, capsys):
         Path("set").mkdir(exist_ok=True)
         assert main([command, *by_tone, out]) == 0
         assert "tone.wav: 94 dB at 1000 Hz make full scale 20" in capsys.readouterr().err
-        (row,) = read_table("set/levels.csv" if command == "render" else out)
+        (row,) = csv_rows("set/levels.csv" if command == "render" else out)
         assert float(row[column]) == pytest.approx(80.0, abs=0.1)
     assert main(["review", *by_tone, "page.html", "--no-labelling"]) == 0
     assert "Calibrated sounds" in Path("page.html").read_text(encoding="utf-8")
@@ -161,7 +155,7 @@ def test_what_was_done_before_an_interrupt_is_in_the_table(runs, monkeypatch, ca
     for place in ("noise.recordings.files", "noise.labels.labelling"):
         monkeypatch.setattr(f"{place}.open_blocks", interrupted)
     assert main([command, "runs", "--out", "t.csv"]) == 130
-    assert [row["file"] for row in read_table("t.csv")] == ["a.wav", "b.wav"]
+    assert [row["file"] for row in csv_rows("t.csv")] == ["a.wav", "b.wav"]
     assert "interrupted: 2 of 3 recordings" in capsys.readouterr().err
 
 
@@ -171,7 +165,7 @@ def test_a_defect_in_one_file_does_not_end_the_batch(runs, monkeypatch, capsys):
 
     monkeypatch.setattr("features.recording_features", recording_features)
     assert main(["features", "runs", "--out", "t.csv"]) == 1
-    errors = [row["error"] for row in read_table("t.csv")]
+    errors = [row["error"] for row in csv_rows("t.csv")]
     assert errors[0] == "unexpected, please report: ZeroDivisionError: division by zero"
     assert errors[2] == ""
 

@@ -15,6 +15,7 @@ from models.transfer_functions.files import read_transfer_function
 from models.transfer_functions.filtering import convolve
 from noise.cli import main
 from noise.recordings import write_recording
+from tests.helpers.files import csv_rows
 
 RATE = 16000
 N = 16000
@@ -55,10 +56,6 @@ def hits(tmp_path, monkeypatch):
     return ["rows.npy", "columns.npy", "hit.csv", "run.wav"]
 
 
-def table(text):
-    return list(csv.DictReader(io.StringIO(text)))
-
-
 @pytest.mark.parametrize("ending", ["uff", "npz", "csv"])
 def test_hits_of_every_kind_give_the_response_to_a_torque(hits, capsys, ending):
     out = Path("new") / f"beam.{ending}"
@@ -75,7 +72,7 @@ def test_hits_of_every_kind_give_the_response_to_a_torque(hits, capsys, ending):
 
 def test_modes_of_the_structure_are_found(hits):
     assert main(["frf", *hits, "--modes", "modes.csv", "--band", "100..3500"]) == 0
-    rows = table(Path("modes.csv").read_text())
+    rows = csv_rows("modes.csv")
     frequency = np.array([float(row["frequency_hz"]) for row in rows])
     damping = np.array([float(row["damping_ratio"]) for row in rows])
     strong = np.array([float(row["peak"]) for row in rows]) > 5
@@ -87,7 +84,7 @@ def test_a_call_says_what_it_averages_and_how_far_that_is_to_be_trusted(hits, ca
     np.save("short.npy", np.load(hits[0])[:, :12000])
     assert main(["frf", *hits, "short.npy", "--estimator", "hv", "--coherence", "1"]) == 0
     out, err = capsys.readouterr()
-    rows = table(out)
+    rows = list(csv.DictReader(io.StringIO(out)))
     assert list(rows[0]) == ["frequency_hz", "real", "imag", "coherence"]
     assert len(rows) == 6001
     assert "cut to the shortest, 12000 samples" in err
@@ -144,7 +141,7 @@ def test_a_response_that_has_not_died_away_is_noted_and_windowed(tmp_path, monke
     assert "has not died away" in capsys.readouterr().err
     assert main(["frf", *files, "--modes", "modes.csv", "--window"]) == 0
     assert "has not died away" not in capsys.readouterr().err
-    (mode,) = table(Path("modes.csv").read_text())
+    (mode,) = csv_rows("modes.csv")
     assert float(mode["frequency_hz"]) == pytest.approx(400.0, rel=1e-4)
     assert float(mode["damping_ratio"]) == pytest.approx(0.0005, rel=0.03)
     assert float(mode["peak"]) == pytest.approx(1 / (2 * 2 * 0.0005), rel=0.03)
@@ -158,7 +155,7 @@ def test_what_noise_makes_at_a_null_of_the_force_is_no_mode(tmp_path, monkeypatc
         np.save(f"hit-{number}.npy", ringing_on(rng, zeta=0.01))
     files = [f"hit-{number}.npy" for number in range(n_hits)]
     assert main(["frf", *files, "--modes", "modes.csv"]) == 0
-    modes = table(Path("modes.csv").read_text())
+    modes = csv_rows("modes.csv")
     null = 1.5 * RATE / 12
     assert not [m for m in modes if abs(float(m["frequency_hz"]) / null - 1) < 0.03]
     assert [m for m in modes if abs(float(m["frequency_hz"]) / 400 - 1) < 0.002]
@@ -182,7 +179,7 @@ def test_real_hits_cohere_and_have_their_modes(tmp_path):
     frf = read_transfer_function(out, input_unit="N", output_unit="m/s^2")
     band = (frf.frequencies >= 100) & (frf.frequencies <= 5000)
     assert np.median(frf.coherence[band]) > 0.998
-    found = np.array([float(row["frequency_hz"]) for row in table(modes.read_text())])
+    found = np.array([float(row["frequency_hz"]) for row in csv_rows(modes)])
     for mode in (810, 900, 2640, 3669, 4128, 4163):
         assert np.abs(found / mode - 1).min() < 0.005
 

@@ -1,6 +1,5 @@
 """A level of one name is the same number wherever the program tells it of the same samples."""
 
-import csv
 import html
 import json
 import re
@@ -9,21 +8,16 @@ import numpy as np
 import pytest
 
 from features.recording import recording_features
-from models.recording import Channel, Recording
 from noise.app.opened import open_paths
 from noise.app.sounds import SoundCache, bands, level_course
 from noise.cli import main
 from noise.diagnosis.fit.fits import labels_and_levels
 from noise.labels.labelling import label
-from noise.recordings import read_recording, write_recording
+from noise.recordings import read_recording
+from tests.helpers.files import csv_rows, pressure_file
 
 LEVELS = ("level_db", "level_dba", "l_afmax_dba")
 MOST_ON_A_PAGE = re.compile(r"</sub> at most ([^<]*) dB\(A\)<")
-
-
-def written(folder, name, pressure, rate=48_000):
-    samples = np.asarray(pressure, dtype=np.float64)[np.newaxis]
-    return write_recording(folder / name, Recording(samples, rate, (Channel("pressure"),)))
 
 
 def hiss(seconds, rms=0.05, rate=48_000):
@@ -52,7 +46,7 @@ def squeal(tmp_path_factory):
 def recorded(request, tmp_path_factory):
     if request.param == "squeal":
         return request.getfixturevalue("squeal")
-    return written(tmp_path_factory.mktemp("levels"), "run.wav", SOUNDS[request.param]())
+    return pressure_file(tmp_path_factory.mktemp("levels") / "run", SOUNDS[request.param]())
 
 
 @pytest.fixture
@@ -67,9 +61,8 @@ def test_render_tells_the_levels_of_the_label_table(recorded, labelled, tmp_path
     (part,) = json.loads((tmp_path / "heard.json").read_text())["parts"]
     assert {name: part[name] for name in LEVELS} == {name: labelled[name] for name in LEVELS}
     assert main(["render", str(recorded), str(recorded), "--out", str(tmp_path / "set")]) == 0
-    with (tmp_path / "set" / "levels.csv").open(newline="") as file:
-        for row in csv.DictReader(file):
-            assert [float(row[name]) for name in LEVELS] == [labelled[name] for name in LEVELS]
+    for row in csv_rows(tmp_path / "set" / "levels.csv"):
+        assert [float(row[name]) for name in LEVELS] == [labelled[name] for name in LEVELS]
 
 
 def test_features_tell_the_levels_of_the_label_table(recorded, labelled):
@@ -105,7 +98,7 @@ def test_a_diagnosis_tells_the_levels_of_the_label_table(recorded, labelled):
 
 def test_segments_have_the_levels_of_what_they_hold(tmp_path):
     loud = 0.3 * np.sin(2.0 * np.pi * 2310.0 * np.arange(2 * 48_000) / 48_000)
-    path = written(tmp_path, "run.wav", np.concatenate([hiss(3.0, 1e-3), loud, hiss(3.0, 1e-3)]))
+    path = pressure_file(tmp_path / "run", np.concatenate([hiss(3.0, 1e-3), loud, hiss(3.0, 1e-3)]))
     rows = label(path)
     assert len(rows) >= 3
     track = SoundCache(open_paths([path])).track(0)

@@ -1,6 +1,5 @@
 """The README, as somebody follows it who pastes one block after the other into an empty folder."""
 
-import csv
 import html
 import re
 
@@ -16,6 +15,7 @@ from noise.commands import COMMANDS
 from noise.demo import ARM, CASES, N_HITS
 from noise.recordings import read_recording
 from noise.recordings.hits import find_hits, read_hit
+from tests.helpers.files import csv_rows
 from tests.helpers.readme_blocks import (
     PAGES,
     README,
@@ -117,11 +117,6 @@ def test_the_readme_is_short():
     assert [one for one in sentences if len(one.split()) > 35] == []
 
 
-def table(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
 def test_the_folder_holds_what_the_readme_says(demo):
     expected = {"report.html", "labels.csv", "features.csv", "recordings", "audio", "hits"}
     assert {path.name for path in demo.iterdir()} == expected
@@ -132,14 +127,14 @@ def test_the_folder_holds_what_the_readme_says(demo):
 
 def test_the_page_tells_the_levels_of_the_label_table(demo):
     text = html.unescape((demo / "report.html").read_text(encoding="utf-8"))
-    rows = table(demo / "labels.csv")
+    rows = csv_rows(demo / "labels.csv")
     most = re.findall(r"</sub> at most ([^<]*) dB\(A\)<", text)
     assert most == [f"{float(row['l_afmax_dba']):.1f}" for row in rows]
     assert all(f"{float(row['level_dba']):.1f} dB(A) re 20 µPa" in text for row in rows)
 
 
 def test_every_recording_carries_its_label_linked_to_its_condition(demo):
-    rows = table(demo / "labels.csv")
+    rows = csv_rows(demo / "labels.csv")
     assert [row["file"] for row in rows] == [f"{name}.wav" for name in NAMES]
     assert [row["label"] for row in rows] == NAMES
     for row, case in zip(rows, CASES, strict=True):
@@ -151,7 +146,7 @@ def test_every_recording_carries_its_label_linked_to_its_condition(demo):
 
 
 def test_features_have_one_row_a_recording(demo):
-    rows = table(demo / "features.csv")
+    rows = csv_rows(demo / "features.csv")
     assert [row["file"] for row in rows] == [f"{name}.wav" for name in NAMES]
     assert all(row["pressure_level"] for row in rows)
 

@@ -1,6 +1,7 @@
 """Calls that cannot be used, by command: one line says why, exit code 2, and nothing is written."""
 
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -10,22 +11,14 @@ import pytest
 import soundfile
 
 from models.condition import Condition
-from models.recording import Channel, Recording
 from noise.cli import main
-from noise.recordings import write_recording
+from tests.helpers.files import pressure_file
+from tests.helpers.small_rigs import RIG_FILE
 
-FIT = """
-[[fit]]
-interference_mm = 0.279
-elastomer_stiffness_Nm_rad = 665.0
-critical_torque_Nm = 13.26
-kinetic_torque_Nm = 8.0
-damping_Nms_rad = 0.09
-"""
 FILES = {
     "file.txt": "notes",
     "misspelt.toml": 'base = "fluorocarbon"\ndesing = 1\n',
-    "lawless.toml": f'material = "fluorocarbon"\n{FIT}',
+    "lawless.toml": re.sub("(?m)^(effects|friction).*", "", RIG_FILE),
     "ours.toml": 'base = "fluorocarbon"\n',
     "letters.csv": "0,1\n1,x\n",
     "hours.csv": "hour,speed\n0,1\n1,2\n",
@@ -41,8 +34,7 @@ def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("refused")
     hiss = np.random.default_rng(0).normal(size=(1, 4800))
     for name in ("a", "b"):
-        recording = Recording(hiss, 48e3, (Channel("pressure"),), Condition(speed=5.0))
-        write_recording(folder / "runs" / name, recording)
+        pressure_file(folder / "runs" / name, hiss, 48e3, Condition(speed=5.0))
     for name, text in FILES.items():
         (folder / name).write_text(text, encoding="utf-8")
     (folder / "damaged.csv").write_bytes(b"\xff\xfe\x00")

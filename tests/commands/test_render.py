@@ -1,6 +1,5 @@
 """``render``: levels there and back, gains of a set, what is refused and what is noted."""
 
-import csv
 import json
 import re
 import sys
@@ -14,12 +13,10 @@ from models.recording import Channel, Recording
 from noise.audio.gain import loudness, true_peak
 from noise.cli import main
 from noise.recordings import read_recording, write_recording
+from tests.helpers.files import csv_rows, pressure_file
+from tests.helpers.small_rigs import RIG_FILE
 
 PASCAL_DB = 93.9794
-
-
-def recorded(path, sound, rate=48e3):
-    return write_recording(path, Recording(sound[np.newaxis], rate, (Channel("pressure"),)))
 
 
 def tone(frequency=1000.0, rms=1.0, rate=48e3, seconds=1.0):
@@ -32,9 +29,9 @@ def runs(tmp_path):
     """Three recordings in a folder: a tone, one 20 dB below it, and clicks."""
     clicks = np.zeros(48000)
     clicks[2000::6000] = 3.0
-    recorded(tmp_path / "runs" / "loud", tone())
-    recorded(tmp_path / "runs" / "quiet", tone(300.0, 0.1, 30e3), 30e3)
-    recorded(tmp_path / "runs" / "day2" / "clicks", clicks)
+    pressure_file(tmp_path / "runs" / "loud", tone())
+    pressure_file(tmp_path / "runs" / "quiet", tone(300.0, 0.1, 30e3), 30e3)
+    pressure_file(tmp_path / "runs" / "day2" / "clicks", clicks)
     return tmp_path / "runs"
 
 
@@ -43,8 +40,7 @@ def render(*arguments, code=0):
 
 
 def table(folder):
-    with (folder / "levels.csv").open(encoding="utf-8", newline="") as file:
-        return {row["file"]: row for row in csv.DictReader(file)}
+    return {row["file"]: row for row in csv_rows(folder / "levels.csv")}
 
 
 def sidecar(path):
@@ -56,7 +52,7 @@ def sidecar(path):
     [("44100", "16", "PCM_16"), ("48000", "24", "PCM_24"), ("48000", "32", "FLOAT")],
 )
 def test_one_pascal_stays_94_decibels_there_and_back(tmp_path, rate, bits, subtype):
-    recorded(tmp_path / "pascal", tone(rate=30e3, seconds=2.0), 30e3)
+    pressure_file(tmp_path / "pascal", tone(rate=30e3, seconds=2.0), 30e3)
     out = tmp_path / "sound.wav"
     given = ["--rate", rate, "--bits", bits, "--pascal-per-full-scale", "4"]
     render(tmp_path / "pascal.wav", "--out", out, *given)
@@ -144,7 +140,7 @@ def test_without_calibration_levels_are_told_re_full_scale(tmp_path, capsys):
 
 def test_sound_quality_is_told_with_the_extra_alone(tmp_path, capsys, monkeypatch):
     pytest.importorskip("mosqito")
-    path, out = recorded(tmp_path / "tone", tone(rms=2e-3, seconds=0.5)), tmp_path / "s.wav"
+    path, out = pressure_file(tmp_path / "tone", tone(rms=2e-3, seconds=0.5)), tmp_path / "s.wav"
     render(path, "--sound-quality", "--out", out)
     (part,) = sidecar(out)["parts"]
     assert part["loudness_sone"] == pytest.approx(1.0, abs=0.05)
@@ -166,8 +162,8 @@ def test_what_would_clip_is_refused_with_the_level_that_would_not(runs, tmp_path
 
 
 def test_a_calibrated_set_says_what_of_it_can_hardly_be_heard(tmp_path, capsys):
-    recorded(tmp_path / "faint" / "squawk", tone(rms=0.03, seconds=2.0))  # near a rig's
-    recorded(tmp_path / "faint" / "loud", tone(rms=3.0, seconds=2.0))
+    pressure_file(tmp_path / "faint" / "squawk", tone(rms=0.03, seconds=2.0))  # near a rig's
+    pressure_file(tmp_path / "faint" / "loud", tone(rms=3.0, seconds=2.0))
     out = tmp_path / "set"
     render(tmp_path / "faint", "--pascal-per-full-scale", "20", "--out", out)
     err = capsys.readouterr().err.splitlines()
@@ -186,24 +182,11 @@ def test_a_calibrated_set_says_what_of_it_can_hardly_be_heard(tmp_path, capsys):
     assert rows["loud.wav"]["note"] == ""
 
 
-RIG = """
-name = "plain"
-material = "our rubber"
-elastomer_inertia_kgm2 = 1.538e-5
-clamp_inertia_kgm2 = 8.333e-4
-[[fit]]
-interference_mm = 0.279
-elastomer_stiffness_Nm_rad = 665.0
-critical_torque_Nm = {torque}
-kinetic_torque_Nm = 8.0
-damping_Nms_rad = 0.09
-"""
-
-
 def test_rig_files_conditions_and_recordings_are_heard_back_to_back_at_one_gain(tmp_path):
     for name, torque in (("old", 10.7), ("new", 8.5)):
-        (tmp_path / f"{name}.toml").write_text(RIG.format(torque=torque))
-    measured = recorded(tmp_path / "measured", 0.1 * tone(seconds=0.5))
+        text = RIG_FILE.replace("10.7", str(torque)).replace("fluorocarbon", "our rubber")
+        (tmp_path / f"{name}.toml").write_text(text)
+    measured = pressure_file(tmp_path / "measured", 0.1 * tone(seconds=0.5))
     out = tmp_path / "ab.wav"
     inputs = [tmp_path / "old.toml", tmp_path / "new.toml", "--interference 0.381 --material PDMS"]
     given = ["--speed", "2", "--seconds", "0.5", "--gap", "0.25"]

@@ -16,27 +16,10 @@ from models.recording import Channel
 from noise.recordings import read_recording
 from noise.recordings.calibrator import read_calibrator
 from noise.recordings.meaning import stated_full_scale
+from tests.helpers.files import HALF, RATE, named, sound
 
-RATE = 48_000
-HALF = np.full(480, 0.5)
 METER = "run_FS94.0dB(PK).wav"
 PASCAL_AT_94 = 20e-6 * 10 ** (94 / 20)
-
-
-def sound(path, samples=HALF, subtype="PCM_16", comment="", **sidecar):
-    samples = np.asarray(samples)
-    tracks = 1 if samples.ndim == 1 else samples.shape[1]
-    with soundfile.SoundFile(path, "w", RATE, tracks, subtype) as file:
-        if comment:
-            file.comment = comment
-        file.write(samples)
-    if sidecar:
-        path.with_suffix(".json").write_text(json.dumps(sidecar))
-    return path
-
-
-def named(*names, **more):
-    return [{"name": name, "unit": Channel(name).unit, **more} for name in names]
 
 
 def test_a_plain_sound_file_is_uncalibrated_pressure_on_every_track(tmp_path):

@@ -22,6 +22,7 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 from models.errors import RecordingError
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.formats.isolated import open_isolated
+from tests.helpers.files import refusal
 from tests.helpers.logger_files import WRITERS, Wave, uff
 
 ENDINGS = (*WRITERS, ".uff", ".wav", ".flac")
@@ -41,15 +42,10 @@ def valid(tmp_path_factory):
     return {ending: (folder / f"valid{ending}").read_bytes() for ending in ENDINGS}
 
 
-def refusal(folder: Path, ending: str, content: bytes) -> str:
+def refusal_of(folder: Path, ending: str, content: bytes) -> str:
     path = folder / f"run{ending}"
     path.write_bytes(content)
-    with pytest.raises(RecordingError) as refused:
-        read_recording(path)
-    message = str(refused.value)
-    assert message.startswith(str(path))
-    assert "\n" not in message
-    return message
+    return refusal(path)
 
 
 @pytest.mark.parametrize("ending", ENDINGS)
@@ -59,7 +55,7 @@ def test_a_file_cut_anywhere_is_refused(valid, tmp_path_factory, ending, share):
     # In text, all samples are there once the mark of the end has begun.
     content = valid[ending]
     whole = content.rindex(b"    -1") if ending == ".uff" else len(content)
-    refusal(tmp_path_factory.mktemp("cut"), ending, content[: int(share * whole)])
+    refusal_of(tmp_path_factory.mktemp("cut"), ending, content[: int(share * whole)])
 
 
 def at(content: bytearray, place: int, width: int, value: int) -> bytes:
@@ -108,7 +104,7 @@ FOUND = {
 def test_what_fuzzing_found_is_refused(valid, tmp_path, monkeypatch, ending, damage, reason):
     if "longer" in reason:
         monkeypatch.setattr("noise.recordings.formats.isolated._PATIENCE", 2.0)
-    assert reason in refusal(tmp_path, ending, damage(bytearray(valid[ending])))
+    assert reason in refusal_of(tmp_path, ending, damage(bytearray(valid[ending])))
 
 
 @pytest.mark.slow

@@ -16,10 +16,10 @@ from asammdf import MDF, Signal
 from nptdms import ChannelObject, TdmsWriter
 
 from models.condition import FIXED
-from models.errors import RecordingError
 from models.transfer_functions.uff import FREQUENCY_RESPONSE, UffFunction, write_uff_functions
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.files import names_channels
+from tests.helpers.files import refusal
 from tests.helpers.logger_files import WRITERS, Wave, hdf5, mdf, tdms, uff
 
 N, RATE = 4800, 48e3
@@ -45,15 +45,6 @@ def mic(x=X, unit="Pa", name="mic", **properties):
 
 def signal(x=X, t=T, unit="Pa", name="mic", **more):
     return Signal(x, t, unit=unit, name=name, **more)
-
-
-def refusal(path):
-    with pytest.raises(RecordingError) as refused:
-        read_recording(path)
-    message = str(refused.value)
-    assert message.startswith(str(path))
-    assert "\n" not in message
-    return message
 
 
 def assert_refused(cases, name, folder):
@@ -483,16 +474,6 @@ def test_no_library_of_a_format_is_loaded_before_its_file_turns_up():
         "assert not {'h5py', 'asammdf', 'nptdms', 'pyuff'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
-
-
-@pytest.mark.parametrize("compression", [0, 1, 2])
-def test_packed_mdf_integers_are_converted(tmp_path, compression):
-    counts = np.arange(70_000, dtype=np.int16)
-    time, conversion = np.arange(counts.size) / 48e3, {"a": 0.5, "b": 1.0}
-    with MDF(version="4.10") as file:
-        file.append([signal(counts, time, conversion=conversion)])
-        path = file.save(tmp_path / "run.mf4", compression=compression)
-    np.testing.assert_allclose(read_recording(path)["pressure"], 1.0 + 0.5 * counts)
 
 
 def test_an_older_mdf_file_is_refused_by_its_version(tmp_path):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from pathlib import Path
@@ -20,29 +19,7 @@ from models.units import CHANNEL_UNITS
 from noise.recordings import read_recording, write_recording
 from noise.recordings.formats import formats
 from noise.recordings.wav import write_blocks
-
-RATE = 48_000
-HALF = np.full(480, 0.5)
-
-
-def sound(path, samples=HALF, subtype="PCM_16", rate=RATE, **sidecar):
-    soundfile.write(path, samples, rate, subtype=subtype)
-    if sidecar:
-        path.with_suffix(".json").write_text(json.dumps(sidecar))
-    return path
-
-
-def named(*names, **more):
-    return [{"name": name, "unit": Channel(name).unit, **more} for name in names]
-
-
-def refusal(path):
-    with pytest.raises(RecordingError) as raised:
-        read_recording(path)
-    message = str(raised.value)
-    assert message.startswith(str(path.with_suffix("")))
-    assert "\n" not in message
-    return message
+from tests.helpers.files import HALF, named, refusal, sound
 
 
 @pytest.mark.parametrize("ending", sorted(formats()))
