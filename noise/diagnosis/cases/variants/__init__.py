@@ -2,64 +2,55 @@
 
 The simulator's own forms are three for each effect; a real rig has none of them. These are others,
 many with random shapes, so that what is learnt is the effect and not a formula. They are private
-to the diagnosis: their parameters are drawn, nobody sets them.
+to the diagnosis: their parameters are drawn, nobody sets them. Each is a row of ``variants.toml``.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import inspect
+import tomllib
+from collections.abc import Callable, Mapping
+from functools import partial
+from importlib import resources
+from typing import Any
 
-from noise.diagnosis.cases.variants.beams import BEAMS
-from noise.diagnosis.cases.variants.delay import DELAY
-from noise.diagnosis.cases.variants.disturbance import NOISE
-from noise.diagnosis.cases.variants.drive import FLUCTUATION, SHAFT
-from noise.diagnosis.cases.variants.elastomer import SOFTENING, VISCOELASTICITY
-from noise.diagnosis.cases.variants.gain import GAIN
-from noise.diagnosis.cases.variants.hum import HUM
-from noise.diagnosis.cases.variants.mount import MOUNT
-from noise.diagnosis.cases.variants.overloads import CLIPPING
-from noise.diagnosis.cases.variants.plate import PLATE
-from noise.diagnosis.cases.variants.pulses import PULSES
-from noise.diagnosis.cases.variants.room import ROOM
-from noise.diagnosis.cases.variants.scatter import SCATTER
-from noise.diagnosis.cases.variants.speed_dependence import STRENGTHENING, WEAKENING
-from noise.diagnosis.cases.variants.stick import AGEING, CREEP
-from noise.diagnosis.cases.variants.surface import FILM, HEAT
+import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+from noise.diagnosis.cases.variants import chain, contact, drive, pulses, sensors
+from noise.diagnosis.cases.variants.draws import draw_numbers
+from sim.effects import EFFECTS
+from sim.effects.effect import Effect
+from sim.parameters import Parameter
 
-    import numpy as np
+__all__ = ["OWN_FORMS", "VARIANTS", "Recipe", "draw_variant"]
 
-    from noise.diagnosis.cases.variants.common import Recipe
-    from sim.effects.effect import Effect
+Recipe = Callable[[float, np.random.Generator], Effect]
+"""Of a strength from 0 to 1, and a generator."""
 
-__all__ = ["VARIANTS", "draw_variant"]
+_TABLE = tomllib.loads((resources.files(__package__) / "variants.toml").read_text("utf-8"))
+_MODULES = (chain, contact, drive, pulses, sensors)
+
+
+def _drawn(name: str, row: Mapping[str, Any], strength: float, rng: np.random.Generator) -> Effect:
+    """Draw the numbers of a row, and make its effect of them."""
+    given = {key: spec for key, spec in row.items() if key not in ("form", "make")}
+    given |= {k: v for k, v in _TABLE["draws"].get(row["make"], {}).items() if k not in row}
+    (make,) = (getattr(m, row["make"]) for m in _MODULES if hasattr(m, row["make"]))
+    form = {"form": row["form"]} if "form" in inspect.signature(make).parameters else {}
+    acting = make(strength, **form, **draw_numbers(given, rng))
+    own = {"strength": Parameter(strength, "", 0.0, 1.0, "nothing at 0")}
+    return Effect(name, EFFECTS[name].stage, (row["form"],), own, "strength", **acting)
+
 
 VARIANTS: Mapping[str, tuple[Recipe, ...]] = {
-    "amplitude_softening": SOFTENING,
-    "background_noise": NOISE,
-    "beam_modes": BEAMS,
-    "channel_delay": DELAY,
-    "clipping": CLIPPING,
-    "critical_torque_scatter": SCATTER,
-    "frictional_heating": HEAT,
-    "gain_error": GAIN,
-    "mains_hum": HUM,
-    "mount_resonance": MOUNT,
-    "partial_slip": CREEP,
-    "plate_modes": PLATE,
-    "room_reflections": ROOM,
-    "shaft_compliance": SHAFT,
-    "slip_pulse": PULSES,
-    "speed_fluctuation": FLUCTUATION,
-    "static_ageing": AGEING,
-    "transfer_film": FILM,
-    "velocity_strengthening": STRENGTHENING,
-    "velocity_weakening": WEAKENING,
-    "viscoelastic_stiffness": VISCOELASTICITY,
+    name: tuple(partial(_drawn, name, row) for row in rows)
+    for name, rows in _TABLE["forms"].items()
 }
 """Recipes by the name of the effect."""
+
+
+OWN_FORMS: Mapping[str, Mapping[str, Any]] = _TABLE["own"]
+"""What the parameters of the simulator's own forms are drawn of, in the order of the draws."""
 
 
 def draw_variant(name: str, strength: float, rng: np.random.Generator) -> Effect:

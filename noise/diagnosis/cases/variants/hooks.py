@@ -1,6 +1,6 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any
-# ruff: noqa: ANN001, ANN202, ARG001
+# ruff: noqa: ANN001, ANN201, ANN202, ARG001
 """Compiled functions of the variants that act on the contact, by `sim.contact.HOOK_SIGNATURE`.
 
 What differs from variant to variant is a table among the values, so that few functions serve many
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
 from sim.contact import (
@@ -265,3 +266,37 @@ def compliance_hook(context, values, state, state_rates, contact) -> None:
     contact[SHAFT_TORQUE] = (
         spring + values[5] * rate + values[6] * bent + values[8] * values[1] * stretch
     )
+
+
+@njit(cache=True)
+def droop(x, limit, deep, rate):
+    """Clip as an overloaded amplifier does: it loses gain that comes back afterwards.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Signal over its peak [-].
+    limit : float
+        At which it is clipped, over the peak [-].
+    deep : float
+        Share of the gain that is lost in a long overload.
+    rate : float
+        At which it comes back, a sample [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        As `x` [-].
+
+    Examples
+    --------
+    >>> droop(np.array([0.5, 2.0, 0.5]), 1.0, 1.0, 0.01).round(2)
+    array([0.5 , 0.9 , 0.45])
+    """
+    y = np.empty_like(x)
+    lost = 0.0
+    for i in range(x.size):
+        over = abs(x[i]) > limit
+        lost += min(10.0 * rate, 1.0) * (deep - lost) if over else -min(rate, 1.0) * lost
+        y[i] = (1.0 - lost) * min(max(x[i], -limit), limit)
+    return y

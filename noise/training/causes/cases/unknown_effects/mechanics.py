@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.cases.variants.common import log_uniform
+from noise.diagnosis.cases.variants.draws import log_uniform
 from noise.diagnosis.cases.variants.hooks import compliance_hook
 from noise.training.causes.cases.unknown_effects.hooks import (
     ABSORBER,

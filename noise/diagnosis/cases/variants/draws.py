@@ -1,0 +1,289 @@
+"""Numbers, curves and random signals that forms are drawn of, as ``variants.toml`` names them.
+
+A monotone curve with random increments stands for the forms that nobody foresees: whoever has
+learnt a hundred such curves has learnt the effect rather than a formula of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.signal import butter, lfilter
+
+Array = NDArray[np.float64]
+Rng = np.random.Generator
+
+SENSED = ("torque", "acceleration", "pressure")
+
+_N_CURVE = 129
+
+
+def log_uniform(rng: Rng, low: float, high: float) -> float:
+    """Draw a number whose logarithm is uniform."""
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def log_uniforms(rng: Rng, low: float, high: float, n: int) -> Array:
+    """Draw numbers whose logarithms are uniform."""
+    return np.exp(rng.uniform(np.log(low), np.log(high), n))
+
+
+def draw_numbers(specs: Mapping[str, Any], rng: Rng, strength: float = 1.0) -> dict[str, Any]:
+    """Draw what a row states, in its order; later ones may refer to earlier ones by name.
+
+    Parameters
+    ----------
+    specs : mapping of str to object
+        As ``variants.toml`` explains them.
+    rng : numpy.random.Generator
+    strength : float
+        Of what is stated by it [-].
+
+    Returns
+    -------
+    dict of str to object
+
+    Examples
+    --------
+    >>> specs = {"n": 3, "sizes": {"even": [0.0, 1.0], "n": "n"}, "fixed": True}
+    >>> drawn = draw_numbers(specs, np.random.default_rng(0))
+    >>> drawn["sizes"].shape, drawn["fixed"]
+    ((3,), True)
+    """
+    drawn: dict[str, Any] = {}
+    for name, spec in specs.items():
+        drawn[name] = _drawn(spec, rng, {"strength": strength, **drawn})
+    return drawn
+
+
+def _drawn(spec: Any, rng: Rng, names: Mapping[str, Any]) -> Any:
+    def value(part: Any) -> Any:
+        return _drawn(part, rng, names)
+
+    if isinstance(spec, str):
+        return names.get(spec, spec)
+    if isinstance(spec, list):
+        return float(rng.uniform(*map(value, spec)))
+    if not isinstance(spec, dict):
+        return spec
+    kind, given = next(iter(spec.items()))
+    if kind == "curve":
+        numbers = {**names}
+        for name, part in list(spec.items())[1:]:
+            numbers[name] = _drawn(part, rng, numbers)
+        return _tabulated(given, {name: numbers[name] for name in spec if name != "curve"}, rng)
+    n = value(spec["n"]) if "n" in spec else None
+    if kind == "log":
+        return log_uniform(rng, *given) if n is None else log_uniforms(rng, *given, n)
+    if kind == "when":
+        return value(spec["yes" if names[given] else "no"])
+    if kind == "shares":
+        mostly = spec.get("mostly")
+        some = SENSED if mostly is None or rng.random() >= 0.7 else (mostly,)
+        return _shares(rng, some, signed=given)
+    if kind == "one":
+        chosen = rng.choice(given, n, p=spec.get("p"))
+        return chosen if n is not None else chosen.item()
+    simple: dict[str, Callable[[], Any]] = {
+        "even": lambda: rng.uniform(*map(value, given), n),
+        "int": lambda: int(rng.integers(*given)),
+        "chance": lambda: bool(rng.random() < given),
+        "normal": lambda: rng.standard_normal(n),
+        "exponential": lambda: rng.exponential(given, n),
+        "dirichlet": lambda: rng.dirichlet(np.full(n, given)),
+        "random": lambda: rng.random((n, given)),
+        "of_strength": lambda: names["strength"] * value(given),
+        "decibels": lambda: 20.0 * math.log10(given * float(rng.uniform(0.2, 1.0)) / 20e-6),
+        "about": lambda: float(rng.choice(given)) * (1.0 + 2e-3 * float(rng.standard_normal())),
+        "times": lambda: math.prod(map(value, given)),
+        "geom": lambda: np.geomspace(*map(value, given)),
+        "list": lambda: np.array(list(map(value, given))),
+        "levels": lambda: _levels(rng, given),
+        "mains": lambda: _mains(rng),
+        "partials": lambda: _partials(rng, given),
+        "doubled": lambda: _doubled(rng, given),
+    }
+    return simple[kind]()
+
+
+def _shares(rng: Rng, names: tuple[str, ...], *, signed: bool) -> dict[str, float]:
+    """Draw shares of a fault: mostly of one channel alone."""
+    chosen = [str(rng.choice(names))]
+    if rng.random() > 0.65:
+        chosen = [name for name in names if rng.random() < 0.7] or chosen
+    sizes = rng.uniform(0.5, 1.0, len(chosen)) if len(chosen) > 1 else np.ones(1)
+    signs = rng.choice([-1.0, 1.0], len(chosen)) if signed else np.ones(len(chosen))
+    return dict(zip(chosen, (sizes * signs).tolist(), strict=True))
+
+
+def _levels(rng: Rng, most: list[float]) -> Array:
+    """Draw levels of all channels [Nm], [m/s2], [Pa], or of one or two of them alone."""
+    sizes = np.array(most) * np.exp(rng.uniform(np.log(0.1), 0.0, 3))
+    if rng.random() < 0.4:
+        sizes[rng.choice(3, int(rng.integers(1, 3)), replace=False)] = 0.0
+    return np.asarray(sizes)
+
+
+def _mains(rng: Rng) -> float:
+    """Draw a frequency of the mains, now and then of railways or aircraft [Hz]."""
+    usual = rng.random() < 0.9
+    nominal = float(rng.choice((50.0, 60.0) if usual else (50.0 / 3.0, 25.0, 400.0)))
+    return nominal * (1.0 + 2e-3 * rng.standard_normal())
+
+
+def _partials(rng: Rng, orders_below: int) -> tuple[Array, Array, Array]:
+    """Draw orders, sizes and phases of a wave of few harmonics."""
+    orders = np.unique(rng.integers(1, orders_below, int(rng.integers(1, 7))))
+    sizes = rng.exponential(1.0, orders.size) / np.sqrt(orders)
+    return orders, sizes, rng.random(orders.size)
+
+
+def _doubled(rng: Rng, orders_below: int) -> tuple[Array, Array, Array]:
+    """Draw the same of even harmonics."""
+    even = 2 * np.arange(1, int(rng.integers(2, orders_below)))
+    return even, even ** -log_uniform(rng, 0.3, 3.0), rng.random(even.size)
+
+
+def curve(shape: Callable[[Array], Array]) -> Array:
+    """Tabulate a shape over 0 to 1 as hooks read it."""
+    return np.concatenate([[_N_CURVE], shape(np.linspace(0.0, 1.0, _N_CURVE))])
+
+
+def far_curve(shape: Callable[[Array], Array]) -> Array:
+    """Tabulate a shape over x from 0 to infinity, in equal steps of x / (1 + x)."""
+    return curve(lambda u: shape(u / np.maximum(1.0 - u, 1e-6)))
+
+
+def drawn_curve(rng: Rng) -> Array:
+    """Draw a monotone shape from 0 to 1, with few steep parts or many even ones."""
+    n, evenness = int(rng.integers(4, 9)), log_uniform(rng, 0.6, 4.0)
+    steps = np.cumsum(rng.dirichlet(np.full(n, evenness)))
+    knots = np.linspace(0.0, 1.0, n + 1)
+    return curve(PchipInterpolator(knots, np.concatenate([[0.0], steps])))
+
+
+def exponential(x: Array) -> Array:
+    """Rise from 0 to 1 within a unit."""
+    return np.asarray(-np.expm1(-np.minimum(x, 99.0)))
+
+
+def _softplus(x: Array, at: float, wide: float) -> Array:
+    risen = wide * np.logaddexp(0.0, (np.minimum(x, 8.0) - at) / wide)
+    return np.asarray(risen - wide * np.log1p(np.exp(-at / wide)))
+
+
+def _flash(x: Array, soft: float) -> Array:
+    over = soft * np.logaddexp(0.0, (np.minimum(x, 99.0) - 1.0) / soft)
+    return np.asarray(over / (1.0 + over))
+
+
+def _cubic(x: Array, left: float) -> Array:
+    y = np.minimum(x, 2.0)
+    falls = 1.5 * y - 0.5 * y**3
+    return np.where(y < 1.0, falls, np.maximum(falls, left))
+
+
+def _patches(u: Array, n: int, edges: Array, soft: float) -> Array:
+    covered = np.zeros_like(u)
+    for start, stop in np.sort(edges, axis=1)[:n]:
+        covered += 0.5 * (np.tanh((u - start) / soft) - np.tanh((u - stop) / soft))
+    ends = np.clip(np.minimum(u, 1.0 - u) / 0.03, 0.0, 1.0)
+    return np.asarray(ends * np.clip(covered, 0.0, 1.0))
+
+
+def _zones(r: Array, n: int, soft: float, at: Array, steps: Array) -> Array:
+    pairs = zip(at[:n], steps, strict=True)
+    return np.asarray(sum(s / (1.0 + np.exp((p - r) / soft)) for p, s in pairs))
+
+
+def _precursors(r: Array, n: int, wide: float, at: Array, size: Array) -> Array:
+    pairs = zip(at[:n], size, strict=True)
+    bumps = sum(s * np.exp(-0.5 * ((r - p) / wide) ** 2) for p, s in pairs)
+    return np.minimum(bumps, 1)
+
+
+def _logarithm(x: Array, k: float, most: float, at: float, height: float = 1.0) -> Array:
+    return np.asarray(np.log1p(k * np.minimum(x, most)) / math.log1p(k * at) * height)
+
+
+_CURVES: dict[str, Callable[..., Any]] = {
+    "ones": np.ones_like,
+    "power": lambda r, n: r**n,
+    "root": lambda r, n: (r + 1e-9) ** n,
+    "threshold": lambda r, at, n: np.maximum((r - at) / (1.0 - at), 0.0) ** n,
+    "late": lambda r, left: np.log1p(-(1.0 - left) * r) / np.log1p(-(1.0 - left)),
+    "bristles": lambda r, k: r / (1.0 + k * (1.0 - r)),
+    "annulus": lambda r, n: 1.0 - (1.0 - 0.999 * r) ** n,
+    "activated": lambda r, wide: np.exp((r - 1.0) / wide) - np.exp(-1.0 / wide),
+    "zones": _zones,
+    "precursors": _precursors,
+    "patches": _patches,
+}
+"""Over 0 to 1."""
+
+_FAR_CURVES: dict[str, Callable[..., Any]] = {
+    "exponential": exponential,
+    "hill": lambda x, power: 1.0 / (1.0 + (1.0 / (x + 1e-9)) ** power),
+    "overshoot": lambda x, left: (
+        (1 - left) * x * np.exp(1 - np.minimum(x, 99)) - left * np.expm1(-x)
+    ),
+    "hyperbola": lambda x, p: 1.0 - (1.0 + x) ** -p,
+    "delayed": lambda x, at, steep: -np.expm1(-steep * np.maximum(x - at, 0.0) ** 1.5),
+    "stretched": lambda x, p, farthest=99.0: -np.expm1(-(np.minimum(x, farthest) ** p)),
+    "logarithm": _logarithm,
+    "far_root": lambda x, p: (np.minimum(x, 100.0) / 100.0) ** p,
+    "far_power": lambda x, p: (np.minimum(x, 50.0) / 10.0) ** p,
+    "raised_power": lambda x, p: (np.minimum(x, 20.0) + 0.01) ** p - 0.01**p,
+    "far_threshold": lambda x, at: np.maximum(x - at, 0) ** 1.5 / (1.0 + x**1.5),
+    "kraus": lambda x, m: x ** (2.0 * m) / (1.0 + x ** (2.0 * m)),
+    "arctangent": lambda x: np.arctan(x) * 2.0 / np.pi,
+    "linear": lambda x, most, over: np.minimum(x, most) / over,
+    "lowest": lambda x, viscous: exponential(x) - viscous * np.minimum(x, 50.0),
+    "softplus": _softplus,
+    "flash": _flash,
+    "cubic": _cubic,
+}
+"""Over 0 to infinity."""
+
+
+def _tabulated(name: str, numbers: dict[str, Any], rng: Rng) -> Array:
+    if name == "drawn":
+        return drawn_curve(rng)
+    if name in _CURVES:
+        return curve(lambda r: _CURVES[name](r, **numbers))
+    return far_curve(lambda x: _FAR_CURVES[name](x, **numbers))
+
+
+def noise(rng: Rng, n: int, rate: float, low: float, high: float) -> Array:
+    """Draw periodic noise of a band, of unit variance."""
+    frequency = np.fft.rfftfreq(n, 1.0 / rate)
+    inside = (frequency >= low) & (frequency <= high)
+    inside[1] |= not inside[1:].any()
+    spectrum = inside * np.exp(2j * np.pi * rng.random(frequency.size))
+    time_series = np.fft.irfft(spectrum, n)
+    return np.asarray(time_series / time_series.std())
+
+
+def wander(rng: Rng, n: int, rate: float, corner: float) -> Array:
+    """Draw a slow random time series of about unit variance."""
+    b, a = butter(2, min(2.0 * corner / rate, 0.9))
+    settling = round(min(2.0 * rate / corner, 4.0 * n))
+    time_series = lfilter(b, a, rng.standard_normal(n + settling))[settling:]
+    return np.asarray(time_series * math.sqrt(0.5 * rate / (1.11 * corner)))
+
+
+def slowly(rng: Rng, n: int, rate: float, corner: float) -> Array:
+    """Draw as `wander` does, at the price of few samples where the corner lies far below `rate`."""
+    coarse = max(1, int(rate / (20.0 * corner)))
+    slow = wander(rng, n // coarse + 2, rate / coarse, corner)
+    return np.interp(np.arange(n), coarse * np.arange(slow.size), slow)
+
+
+def telegraph(rng: Rng, n: int, rate: float, often: float) -> Array:
+    """Draw a time series that switches between -1 and 1, so often a second [Hz]."""
+    return np.where(np.cumsum(rng.random(n) < often / rate) % 2 == int(rng.integers(2)), 1.0, -1.0)
