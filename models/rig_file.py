@@ -274,10 +274,9 @@ def _own_bushing(given: Mapping[str, Any], where: str) -> Rig:
     if "material" in given and shipped is not None and not law_is_named:
         law = _material(shipped)["friction"]["law"]
         raise ParameterError(
-            f"{where}: brings its own [[fit]] under the name of {shipped}, whose friction law is "
-            f'{law}, and does not say which law it means; write base = "{shipped}" in place of '
-            f'material to keep law and effects of {shipped}, or [friction] law = "coulomb" for '
-            "constant torques"
+            f"{where}: has its own [[fit]] under the name of {shipped}, but no friction law (that "
+            f'of {shipped} is {law}). Write base = "{shipped}" in place of material to keep law '
+            f'and effects of {shipped}, or [friction] law = "coulomb" for constant torques'
         )
     del bench["sleeve"]
     return read_table(Rig, bench | _PLAIN_BUSHING | {"fit": given["fit"]}, where)

@@ -222,10 +222,10 @@ _LONGEST = 600.0
 
 
 PLOT = Option("--plot FOLDER|PICTURE", Path).help(
-    "draw each recording: spectrogram, A-weighted level over time (F), speed of the "
-    "shaft and, where that was recorded and changes slowly, order map; .png files in a folder, "
-    "or the one picture (.png, .svg or .pdf) where there is one recording; of the first "
-    f"{_LONGEST / 60.0:g} minutes of each"
+    "draw each recording: spectrogram, A-weighted level over time (F) and speed of the shaft. "
+    "A slow run-up also gets an order map. The folder gets one .png per recording; for a single "
+    "recording name the picture itself (.png, .svg or .pdf). The first "
+    f"{_LONGEST / 60.0:g} minutes are drawn"
 )
 
 

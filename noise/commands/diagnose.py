@@ -22,12 +22,12 @@ _QUICK_STEPS, _STEPS = 5, 12
 
 
 DESCRIPTION = (
-    "Compare recordings of a rig with the simulator: where the simulation goes wrong, which "
-    "effect that it lacks is the cause, how sure that is, how far the gap closes when the "
-    "effect is put in, and what to measure next. Recordings need a sidecar with speed, "
-    "interference and support stiffness; with torque, acceleration, sound and angle the answer "
-    "is surest, with fewer it still comes and says what is missing. Conditions recorded twice "
-    "tell how much repeats differ."
+    "Compare recordings of a rig with the simulator. The answer says where they differ, which "
+    "missing effect is the cause, how sure that is, and how much of the deviation the effect "
+    "explains. It ends with what to measure next. Recordings need a sidecar with speed, "
+    "interference and support stiffness. The answer is surest with torque, acceleration, sound "
+    "and angle; with fewer channels it says what is missing. Conditions recorded twice show how "
+    "much repeat measurements differ."
 )
 
 EPILOG = "example: bushing-noise diagnose recordings --rig rig.toml --out diagnosis"

@@ -27,7 +27,7 @@ _PITCH_COLUMNS = ("pressure_pitch", "pressure_pitch_range", "pressure_voiced_sha
 
 DESCRIPTION = (
     "Compute the features of recordings: one row per recording, in SI units, levels in dB. "
-    "What a recording cannot tell is empty; a file that cannot be read has the reason in the "
+    "Cells without a value are empty; a file that cannot be read has the reason in the "
     "column error. A recording of 2^21 samples or more (44 s at 48 kHz) is described in pieces, "
     "and a note says so."
 )
@@ -40,9 +40,9 @@ OPTIONS = (
             "one, of the first pressure channel (about one second a second of sound)"
         ),
         Option("--windows").help(
-            "one row per window of 0.5 s, every 0.25 s, with start and end in "
-            "seconds and what the classifier of `bushing-noise label` is given of it, in the units "
-            "that features.WINDOW_FEATURES and, for the torque, features.FEATURES state"
+            "one row per window of 0.5 s, every 0.25 s, with start and end in seconds. The "
+            "columns are the input of the classifier of `bushing-noise label`. Their units are in "
+            "features.WINDOW_FEATURES and, for the torque, in features.FEATURES"
         ),
     ),
     PLOT,

@@ -119,9 +119,8 @@ def run(options: Namespace) -> int:
         )
     elif left > _LEFT:
         note(
-            f"a response has not died away at the end of its record, {100 * left:.3g} % is left "
-            "(or is noise): peaks are too low and damping is wrong; record for longer, or use "
-            "--window"
+            f"{100 * left:.3g} % of a response is left at the end of its record (or is noise). "
+            "Peaks are then too low and damping is wrong: record for longer, or use --window"
         )
     transfer = estimate_transfer_function(
         hits,

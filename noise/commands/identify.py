@@ -18,9 +18,10 @@ DESCRIPTION = (
     "Identify a rig from recordings: stiffness and damping of the bushing, critical and "
     "kinetic torque by interference, and the law of friction, each with its 90 % interval. "
     "Recordings need torque and shaft angle, and a sidecar with interference and support "
-    "stiffness; slow rotation with clear stick and slip says most, several speeds tell the "
-    "law, a condition recorded twice tells how much repeats differ. A static test, slow motion "
-    "to and fro below any slip, tells the stiffness best, a shaft held after that the damping."
+    "stiffness. Slow rotation with clear stick and slip is most informative; several speeds "
+    "determine the law. A condition recorded twice shows how much repeat measurements differ. A "
+    "static test, slow motion to and fro without slip, gives the best stiffness. A shaft held "
+    "still after that gives the best damping."
 )
 
 EPILOG = "example: bushing-noise identify recordings --rig known.toml --out mine"

@@ -24,14 +24,15 @@ if TYPE_CHECKING:
 
 
 DESCRIPTION = (
-    "Label recordings: one row per segment with the label creak, squawk, squeal, none or "
-    "unknown, its probability, frequency in Hz and level in dB re 20 uPa (dBFS where not "
-    "calibrated), A-weighted and over the background, and the operating condition it belongs "
-    "to: logged, or inferred from a creak, squawk or squeal with bounds of 90 %, assuming a "
-    "fluorocarbon bushing like the shipped one, or missing. A file that cannot be read has the "
-    "reason in the column error. On a terminal, and beside --out, there is one line a "
-    "recording. Label tables in place of recordings are joined, for --map and "
-    "--audacity."
+    "Label recordings. The table has one row per segment with its label, probability, "
+    "frequency in Hz and level in dB re 20 uPa (dBFS where not calibrated). The label is creak, "
+    "squawk, squeal, none or unknown. none: no creak, squawk or squeal is heard. unknown: a "
+    "noise is heard, and it may be none of the three. Each segment is linked to its operating "
+    "condition, which is logged, inferred or missing. Conditions are inferred from a creak, "
+    "squawk or squeal with 90 % bounds, assuming a fluorocarbon bushing like the shipped one. "
+    "A file that cannot be read has the reason in the column error. On a terminal, and with "
+    "--out, one line per recording is printed. Label tables in place of recordings are joined, "
+    "for --map and --audacity."
 )
 
 OPTIONS = (
@@ -54,8 +55,8 @@ OPTIONS = (
         "there the likeliest label is said"
     ),
     Option("--loudness").help(
-        "tell the loudness N5 of calibrated segments as well (ISO 532-1), in the column "
-        "loudness_n5_sone, of those from half a second to ten minutes; takes a second a second of "
+        "add the loudness N5 (ISO 532-1) of calibrated segments, in the column "
+        "loudness_n5_sone, for segments from 0.5 s to 10 min. It takes one second per second of "
         'sound, and needs pip install "bushing-noise[sound-quality]"'
     ),
     Option("--inference FILE.npz", Path).help(

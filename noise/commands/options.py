@@ -288,10 +288,10 @@ COMMON = (
 """Options of all commands."""
 
 CHANGE = Option("--change NAME=AMOUNT", change, repeated=True).help(
-    "change the rig as [change] in its file does: damping=x2, critical_torque=-20%, "
-    "damping_Nms_rad=0.09, ageing_time=x2 or slip_pulse.amplitude=x0.5; wall_mm, length_mm, "
-    "youngs_modulus_MPa and hardness_shore_A of the rubber take torques and stiffness along, "
-    "wall_mm=6; may be given several times (default: none)"
+    "change the rig as [change] in its file does. Examples: damping=x2, critical_torque=-20%, "
+    "damping_Nms_rad=0.09, ageing_time=x2, slip_pulse.amplitude=x0.5, wall_mm=6. Torques and "
+    "stiffness follow wall_mm, length_mm, youngs_modulus_MPa and hardness_shore_A of the rubber. "
+    "May be given several times (default: none)"
 )
 """``--change``, of every command that takes a rig."""
 

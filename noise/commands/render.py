@@ -62,9 +62,9 @@ EPILOG = (
 
 OPTIONS = (
     Option("inputs INPUT", str, count="*").help(
-        "recording, folder of recordings, rig file (RIG.toml) to simulate, or options of a "
-        'condition to simulate in quotes, such as "--speed 5 --interference 0.381"; what the '
-        "last two leave out is as the other options say"
+        "recording, folder of recordings, or rig file (RIG.toml) to simulate. Options of a "
+        'condition in quotes are simulated as well: "--speed 5 --interference 0.381". What '
+        "a condition leaves out is taken from the other options"
     ),
     Option("--out AUDIO.wav|FOLDER", Path, required=True).help(
         "WAV file to write; for several sounds a folder, which gets a table levels.csv as well"
@@ -92,9 +92,9 @@ OPTIONS = (
         ),
     ),
     Option("--band LOW..HIGH", _band).help(
-        "listen to these frequencies in Hz alone, such as 200..2000; zero-phase, 6 dB down at "
-        "the ends and 48 dB an octave beyond; levels are then those of the band, and how far they "
-        "lie below the whole sound is told (default: all)"
+        "keep only these frequencies in Hz, such as 200..2000. The filter is zero-phase, 6 dB "
+        "down at the ends and 48 dB per octave beyond. Levels are those of the band; the table "
+        "also has how far they are below the whole sound (default: all)"
     ),
     Option("--sound-quality").help(
         "tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "

@@ -40,13 +40,14 @@ def _simulations(text: str) -> float:
 
 
 DESCRIPTION = (
-    "Screen bushing designs before tooling: map which noise occurs where over speed, "
+    "Screen bushing designs before tooling. The maps show which noise occurs over speed, "
     "interference, support and temperature, with its level, and where a vibration persists once "
-    "started; critical speeds with their margins to the use; rank the designs by mean loudness; "
-    "tell which change ends the loudest noise, verified by long runs from rest and from the "
-    "running noise; and how probably a part within its tolerances is noisy. Only boundaries are "
-    "simulated finely; the output says how each point is known. A design is a rig file with the "
-    "tables [design] and [tolerances], or the name of a material. The ranking is printed."
+    "it has started. The tables hold critical speeds with their margins to the use, and the "
+    "change that ends the loudest noise. Each such change is verified by long runs, from rest "
+    "and from the running noise. Tolerances give the probability that a part is noisy. Only "
+    "boundaries are simulated finely; the output says how each point is known. A design is a rig "
+    "file with the tables [design] and [tolerances], or the name of a material. The ranking, by "
+    "mean loudness, is printed."
 )
 
 EPILOG = (
@@ -56,9 +57,9 @@ EPILOG = (
 OPTIONS = (
     Option("designs DESIGN", str, count="+").help("design file, or name of a material"),
     Option("--out FOLDER", Path).help(
-        "folder for report.html, a page to read and to listen to; map.csv, "
-        "critical_speeds.csv, designs.csv, advice.csv where something is noisy, sensitivities.csv "
-        "where tolerances are looked at, a picture of each map, and copies of the design files"
+        "folder for report.html, a page to read and to listen to. It also gets map.csv, "
+        "critical_speeds.csv, designs.csv, a picture of each map, and copies of the design files. "
+        "advice.csv is there if a design is noisy, sensitivities.csv if tolerances are evaluated"
     ),
     Option("--sounds N", whole_number(0), 24).help(
         "simulated for report.html, at the same conditions of each design; 0 for none, which "
@@ -95,11 +96,11 @@ OPTIONS = (
     ),
     OneOf(
         Option("--tolerances").help(
-            "tell of all designs how probably a part is noisy in its use and which tolerance "
-            "matters most, with assumed tolerances where none are stated; takes some ten seconds "
-            "a design and environment (default: of designs that state [tolerances])"
+            "for all designs, estimate the probability that a part is noisy in use, and which "
+            "tolerance matters most. Designs without [tolerances] get assumed ones. It takes about "
+            "10 s per design and environment (default: designs that state [tolerances])"
         ),
-        Option("--no-tolerances").help("tell it of none"),
+        Option("--no-tolerances").help("for no design"),
     ),
     Option("--simulations N", _simulations).help(
         "of each map, more or less, or all for every boundary to the end (default: 500)"

@@ -36,12 +36,12 @@ _LEAST_OF_POWER = 0.25
 
 DESCRIPTION = (
     "Simulate one run of the rig and record torque [N m], acceleration [m/s^2], pressure [Pa] "
-    "and angle [rad], or draw it. The names of the files are printed; without --out, --plot "
-    "and --sound-power a summary as one line of JSON: conditions, mean of the torque and its "
-    "rms about the mean, peak and level (dB re 20 uPa) of the sound pressure. With --rig "
-    "suspension, or a file of your own with a [suspension] table, a car's stabilizer bar in "
-    "two bushings is simulated: --oscillate or --speed then is the wheels' travel as the angle "
-    "that it asks of an arm, and each bushing has its own channels."
+    "and angle [rad], or draw it. The names of the files are printed. Without --out, --plot "
+    "and --sound-power the command prints a summary as one line of JSON. It holds conditions, "
+    "mean and rms of the torque, peak and level (dB re 20 uPa) of the sound pressure. "
+    "--rig suspension simulates a car's stabilizer bar in two bushings, each with its own "
+    "channels; so does a file of your own with a [suspension] table. There --oscillate and "
+    "--speed are the angle of an arm that follows the wheels."
 )
 
 EPILOG = (
@@ -61,11 +61,10 @@ OPTIONS = (
         "over time, phase plane, torque against sliding speed, autospectra; of runs up to 60 s"
     ),
     Option("--sound-power TABLE", Path).help(
-        "write the sound power that the plate's upper side radiates, as "
-        f"{table_endings()}: one-third octaves from 50 Hz to 10 kHz and their sum, in dB and "
-        "dB(A) re 1 pW, of the plate in a rigid baffle, as the sound pressure is; a plate that "
-        "stands free is 2 to 17 dB quieter below its critical frequency (shipped plate: 1.2 kHz); "
-        "of runs from "
+        f"write the sound power of the plate's upper side as {table_endings()}. It is in dB and "
+        "dB(A) re 1 pW: one-third octaves from 50 Hz to 10 kHz and their sum. The plate is in a "
+        "rigid baffle, as for the sound pressure. A free plate is 2 to 17 dB quieter below its "
+        "critical frequency (shipped plate: 1.2 kHz). Runs last from "
         f"{_LEAST_OF_POWER:g} to {_MOST_AT_ONCE:g} s"
     ),
     seed("seed of the sensors' noise"),

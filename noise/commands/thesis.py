@@ -29,9 +29,9 @@ OPTIONS = (
         "on standard output)"
     ),
     Option("--plots FOLDER", Path).help(
-        "folder for the figures that show runs and sweeps, as computed here, figure-5.3.png and "
-        "so on (5.1 to 5.9, 5.13 to 5.26, 6.1 to 6.10, H1), and torque and slip frequency against "
-        "speed for each fit, speeds-0.279mm.png and so on; their names are printed"
+        "folder for the thesis's figures of runs and sweeps, as computed here: figure-5.3.png and "
+        "so on (5.1 to 5.9, 5.13 to 5.26, 6.1 to 6.10, H1). It also gets torque and slip "
+        "frequency against speed for each fit, as speeds-0.279mm.png. The names are printed"
     ),
     seed("accepted as by every command; nothing here is random"),
 )

@@ -29,28 +29,26 @@ _TOLD = ("n", "accuracy", "macro_f1", "expected_calibration_error", "strangers_n
 
 
 DESCRIPTION = (
-    "Build the classifier again from simulated runs, made-up sounds that are none of the "
-    "three noises and the features of some real sounds, and from labelled recordings of your "
-    "own if --add names some; the same call gives the same classifier. It takes some twenty "
-    "minutes, of which --keep saves most the next time. Use it with `bushing-noise label "
+    "Train the classifier again. It learns from simulated runs, synthetic sounds that are none "
+    "of the three noises, features of some real sounds, and your own recordings (--add). The "
+    "same call gives the same classifier. It takes about 20 minutes, of which --keep saves most "
+    "the next time. Use it with `bushing-noise label "
     "--classifier FILE.npz`."
 )
 
 OPTIONS = (
     Option("--out FILE.npz", Path, required=True).help("file for the classifier"),
     Option("--add DIR|TABLE", Path, repeated=True).help(
-        "folder of labelled recordings to learn from as well (may be given several times): "
-        "labelled by the name of the folder they lie in (creak, squawk, squeal, none, unknown), by "
-        "a label table, or by Audacity's label tracks (run07.txt beside run07.wav); or the label "
-        "table itself. Of a table that somebody has corrected (label_source is human) the "
-        "corrections count alone. All are learned from. What is said of them, which probability "
-        "that means, from which on a noise is named (of those in none and unknown), and the score "
-        "that is told, come from trees that were grown without their file"
+        "folder of labelled recordings to learn from, or a label table (may be given several "
+        "times). Recordings are labelled by the folder they are in (creak, squawk, squeal, none, "
+        "unknown), by a label table, or by Audacity's label tracks (run07.txt beside run07.wav). "
+        "If a table has corrections (label_source is human), only these count. Probabilities, "
+        "thresholds and the printed score come from trees that were grown without the file itself"
     ),
     Option("--surroundings any|car|rig", one_of("any", "car", "rig"), "any").help(
-        "where the classifier is to be used: what cannot sound there, such as animals and "
-        "keyboards in a car or at a rig, is not learned, so that less has to be told apart "
-        "(default: any); your own recordings are learned in any case"
+        "where the classifier is to be used. Sounds that cannot occur there, such as animals in "
+        "a car, are left out, so there is less to tell apart. Your own recordings are always "
+        "learned (default: any)"
     ),
     Option("--samples N", whole_number(1)).help(
         "simulated bushings and other bodies to learn from (default: 4300), beside which 0.6 "

@@ -291,19 +291,18 @@ def _notes(choice: Choice) -> tuple[str, ...]:
     chosen = next(s for s in choice.scores if s.law == choice.fit.model.candidate.name)
     if not choice.fit.model.candidate.sticks:
         notes.append(
-            "this law's contact gives way while it sticks, and what it loses then looks like "
-            "damping: on rigs of a second simulator that came out up to a quarter too large, with "
-            "the clamp bolted down up to two fifths"
+            "this law's contact creeps while it sticks, which looks like damping. On rigs of a "
+            "second simulator the damping came out up to a quarter too large, and up to two fifths "
+            "with the clamp bolted down"
         )
     rivals = [s.law for s in choice.scores if s.missed <= _RIVALS * best.missed and s != chosen]
     if rivals:
         notes.append(f"these recordings hardly tell {' and '.join([chosen.law, *rivals])} apart")
     if overall(chosen) > _FAR or chosen.missed > _MISSED:
         notes.append(
-            f"the best law leaves {overall(chosen):.1f} floors and misses "
-            f"{100.0 * chosen.missed:.0f} % of the oscillation within a cycle: none of them "
-            "describes these recordings, and the numbers are not to be trusted; diagnose says "
-            "which effect is missing"
+            f"no law describes these recordings, so do not trust the numbers. The best law leaves "
+            f"{overall(chosen):.1f} floors, and {100.0 * chosen.missed:.0f} % of the oscillation "
+            "within a cycle unexplained. diagnose finds which effect is missing"
         )
     return tuple(notes)
 

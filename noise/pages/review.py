@@ -137,8 +137,7 @@ def _maps(path: Path, rows: Sequence[dict[str, object]]) -> list[ScreenMap]:
             raise RecordingError(f"{where} has no {missing[0]}")
         label = str(row["label"])
         if label not in MAP_LABELS:
-            named = ", ".join(MAP_LABELS)
-            raise RecordingError(f"{where} has label {label!r}, expected {named}")
+            raise RecordingError(f"{where} has label {label!r}, expected {', '.join(MAP_LABELS)}")
         check_name(row["design"], "design", where)
         number = partial(cell_number, row, where=where)
         key = (
