@@ -8,10 +8,10 @@ from hypothesis import given, settings, strategies as st
 
 from models.radiation.impulse_responses import radiate, radiate_pulses
 from models.rig_file import load_material_rig
-from noise.diagnosis.cases.variants import VARIANTS, draw_variant
-from noise.diagnosis.cases.variants.draws import drawn_curve
+from noise.diagnosis.cases.draws import drawn_curve
 from noise.training.causes.cases.draw import draw_case
 from noise.training.causes.cases.structures import draw_structure
+from noise.training.causes.cases.variants import VARIANTS, draw_variant
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
 from sim.effects import EFFECTS

@@ -7,12 +7,16 @@ widest range in which the effect still is what its name says, since the real one
 
 from __future__ import annotations
 
+import tomllib
+from importlib import resources
+
 import numpy as np
 
 from models.rig import LawSpec
-from noise.diagnosis.cases.variants import OWN_FORMS
-from noise.diagnosis.cases.variants.draws import SENSED, draw_numbers
+from noise.diagnosis.cases.draws import SENSED, draw_numbers
 from sim.effects import EFFECTS
+
+_OWN_FORMS = tomllib.loads((resources.files(__package__) / "own_forms.toml").read_text("utf-8"))
 
 _ON_CHANNELS = ("channel_delay", "clipping", "gain_error", "mount_resonance")
 """Effects that have a share of each channel as well."""
@@ -42,7 +46,7 @@ def drawn_effect(name: str, strength: float, rng: np.random.Generator) -> LawSpe
     values: dict[str, float | str] = {"form": str(rng.choice(EFFECTS[name].forms))}
     # A mount is mostly that of the accelerometer; this is drawn before its resonance.
     alone = name == "mount_resonance" and rng.random() < 0.7
-    values |= draw_numbers(OWN_FORMS[name], rng, strength)
+    values |= draw_numbers(_OWN_FORMS[name], rng, strength)
     if name in _ON_CHANNELS:
         names = ("acceleration",) if alone else SENSED
         values |= _shares(rng, names, signed=name == "channel_delay")

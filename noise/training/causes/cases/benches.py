@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 
 from models.rig import LawSpec
 from models.sensors import Sensor, Sensors
+from noise.diagnosis.cases.draws import log_uniform
 from noise.diagnosis.cases.strengths import drawn_effect
-from noise.diagnosis.cases.variants.draws import log_uniform
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects import EFFECTS
 from sim.friction import friction_law

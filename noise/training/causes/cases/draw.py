@@ -22,7 +22,6 @@ from models.recording import Channel, Recording
 from models.rig import Fit, Rig
 from models.sensors import Sensors
 from noise.diagnosis.cases.strengths import drawn_effect
-from noise.diagnosis.cases.variants import draw_variant
 from noise.diagnosis.simulated.model_runs import OFFSETS, with_offsets
 from noise.diagnosis.simulated.repeats import (
     CHANNELS,
@@ -36,6 +35,7 @@ from noise.training.causes.cases.rigs import Setting, draw_setting
 from noise.training.causes.cases.structures import THESIS, draw_structure, draw_trade
 from noise.training.causes.cases.truth import KINDS, Truth, seen_through
 from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
+from noise.training.causes.cases.variants import draw_variant
 from sim.acquisition import Acquisition, decimate, digitise
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain

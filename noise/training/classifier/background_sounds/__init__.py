@@ -78,4 +78,4 @@ def _alone(
         sound = synthesised(BACKGROUND_SOUNDS[drawn], n, rate, rng)
         if sound.std() > 1e-3:
             break
-    return sound / np.abs(sound).max()
+    return np.asarray(sound / np.abs(sound).max())

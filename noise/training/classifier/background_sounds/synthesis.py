@@ -51,11 +51,11 @@ class Draws(dict[str, float]):
         if isinstance(spec, str):
             return self[spec]
         if isinstance(spec, list):
-            return float(self.rng.uniform(*map(self, spec)))
+            return float(self.rng.uniform(self(spec[0]), self(spec[1])))
         if not isinstance(spec, dict):
             return float(spec)
         if "log" in spec:
-            number = log_uniform(*spec["log"], self.rng)
+            number = log_uniform(spec["log"][0], spec["log"][1], self.rng)
         elif "db" in spec:
             number = 10.0 ** (self.rng.uniform(*spec["db"]) / 20.0)
         elif "one" in spec:

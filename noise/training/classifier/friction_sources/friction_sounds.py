@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any
@@ -146,7 +146,7 @@ def contact_load(row: Mapping[str, Any], m: int, rng: np.random.Generator) -> ND
     load = np.zeros(m) if bouts else np.full(m, rng.uniform(0.8, 1.2))
     start = 0 if rng.random() < 0.5 else int(rng.uniform(0.0, 0.6 if alone else 0.15) * m)
     while start < m and bouts:
-        bout = log_uniform(*bouts, rng) if chirping else rng.uniform(*bouts)
+        bout = _log_between(bouts, rng) if chirping else rng.uniform(*bouts)
         end = min(m, start + int(bout * ENVELOPE_RATE) + 1)
         x = np.linspace(0.0, 1.0, end - start)
         steep = rng.uniform(*row.get("arch", (4.0, 40.0)))
@@ -154,7 +154,7 @@ def contact_load(row: Mapping[str, Any], m: int, rng: np.random.Generator) -> ND
         load[start:end] = arch * rng.uniform(0.6, 1.2)
         start = m if alone else end + int(bout * rng.uniform(*gaps) * ENVELOPE_RATE)
     if "modulation" in row:
-        pace = log_uniform(*row["modulation_hz"], rng)
+        pace = _log_between(row["modulation_hz"], rng)
         fast = 1.0 + rng.uniform(*row["modulation"]) * wandering(m, ENVELOPE_RATE, pace, rng)
         load = load * np.maximum(fast, 0.0)
     load = load * (1.0 + 0.3 * wandering(m, ENVELOPE_RATE, 1.0, rng))
@@ -170,7 +170,7 @@ def _slips_under(
 ) -> tuple[Slips, NDArray[np.float64]]:
     """Draw drives until one slips often enough, and loads, for one may be too short for that."""
     while True:
-        fastest = log_uniform(*row["fastest_hz"], rng)
+        fastest = _log_between(row["fastest_hz"], rng)
         slowest = max(4.0, fastest * math.exp(-rng.uniform(*row.get("glide", (0.7, 4.0)))))
         if slowest < 0.95 * fastest:
             drive = random_drive(n, rate, slowest, fastest, rng, steps=row.get("steps", False))
@@ -180,8 +180,8 @@ def _slips_under(
             slips = slide(
                 drive,
                 rate,
-                ageing_time=log_uniform(*row.get("ageing_s", (3e-4, 3e-2)), rng),
-                scatter=log_uniform(*row.get("scatter", (0.02, 0.35)), rng),
+                ageing_time=_log_between(row.get("ageing_s", (3e-4, 3e-2)), rng),
+                scatter=_log_between(row.get("scatter", (0.02, 0.35)), rng),
                 rng=rng,
             )
             per_second = slips.time.size * rate / n
@@ -228,7 +228,7 @@ def _struck(
         struck = fftconvolve(force, body)[:n]
         # The contact itself is heard as well, as a click without a body's voice.
         if "radiates_above_hz" in row:
-            corner = log_uniform(*row["radiates_above_hz"], rng)
+            corner = _log_between(row["radiates_above_hz"], rng)
             for _ in range(2):
                 struck = struck - low_pass(struck, corner, rate)
         click = np.diff(force, prepend=0.0)
@@ -237,10 +237,19 @@ def _struck(
         peak = float(np.abs(struck).max())
         sound += rng.uniform(0.4, 1.0) * struck / peak if peak > 0.0 else 0.0
     level = float(np.abs(sound).max()) * 10.0 ** rng.uniform(-4.0, -1.6)
-    return sound + level * coloured_noise(n, rng.uniform(0.3, 1.5), rng)
+    return np.asarray(sound + level * coloured_noise(n, rng.uniform(0.3, 1.5), rng))
 
 
 _STRUCK = [name for name, row in FRICTION_SOUNDS.items() if row["mechanism"] == "slips"]
+
+
+def _log_between(ends: Sequence[float], rng: np.random.Generator) -> float:
+    return log_uniform(ends[0], ends[1], rng)
+
+
+def _logs_between(ends: Sequence[float], n: int, rng: np.random.Generator) -> NDArray[np.float64]:
+    low, high = np.log(ends)
+    return np.asarray(np.exp(rng.uniform(low, high, n)))
 
 
 def _unit(response: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -253,7 +262,7 @@ def pulses(
     rate: float,
     rng: np.random.Generator,
     *,
-    lasting: tuple[float, float] = (3e-5, 5e-4),
+    lasting: Sequence[float] = (3e-5, 5e-4),
 ) -> NDArray[np.float64]:
     """Force of the slips: pulses of random strength about their size, with a rattle.
 
@@ -289,7 +298,7 @@ def pulses(
     train = np.zeros(n)
     np.add.at(train, first, strength * (1.0 - part))
     np.add.at(train, first + 1, strength * part)
-    m = max(2, int(log_uniform(*lasting, rng) * rate))
+    m = max(2, int(_log_between(lasting, rng) * rate))
     shape = np.sin(np.pi * (np.arange(m) + 0.5) / m)
     rattle = rng.standard_normal(4 * m) * np.exp(-np.arange(4 * m) / m)
     shape = np.concatenate([shape, np.zeros(3 * m)]) + rng.uniform(0.0, 0.8) * rattle
@@ -303,7 +312,7 @@ def _sawtooth(
     rate: float,
     rng: np.random.Generator,
 ) -> NDArray[np.float64]:
-    slips_a_second = log_uniform(*row["rate_hz"], rng)
+    slips_a_second = _log_between(row["rate_hz"], rng)
     wander = rng.uniform(*row["wander"]) * wandering(n, rate, rng.uniform(0.5, 5.0), rng)
     shake = np.sin(2.0 * np.pi * rng.uniform(4.0, 8.0) * np.arange(n) / rate)
     drive = slips_a_second * (1.0 + wander + rng.uniform(*row["vibrato"]) * shake)
@@ -326,7 +335,7 @@ def _sawtooth(
     n_modes = int(rng.integers(3, 9))
     # Broad resonances over the force itself: no blow rings on until the next.
     response = ModalBody(
-        np.exp(rng.uniform(*np.log(row["body_hz"]), n_modes)),
+        _logs_between(row["body_hz"], n_modes, rng),
         np.full(n_modes, rng.uniform(*row["damping"])),
         rng.standard_normal(n_modes),
     ).impulse_response(rate)
@@ -348,9 +357,9 @@ def _modes(
     m = load.size
     chances = np.array(row.get("n_modes", (0.6, 0.3, 0.1)))
     n_modes = int(rng.choice(chances.size, p=chances / chances.sum())) + 1
-    frequency = np.exp(rng.uniform(*np.log(row["frequency_hz"]), n_modes))
+    frequency = _logs_between(row["frequency_hz"], n_modes, rng)
     if "ratio" in row:
-        frequency[1:] = frequency[0] * rng.uniform(*row["ratio"], n_modes - 1)
+        frequency[1:] = frequency[0] * rng.uniform(row["ratio"][0], row["ratio"][1], n_modes - 1)
     competing = "cross" not in row
     size = rng.uniform(*row["growth"])
     drift = rng.uniform(*row["drift"])
@@ -382,4 +391,5 @@ def _modes(
         sound += 10.0 ** (further / 20.0) * part
     contact = np.interp(np.arange(n) * (ENVELOPE_RATE / rate), np.arange(m), load)
     hiss = coloured_noise(n, rng.uniform(-0.5, 1.5), rng) * np.maximum(contact, 0.0)
-    return sound + float(sound.std()) * 10.0 ** (rng.uniform(-62.0, -3.0) / 20.0) * hiss
+    level = float(sound.std()) * 10.0 ** (rng.uniform(-62.0, -3.0) / 20.0)
+    return np.asarray(sound + level * hiss)

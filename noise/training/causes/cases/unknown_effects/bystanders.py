@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.signal import fftconvolve
 
-from noise.diagnosis.cases.variants.draws import log_uniform, log_uniforms
+from noise.diagnosis.cases.draws import log_uniform, log_uniforms
 from noise.training.causes.cases.unknown_effects.parts import Array, Recipe, Rng, added, on_sensors
 from sim.effects.effect import Effect, Signals
 

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.cases.variants.draws import log_uniform
-from noise.diagnosis.cases.variants.hooks import compliance_hook
+from noise.diagnosis.cases.draws import log_uniform
 from noise.training.causes.cases.unknown_effects.hooks import (
     ABSORBER,
     BESIDE,
@@ -29,6 +28,7 @@ from noise.training.causes.cases.unknown_effects.parts import (
     table,
     unknown,
 )
+from noise.training.causes.cases.variants.hooks import compliance_hook
 from sim.effects.effect import Effect, Stage
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from scipy.signal import bilinear, lfilter
 
-from noise.diagnosis.cases.variants.draws import log_uniform, slowly
+from noise.diagnosis.cases.draws import log_uniform, slowly
 from noise.training.causes.cases.unknown_effects.hooks import lagging, slewing
 from noise.training.causes.cases.unknown_effects.parts import (
     Array,

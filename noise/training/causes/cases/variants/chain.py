@@ -11,7 +11,7 @@ from scipy.ndimage import map_coordinates
 from scipy.signal import butter, fftconvolve, lfilter
 
 from models.radiation.impulse_responses import ImpulseResponses
-from noise.diagnosis.cases.variants.draws import Array, Rng
+from noise.diagnosis.cases.draws import Array, Rng
 from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
 
 _LONGEST = 0.25
@@ -140,7 +140,8 @@ def moved(way: str, response: Array, rate: float, amount: float) -> Array:
 def _both(paths: ImpulseResponses, of: str, change: Callable[[Array], Array]) -> ImpulseResponses:
     """Change both ways to the acceleration, what is heard stays; or both to the pressure."""
     ways = (f"torque_to_{of}", f"pulse_to_{of}")
-    return replace(paths, **{way: change(getattr(paths, way)) for way in ways})
+    changed: dict[str, Any] = {way: change(getattr(paths, way)) for way in ways}
+    return replace(paths, **changed)
 
 
 def beams(

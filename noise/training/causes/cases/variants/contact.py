@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from scipy.signal import lfilter
 
-from noise.diagnosis.cases.variants import hooks
-from noise.diagnosis.cases.variants.draws import Array, Rng, curve, exponential, far_curve, noise
+from noise.diagnosis.cases.draws import Array, Rng, curve, exponential, far_curve, noise
+from noise.training.causes.cases.variants import hooks
 from sim.effects import EFFECTS
 
 _STEEPEST = 0.5

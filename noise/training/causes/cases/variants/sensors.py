@@ -10,8 +10,8 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 from scipy.signal import bilinear, butter, lfilter, lfilter_zi
 
-from noise.diagnosis.cases.variants.draws import SENSED, Array, Rng, slowly, telegraph, wander
-from noise.diagnosis.cases.variants.hooks import droop
+from noise.diagnosis.cases.draws import SENSED, Array, Rng, slowly, telegraph, wander
+from noise.training.causes.cases.variants.hooks import droop
 from sim.effects.effect import Signals
 
 Shares = Mapping[str, float]

@@ -16,13 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from noise.diagnosis.cases.variants import chain, contact, drive, pulses, sensors
-from noise.diagnosis.cases.variants.draws import draw_numbers
+from noise.diagnosis.cases.draws import draw_numbers
+from noise.training.causes.cases.variants import chain, contact, drive, pulses, sensors
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect
 from sim.parameters import Parameter
 
-__all__ = ["OWN_FORMS", "VARIANTS", "Recipe", "draw_variant"]
+__all__ = ["VARIANTS", "Recipe", "draw_variant"]
 
 Recipe = Callable[[float, np.random.Generator], Effect]
 """Of a strength from 0 to 1, and a generator."""
@@ -47,10 +47,6 @@ VARIANTS: Mapping[str, tuple[Recipe, ...]] = {
     for name, rows in _TABLE["forms"].items()
 }
 """Recipes by the name of the effect."""
-
-
-OWN_FORMS: Mapping[str, Mapping[str, Any]] = _TABLE["own"]
-"""What the parameters of the simulator's own forms are drawn of, in the order of the draws."""
 
 
 def draw_variant(name: str, strength: float, rng: np.random.Generator) -> Effect:

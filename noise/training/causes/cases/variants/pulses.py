@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
-from noise.diagnosis.cases.variants.draws import Array, Rng
+from noise.diagnosis.cases.draws import Array, Rng
 from sim.effects.effect import Signals
 from sim.effects.slip_pulse import torque_drops
 

@@ -1,4 +1,4 @@
-"""Numbers, curves and random signals that forms are drawn of, as ``variants.toml`` names them.
+"""Numbers, curves and random signals that forms are drawn of, as their tables name them.
 
 A monotone curve with random increments stands for the forms that nobody foresees: whoever has
 learnt a hundred such curves has learnt the effect rather than a formula of it.
@@ -39,7 +39,7 @@ def draw_numbers(specs: Mapping[str, Any], rng: Rng, strength: float = 1.0) -> d
     Parameters
     ----------
     specs : mapping of str to object
-        As ``variants.toml`` explains them.
+        As those tables explain them.
     rng : numpy.random.Generator
     strength : float
         Of what is stated by it [-].
@@ -79,7 +79,8 @@ def _drawn(spec: Any, rng: Rng, names: Mapping[str, Any]) -> Any:
         return _tabulated(given, {name: numbers[name] for name in spec if name != "curve"}, rng)
     n = value(spec["n"]) if "n" in spec else None
     if kind == "log":
-        return log_uniform(rng, *given) if n is None else log_uniforms(rng, *given, n)
+        low, high = given
+        return log_uniform(rng, low, high) if n is None else log_uniforms(rng, low, high, n)
     if kind == "when":
         return value(spec["yes" if names[given] else "no"])
     if kind == "shares":
@@ -87,16 +88,16 @@ def _drawn(spec: Any, rng: Rng, names: Mapping[str, Any]) -> Any:
         some = SENSED if mostly is None or rng.random() >= 0.7 else (mostly,)
         return _shares(rng, some, signed=given)
     if kind == "one":
-        chosen = rng.choice(given, n, p=spec.get("p"))
+        chosen: Any = rng.choice(given, n, p=spec.get("p"))
         return chosen if n is not None else chosen.item()
     simple: dict[str, Callable[[], Any]] = {
-        "even": lambda: rng.uniform(*map(value, given), n),
+        "even": lambda: rng.uniform(value(given[0]), value(given[1]), n),
         "int": lambda: int(rng.integers(*given)),
         "chance": lambda: bool(rng.random() < given),
         "normal": lambda: rng.standard_normal(n),
         "exponential": lambda: rng.exponential(given, n),
         "dirichlet": lambda: rng.dirichlet(np.full(n, given)),
-        "random": lambda: rng.random((n, given)),
+        "random": lambda: rng.random((int(n or 0), given)),
         "of_strength": lambda: names["strength"] * value(given),
         "decibels": lambda: 20.0 * math.log10(given * float(rng.uniform(0.2, 1.0)) / 20e-6),
         "about": lambda: float(rng.choice(given)) * (1.0 + 2e-3 * float(rng.standard_normal())),
@@ -136,14 +137,14 @@ def _mains(rng: Rng) -> float:
     return nominal * (1.0 + 2e-3 * rng.standard_normal())
 
 
-def _partials(rng: Rng, orders_below: int) -> tuple[Array, Array, Array]:
+def _partials(rng: Rng, orders_below: int) -> tuple[Any, Any, Any]:
     """Draw orders, sizes and phases of a wave of few harmonics."""
     orders = np.unique(rng.integers(1, orders_below, int(rng.integers(1, 7))))
     sizes = rng.exponential(1.0, orders.size) / np.sqrt(orders)
     return orders, sizes, rng.random(orders.size)
 
 
-def _doubled(rng: Rng, orders_below: int) -> tuple[Array, Array, Array]:
+def _doubled(rng: Rng, orders_below: int) -> tuple[Any, Any, Any]:
     """Draw the same of even harmonics."""
     even = 2 * np.arange(1, int(rng.integers(2, orders_below)))
     return even, even ** -log_uniform(rng, 0.3, 3.0), rng.random(even.size)
@@ -204,7 +205,7 @@ def _zones(r: Array, n: int, soft: float, at: Array, steps: Array) -> Array:
 def _precursors(r: Array, n: int, wide: float, at: Array, size: Array) -> Array:
     pairs = zip(at[:n], size, strict=True)
     bumps = sum(s * np.exp(-0.5 * ((r - p) / wide) ** 2) for p, s in pairs)
-    return np.minimum(bumps, 1)
+    return np.asarray(np.minimum(bumps, 1))
 
 
 def _logarithm(x: Array, k: float, most: float, at: float, height: float = 1.0) -> Array:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from scipy.signal import lfilter
 
-from noise.diagnosis.cases.variants.draws import Array, Rng, telegraph
+from noise.diagnosis.cases.draws import Array, Rng, telegraph
 
 _LEAST_SPEED = 0.05
 """Of the mean one, so that the shaft does not turn back."""
@@ -87,7 +88,7 @@ def _hunting(
     return np.asarray(np.sin(2 * np.pi * (frequency * time + rng.random()) + wander))
 
 
-_SERIES = {
+_SERIES: dict[str, Callable[..., Array]] = {
     "sawtooth": _sawtooth, "belt_slip": _belt_slip, "beating": _beating, "ripple": _ripple,
     "controller_resonance": _controller, "steps": _steps, "ramp": _ramp, "hunting": _hunting,
 }  # fmt: skip
