@@ -5,25 +5,19 @@ acts on the run in memory and on the one in blocks alike, and such effects can b
 order. They draw their random numbers from a stream of their own, for the same reason.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import fftconvolve, lfilter
 
+from models.radiation.impulse_responses import ImpulseResponses
 from models.recording import REFERENCE_PRESSURE
 from models.structure.modal import DECAY_EXPONENT
+from sim.effects.effect import ActiveEffect, Signals
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from models.radiation.impulse_responses import ImpulseResponses
-    from sim.effects.effect import ActiveEffect, Signals
-
 
 HIGHEST_SHARE = 0.45
 """Modes above this share of the sampling rate are left out."""

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,14 +19,11 @@ from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, activated
 from sim.friction import friction_law
 from sim.parameters import resolve
+from sim.shaft import ShaftMotion
 from sim.solvers.contact_rates import N_MOTION
 from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook
 from sim.solvers.stick_slip import advance_stick_slip, rest_state
 from sim.solvers.stick_slip_kernel import DIRECTION
-
-if TYPE_CHECKING:
-    from sim.shaft import ShaftMotion
-
 
 STICK_SPEED_SHARE = 0.05
 """The contact counts as stuck while it slides slower than this share of the shaft's speed."""

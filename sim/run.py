@@ -9,6 +9,7 @@ calls those. `sim.blocks` sends blocks through the same solver, effects and filt
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 from numbers import Real
 from typing import TYPE_CHECKING
 
@@ -242,6 +243,54 @@ def apply_sensor_effects(
     return signals
 
 
+def record_motions(
+    plan: Plan,
+    motions: Sequence[Motion],
+    rigs: Sequence[Rig],
+    acquisition: Acquisition,
+    noise_rng: np.random.Generator,
+    effect_rng: np.random.Generator,
+) -> tuple[Signals, list[Sound]]:
+    """Record the motions of one or several bushings, which one microphone hears together.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of each.
+    motions : sequence of Motion
+        From rest on.
+    rigs : sequence of Rig
+        What carries and radiates each.
+    acquisition : Acquisition
+    noise_rng, effect_rng : numpy.random.Generator
+        Of the sensors' noise, and of effects that scatter.
+
+    Returns
+    -------
+    samples : dict of str to ndarray, shape (n,)
+        By channel, in its unit; ``torque_2`` and so on are of the second bushing.
+    sounds : list of Sound
+        Of each motion alone, before any noise.
+    """
+    sounds, seen = list[Sound](), list[Signals]()
+    for motion, rig in zip(motions, rigs, strict=True):
+        paths = impulse_responses(rig, plan.interference, plan.support_stiffness, plan.rate)
+        paths = changed_chain(paths, plan.effects, effect_rng.spawn(1)[0])
+        sounds.append(radiate_motion(motion, paths, plan.effects))
+        seen.append(sensor_signals(motion, sounds[-1], plan.n_settling))
+    together = {"pressure": reduce(np.add, [signals["pressure"] for signals in seen])}
+    decimation = SIMULATION.decimation(acquisition.rate)
+    samples: Signals = {}
+    for number, signals in enumerate(seen, start=1):
+        sensed = apply_sensor_effects(signals | together, plan.effects, plan.rate, effect_rng)
+        for kind, values in sample(sensed, decimation, acquisition, noise_rng).items():
+            if number == 1:
+                samples[kind] = values
+            elif kind != "pressure":
+                samples[f"{kind}_{number}"] = values
+    return samples, sounds
+
+
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Run:
@@ -393,15 +442,11 @@ def simulate(
         library=library,
     )
     motion = run_motion(plan, effect_rng)
-    paths = impulse_responses(plan.rig, interference, support_stiffness, plan.rate)
-    paths = changed_chain(paths, plan.effects, effect_rng.spawn(1)[0])
-    sound = radiate_motion(motion, paths, plan.effects)
-    signals = sensor_signals(motion, sound, plan.n_settling)
-    signals = apply_sensor_effects(signals, plan.effects, plan.rate, effect_rng)
-    decimation = SIMULATION.decimation(acquisition.rate)
-    sampled = sample(signals, decimation, acquisition, noise_rng)
+    samples, (sound,) = record_motions(
+        plan, [motion], [plan.rig], acquisition, noise_rng, effect_rng
+    )
     recording = Recording(
-        samples=np.stack(list(sampled.values())),
+        samples=np.stack(list(samples.values())),
         rate=acquisition.rate,
         channels=sensor_channels(rig),
         condition=plan.condition,

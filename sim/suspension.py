@@ -25,34 +25,23 @@ from numba import njit
 from numpy.typing import NDArray
 
 from models.compilation import PART
-from models.condition import Condition
 from models.errors import ParameterError
-from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
 from models.rig import Rig
 from models.suspension import Suspension, TorsionChain, torsion_chain
-from sim.acquisition import Acquisition, sample
+from sim.acquisition import Acquisition
 from sim.analysis.regime import never_slips
 from sim.bushing import lumped_bushing
-from sim.chain import changed_chain
 from sim.contact import CRITICAL, KINETIC
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, Effect, activated
 from sim.friction import friction_law
 from sim.motion import Motion, blaming_the_unusual, contact_hooks, refuse_fast
 from sim.parameters import resolve
-from sim.run import SIMULATION, apply_sensor_effects, plan_run, radiate_motion, sensor_signals
+from sim.run import plan_run, record_motions
 from sim.shaft import ShaftMotion
-from sim.solvers.contact_rates import (
-    N_LAG,
-    N_MOTION,
-    N_STAGES,
-    SHORTEST_STEP,
-    Drive,
-    Limits,
-    contact_rates,
-    empty_rows,
-)
+from sim.solvers import contact_rates as at
+from sim.solvers.contact_rates import contact_rates
 from sim.solvers.contact_solver import LONGEST_STEP, contact_record, hooks_record, n_variables
 from sim.solvers.tsitouras import ERROR, NODES, factor_of_step, fill_between, fill_stage
 
@@ -180,24 +169,8 @@ def run_suspension(
         support_stiffness=support_stiffness, seconds=(plan.n_settling + plan.n_kept) / plan.rate,
         rate=plan.rate, effects=plan.effects, rng=effect_rng,
     )  # fmt: skip
-    signals: dict[str, NDArray[np.float64]] = {}
-    decimation = SIMULATION.decimation(acquisition.rate)
-    pressure = np.zeros(plan.n_kept)
-    seen = []
-    for each, place in zip(motion.bushings, suspension.positions, strict=True):
-        paths = impulse_responses(_placed(rig, place), interference, support_stiffness, plan.rate)
-        paths = changed_chain(paths, plan.effects, effect_rng.spawn(1)[0])
-        sound = radiate_motion(each, paths, plan.effects)
-        seen.append(sensor_signals(each, sound, plan.n_settling))
-        pressure += seen[-1]["pressure"]
-    for number, own in enumerate(seen, start=1):
-        sensed = apply_sensor_effects(
-            own | {"pressure": pressure}, plan.effects, plan.rate, effect_rng
-        )
-        for kind, values in sample(sensed, decimation, acquisition, noise_rng).items():
-            if number > 1 and kind == "pressure":
-                continue  # one microphone
-            signals[kind if number == 1 else f"{kind}_{number}"] = values
+    rigs = [_placed(rig, place) for place in suspension.positions]
+    signals, _ = record_motions(plan, motion.bushings, rigs, acquisition, noise_rng, effect_rng)
     channels = [
         Channel(name, position=rig.microphone.position if name == "pressure" else None)
         for name in signals
@@ -207,10 +180,7 @@ def run_suspension(
             samples=np.stack(list(signals.values())),
             rate=acquisition.rate,
             channels=tuple(channels),
-            condition=Condition(
-                interference=interference, support_stiffness=support_stiffness,
-                material=rig.material, temperature=temperature,
-            ),
+            condition=replace(plan.condition, speed=None),
         ),
         motion,
         _remarks(suspension, motion, interference),
@@ -343,7 +313,7 @@ def solve_chain(
     places = range(chain.bushings.size)
     hooks = [contact_hooks(effects, stream) for stream in rng.spawn(len(places))]
     first, block = 2 * chain.inertia.size, n_variables(rest, hooks[0])
-    rows = tuple(empty_rows(block) for _ in places)
+    rows = tuple(at.empty_rows(block) for _ in places)
     bushings = tuple(
         contact_record(system.packed(), *torque_limits, law.torque, law.coefficients(values))
         for _ in places
@@ -357,11 +327,11 @@ def solve_chain(
     scale[0:first:2], scale[1:first:2] = scales
     for b in places:
         begin = first + block * b
-        start[begin + N_MOTION :][: rest.size] = rest
-        scale[begin : begin + N_MOTION : 2] = scales[0]
-        scale[begin + 1 : begin + N_MOTION : 2] = scales[1]
+        start[begin + at.N_MOTION :][: rest.size] = rest
+        scale[begin : begin + at.N_MOTION : 2] = scales[0]
+        scale[begin + 1 : begin + at.N_MOTION : 2] = scales[1]
         if hooks[b]:
-            scale[begin + block - N_LAG : begin + block] = scales
+            scale[begin + block - at.N_LAG : begin + block] = scales
     states, torques = np.empty((n, start.size)), np.empty((n, len(places), 3))
     slope = np.append(np.diff(speed) * rate, 0.0)
     compiled: Any = _solve
@@ -369,9 +339,9 @@ def solve_chain(
         chain, bushings,
         tuple(hooks_record(own, row, rest.size) for own, row in zip(hooks, rows, strict=True)),
         rows,
-        Drive(1.0 / rate, speed, slope, _integral(speed, rate)),
-        Drive(1.0, np.zeros(1), np.zeros(1), np.zeros(1)),
-        Limits(LONGEST_STEP, tolerance or _TURN_SHARE * law.tolerance), preload, torque_limits,
+        at.Drive(1.0 / rate, speed, slope, _integral(speed, rate)),
+        at.Drive(1.0, np.zeros(1), np.zeros(1), np.zeros(1)),
+        at.Limits(LONGEST_STEP, tolerance or _TURN_SHARE * law.tolerance), preload, torque_limits,
         start, scale, states, torques,
     )  # fmt: skip
     if not np.isfinite(states[-1]).all():
@@ -527,7 +497,7 @@ def _step_error(k, h, start, end, scale) -> float:
     largest = 0.0
     for j in range(end.size):
         error = 0.0
-        for b in range(N_STAGES):
+        for b in range(at.N_STAGES):
             error += ERROR[b] * k[j, b]
         if not math.isfinite(error):
             return math.inf
@@ -543,7 +513,7 @@ def _solve(
 ) -> None:  # fmt: skip
     """Write states and torques at the samples of the drive; not a number where it is given up."""
     d, n, step = start.size, states.shape[0], drive.step
-    k, u, following = np.zeros((d, N_STAGES + 1)), np.empty(d), np.empty(d)
+    k, u, following = np.zeros((d, at.N_STAGES + 1)), np.empty(d), np.empty(d)
     torques_now = np.empty((len(bushings), 3))
     last = n - 2
     t, h, sample, n_done, error_before = 0.0, _FIRST_STEP, 0, 0.0, 0.0
@@ -553,10 +523,10 @@ def _solve(
     )  # fmt: skip
     while sample < n:
         n_done += 1.0
-        if n_done * SHORTEST_STEP > _GRACE + t:
+        if n_done * at.SHORTEST_STEP > _GRACE + t:
             states[sample:] = math.nan
             return
-        for stage in range(1, N_STAGES):
+        for stage in range(1, at.N_STAGES):
             fill_stage(u, start, k, stage, h)
             time = t + NODES[stage] * h
             i = min(int(time / step), last)
@@ -581,12 +551,12 @@ def _solve(
                 states[sample, j] = u[j]
             i = min(sample, last)
             _fill_rates(
-                N_STAGES, (sample - i) * step, i, sample * step, u, k, chain, bushings, hooks,
+                at.N_STAGES, (sample - i) * step, i, sample * step, u, k, chain, bushings, hooks,
                 rows, drive, place, preload, limits, torques[sample],
             )  # fmt: skip
             sample += 1
         for j in range(d):
             start[j] = following[j]
-            k[j, 0] = k[j, N_STAGES - 1]
+            k[j, 0] = k[j, at.N_STAGES - 1]
         t, error_before = end, error
         h = min(h * factor, steps.longest)

@@ -16,11 +16,10 @@ from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 from noise.base.files import atomic
 from noise.base.progress import readable
+from noise.labels.conditions import Range
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from noise.labels.conditions import Range
 
 PICTURE_ENDINGS = (".png", ".svg", ".pdf")
 """What a picture's file may end in, in either case."""

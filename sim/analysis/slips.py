@@ -27,17 +27,13 @@ calls stick, `Motion.stuck`, which no sensor sees: a surface that grazes the sha
 swing is in stick for a few percent of the time, and neither sticks nor slips.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-if TYPE_CHECKING:
-    from sim.motion import Motion
+from sim.motion import Motion
 
 LEAST_SUDDEN = 0.06
 """Stick-slip: the torque falls suddenly by more than this share of all its falls. Over the cells of

@@ -29,20 +29,15 @@ and m are assumed: a third of the first torsional mode's constant, half of a bea
 100.0
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.signal import fftconvolve
 
+from models.radiation.impulse_responses import ImpulseResponses
 from sim.chain import HIGHEST_SHARE, padded_sum, resonance
 from sim.effects.effect import Effect, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from models.radiation.impulse_responses import ImpulseResponses
 
 _SECOND = 4.0 / 3.0
 """Frequency of the second mode of a pair over the first: 6000 over 4500 Hz."""

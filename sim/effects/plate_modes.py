@@ -25,19 +25,13 @@ At amount zero there is none of them.
 2.0
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from models.radiation.impulse_responses import ImpulseResponses
 from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
 from sim.effects.effect import Effect, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from models.radiation.impulse_responses import ImpulseResponses
 
 _HIGHEST = 16e3
 """[Hz], as for the plate's own modes."""

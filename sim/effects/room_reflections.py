@@ -24,21 +24,16 @@ the rig changes: `distance` is the room's own. At amount zero there is no room.
 (1.0, 503)
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rayleigh import SOUND_SPEED
 from sim.chain import filter_pressure
 from sim.effects.effect import Effect, Stage, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from models.radiation.impulse_responses import ImpulseResponses
 
 _SOURCE_HEIGHT = 0.9
 """Of the rig on its bench over the floor [m]; assumed."""

@@ -10,21 +10,16 @@ part that has come loose does with its energy, through `amplitude` at the drop o
 makes none.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.effects.effect import Effect, Stage
+from sim.motion import Motion
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from sim.motion import Motion
 
 _REFERENCE_DROP = 6.94
 """T_crit - T_kin at 0.381 mm, from the peak sliding speed of Figure 6.7 [Nm]."""

@@ -1,14 +1,8 @@
 """Friction laws, one a file: a new law is a file with a ``LAW`` that is named as the file is."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from models.errors import ParameterError
+from sim.friction.law import FrictionLaw
 from sim.parameters import Library
-
-if TYPE_CHECKING:
-    from sim.friction.law import FrictionLaw
 
 __all__ = ["LAWS", "friction_law"]
 
