@@ -6,9 +6,11 @@ they are. With one fit, or few, a row is a fit, and a star marks one whose data 
 own. A panel in which nothing is heard says so.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,8 +24,10 @@ from numpy.typing import NDArray
 from models.drawing import axes_or_new, styled
 from noise.base.labels import LABEL_LOOKS
 from noise.pictures.figure import new_figure, support_words
-from noise.screening.mapping import DesignMap
 from sim.analysis.regime import Regime
+
+if TYPE_CHECKING:
+    from noise.screening.mapping import DesignMap
 
 _SIMULATED = ("none", "persists", "squeal", "squawk", "creak")
 _FEW_ROWS = 8
