@@ -84,8 +84,6 @@ class Entry:
         faded and resampled, as by `noise.pictures.recording.recorded_levels`.
     note : str
         Where the labels come from, or why there is no sound.
-    data : mapping of str to str
-        Names under which a program finds the sound on the page again.
     """
 
     title: str
@@ -98,7 +96,6 @@ class Entry:
     note: str = ""
     orders: OrderMap | None = None
     fast_levels: FastLevels | None = None
-    data: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def parts(self) -> tuple[Part, ...]:

@@ -9,26 +9,19 @@ matched, and the one full scale is what the loudest of all sounds needs.
 
 from __future__ import annotations
 
-import base64
-import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from html.parser import HTMLParser
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import soundfile
 from numpy.typing import NDArray
 
 from features.kernels.levels import band_levels, band_power
 from features.kernels.slips import torque_slips
 from features.kernels.spectra import autospectrum
 from models.drawing import BLUE, VERMILION, padded, styled, thinned
-from models.errors import ParameterError, RecordingError
-from models.foreign_file import LARGEST_JSON, reading, refusing
-from models.recording import Channel, Recording
+from models.recording import Recording
 from noise.audio.sound import audible
 from noise.diagnosis.findings import ROLES, Illustration, LabelsAndLevels
 from noise.diagnosis.text.words import number
@@ -38,7 +31,6 @@ from noise.pages.clips import RATE, Clip, Entry, common_gain, make_clips
 from noise.pages.figures import COLUMNS, Line, Panel, lines_panel
 from noise.pictures.figure import KINDS
 from noise.pictures.recording import recorded_levels, recorded_orders
-from noise.recordings.meaning import check_finite
 
 if TYPE_CHECKING:
     from noise.diagnosis.evidence.friction_curves import FrictionCurves
@@ -302,8 +294,6 @@ def _panel(over: str, contacts: Mapping[str, FrictionCurves]) -> Panel:
 LONGEST = 4.0
 """Of a sound on the page [s]; what is longer is played from its beginning."""
 
-_NEEDED = {"data-recording", "data-role", "data-full-scale"}
-
 
 def illustration_entries(
     illustration: Illustration, heard: Sequence[LabelsAndLevels] = ()
@@ -344,82 +334,23 @@ def illustration_entries(
     return entries
 
 
-def reported_entries(report: Path, diagnosis: Diagnosis) -> list[Entry]:
-    """Take the sounds out of the report of a diagnosis, so that a review plays the very sounds.
-
-    Parameters
-    ----------
-    report : Path
-        None are found where it is not there, or holds none.
-    diagnosis : Diagnosis
-        Has the labels and the levels.
-
-    Raises
-    ------
-    RecordingError
-        A sound is damaged.
-    """
-    try:
-        with reading(report, "report", largest=LARGEST_JSON):
-            found = _Sounds()
-            found.feed(report.read_text(encoding="utf-8"))
-    except ParameterError:
-        return []
-    entries = []
-    for values, content in found.found:
-        name, role = values["data-recording"], values["data-role"]
-        with refusing(f"{report}: {name}", "sound", RecordingError):
-            flac = io.BytesIO(base64.b64decode(content))
-            fractions, _ = soundfile.read(flac, dtype="float32")
-            with np.errstate(over="ignore", invalid="ignore"):  # refused in the next line
-                sound = np.float32(values["data-full-scale"]) * fractions
-            check_finite(report, sound[np.newaxis], RATE, (Channel("pressure"),))
-        note = "from the report of the diagnosis"
-        entries.append(_entry(name, role, sound, diagnosis.labels_and_levels, note))
-    return entries
-
-
-class _Sounds(HTMLParser):
-    """Collects the sounds of a report, each with its attributes."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.found: list[tuple[dict[str, str], str]] = []
-        self._open: dict[str, str] | None = None
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Keep the attributes of a sound that says what it is."""
-        values = {name: value or "" for name, value in attrs}
-        self._open = values if tag == "script" and set(values) >= _NEEDED else None
-
-    def handle_data(self, data: str) -> None:
-        """Keep the sound."""
-        if self._open is not None:
-            self.found.append((self._open, data))
-            self._open = None
-
-
 def _entry(
     name: str,
     role: str,
     sound: NDArray[np.float32],
     heard: Sequence[LabelsAndLevels],
-    note: str = "",
 ) -> Entry:
     known = next((one for one in heard if one.recording == name), None)
     label, level = (None, None) if known is None else known.of(role)
-    notes = [note] if note else []
+    note = "" if known is None else "level not determined"
     if level is not None and math.isfinite(level):
-        notes.append(f"{number(level, '.1f')} dB(A)")
-    elif known is not None:
-        notes.append("level not determined")
+        note = f"{number(level, '.1f')} dB(A)"
     return Entry(
         f"{name}, {CURVES[role].label if role in CURVES else role}",
         () if label is None else ({"label": label},),
         duration=sound.size / RATE,
         sound=sound,
-        note="; ".join(notes),
-        data={"recording": name, "role": role},
+        note=note,
     )
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import Condition
-from models.drawing import BLUE, GREY, ORANGE, VERMILION, styled
+from models.drawing import BLUE, GREY, VERMILION, styled
 from noise.base.files import atomic
 from noise.identification.law_candidates import CANDIDATES
 from noise.identification.outcome import Forecast, Identification, Number, Seen, as_json
@@ -29,12 +29,9 @@ if TYPE_CHECKING:
 _SHOWN = 0.03
 """Of a recording around a slip [s]."""
 
-_AROUND_SLIP = 6e-3
-_MARKERS = "osD^v"
-
 
 def recording_panels(one: Seen) -> tuple[Panel, ...]:
-    """Draw what one recording said: the rise in stick, a slip, and what the law predicts.
+    """Draw what one recording said: the rise in stick, and what the law predicts.
 
     Parameters
     ----------
@@ -45,7 +42,7 @@ def recording_panels(one: Seen) -> tuple[Panel, ...]:
     tuple of Panel
     """
     with styled():
-        panels = (_rise(one), _ringing(one))
+        panels = (_rise(one),)
         return panels if one.forecast is None else (*panels, _prediction(one.forecast))
 
 
@@ -71,26 +68,6 @@ def _rise(one: Seen) -> Panel:
         ],
         f"Torque over angle: rises by {stiffness:.4g} Nm/rad while the contact sticks.",
         legend="upper left", room=(0.0, 0.55),
-    )  # fmt: skip
-
-
-def _ringing(one: Seen) -> Panel:
-    """Torque in the contact and in the cell around a slip."""
-    spectrum, contact = one.fit.spectrum, one.fit.contact
-    begin, end = _window(one, _AROUND_SLIP)
-    time = 1e3 * np.arange(end - begin) / spectrum.rate
-    levels = [one.values["critical_torque"], one.values["kinetic_torque"]]
-    modes = ", ".join(f"{f:.0f} Hz" for f in one.fit.bushing.natural_frequencies())
-    return lines_panel(
-        "Around a slip: what rings, and how it decays", "Time [ms]", "Nm",
-        [
-            Line(time, spectrum.torque[begin:end], BLUE, "torque cell"),
-            Line(time, contact.torque[begin:end], ORANGE, "in the contact", 1.0),
-            *(Line(time[[0, -1]], np.full(2, level), GREY, "", 1.0, ":") for level in levels),
-        ],
-        f"Torques around a slip; modes while it slides at {modes}, damping "
-        f"{one.values['damping']:.3g} Nm s/rad.",
-        legend="lower left",
     )  # fmt: skip
 
 
@@ -120,51 +97,6 @@ def _window(one: Seen, seconds: float) -> tuple[int, int]:
     return begin, begin + n
 
 
-def level_panels(found: Identification) -> tuple[Panel, ...]:
-    """Draw torques and stiffness by recording with the pooled values and their intervals.
-
-    Parameters
-    ----------
-    found : Identification
-
-    Returns
-    -------
-    tuple of Panel
-    """
-    with styled():
-        torques = ("critical_torque", "kinetic_torque")
-        return (
-            _levels(found, "Torque levels", "Torque [Nm]", torques),
-            _levels(found, "Elastomer's stiffness", "Stiffness [Nm/rad]", ("elastomer_stiffness",)),
-        )
-
-
-def _levels(found: Identification, title: str, up: str, names: tuple[str, ...]) -> Panel:
-    lines, words, most = [], [], 0.0
-    for name, colour in zip(names, (VERMILION, BLUE), strict=False):
-        for k, number in enumerate(n for n in found.numbers if n.name == name):
-            own = [
-                one for one in found.seen
-                if one.levels.slips and one.measured.condition.interference == number.interference
-            ]  # fmt: skip
-            speeds = np.array([one.measured.condition.speed for one in own], dtype=float)
-            values = np.array([one.values[name] for one in own])
-            label = f"{name.split('_')[0]}, {1e3 * (number.interference or 0.0):g} mm"
-            marker, ends = _MARKERS[k % len(_MARKERS)], (number.low, number.high)
-            low, high = (np.full(speeds.size, end) for end in ends)
-            order = np.argsort(speeds)
-            lines.append(
-                Line(speeds[order], values[order], colour, label, style="", marker=marker,
-                     low=low, high=high)
-            )  # fmt: skip
-            most = max(most, number.high, *values)
-            words.append(f"{label}: {number.value:.4g}")
-    return lines_panel(
-        title, "Speed of the shaft [rad/s]", up, lines, f"{title}, {up}: {'; '.join(words)}.",
-        up_ends=(0.0, 1.17 * most or 1.0), legend="lower right",
-    )  # fmt: skip
-
-
 def static_panels(test: StaticTest) -> tuple[Panel, ...]:
     """Draw torque over angle, and the ring-down where there is one.
 
@@ -177,12 +109,8 @@ def static_panels(test: StaticTest) -> tuple[Panel, ...]:
     tuple of Panel
     """
     with styled():
-        panels = [_slope(test)]
-        if not test.elastic:
-            panels.append(_yielding(test))
-        if test.ring_down is not None:
-            panels.append(_decay(test.ring_down))
-        return tuple(panels)
+        slope = _slope(test)
+        return (slope,) if test.ring_down is None else (slope, _decay(test.ring_down))
 
 
 def _slope(test: StaticTest) -> Panel:
@@ -203,20 +131,6 @@ def _slope(test: StaticTest) -> Panel:
                  f"k_EFF = {slope}", style="--"),
         ],
         f"Torque over angle: {slope} (+-{100 * test.error:.1f} %), {told}.",
-        legend="upper left",
-    )  # fmt: skip
-
-
-def _yielding(test: StaticTest) -> Panel:
-    beyond = test.torque / test.held_stiffness
-    return lines_panel(
-        "What yields beside elastomer and beams", "Torque [Nm]", "Angle beyond theirs [mrad]",
-        [
-            Line(test.torque, 1e3 * (test.angle - beyond), GREY, "recorded", style="", marker="."),
-            Line(test.torque, 1e3 * (test.fitted_angle - beyond), BLUE, "contact", 1.0),
-        ],
-        f"Angle beyond that of elastomer and beams; without what yields the slope is "
-        f"{test.held_stiffness:.4g} Nm/rad (+-{100.0 * test.held_error:.1f} %).",
         legend="upper left",
     )  # fmt: skip
 
@@ -303,7 +217,6 @@ def _html(found: Identification) -> str:
                 "Numbers, with 90 % intervals",
                 [
                     b.Table(("Number", "At", "Value", "Interval", "Recordings"), list(numbers)),
-                    b.Panels(level_panels(found) if slipping else ()),
                     b.Group("Measured numbers beside what this rig gives", [beside]),
                 ],
             ),

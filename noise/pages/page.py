@@ -93,7 +93,7 @@ def page_html(
             footer=footer,
             displays=displays,
             scale_words=scale_words,
-            sounds={key: (clip, entries[key].data) for key, clip in clips.items()},
+            sounds=clips,
             about=about,
             equal=_equal_words(len(factors), len(clips), target),
         )

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -30,7 +29,6 @@ from noise.labels.table import cell_number, check_name
 from noise.pages import blocks as b
 from noise.pages.clips import Entry, common_gain, label_counts, labels_sentence, make_clips
 from noise.pages.comparison import Compared, compare_designs
-from noise.pages.diagnosis_evidence import reported_entries
 from noise.pages.maps import recorded_maps
 from noise.pages.page import (
     CARD_BYTES,
@@ -172,32 +170,8 @@ def _support(row: dict[str, object], where: str) -> float | None:
     return cell_number(row, _SUPPORT, where)
 
 
-class DiagnosisDisplay(NamedTuple):
-    """What a review tells of a diagnosis.
-
-    Parameters
-    ----------
-    name : str
-        Of its folder.
-    headline : str
-    answer : list of str
-        Verdict, location, and what the channels cannot tell apart.
-    next_measurement : str
-    notes : tuple of str
-    entries : list of Entry
-        Measured and simulated sounds, recording by recording.
-    """
-
-    name: str
-    headline: str
-    answer: list[str]
-    next_measurement: str
-    notes: tuple[str, ...]
-    entries: list[Entry]
-
-
-def read_diagnosis(path: Path) -> DiagnosisDisplay:
-    """Read a diagnosis.
+def read_diagnosis(path: Path) -> b.Section:
+    """Read a diagnosis: its answer, what to measure next and its notes, as a section of a page.
 
     Parameters
     ----------
@@ -218,7 +192,7 @@ def read_diagnosis(path: Path) -> DiagnosisDisplay:
     >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
     >>> with tempfile.TemporaryDirectory() as name:
     ...     write_diagnosis(Path(name), nothing)
-    ...     read_diagnosis(Path(name) / "diagnosis.json").headline
+    ...     read_diagnosis(Path(name) / "diagnosis.json").title.partition(": ")[2]
     'No gap'
     """
     with reading(path, "diagnosis", error=RecordingError, largest=LARGEST_JSON):
@@ -226,14 +200,16 @@ def read_diagnosis(path: Path) -> DiagnosisDisplay:
         if not isinstance(data, dict) or "verdict" not in data or "probabilities" not in data:
             raise RecordingError(f"{path}: has no verdict and probabilities, so is no diagnosis")
         diagnosis = from_json(data)
-        words = headline(diagnosis), answer(diagnosis)
-    return DiagnosisDisplay(
-        path.parent.resolve().name,
-        *words,
-        diagnosis.next_measurement,
-        diagnosis.notes,
-        reported_entries(path.with_name("report.html"), diagnosis),
-    )
+        return b.Section(
+            f"Diagnosis {path.parent.resolve().name}: {headline(diagnosis)}",
+            [
+                *(b.Text(sentence) for sentence in answer(diagnosis)),
+                b.Text(diagnosis.next_measurement, "next", "To measure next:"),
+                b.Items(diagnosis.notes, "soft"),
+                b.Text("Sounds and figures: report.html beside diagnosis.json.", "soft small"),
+            ],
+            "diagnosis",
+        )
 
 
 def screened_maps(
@@ -386,12 +362,8 @@ def review(
     diagnosed = _diagnosed(inputs, refused)
     compared, heard = screened_maps(inputs, refused, number=simulated, seed=seed)
 
-    entries: dict[str, Entry] = {}
-    groups: list[list[str]] = []
-    for members in (recorded, *(one.entries for one in diagnosed)):
-        groups.append([f"s{len(entries) + 1 + i}" for i in range(len(members))])
-        entries |= dict(zip(groups[-1], members, strict=True))
-    entries |= heard
+    keys = [f"s{number + 1}" for number in range(len(recorded))]
+    entries = dict(zip(keys, recorded, strict=True)) | heard
     if not (entries or compared or diagnosed):
         raise ParameterError(f"{refused[0].name}: {refused[0].reason}; there is nothing else")
     gain = common_gain(entries.values(), pascal_per_full_scale)
@@ -402,7 +374,7 @@ def review(
     clips, shortened = make_clips(
         entries, gain, budget=budget, beside=beside, dither=np.random.default_rng(seed)
     )
-    rows = [{**row, "file": key} for key in groups[0] for row in entries[key].rows]
+    rows = [{**row, "file": key} for key in keys for row in entries[key].rows]
     titles = {key: entry.title for key, entry in entries.items()}
     of_recordings, unplaced = recorded_maps(rows, titles, clips)
     counts = label_counts(recorded)
@@ -430,10 +402,10 @@ def review(
                     b.Text(left_out if of_recordings and unplaced else "", "note"),
                 ],
             ),
-            *map(_diagnosis_section, diagnosed, groups[1:]),
+            *diagnosed,
             b.Section(
                 "Recordings",
-                [b.Cards(groups[0], counts=counts if len(counts) > 1 else [])],
+                [b.Cards(keys, counts=counts if len(counts) > 1 else [])],
                 "recordings",
             ),
         ],
@@ -443,16 +415,6 @@ def review(
     )
     write_page(target, html)
     return Review(target, len(clips), shortened, tuple(refused))
-
-
-def _diagnosis_section(one: DiagnosisDisplay, keys: Sequence[str]) -> b.Section:
-    blocks: list[b.Block] = [
-        *(b.Text(sentence) for sentence in one.answer),
-        b.Text(one.next_measurement, "next", "To measure next:"),
-        b.Items(one.notes, "soft"),
-        b.Cards(keys),
-    ]
-    return b.Section(f"Diagnosis {one.name}: {one.headline}", blocks, "diagnosis")
 
 
 def page_path(out: Path) -> Path:
@@ -466,7 +428,7 @@ def page_path(out: Path) -> Path:
     return out if out.suffix.lower() in (".html", ".htm") and not out.is_dir() else out / _PAGE
 
 
-def _diagnosed(inputs: Inputs, refused: list[Refusal]) -> list[DiagnosisDisplay]:
+def _diagnosed(inputs: Inputs, refused: list[Refusal]) -> list[b.Section]:
     diagnosed = []
     for path in inputs.diagnoses:
         try:
@@ -477,7 +439,7 @@ def _diagnosed(inputs: Inputs, refused: list[Refusal]) -> list[DiagnosisDisplay]
 
 
 def _summary(
-    recorded: Sequence[Entry], diagnosed: Sequence[DiagnosisDisplay], n_maps: int, n_heard: int
+    recorded: Sequence[Entry], diagnosed: Sequence[b.Section], n_maps: int, n_heard: int
 ) -> str:
     told = []
     if recorded:

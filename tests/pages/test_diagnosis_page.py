@@ -28,7 +28,6 @@ from noise.pages.diagnosis import (
 from noise.pages.diagnosis_evidence import (
     cycle_window,
     illustration_entries,
-    reported_entries,
     sixth_octaves,
 )
 from tests.helpers.made_diagnoses import (
@@ -151,18 +150,6 @@ def test_a_louder_sound_stays_louder_by_as_much():
     assert loudness[0] / loudness[1] == pytest.approx(10.0, rel=1e-3)
     assert loudness[0] / loudness[2] == pytest.approx(2.0, rel=1e-3)
     assert max(abs(played[0])) < 1.0
-
-
-def test_the_sounds_of_a_report_can_be_read_back_with_label_and_level(tmp_path):
-    diagnosis = one_effect()
-    write_diagnosis(tmp_path, diagnosis)
-    found = reported_entries(tmp_path / "report.html", diagnosis)
-    entries = illustration_entries(diagnosis.illustrations[0], diagnosis.labels_and_levels)
-    for entry, back in zip(entries.values(), found, strict=False):
-        assert (back.title, back.labels) == (entry.title, entry.labels)
-        assert entry.note in back.note
-        assert back.sound == pytest.approx(entry.sound, abs=2e-4)
-    assert reported_entries(tmp_path / "gone.html", diagnosis) == []
 
 
 def test_a_sixth_octave_holds_the_power_of_a_tone_in_it():

@@ -255,18 +255,13 @@ def test_where_nothing_can_be_used_the_call_is_refused(tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
-def test_a_diagnosis_brings_its_words_and_its_sounds_at_their_level(tmp_path):
+def test_a_diagnosis_brings_its_words(tmp_path):
     write_diagnosis(tmp_path / "diagnosis", one_effect())
     made = review(tmp_path / "diagnosis", tmp_path / "out")
     page = Page(made.path)
     assert "Missing: partial slip" in page.html
     assert one_effect().next_measurement in page.html
-    illustration = one_effect().illustrations[0]
-    heard, _ = page.sound(f"{illustration.name}, measured")
-    full_scale = float(re.search(r"full scale = ([\d.]+) Pa", page.html)[1])
-    pressure = illustration.measured["pressure"]
-    wanted = level(pressure[3000:-3000] - pressure.mean())
-    assert level(heard[4800:-4800] * full_scale) == pytest.approx(wanted, abs=0.2)
+    assert made.sounds == 0
 
 
 def test_a_screen_brings_a_map_a_design_and_sounds_of_every_label(tmp_path):
