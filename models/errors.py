@@ -5,6 +5,9 @@ in one line: the command line shows it as it is. Values come from files, and may
 and hold line breaks; so the root makes of each message one line that can be read.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 _LONGEST = 2000
 """Letters of a message, of which the end is left out."""
 
@@ -34,6 +37,35 @@ class ParameterError(BushingNoiseError, ValueError):
 
 class RecordingError(BushingNoiseError):
     """A recording that cannot be read; a batch goes on with the next file."""
+
+
+@contextmanager
+def naming(place: str, error: type[BushingNoiseError] | None = None) -> Iterator[None]:
+    """Let errors of the block name a place before what they say, such as an option.
+
+    Parameters
+    ----------
+    place : str
+        With what stands between it and the message.
+    error : type, optional
+        Of the error; by default it stays what it is.
+
+    Raises
+    ------
+    BushingNoiseError
+        Whatever the block raises of these, with the place.
+
+    Examples
+    --------
+    >>> with naming("--rig: "):
+    ...     raise ParameterError("rig.toml: there is no such file")
+    Traceback (most recent call last):
+    models.errors.ParameterError: --rig: rig.toml: there is no such file
+    """
+    try:
+        yield
+    except BushingNoiseError as wrong:
+        raise (error or type(wrong))(f"{place}{wrong}") from None
 
 
 def not_installed(what: str, package: str, extra: str) -> str:

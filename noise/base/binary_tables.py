@@ -12,7 +12,7 @@ from models.foreign_file import ExcessError, check_inflation, reading
 from noise.base.csv_table import Cell, finite_or_fixed
 from noise.base.progress import readable
 
-_FEW_CELLS, _MOST_CELLS = 1_000_000, 20
+_FEW_CELLS, _MOST_CELLS = 200_000, 20
 """Cells that a workbook or Parquet file may hold: so many, and so many a byte."""
 
 _MOST_ROWS, _LONGEST_TEXT, _WIDEST = 1_048_576, 32_767, 48

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.condition import CONDITION as QUANTITIES, FIXED
-from models.errors import ParameterError
+from models.errors import ParameterError, naming
 from models.foreign_file import LARGEST_TEXT, reading
 from models.rig import LawSpec, Rig, parse_spec
 from models.rig_file import material_names
@@ -304,17 +304,13 @@ def _rig(options: Namespace, library: Mapping[str, Effect], read: Rig | None) ->
     from models.rig_file import load_material_rig, load_rig
 
     if options.rig is None:
-        try:
+        with naming("--material: "):
             rig = load_material_rig(
                 DEFAULT_MATERIAL if options.material is None else options.material
             )
-        except ParameterError as error:
-            raise ParameterError(f"--material: {error}") from None
     else:
-        try:
+        with naming("--rig: "):
             rig = read or load_rig(options.rig)
-        except ParameterError as error:
-            raise ParameterError(f"--rig: {error}") from None
         named = options.material
         if named is not None and named.strip().lower() != rig.material.lower():
             raise ParameterError(
@@ -337,10 +333,8 @@ def _effects(
         if names.count(name) > 1:
             raise ParameterError(f"--effect {name} is given twice; give all its keys at once")
     for spec in given:
-        try:
+        with naming("--effect: "):
             activated((spec,), library)
-        except ParameterError as error:
-            raise ParameterError(f"--effect: {error}") from None
     by_name = {spec.name: spec for spec in (*of_the_rig, *given)}
     return tuple(by_name.values())
 
@@ -385,11 +379,9 @@ def _logged_speed(path: Path, seconds: float) -> LoggedSpeed:
     where = f"--speed {path}"
     with reading(path, "CSV table", where=where, largest=LARGEST_TEXT):
         table = read_table(path)
-    try:
+    with naming(f"{where}: "):
         time, speed = _log_columns(table)
         logged = LoggedSpeed(time, speed)
-    except ParameterError as error:
-        raise ParameterError(f"{where}: {error}") from None
     if time[0] > 0.0 or time[-1] < seconds:
         note(
             f"--speed {path} covers {time[0]:g} to {time[-1]:g} s, the run 0 to {seconds:g} s; "

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentTypeError, Namespace
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -247,13 +246,7 @@ def _trusted(modes: Modes, transfer: TransferFunction, hits: list[Hit], least: f
         if left_out := int((~kept).sum()):
             note(f"{counted(left_out, 'mode')} left out, where {reason}")
     kept = coherent & excited
-    return replace(
-        modes,
-        frequency=modes.frequency[kept],
-        damping_ratio=modes.damping_ratio[kept],
-        residues=modes.residues[:, kept],
-        orders=modes.orders[kept],
-    )
+    return modes.only(kept)
 
 
 def _coherence(modes: Modes, transfer: TransferFunction) -> NDArray[np.float64]:

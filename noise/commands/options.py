@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from models.errors import BushingNoiseError, ParameterError
+from models.errors import ParameterError, naming
 from models.schema import Quantity
 from noise.base.files import check_target
 from noise.base.progress import note, say
@@ -336,10 +336,8 @@ def full_scale_of(options: argparse.Namespace) -> PascalPerFullScale | None:
         return stated
     from noise.recordings.calibrator import read_calibrator
 
-    try:
+    with naming("--calibrator ", ParameterError):
         tones = read_calibrator(options.calibrator, options.level)
-    except BushingNoiseError as error:
-        raise ParameterError(f"--calibrator {error}") from None
     for tone in tones:
         say(
             f"{options.calibrator.name}: {options.level:g} dB at {tone.frequency:.4g} Hz make full "

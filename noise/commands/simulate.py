@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from models.errors import ParameterError
+from models.errors import ParameterError, naming
 from noise.base.files import check_target
 from noise.base.progress import note, say
 from noise.base.tables import check_table_path, table_endings, write_table
@@ -123,10 +123,8 @@ def _run_suspension(options: Namespace, path: Path) -> int:
             )
     from models.suspension import load_suspension
 
-    try:
+    with naming("--rig: "):
         car = load_suspension(path)
-    except ParameterError as error:
-        raise ParameterError(f"--rig: {error}") from None
     arguments, notes = run_arguments(options, options.rate, rig=car.rig)
     from noise.base.remarks import clipping_remarks
     from sim.suspension import run_suspension
@@ -256,10 +254,8 @@ def _check_plot(path: Path) -> None:
     """Refuse a picture that cannot be drawn, before the run that it shows."""
     from noise.pictures.figure import check_picture_path
 
-    try:
+    with naming("--plot "):
         check_picture_path(path)
-    except ParameterError as error:
-        raise ParameterError(f"--plot {error}") from None
     check_target(path, "--plot")
 
 

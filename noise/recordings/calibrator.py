@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from models.errors import ParameterError, RecordingError
+from models.errors import ParameterError, RecordingError, naming
 from models.recording import REFERENCE_PRESSURE
 from noise.recordings.files import open_raw
 
@@ -112,10 +112,8 @@ def read_calibrator(path: str | os.PathLike[str], level: float) -> tuple[Calibra
     found = []
     for number, row in enumerate(samples, start=1):
         where = str(path) if raw.n_channels == 1 else f"{path}: track {number}"
-        try:
+        with naming(f"{where}: is no calibrator's tone: ", RecordingError):
             frequency, amplitude = _tone(row, raw.rate, fractional=raw.fractional)
-        except ParameterError as error:
-            raise RecordingError(f"{where}: is no calibrator's tone: {error}") from None
         found.append(CalibratorTone(frequency, pressure * math.sqrt(2.0) / amplitude))
     return tuple(found)
 

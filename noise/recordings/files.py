@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from models.blocks import RecordingBlocks, decimated
 from models.calibration import Calibration
-from models.errors import ParameterError, RecordingError
+from models.errors import RecordingError, naming
 from models.foreign_file import reading, refusing
 from models.recording import Recording
 from noise.base.progress import note
@@ -231,11 +231,9 @@ def _to_units(
             if curve is None:
                 row *= channel.full_scale
                 continue
-            try:
+            with naming(f"{path}: channel {channel.name!r} ", RecordingError):
                 out = curve.beyond(row)
                 row[:] = curve.of(row)
-            except ParameterError as error:
-                raise RecordingError(f"{path}: channel {channel.name!r} {error}") from None
             if out:
                 notes.append(
                     f"{channel.name} was read up to {out:.1%} of its span outside of {curve.source}"

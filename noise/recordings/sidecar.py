@@ -33,7 +33,7 @@ from typing import Any
 
 from models.calibration import READING_UNITS
 from models.condition import CONDITION, FIXED, Condition
-from models.errors import ParameterError, RecordingError
+from models.errors import ParameterError, RecordingError, naming
 from models.foreign_file import LARGEST_JSON, one_line, parse_json, reading
 from models.recording import Channel, Recording
 from models.schema import Flag, Quantity, Text, Vector
@@ -173,10 +173,8 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
             note="the JSON file beside it is of another program, as it names no channels and no "
             "conditions; passed over"
         )
-    try:
+    with naming("", RecordingError):
         return _sidecar({key: value for key, value in content.items() if value is not None}, where)
-    except ParameterError as error:
-        raise RecordingError(str(error)) from None
 
 
 def _is_sidecar(content: Any) -> bool:

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from models.errors import ParameterError
+from models.errors import ParameterError, naming
 from models.recording import REFERENCE_PRESSURE, Recording
 from noise.base.files import atomic
 from noise.recordings.files import MIN_SAMPLES
@@ -122,10 +122,8 @@ def write_blocks(
             f"{target}: the sampling rate is {rate!r} Hz, but WAV holds whole hertz only"
         )
     sidecar_text(about)  # refuses what could not be read back
-    try:
+    with naming(f"{target}: "):
         header = _header(n_samples, int(rate), 32, n_channels=len(about.channels))
-    except ParameterError as error:
-        raise ParameterError(f"{target}: {error}") from error
     # The sidecar is moved into place first: samples are never seen without what they mean. Its
     # checksum tells that it belongs to others, should the call end between the two.
     with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:

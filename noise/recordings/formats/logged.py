@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.condition import CONDITION, Condition
-from models.errors import RecordingError
+from models.errors import RecordingError, naming
 from models.recording import Channel
 from models.units import CHANNEL_UNITS, kind_of_unit, known_units, split_unit
 from noise.recordings.formats import RawRecording, check_rate
@@ -212,10 +212,8 @@ def describe_channels(
     rows, n_samples = _together(path, rows, notes)
 
     def read(first: int, last: int) -> NDArray[np.float64]:
-        try:
+        with naming(f"{path}: "):
             return np.stack([row.read(first, last) for row in rows])
-        except RecordingError as error:
-            raise RecordingError(f"{path}: {error}") from error
 
     return RawRecording(
         n_channels=len(rows),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from models.errors import ParameterError, RecordingError
+from models.errors import RecordingError, naming
 from models.transfer_functions.uff import (
     TIME_RESPONSE,
     UFF_ENDINGS,
@@ -29,10 +29,8 @@ def open_universal_file(path: Path) -> Iterator[tuple[list[LoggedChannel], Mappi
     RecordingError
         The file is damaged, or holds no time functions.
     """
-    try:
+    with naming("", RecordingError):
         functions = read_uff_functions(path, TIME_RESPONSE)
-    except ParameterError as error:
-        raise RecordingError(str(error)) from None
     if not functions:
         raise RecordingError(f"{path}: holds no time functions (dataset 58, function type 1)")
     yield [_channel(number, function) for number, function in enumerate(functions, start=1)], {}
