@@ -54,8 +54,7 @@ def test_constant_and_silent_recordings_are_drawn_without_a_warning():
     assert all("all below" in row.spectrum.alt for row in constant.rows)
 
 
-@pytest.mark.parametrize("calibrated", [True, False])
-@pytest.mark.parametrize("amplitude", [1e-7, 0.03, 0.7, 30_000.0])
+@pytest.mark.parametrize(("amplitude", "calibrated"), [(1e-7, True), (30_000.0, False)])
 def test_no_writing_on_a_panel_overlaps_or_is_cut_off(monkeypatch, amplitude, calibrated):
     drawn = []
     monkeypatch.setattr(figures, "as_svg", lambda figure: drawn.append(figure) or b"")

@@ -77,7 +77,7 @@ def test_sound_sampled_too_slowly_for_a_line_of_its_spectrogram_is_not_drawn():
     assert axes.get_ylabel() == "Torque\n[Nm]"
 
 
-@pytest.mark.parametrize("name", ["caf\udce9", "\x1b[2J\a", r"$\frac$", "a_{$", "\n"])
+@pytest.mark.parametrize("name", ["caf\udce9\x1b[2J\a\n", r"$\frac$ a_{$"])
 def test_a_recording_of_any_name_is_drawn(run_up, name):
     figure = plot_recording(replace(run_up, name=name))
     figure.savefig(BytesIO())

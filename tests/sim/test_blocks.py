@@ -245,13 +245,3 @@ def test_the_background_is_that_of_a_recording_and_has_no_seams(form):
     bands = [band for band in in_blocks.third_octaves if 200.0 <= float(band) <= 16e3]
     for band in bands:
         assert in_blocks.third_octaves[band] == pytest.approx(whole.third_octaves[band], abs=1.0)
-
-
-def test_a_setting_that_cannot_be_leaves_the_run_as_it_was():
-    of = setting(MEMORY)
-    run, untouched = BlockEngine(of), BlockEngine(of)
-    sound(run, 3), sound(untouched, 3)
-    for wrong in ({"interference": 0.5}, {"support_stiffness": -1.0}):
-        with pytest.raises(ParameterError):
-            run.block(replace(of, **wrong))
-    np.testing.assert_array_equal(sound(run, 3), sound(untouched, 3))

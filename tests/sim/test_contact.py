@@ -12,7 +12,7 @@ from models.rig_file import load_material_rig
 from sim.analysis.regime import Regime, friction_regime
 from sim.bushing import lumped_bushing
 from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed, Oscillation
+from sim.shaft import ConstantSpeed
 from tests.helpers.rig_measures import slip_rates
 
 FLUOROCARBON = load_material_rig("fluorocarbon")
@@ -80,16 +80,6 @@ def test_slip_frequency_rises_with_speed_and_stays_below_the_first_torsional_mod
     ]
     assert found == sorted(found)
     assert found[-1] < lumped_bushing(FLUOROCARBON, 0.279e-3, 2214.0).natural_frequencies()[0]
-
-
-def test_an_oscillating_shaft_makes_the_torque_follow_its_direction():
-    shaft = Oscillation(np.deg2rad(15.0), 2.0)
-    run = simulate_motion(
-        FLUOROCARBON, shaft, interference=0.381e-3, support_stiffness=2214.0, seconds=0.5, rate=48e3
-    )
-    quarter = run.torque.size // 4
-    assert run.torque[: quarter // 2].mean() > 10.0
-    assert run.torque[2 * quarter : 2 * quarter + quarter // 2].mean() < -10.0
 
 
 def test_slips_at_the_tightest_fit_become_more_frequent_slowly_and_never_pass_the_torsional_mode():

@@ -1,7 +1,5 @@
 """The solver of contacts against itself with far shorter steps, in its events and its limits."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -141,13 +139,3 @@ def test_a_creeping_stick_breaks_and_catches_at_its_creeping_speed(form):
     last = np.flatnonzero(np.diff(np.abs(direction)) > 0)[0]
     assert surface[last] < 0.6 * 2.0
     assert surface[last] == pytest.approx(2.0 * (1.0 - 0.6), rel=0.2)
-
-
-def test_an_end_that_lasts_less_than_a_step_is_not_missed():
-    rig = replace(CALIBRATED, friction=LawSpec("coulomb", {}))
-    assert rig.fit(0.279e-3) == CALIBRATED.fit(0.279e-3)
-    hooks = (hook("partial_slip", form="exponential"),)
-    coarse, fine = (
-        solve("calibrated", "coulomb", 5.0, 0.05, refined=n, hooks=hooks)[:, 1] for n in (1, 16)
-    )
-    assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-3 * fine.mean()

@@ -1,17 +1,11 @@
 """What sensors and cables add to the signals."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.signal import welch
 
-from models.rig import LawSpec
-from models.rig_file import load_material_rig
-from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
-from sim.run import simulate
 from tests.helpers.sensor_signals import RATE, read, rms, tone
 
 MEASUREMENT = (
@@ -46,20 +40,6 @@ def test_further_channels_of_a_kind_are_read_as_the_first_and_other_kinds_are_le
     changed = read(signals, name)
     assert not np.allclose(changed["acceleration_2"], signals["acceleration_2"])
     assert np.array_equal(changed["speed"], signals["speed"])
-
-
-def test_effects_act_in_the_order_in_which_they_are_named():
-    hum, clip = LawSpec("mains_hum", {"acceleration": 500.0}), LawSpec("clipping", {"amount": 0.5})
-    rig = load_material_rig("fluorocarbon-thesis")
-
-    def peak(*specs):
-        run = simulate(
-            replace(rig, effects=specs), 5.0, seconds=0.1, acquisition=Acquisition(96e3, noise={})
-        )
-        return np.abs(run.recording["acceleration"]).max()
-
-    assert peak(hum, clip) == pytest.approx(0.5 * peak(hum), rel=1e-3)
-    assert peak(clip, hum) > 0.7 * peak(hum)
 
 
 # Noise.

@@ -58,16 +58,6 @@ def test_spring_and_damper_have_the_forms_they_are_named_for():
     assert lost[1] == pytest.approx(lost[0], rel=5e-3)
 
 
-def test_shaft_and_elastomer_are_springs_in_series():
-    kappa = 1.0 / 665.0
-    effect = hook("shaft_compliance", compliance=kappa, damping_ratio=1.0)
-    states, direction = solve(effect, stiffness=math.inf, samples=4000)
-    end = int(np.flatnonzero(direction)[0])
-    time = np.arange(end) / RATE
-    rise = np.polyfit(time[end // 2 :], states[end // 2 : end, 1], 1)[0]
-    assert rise == pytest.approx(1.0 / (kappa + 1.0 / 665.0), rel=0.01)
-
-
 def test_what_the_drive_gives_is_stored_or_dissipated():
     kappa = 1e-3
     effect = hook("shaft_compliance", compliance=kappa)

@@ -30,11 +30,6 @@ def test_slips_that_stay_below_the_threshold_strike_nothing():
     assert not force(settled, **RIG.effects[0].parameters).any()
 
 
-def test_blows_follow_the_direction_of_the_shaft():
-    forward, backward = force(run()), force(run(-2.5))
-    assert np.array_equal(forward, -backward)
-
-
 def test_each_fall_of_a_sawtooth_is_found_once():
     sawtooth = 8.0 * ((np.arange(1000) / 100.0) % 1.0)
     where, size = torque_drops(sawtooth, 2.0)

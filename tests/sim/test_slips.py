@@ -80,16 +80,6 @@ def test_undamped_stick_slip_has_the_share_and_the_period_of_its_formula(speed):
     assert found.pattern == 1
 
 
-def test_the_measure_is_that_of_the_torque_over_the_stiffness():
-    run = motion(FLUOROCARBON, 2.0, support=2214.0).since(9000)
-    stiffness = FLUOROCARBON.fit(0.279e-3).elastomer_stiffness
-    own = 2.0 * np.pi * np.sqrt(FLUOROCARBON.elastomer_inertia / stiffness)
-    read = find_slips(run.torque / stiffness, 2.0, RATE, own_period=own)
-    exact = motion_slips(run)
-    assert read.sudden_share == pytest.approx(exact.sudden_share, abs=0.02)
-    assert read.rate == pytest.approx(exact.rate, rel=1e-3)
-
-
 # Slips
 
 

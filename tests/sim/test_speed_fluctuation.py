@@ -4,12 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from models.rig import LawSpec
-from models.rig_file import load_material_rig
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
-from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed
 
 EFFECT = EFFECTS["speed_fluctuation"]
 RATE = 10e3
@@ -62,22 +57,3 @@ def test_the_random_form_loses_half_its_power_at_the_bandwidth():
     power = np.mean([np.abs(np.fft.rfft(speed - 5.0)) ** 2 for speed in speeds], axis=0)
     low, corner = power[2:50].mean(), power[150:251].mean()  # around 20 Hz
     assert corner / low == pytest.approx(0.5, rel=0.15)
-
-
-@pytest.mark.parametrize("form", EFFECT.forms)
-def test_angle_and_torque_follow_the_uneven_shaft(form):
-    rig = load_material_rig("fluorocarbon-thesis")
-
-    def moved(depth):
-        spec = LawSpec("speed_fluctuation", {"depth": depth, "form": form, "frequency": 5.0})
-        return simulate_motion(
-            rig, ConstantSpeed(2.0), interference=0.279e-3, support_stiffness=3745.0, seconds=0.3,
-            rate=30e3, effects=activated((spec,), EFFECTS),
-        )  # fmt: skip
-
-    uneven, steady = moved(0.3), moved(0.0)
-    assert np.array_equal(steady.shaft_speed, np.full(9000, 2.0))
-    assert np.ptp(uneven.shaft_speed) > 0.3
-    between = 0.5 * (uneven.shaft_speed[1:] + uneven.shaft_speed[:-1])
-    assert 30e3 * np.diff(uneven.shaft_angle) == pytest.approx(between, rel=1e-6)
-    assert not np.allclose(uneven.torque, steady.torque, atol=0.1)

@@ -34,11 +34,6 @@ def test_at_the_reference_temperature_a_run_is_to_the_bit_as_without():
     assert np.array_equal(run.recording.samples, plain.recording.samples)
 
 
-def test_what_is_at_a_temperature_stays_there():
-    cold = at_temperature(RIG, 5.0)
-    assert at_temperature(cold, 80.0) is cold
-
-
 def test_the_elastomers_damping_follows_and_that_of_the_beams_stays():
     cold, share = at_temperature(RIG, 5.0), RIG.elastomer_damping_share
     before, after = (rig.fit(AT[0]).damping[2214.0] for rig in (RIG, cold))

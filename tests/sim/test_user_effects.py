@@ -106,12 +106,6 @@ def test_a_rig_file_may_name_the_users_effect(effects_file, tmp_path, capsys):
     assert "effect 'zero_offset' is unknown" in capsys.readouterr().err
 
 
-def test_a_file_whose_effects_are_all_off_is_noted(effects_file, capsys):
-    path = effects_file(OFFSET)
-    assert main(["simulate", *CONDITION, "--effects", path]) == 0
-    assert "defines zero_offset; --effect zero_offset turns it on" in capsys.readouterr().err
-
-
 def test_render_simulates_with_the_users_effect_and_refuses_it_for_a_recording(
     effects_file, tmp_path, capsys
 ):
