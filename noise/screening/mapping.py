@@ -110,7 +110,7 @@ class DesignMap:
     @property
     def substituted(self) -> NDArray[np.bool_]:
         """At which points data interpolated or held stand in for the design's own."""
-        return np.vectorize(is_substituted, otypes=[bool])(self.note)
+        return np.asarray(np.vectorize(is_substituted, otypes=[bool])(self.note))
 
     def count(self, how: str) -> int:
         """How many points are known in a way."""

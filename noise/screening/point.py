@@ -143,7 +143,7 @@ def evaluate_point(rig: Rig, at: Condition) -> PointResult:
         if not found.course.lasts:
             return SILENT
         return heard_of(rig, at, found.course.motion, persists=found.state == "persists")
-    return heard_of(rig, at, _motion(rig, at))
+    return heard_of(rig, at, _motion(rig, at, at.frequency))
 
 
 def is_noisy(rig: Rig, at: Condition) -> bool:
@@ -250,18 +250,18 @@ def point_sound(rig: Rig, at: Condition) -> tuple[float, NDArray[np.float64]]:
     pressure : ndarray, shape (n,)
         [Pa]
     """
-    motion = _motion(rig, at) if at.frequency else vibration_at(rig, at).course.motion
+    motion = _motion(rig, at, at.frequency) if at.frequency else vibration_at(rig, at).course.motion
     sound = _sound(at_temperature(rig, at.temperature), at, motion)
     return RATE, sound.pressure[round((0.25 / at.frequency if at.frequency else 0.5) * RATE) :]
 
 
-def _motion(rig: Rig, at: Condition) -> Motion:
+def _motion(rig: Rig, at: Condition, frequency: float) -> Motion:
     """Motion of a swing, from one turning on for a cycle and a quarter."""
-    assert at.frequency is not None
     return simulate_motion(
-        at_temperature(rig, at.temperature), shaft_motion(at.speed, at.frequency),
+        at_temperature(rig, at.temperature),
+        Oscillation(at.speed / (2.0 * math.pi * frequency), frequency),
         interference=at.interference, support_stiffness=at.support_stiffness,
-        seconds=1.25 / at.frequency, rate=RATE, tolerance=1e-5,
+        seconds=1.25 / frequency, rate=RATE, tolerance=1e-5,
     )  # fmt: skip
 
 
