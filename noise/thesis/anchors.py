@@ -31,9 +31,9 @@ from models.show import short_repr
 from models.structure.beams import beam_structure, torsional_stiffness
 from noise.thesis.exact_beams import ClampOnBeams, RootMotion, natural_frequencies
 from noise.thesis.modes import clamp_on_beams, rigidly_anchored
-from noise.thesis.row import Column, Row, number
+from noise.thesis.row import Values
 from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, rig_of
-from noise.thesis.stiffness import LENGTHS, MEASURED, STATIC_TOLERANCE
+from noise.thesis.stiffness import INTERFERENCES, LENGTHS, in_series
 
 _POWER = 4
 """Of the relative errors that are summed."""
@@ -172,8 +172,6 @@ KINDS = {
 _MODES = {LONG: (250.0, 900.0, 4500.0, 6000.0), SHORT: (310.0, 1375.0)}
 """Measured with beams of 12.3 and 9.2 cm (5.2.2) [Hz]."""
 
-_AIM = 0.10
-
 
 @lru_cache(maxsize=2)
 def _fit(kind: str) -> AnchorFit:
@@ -182,51 +180,23 @@ def _fit(kind: str) -> AnchorFit:
     return fit_anchors(structure, measured, free=KINDS[kind])
 
 
-def fitted(kind: str) -> Iterator[Row]:
-    """Modes, k_B and effective stiffness with the anchors of one kind.
-
-    Parameters
-    ----------
-    kind : str
-        One of `KINDS`.
-
-    Examples
-    --------
-    >>> {row.verdict for row in list(fitted("yielding anchors"))[:6]}
-    {'holds (in sample)'}
-    """
-    fit = _fit(kind)
-    beams = fit.structure.beams
-    for length, measured, found in zip(fit.length, fit.measured, fit.found, strict=True):
-        yield Row(
-            "beam_mode", f"{100 * length:g} cm, {kind}, {measured:g} Hz", "Hz", number(measured),
-            exact=found, measured=True, tolerance=_AIM, digits=3, in_sample=True,
-            counted=False,
-        )  # fmt: skip
-    stiffness = {support: torsional_stiffness(beams, LENGTHS[support]) for support in LENGTHS}
-    for support, found in stiffness.items():
-        yield Row(
-            "support_stiffness", f"{100 * LENGTHS[support]:g} cm, {kind}", "Nm/rad",
-            number(support), exact=found, tolerance=_AIM, digits=3,
-        )  # fmt: skip
-    for interference, by_support in MEASURED.items():
-        k_e = rig_of(THESIS).fit(1e-3 * interference).elastomer_stiffness
-        for support, (measured, _) in by_support.items():
-            series = 1.0 / (1.0 / stiffness[support] + 1.0 / k_e)
-            yield Row(
-                "effective_stiffness",
-                f"{interference:g} mm, {100 * LENGTHS[support]:g} cm, {kind}", "Nm/rad",
-                number(measured), exact=series, measured=True, tolerance=STATIC_TOLERANCE,
-                digits=3, counted=False,
-            )  # fmt: skip
+def fitted() -> Iterator[Values]:
+    """Modes, k_B and effective stiffness, with turning anchors and then with yielding ones."""
+    for kind in KINDS:
+        fit = _fit(kind)
+        beams = fit.structure.beams
+        supports = [torsional_stiffness(beams, length) for length in LENGTHS.values()]
+        series = [in_series(THESIS, at, support) for at in INTERFERENCES for support in supports]
+        for exact in (*fit.found, *supports, *series):
+            yield {"exact": exact}
 
 
-def shipped() -> Iterator[Row]:
+def shipped() -> Iterator[Values]:
     """Modes by which the torque reaches accelerometer and anchors of the shipped rig.
 
     Examples
     --------
-    >>> [round(row.calibrated) for row in shipped()]
+    >>> [round(values["calibrated"]) for values in shipped()]
     [259, 992, 4050, 6619, 337, 1489]
     """
     rig = rig_of(CALIBRATED)
@@ -234,11 +204,6 @@ def shipped() -> Iterator[Row]:
         found = beam_structure(
             rig.beams, support, rig.clamp_inertia, 0.01, 1.3 * max(modes)
         ).frequencies
-        for measured in modes:
-            first = measured == modes[0]
-            mode = found[0] if first else found[np.abs(np.log(found / measured)).argmin()]
-            yield Row(
-                "beam_mode", f"{100 * LENGTHS[support]:g} cm, shipped rig, {measured:g} Hz", "Hz",
-                number(measured), calibrated=float(mode), judged=Column.CALIBRATED, measured=True,
-                tolerance=_AIM, digits=3, in_sample=not first,
-            )  # fmt: skip
+        nearest = (found[np.abs(np.log(found / measured)).argmin()] for measured in modes[1:])
+        for mode in (found[0], *nearest):
+            yield {"calibrated": float(mode)}

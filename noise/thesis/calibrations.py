@@ -1,4 +1,4 @@
-"""Calibrations of Appendices B to E, fitted again from their tables.
+"""Calibrations of Appendices B to E, fitted again from their tables; converter and lengths of runs.
 
 Table B1 is misprinted: eight angles from pi/6 to pi stand beside eight voltages, of which the first
 is that of 0 rad. With the angles from 0 on, the voltage at 5 pi / 6 missing, the regression is the
@@ -12,7 +12,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from noise.thesis.row import Row, number
+from noise.thesis.listing import STEP
+from noise.thesis.row import Values
 
 POTENTIOMETER = (0.0020, 0.0511, 0.0777, 0.1035, 0.1581, 0.2140, 0.2410, 0.3161)
 """Voltages of Table B1 [V]."""
@@ -55,74 +56,54 @@ def regression(x: Sequence[float], y: Sequence[float]) -> tuple[float, float, fl
     return float(offset), float(slope), float(np.corrcoef(x, y)[0, 1])
 
 
-def potentiometer() -> list[Row]:
-    """Appendix B."""
+def potentiometer() -> Iterator[Values]:
+    """Offset, slope and correlation of Appendix B, as meant and as printed, and the gain."""
     printed, meant = (
         regression([math.pi * angle for angle in angles], POTENTIOMETER)
         for angles in (_ANGLES_PRINTED, _ANGLES_MEANT)
     )
-    return [
-        Row(
-            "potentiometer_offset", "(B3), Table B1", "V", number(-0.0007, "-0.0007"),
-            exact=meant[0], as_printed=printed[0], tolerance=0.002, scale=0.3161, digits=1,
-        ),
-        Row(
-            "potentiometer_slope", "(B3), Table B1", "V/rad", number(0.101),
-            exact=meant[1], as_printed=printed[1],
-        ),
-        Row(
-            "potentiometer_correlation", "(B4), Table B1", "1", number(0.9999),
-            exact=meant[2], as_printed=printed[2], tolerance=1e-4,
-        ),
-        Row("potentiometer_gain", "Appendix B", "rad/V", number(9.9), exact=1.0 / meant[1]),
-    ]  # fmt: skip
+    for right, wrong in zip(meant, printed, strict=True):
+        yield {"exact": right, "as_printed": wrong}
+    yield {"exact": 1.0 / meant[1]}
 
 
-def torque_cell() -> Iterator[Row]:
-    """Appendix C."""
-    torque = np.array(TORQUE_CELL_TORQUES)
-    up, down = torque >= 0.0, torque <= 0.0
-    voltage = np.array(TORQUE_CELL)
-    for name, side, equation, offset in (
-        ("positive", up, "(C3)", "0.4222"),
-        ("negative", down, "(C5)", "0.0000"),
-    ):
-        fitted = regression(torque[side].tolist(), voltage[side].tolist())
-        where = f"{equation}, {name} torque, Table C1"
-        yield Row(
-            "torque_cell_offset", where, "mV", number(float(offset), offset),
-            exact=fitted[0], scale=abs(fitted[0]), tolerance=1e-3,
-        )  # fmt: skip
-        yield Row(
-            "torque_cell_slope", where, "mV/Nm", number(12.19), exact=fitted[1], tolerance=0.002
-        )
-        yield Row(
-            "torque_cell_correlation", where, "1", number(0.9999),
-            exact=fitted[2], tolerance=1e-4, digits=5,
-        )  # fmt: skip
-    slope = regression(torque[up].tolist(), voltage[up].tolist())[1]
-    yield Row("torque_cell_gain", "Appendix C", "Nm/V", number(82.0), exact=1e3 / slope)
+def torque_cell() -> Iterator[Values]:
+    """Regressions of Appendix C for positive and negative torque, and the gain."""
+    torque, voltage = np.array(TORQUE_CELL_TORQUES), np.array(TORQUE_CELL)
+    slopes = []
+    for side in (torque >= 0.0, torque <= 0.0):
+        offset, slope, correlation = regression(torque[side].tolist(), voltage[side].tolist())
+        slopes.append(slope)
+        yield {"exact": offset, "scale": abs(offset)}
+        yield {"exact": slope}
+        yield {"exact": correlation}
+    yield {"exact": 1e3 / slopes[0]}
 
 
-def transducers() -> list[Row]:
-    """Accelerometer, microphone and Talysurf."""
+def transducers() -> Iterator[Values]:
+    """Accelerometer in two units, calibrator rms and amplitude, microphone, Talysurf."""
     rms = _REFERENCE_PRESSURE * 10 ** (_CALIBRATOR_LEVEL / 20)
     amplitude = math.sqrt(2.0) * rms
     gain = _GRAVITY / _ACCELEROMETER
-    return [
-        Row("accelerometer_gain", "12.55 mV/g", "m/s2/V", number(781.4), exact=gain),
-        Row(
-            "accelerometer_gain", "Figure D1", "in/s2/V", number(30763.9841, "30763.9841"),
-            exact=gain / _INCH, tolerance=1e-4, digits=6,
-        ),
-        Row("calibrator_pressure", "93.8 dB, rms", "Pa", number(0.979755), exact=rms),
-        Row("calibrator_pressure", "93.8 dB, amplitude", "Pa", number(1.38), exact=amplitude),
-        Row(
-            "microphone_gain", "0.06 V at 93.8 dB", "Pa/V", number(23.088),
-            exact=amplitude / _CALIBRATOR_VOLTAGE, tolerance=1e-3,
-        ),
-        Row(
-            "talysurf_gain", "55.5 um/V at 5.55 mm", "rad/V", number(0.01),
-            exact=55.5e-6 / 5.55e-3,
-        ),
-    ]  # fmt: skip
+    pressures = rms, amplitude, amplitude / _CALIBRATOR_VOLTAGE
+    for exact in (gain, gain / _INCH, *pressures, 55.5e-6 / 5.55e-3):
+        yield {"exact": exact}
+
+
+def converter() -> Iterator[Values]:
+    """One bit of a 12-bit converter over +-1.25 V (3.1.2) [mV]."""
+    yield {"exact": 1e3 * 2.5 / 2**12}
+
+
+def lengths() -> Iterator[Values]:
+    """Time step and lengths of the listing (6.3), highest frequency, travel, surface speed."""
+    for steps in (1, 4096, 40960):
+        yield {"listing": 1e3 * steps * STEP}
+    for exact in (0.5 * 30.0, 2.3, 45.0 * 1.5):
+        yield {"exact": exact}
+
+
+def misprints() -> Iterator[Values]:
+    """Constants of Williams, Landel and Ferry (1955); band and mode of the film as in 5.2.3."""
+    for exact in (8.86, 101.6, 250.0, 1500.0, 250.0):
+        yield {"exact": exact}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from noise.thesis.row import Column, Row, above, below, number
+from noise.thesis.row import Values
 from noise.thesis.runs import (
     CALIBRATED,
     LONG,
@@ -27,41 +27,26 @@ _TOLERANCE = 1e-5
 _SECONDS = 1.0
 
 
-def critical() -> Iterator[Row]:
-    """Critical damping at 7.5 rad/s, and stick on either side of it."""
-    listing = _listing_limit(_CASE)
-    exact, calibrated = _limit(THESIS, _CASE), _limit(CALIBRATED, _CASE)
-    for printed, where, digits in ((0.7599, "", 4), (0.76, "; figure 6.10", 3)):
-        yield Row(
-            "critical_damping", f"{_CASE}{where}", "Nm s/rad", number(printed),
-            listing=listing, exact=exact, calibrated=calibrated, judged=Column.LISTING,
-            meant=number(printed / 10.0), tolerance=0.001, limit=_HIGHEST, digits=digits,
-        )  # fmt: skip
-    for damping, published in (
-        (0.05, above(LEAST_SUDDEN, "sticks")),
-        (0.1, below(LEAST_SUDDEN, "slides")),
-    ):
+def critical() -> Iterator[Values]:
+    """Critical damping at 7.5 rad/s, printed twice, and stick on either side of it."""
+    found = {
+        "listing": _listing_limit(_CASE),
+        "exact": _limit(THESIS, _CASE),
+        "calibrated": _limit(CALIBRATED, _CASE),
+    }
+    yield from (found, found)
+    for damping in (0.05, 0.1):
         case = replace(_CASE, damping=damping)
-        yield Row(
-            "sudden_share", str(case), "1", published,
-            listing=listing_sudden_share(case), exact=sudden_share(THESIS, case), digits=2,
-        )  # fmt: skip
+        yield {"listing": listing_sudden_share(case), "exact": sudden_share(THESIS, case)}
 
 
-def measured() -> Iterator[Row]:
+def measured() -> Iterator[Values]:
     """Damping of Table 5.5, which must not end stick-slip at the speeds where it was measured."""
-    for interference, support, printed, speed in (
-        (0.279, LONG, 0.105, 4.5),
-        (0.279, SHORT, 0.085, 2.6),
-        (0.381, LONG, 0.236, 13.0),
-        (0.381, SHORT, 0.080, 13.0),
-    ):
+    for interference, support, speed in (
+        (0.279, LONG, 4.5), (0.279, SHORT, 2.6), (0.381, LONG, 13.0), (0.381, SHORT, 13.0),
+    ):  # fmt: skip
         case = Case(speed, interference, support)
-        yield Row(
-            "damping", f"{case}: stick-slip needs less than what is computed", "Nm s/rad",
-            above(printed, f"{printed:g}"), listing=_listing_limit(case),
-            exact=_limit(THESIS, case), limit=_HIGHEST, digits=3,
-        )  # fmt: skip
+        yield {"listing": _listing_limit(case), "exact": _limit(THESIS, case)}
 
 
 def _limit(material: str, case: Case) -> float:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from models.bench import Beams
 from noise.thesis.exact_beams import ClampOnBeams, RootMotion, natural_frequencies
-from noise.thesis.row import Row, number
+from noise.thesis.row import Values
 from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, Case, rig_of, strongest_line
 from sim.bushing import lumped_bushing
 
@@ -33,20 +33,19 @@ _CLAMP_MASS, _CLAMP_INERTIA = 0.96, 1 / 1050
 _HIGHEST = 12e3
 """[Hz]"""
 
-_MODE_TOLERANCE = 0.05
 
-
-def torsional_modes() -> Iterator[Row]:
-    """First torsional mode of the lumped model, measured 250 and 310 Hz (5.2.2)."""
-    for support, measured in ((LONG, 250.0), (SHORT, 310.0)):
-        for state, stuck in (("sliding", False), ("stuck", True)):
-            bushings = (lumped_bushing(rig_of(m), 0.279e-3, support) for m in (THESIS, CALIBRATED))
-            exact, calibrated = (float(b.natural_frequencies(stuck=stuck)[0]) for b in bushings)
-            yield Row(
-                "first_torsional_mode", f"{Case(1.0, 0.279, support).place()}, {state}", "Hz",
-                number(measured), exact=exact, calibrated=calibrated, measured=True,
-                tolerance=_MODE_TOLERANCE, counted=False,
-            )  # fmt: skip
+def torsional_modes() -> Iterator[Values]:
+    """First torsional mode of the lumped model, sliding and stuck (5.2.2)."""
+    for support in (LONG, SHORT):
+        for stuck in (False, True):
+            exact, calibrated = (
+                lumped_bushing(rig_of(material), 0.279e-3, support)
+                for material in (THESIS, CALIBRATED)
+            )
+            yield {
+                "exact": float(exact.natural_frequencies(stuck=stuck)[0]),
+                "calibrated": float(calibrated.natural_frequencies(stuck=stuck)[0]),
+            }
 
 
 def rigidly_anchored() -> Beams:
@@ -95,46 +94,19 @@ def clamp_modes(beams: Beams, length: float) -> NDArray[np.float64]:
     return np.sort(np.concatenate(found))
 
 
-def beam_modes() -> Iterator[Row]:
-    """Modes that 3.1.1 computes and 5.2.2 measures."""
-    beams = rigidly_anchored()
-    long, short = clamp_modes(beams, 0.123), clamp_modes(beams, 0.092)
-    # Mass and inertia of the clamp were chosen for the two lowest of the long beams.
-    for text, printed, mode, in_sample in (
-        ("12.3 cm, lowest of 140-2100 Hz", 140.0, long[0], True),
-        ("9.2 cm, highest of 140-2100 Hz", 2100.0, short[3], False),
-    ):
-        yield Row(
-            "beam_mode", text, "Hz", number(printed), exact=float(mode), tolerance=_MODE_TOLERANCE,
-            in_sample=in_sample,
-        )  # fmt: skip
-    for text, mode, measured, in_sample in (
-        ("12.3 cm, first torsional", long[1], 250.0, True),
-        ("9.2 cm, first torsional", short[1], 310.0, False),
-        ("12.3 cm, first bending", long[2], 900.0, False),
-        ("9.2 cm, first bending", short[2], 1375.0, False),
-    ):
-        yield Row(
-            "beam_mode", text, "Hz", number(measured), exact=float(mode), measured=True,
-            tolerance=_MODE_TOLERANCE, in_sample=in_sample, counted=False,
-        )  # fmt: skip
-    for measured in (4500.0, 6000.0):
-        nearest = float(long[np.abs(long - measured).argmin()])
-        yield Row(
-            "beam_mode", f"12.3 cm, nearest to {measured:g} Hz", "Hz", number(measured),
-            exact=nearest, measured=True, tolerance=_MODE_TOLERANCE, counted=False,
-        )  # fmt: skip
+def beam_modes() -> Iterator[Values]:
+    """Modes that 3.1.1 computes and 5.2.2 measures, the last two those nearest to 4500 and 6000 Hz.
+
+    Mass and inertia of the clamp were chosen for the two lowest of the long beams.
+    """
+    long, short = (clamp_modes(rigidly_anchored(), length) for length in (0.123, 0.092))
+    near = (long[np.abs(long - measured).argmin()] for measured in (4500.0, 6000.0))
+    for mode in (long[0], short[3], long[1], short[1], long[2], short[2], *near):
+        yield {"exact": float(mode)}
 
 
-def squeal() -> list[Row]:
+def squeal() -> Iterator[Values]:
     """6570 Hz of the squeal: most likely rad/s read as Hz."""
     fit = rig_of(THESIS).fit(0.279e-3)
     mode = math.sqrt(fit.elastomer_stiffness / rig_of(THESIS).elastomer_inertia) / (2.0 * math.pi)
-    case = Case(10.0, 0.279, SHORT)
-    return [
-        Row(
-            "squeal_frequency", f"{case}; sqrt(k_E / J_E) is 6575 rad/s", "Hz", number(6570.0),
-            exact=mode, calibrated=strongest_line(CALIBRATED, case), measured=True,
-            meant=number(6570.0 / (2.0 * math.pi)), tolerance=0.01,
-        )
-    ]  # fmt: skip
+    yield {"exact": mode, "calibrated": strongest_line(CALIBRATED, Case(10.0, 0.279, SHORT))}

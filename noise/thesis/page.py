@@ -24,8 +24,9 @@ def verdict_counts(rows: Sequence[Row]) -> dict[str, int]:
 
     Examples
     --------
-    >>> from noise.thesis.misprints import misprints
-    >>> verdict_counts(misprints())
+    >>> from noise.thesis.calibrations import misprints
+    >>> from noise.thesis.table import thesis_rows
+    >>> verdict_counts(thesis_rows([misprints]))
     {'misprint': 5}
     """
     words = Counter(
@@ -70,8 +71,9 @@ def thesis_page(rows: Sequence[Row]) -> str:
 
     Examples
     --------
-    >>> from noise.thesis.misprints import misprints
-    >>> print(thesis_page(misprints()[:1]))
+    >>> from noise.thesis.calibrations import misprints
+    >>> from noise.thesis.table import thesis_rows
+    >>> print(thesis_page(thesis_rows([misprints])[:1]))
     # The thesis's numbers, checked
     ...
     | wlf_constant | (2.1), first | 1 | 8.88 |  | 8.860 |  | misprint |

@@ -9,6 +9,7 @@ equations meet it.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -48,8 +49,8 @@ class Published:
 
         Examples
         --------
-        >>> number(10.0).gap(12.0), below(250.0).gap(200.0), between(10.0, 25.0).gap(50.0)
-        (0.2, 0.0, 1.0)
+        >>> number(10.0).gap(12.0), Published("< 250", -math.inf, 250.0).gap(200.0)
+        (0.2, 0.0)
         """
         nearest = min(max(value, self.low), self.high)
         if value == nearest:
@@ -63,19 +64,8 @@ def number(value: float, text: str | None = None) -> Published:
     return Published(f"{value:g}" if text is None else text, value, value)
 
 
-def below(limit: float, text: str | None = None) -> Published:
-    """Return a published upper limit, in the unit of its row [-]."""
-    return Published(f"< {limit:g}" if text is None else text, -math.inf, limit)
-
-
-def above(limit: float, text: str | None = None) -> Published:
-    """Return a published lower limit, in the unit of its row [-]."""
-    return Published(f"> {limit:g}" if text is None else text, limit, math.inf)
-
-
-def between(low: float, high: float, text: str | None = None) -> Published:
-    """Return a published range, in the unit of its row [-]."""
-    return Published(f"{low:g} to {high:g}" if text is None else text, low, high)
+Values = Mapping[str, float]
+"""What is computed of a row: ``listing``, ``exact``, ``calibrated``, ``as_printed``, ``scale``."""
 
 
 @dataclass(frozen=True)

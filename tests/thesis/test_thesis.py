@@ -205,8 +205,8 @@ def test_a_verdict_follows_from_the_distance_alone():
     assert [given(ten, v) for v in (10.05, 10.3, 12.4, 13.0, np.nan)] == [
         "holds", "off by 3.0 %", "off by 24 %", "fails", "not checkable",
     ]  # fmt: skip
-    assert given(row.above(13.0), np.inf, limit=13.0) == "holds"
-    assert given(row.below(250.0), 368.0, measured=True) == "refuted"
+    assert given(row.Published("> 13", 13.0, np.inf), np.inf, limit=13.0) == "holds"
+    assert given(row.Published("< 250", -np.inf, 250.0), 368.0, measured=True) == "refuted"
 
 
 def test_a_calibrated_rig_that_misses_a_measurement_is_told_even_if_the_equations_meet_it():

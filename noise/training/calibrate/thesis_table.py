@@ -14,9 +14,14 @@ import numpy as np
 
 from models.condition import FIXED
 from noise.identification.table_number import TableNumber
-from noise.thesis.critical_velocities import TRANSITIONS
 from noise.thesis.runs import LONG, SHORT
 from sim.analysis.slips import LEAST_SUDDEN
+
+TRANSITIONS = {
+    (0.178, LONG): (1.0, 4.6), (0.178, SHORT): (1.0, 5.9), (0.178, FIXED): (1.0, 2.7),
+    (0.279, LONG): (4.5, 7.9), (0.279, SHORT): (2.6, 12.5), (0.279, FIXED): (2.5, 8.3),
+}  # fmt: skip
+"""V_crit1, at 0.178 mm its bound, and V_crit2 by interference [mm] and k_B (Tables 5.1, 5.2)."""
 
 SUPPORTS = (LONG, SHORT, FIXED)
 """k_B [Nm/rad]."""
@@ -43,7 +48,7 @@ def _grid(support_stiffness: float) -> tuple[float, ...]:
     low, high = _WINDOW
     measured = TRANSITIONS[0.279, support_stiffness]
     fine = [
-        np.arange(low * speed.low, high * speed.low, spacing)
+        np.arange(low * speed, high * speed, spacing)
         for speed, spacing in zip(measured, _FINE, strict=True)
     ]
     return tuple(np.unique(np.concatenate([_COARSE, *fine])).tolist())
@@ -51,7 +56,7 @@ def _grid(support_stiffness: float) -> tuple[float, ...]:
 
 CELLS = tuple(
     TableNumber(
-        item, TRANSITIONS[0.279, support][i].low, 0.279e-3, support, _grid(support),
+        item, TRANSITIONS[0.279, support][i], 0.279e-3, support, _grid(support),
         _CRITICAL_SPEEDS, "critical speeds",
     )
     for i, item in enumerate(("v_crit1", "v_crit2"))
@@ -61,7 +66,7 @@ CELLS = tuple(
 
 THIN_CELLS = tuple(
     TableNumber(
-        "v_crit2", TRANSITIONS[0.178, support][1].low, 0.178e-3, support, _THIN_GRID, _THIN, "thin"
+        "v_crit2", TRANSITIONS[0.178, support][1], 0.178e-3, support, _THIN_GRID, _THIN, "thin"
     )
     for support in SUPPORTS
 )
