@@ -97,7 +97,7 @@ def _drawn(spec: Any, rng: Rng, names: Mapping[str, Any]) -> Any:
         "normal": lambda: rng.standard_normal(n),
         "exponential": lambda: rng.exponential(given, n),
         "dirichlet": lambda: rng.dirichlet(np.full(n, given)),
-        "random": lambda: rng.random((int(n or 0), given)),
+        "random": lambda: rng.random() if n is None else rng.random((n, given)),
         "of_strength": lambda: names["strength"] * value(given),
         "decibels": lambda: 20.0 * math.log10(given * float(rng.uniform(0.2, 1.0)) / 20e-6),
         "about": lambda: float(rng.choice(given)) * (1.0 + 2e-3 * float(rng.standard_normal())),
@@ -105,6 +105,7 @@ def _drawn(spec: Any, rng: Rng, names: Mapping[str, Any]) -> Any:
         "geom": lambda: np.geomspace(*map(value, given)),
         "list": lambda: np.array(list(map(value, given))),
         "levels": lambda: _levels(rng, given),
+        "beside": lambda: _levels_beside(rng, given),
         "mains": lambda: _mains(rng),
         "partials": lambda: _partials(rng, given),
         "doubled": lambda: _doubled(rng, given),
@@ -128,6 +129,13 @@ def _levels(rng: Rng, most: list[float]) -> Array:
     if rng.random() < 0.4:
         sizes[rng.choice(3, int(rng.integers(1, 3)), replace=False)] = 0.0
     return np.asarray(sizes)
+
+
+def _levels_beside(rng: Rng, most: list[float]) -> Array:
+    """Draw levels of what sounds beside the rig; the torque has some of it in half of them."""
+    levels = np.array([level * log_uniform(rng, 0.1, 1.0) for level in most])
+    levels[0] *= rng.random() < 0.5
+    return levels
 
 
 def _mains(rng: Rng) -> float:

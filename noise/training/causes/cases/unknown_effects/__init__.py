@@ -3,29 +3,30 @@
 Each is made of the same parts as the effects of `sim.effects` but is none of them: contact and
 elastomer modulated over time or angle, springs that harden, drives that stall or have play, what
 sounds beside the rig, sensors that leak into each other, lose samples, bits, contact or the beat.
-What they have in common is only that the cause posterior must not give them a name.
+What they have in common is only that the cause posterior must not give them a name. They are rows
+of ``unknown_effects.toml``.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import tomllib
+from importlib import resources
 
-from noise.training.causes.cases.unknown_effects.bystanders import BYSTANDERS
-from noise.training.causes.cases.unknown_effects.mechanics import MECHANICS
-from noise.training.causes.cases.unknown_effects.recorders import RECORDERS
+import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import numpy as np
-
-    from noise.training.causes.cases.unknown_effects.parts import Recipe
-    from sim.effects.effect import Effect
+from noise.training.causes.cases.unknown_effects import mechanics, recorders
+from noise.training.causes.cases.variants import made
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
 
 __all__ = ["UNKNOWN_EFFECTS", "draw_unknown_effect"]
 
-UNKNOWN_EFFECTS: Mapping[str, Recipe] = {**MECHANICS, **BYSTANDERS, **RECORDERS}
-"""Each takes strength, kinetic torque, stiffness and a generator."""
+UNKNOWN_EFFECTS = tomllib.loads(
+    (resources.files(__package__) / "unknown_effects.toml").read_text("utf-8")
+)
+"""Rows by name."""
+
+_STRENGTH = {"strength": Parameter(1.0, "", 0.0, 1.0, "nothing at 0")}
 
 
 def draw_unknown_effect(
@@ -53,4 +54,12 @@ def draw_unknown_effect(
     >>> draw_unknown_effect("wow", 0.5, 8.0, 665.0, np.random.default_rng(0)).stage.value
     'measurement'
     """
-    return UNKNOWN_EFFECTS[name](strength, kinetic_torque, stiffness, rng)
+    row = UNKNOWN_EFFECTS[name]
+    specs = {key: spec for key, spec in row.items() if key != "stage"}
+    acting = made(
+        name, specs, (mechanics, recorders), strength, rng, torque=kinetic_torque,
+        stiffness=stiffness,
+    )  # fmt: skip
+    return Effect(
+        "unknown_effect", Stage(row["stage"]), ("plain",), _STRENGTH, "strength", **acting
+    )

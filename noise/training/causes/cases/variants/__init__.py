@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import inspect
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib import resources
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ from sim.effects import EFFECTS
 from sim.effects.effect import Effect
 from sim.parameters import Parameter
 
-__all__ = ["VARIANTS", "Recipe", "draw_variant"]
+__all__ = ["VARIANTS", "Recipe", "draw_variant", "made"]
 
 Recipe = Callable[[float, np.random.Generator], Effect]
 """Of a strength from 0 to 1, and a generator."""
@@ -31,13 +32,46 @@ _TABLE = tomllib.loads((resources.files(__package__) / "variants.toml").read_tex
 _MODULES = (chain, contact, drive, pulses, sensors)
 
 
+def made(
+    make: str,
+    specs: Mapping[str, Any],
+    modules: Sequence[ModuleType],
+    strength: float,
+    rng: np.random.Generator,
+    **known: Any,
+) -> dict[str, Any]:
+    """Make what an effect acts by: of drawn numbers, and of what is known and asked for.
+
+    Parameters
+    ----------
+    make : str
+        A function of one of the modules.
+    specs : mapping
+        What is drawn, as the tables explain it.
+    modules : sequence of module
+    strength : float
+        [-]
+    rng : numpy.random.Generator
+    **known
+        Given to a function that has such a parameter.
+
+    Returns
+    -------
+    dict of str to object
+        Hooks of an `sim.effects.effect.Effect`.
+    """
+    (function,) = (getattr(module, make) for module in modules if hasattr(module, make))
+    asked = inspect.signature(function).parameters
+    given = {name: value for name, value in known.items() if name in asked}
+    acting: dict[str, Any] = function(strength, **given, **draw_numbers(specs, rng))
+    return acting
+
+
 def _drawn(name: str, row: Mapping[str, Any], strength: float, rng: np.random.Generator) -> Effect:
     """Draw the numbers of a row, and make its effect of them."""
     given = {key: spec for key, spec in row.items() if key not in ("form", "make")}
     given |= {k: v for k, v in _TABLE["draws"].get(row["make"], {}).items() if k not in row}
-    (make,) = (getattr(m, row["make"]) for m in _MODULES if hasattr(m, row["make"]))
-    form = {"form": row["form"]} if "form" in inspect.signature(make).parameters else {}
-    acting = make(strength, **form, **draw_numbers(given, rng))
+    acting = made(row["make"], given, _MODULES, strength, rng, form=row["form"])
     own = {"strength": Parameter(strength, "", 0.0, 1.0, "nothing at 0")}
     return Effect(name, EFFECTS[name].stage, (row["form"],), own, "strength", **acting)
 

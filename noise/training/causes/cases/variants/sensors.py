@@ -27,7 +27,7 @@ _DEEPEST = 0.9
 """Share of the peak that is cut off at strength 1."""
 
 
-def _on_signals(a: float, change: Callable[[Signals, float, Rng], Signals]) -> dict[str, Any]:
+def on_signals(a: float, change: Callable[[Signals, float, Rng], Signals]) -> dict[str, Any]:
     """Change all signals at once."""
 
     def sensors(signals: Signals, rate: float, _form: str, _values: Any, rng: Rng) -> Signals:
@@ -47,7 +47,7 @@ def _on_channels(
             for channel, x in signals.items()
         }
 
-    return _on_signals(a, changed)
+    return on_signals(a, changed)
 
 
 def _added(
@@ -72,7 +72,7 @@ def _added(
             changed[channel] = signals[channel] + louder * shares[channel] * added
         return changed
 
-    return _on_signals(a, change)
+    return on_signals(a, change)
 
 
 def noisy(
@@ -165,7 +165,7 @@ def following(a: float, levels: Array, exponent: float) -> dict[str, Any]:
             changed[channel] = x + shares[channel] * np.abs(x - x.mean()) * (z / z.std())
         return changed
 
-    return _on_signals(a, change)
+    return on_signals(a, change)
 
 
 def hums(
@@ -225,7 +225,7 @@ def multiplying_hum(a: float, once: float, frequency: float, levels: Array) -> d
         hum = np.sin(2.0 * np.pi * turns)
         return {name: x * (1.0 + shares.get(name, 0.0) * hum) for name, x in signals.items()}
 
-    return _on_signals(a, change)
+    return on_signals(a, change)
 
 
 def _factor(sense: float, a: float) -> float:
