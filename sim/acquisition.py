@@ -236,7 +236,7 @@ def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
     >>> decimate(np.linspace(0.0, 9.0, 10), 3).round(9)
     array([0., 3., 6., 9.])
     """
-    if factor == 1:
+    if factor == 1 or signal.size == 1:
         return signal
     taps = anti_alias_filter(factor)
     return np.asarray(resample_poly(signal, 1, factor, window=taps, padtype="line"), np.float64)

@@ -22,8 +22,7 @@ from sim.parameters import resolve
 from sim.shaft import ShaftMotion
 from sim.solvers.contact_rates import N_MOTION
 from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook
-from sim.solvers.stick_slip import advance_stick_slip, rest_state
-from sim.solvers.stick_slip_kernel import DIRECTION
+from sim.solvers.stick_slip import DIRECTION, advance_stick_slip, rest_state
 
 STICK_SPEED_SHARE = 0.05
 """The contact counts as stuck while it slides slower than this share of the shaft's speed."""

@@ -6,8 +6,6 @@ from argparse import Namespace
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError
-from models.schema import did_you_mean
 from noise.commands.options import Option, seed
 
 if TYPE_CHECKING:
@@ -30,17 +28,12 @@ OPTIONS = (
 def run(options: Namespace) -> int:
     """Print the effects."""
     from sim.effects import EFFECTS
-    from sim.effects.effect import Stage
+    from sim.effects.effect import Stage, effect_named
 
-    for name in options.names:
-        if name not in EFFECTS:
-            raise ParameterError(
-                f"effect {name!r} is unknown{did_you_mean(name, EFFECTS)}; there are "
-                f"{', '.join(EFFECTS)}"
-            )
     along = list(Stage).index
     effects = sorted(
-        (EFFECTS[name] for name in options.names or EFFECTS), key=lambda one: along(one.stage)
+        (effect_named(name, EFFECTS) for name in options.names or EFFECTS),
+        key=lambda one: along(one.stage),
     )
     print("\n\n".join(_described(one) for one in effects))
     return 0

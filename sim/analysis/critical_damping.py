@@ -10,11 +10,12 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from models.errors import ParameterError
-from models.rig import Rig
+from models.rig import Fit, Rig
+from models.schema import declared
 from sim.analysis.critical_speeds import regime_at
 from sim.analysis.regime import Regime
 
-_LEAST = 1e-9
+_LEAST = declared(Fit)["damping"].value.low
 """Of a fit [Nm s/rad]."""
 
 _STEP = 0.01

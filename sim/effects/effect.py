@@ -15,6 +15,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
+from models.schema import did_you_mean
 from models.show import short_repr
 from sim.parameters import Parameter, resolve
 
@@ -179,11 +180,7 @@ def activated(specs: tuple[LawSpec, ...], effects: Mapping[str, Effect]) -> list
     found: list[ActiveEffect] = []
     names = [spec.name for spec in specs]
     for spec in specs:
-        effect = effects.get(spec.name) or _condition_effect(spec.name)
-        if effect is None:
-            raise ParameterError(
-                f"effect {spec.name!r} is unknown; there are {', '.join(sorted(effects))}"
-            )
+        effect = effect_named(spec.name, effects)
         if names.count(spec.name) > 1:
             raise ParameterError(f"effect {spec.name!r} is named {names.count(spec.name)} times")
         active = effect.active(spec.parameters)
@@ -192,11 +189,24 @@ def activated(specs: tuple[LawSpec, ...], effects: Mapping[str, Effect]) -> list
     return found
 
 
-def _condition_effect(name: str) -> Effect | None:
-    """Return what a condition adds to a rig's effects, which no library has."""
+def effect_named(name: str, effects: Mapping[str, Effect]) -> Effect:
+    """Return an effect by its name, or what a condition adds to a rig's, which no library has.
+
+    Raises
+    ------
+    ParameterError
+        There is none; the message has those that there are.
+    """
+    if name in effects:
+        return effects[name]
     from sim.temperature import FRICTION_SHIFT  # itself an effect
 
-    return FRICTION_SHIFT if name == FRICTION_SHIFT.name else None
+    if name == FRICTION_SHIFT.name:
+        return FRICTION_SHIFT
+    raise ParameterError(
+        f"effect {name!r} is unknown{did_you_mean(name, sorted(effects))}; there are "
+        f"{', '.join(sorted(effects))}"
+    )
 
 
 def begun(effects: Sequence[ActiveEffect], seed: int) -> Memories:

@@ -1,6 +1,7 @@
 """Friction laws, one a file: a new law is a file with a ``LAW`` that is named as the file is."""
 
 from models.errors import ParameterError
+from models.schema import did_you_mean
 from sim.friction.law import FrictionLaw
 from sim.parameters import Library
 
@@ -24,5 +25,8 @@ def friction_law(name: str) -> FrictionLaw:
     {}
     """
     if name not in LAWS:
-        raise ParameterError(f"friction law {name!r} is unknown; there are {', '.join(LAWS)}")
+        raise ParameterError(
+            f"friction law {name!r} is unknown{did_you_mean(name, LAWS)}; there are "
+            f"{', '.join(LAWS)}"
+        )
     return LAWS[name]
