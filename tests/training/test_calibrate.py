@@ -1,8 +1,6 @@
 """The search that found the fluorocarbon, and what it may claim."""
 
 import math
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -11,8 +9,8 @@ import pytest
 from models.condition import FIXED
 from models.rig_file import load_material_rig, load_rig
 from noise.identification.table_fit import fit_table, score_table
-from noise.training.calibrate.report import material_toml, measured_speeds, speeds_page
-from noise.training.calibrate.thesis_table import CELLS, SPEEDS_ALONE, THESIS_TABLE, THIN_CELLS
+from noise.training.calibrate.report import material_toml, measured_speeds
+from noise.training.calibrate.thesis_table import CELLS, SPEEDS_ALONE, THESIS_TABLE
 from noise.training.calibrate.unknowns import MEAN_TORQUE, UNKNOWNS, rig_of, start, values_at
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
@@ -21,14 +19,6 @@ from sim.shaft import ConstantSpeed
 @pytest.fixture(scope="module")
 def rig():
     return replace(load_material_rig("fluorocarbon"), effects=())
-
-
-def test_the_cells_are_tables_5_1_and_5_2_at_two_interferences():
-    assert len(CELLS) == 6
-    assert {cell.interference for cell in CELLS} == {0.279e-3}
-    assert {cell.interference for cell in THIN_CELLS} == {0.178e-3}
-    assert CELLS[0].value == 4.5
-    assert str(CELLS[5]) == "v_crit2 at 0.279 mm, fixed"
 
 
 def test_every_unknown_starts_inside_its_limits():
@@ -62,14 +52,6 @@ def test_torque_at_5_rad_s_is_held_whatever_the_unknowns():
     assert motion.torque[-1] == pytest.approx(MEAN_TORQUE, rel=1e-3)
 
 
-def test_torques_of_the_thin_fit_follow_the_mean_torques_and_those_of_the_tight_are_its_own():
-    values = values_at(start()) | {"tight_kinetic": 30.0, "tight_drop": 12.0}
-    thin, middle, tight = rig_of(values).fits
-    assert thin.critical_torque == pytest.approx(0.5 * middle.critical_torque)
-    assert tight.kinetic_torque == 30.0
-    assert tight.critical_torque == 42.0
-
-
 def test_the_shipped_material_is_where_the_search_starts(rig):
     made = rig_of(values_at(start()))
     assert made.friction.parameters == pytest.approx(dict(rig.friction.parameters), rel=2e-3)
@@ -81,14 +63,6 @@ def test_the_shipped_material_is_where_the_search_starts(rig):
 def test_values_that_leave_no_kinetic_torque_make_no_rig_and_cost_much():
     assert rig_of(values_at(start()) | {"weakening": 50.0, "weakening_speed": 200.0}) is None
     assert score_table(None, THESIS_TABLE).cost > 50.0
-
-
-def test_a_number_left_out_costs_nothing(rig):
-    whole = score_table(rig, SPEEDS_ALONE)
-    part = score_table(rig, [number for number in SPEEDS_ALONE if number != CELLS[5]])
-    assert CELLS[5] not in part.found
-    assert all(part.found[cell] == whole.found[cell] for cell in CELLS[:5])
-    assert whole.cost - part.cost == pytest.approx(20.0 * (whole.rms(CELLS) - part.rms(CELLS[:5])))
 
 
 def test_rubbers_a_tenth_away_from_the_shipped_one_cost_much_more():
@@ -104,11 +78,6 @@ def test_the_searchs_critical_speeds_are_those_reported_to_a_step_of_its_grid(ri
     assert abs(math.log(seen[cell] / reported)) < 0.13
 
 
-def test_error_page_is_the_rms_of_the_logarithms():
-    speeds = {CELLS[0]: 4.5 * math.e, CELLS[1]: 2.6}
-    assert f"log-rms error {math.sqrt(0.5):.3f}" in speeds_page("Fitted", speeds)
-
-
 def test_what_is_written_is_read_back_as_the_same_bushing(rig, tmp_path):
     path = tmp_path / "found.toml"
     path.write_text(material_toml(rig))
@@ -118,14 +87,6 @@ def test_what_is_written_is_read_back_as_the_same_bushing(rig, tmp_path):
     for mine, its in zip(rig.fits, read.fits, strict=True):
         assert its.critical_torque == pytest.approx(mine.critical_torque, rel=1e-3)
         assert dict(its.damping) == pytest.approx(dict(mine.damping), rel=1e-3)
-
-
-def test_command_explains_itself():
-    answer = subprocess.run(
-        [sys.executable, "-m", "noise.training.calibrate", "--help"], capture_output=True, text=True
-    )
-    assert answer.returncode == 0
-    assert "--leave-out" in answer.stdout
 
 
 @pytest.mark.slow

@@ -5,7 +5,6 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from models.errors import ParameterError
 from noise.classifier import LABELS
 from noise.noise_definition import label_by_physics
 from noise.training.classifier.bushings import random_run, stretch
@@ -41,21 +40,6 @@ def test_every_piece_of_a_run_of_varying_speed_has_the_label_of_the_whole(runs):
     assert varying
 
 
-def test_a_stretch_is_the_part_of_the_run(runs):
-    run = runs[0].run
-    part = stretch(run, 0.1, 0.3)
-    first, last = round(0.1 * run.motion.rate), round(0.3 * run.motion.rate)
-    assert np.array_equal(part.motion.torque, run.motion.torque[first:last])
-    assert np.array_equal(part.pressure, run.pressure[first:last])
-
-
-def test_the_noise_of_a_bushing_that_makes_none_is_not_lifted_out_of_silence(runs):
-    silent = next(d for d in runs if d.label == "none")
-    recording, _ = bushing_recording(silent, np.random.default_rng(0))
-    assert np.isfinite(recording.samples).all()
-    assert all(row.std() > 0.0 for row in recording.samples)
-
-
 def test_a_bushings_sample_tells_the_condition_it_was_simulated_at(runs):
     for drawn in runs:
         recording, span = bushing_recording(drawn, np.random.default_rng(1))
@@ -78,27 +62,10 @@ def test_extras_are_admitted_by_their_effects():
 def test_every_source_gives_a_recording_of_its_label_and_again_the_same(source):
     drawn, again = (draw_from(source, np.random.default_rng(4)) for _ in range(2))
     assert drawn.recording.samples.tobytes() == again.recording.samples.tobytes()
-    assert (drawn.recording.rate, drawn.label, drawn.span) == (
-        again.recording.rate,
-        again.label,
-        again.span,
-    )
-    assert drawn.source == source
+    assert (drawn.label, drawn.span) == (again.label, again.span)
     assert drawn.label in LABELS
-    assert drawn.condition is None
     assert drawn.recording.channel_names == ("pressure",)
-    assert 0.5 < drawn.span[1] - drawn.span[0] <= drawn.recording.duration + 1e-6 < 5.1
-
-
-def test_the_same_generator_gives_the_same_bushing():
-    first, again = (draw_from("bushing", np.random.default_rng(11)) for _ in range(2))
-    assert first.recording.samples.tobytes() == again.recording.samples.tobytes()
-    assert first.condition == again.condition
-
-
-def test_an_unknown_source_is_refused():
-    with pytest.raises(ParameterError, match="ghost"):
-        draw_from("ghost", np.random.default_rng(0))
+    assert 0.0 <= drawn.span[0] < drawn.span[1] <= drawn.recording.duration + 1e-6 < 5.1
 
 
 def test_groups_come_in_their_shares(monkeypatch):

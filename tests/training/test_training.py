@@ -11,7 +11,6 @@ from noise.classifier.model import has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES
 from noise.training.classifier import cross_fitting
 from noise.training.classifier.described_samples import draw_sample
-from noise.training.classifier.designs import random_design
 from noise.training.classifier.fit import learn, load_real_sounds, train
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
 from noise.training.classifier.surroundings import may_sound
@@ -82,12 +81,6 @@ def test_too_few_samples_to_know_every_label_are_refused():
 
 def test_every_label_occurs_among_the_samples(samples):
     assert {sample.label for sample in samples} == set(LABELS)
-
-
-def test_designs_differ_and_can_be_drawn_again():
-    first, again, other = (random_design(np.random.default_rng(s)) for s in (1, 1, 2))
-    assert first == again
-    assert first != other
 
 
 def test_own_samples_are_learned_beside_the_others_and_scored_before_and_after(samples):
