@@ -100,11 +100,6 @@ def valid(tmp_path_factory):
         (folder / name).write_text(text, encoding="utf-8")
     write_diagnosis(folder / "diagnosis", one_effect())
     shutil.move(folder / "diagnosis" / "diagnosis.json", folder / "diagnosis.json")
-    sound = base64.b64encode((folder / "pcm.flac").read_bytes()).decode()
-    (folder / "report.html").write_text(
-        '<html><script data-recording="run.wav" data-role="measured" data-full-scale="1.0">\n'
-        f"{sound}</script></html>"
-    )
     rows = [row("given.wav", "creak", 0.0, 0.02), row("given.wav", "none", 0.02, 0.05)]
     for ending in (".csv", ".jsonl", ".parquet", ".xlsx"):
         write_table(folder / f"labels{ending}", list(rows[0]), rows)
@@ -175,7 +170,6 @@ CALLS = {
         "effects.py", "given.py", f"simulate --effects GIVEN --effect zero_offset {BRIEF}", {},
     ),
     "diagnosis": ("diagnosis.json", "diagnosis.json", REVIEW, {}),
-    "report": ("report.html", "report.html", REVIEW, {"diagnosis.json": "diagnosis.json"}),
     "hit.npy": ("hit.npy", "given.npy", "frf GIVEN --out out.npz", {}),
     "hit.csv": ("hit.csv", "given.csv", "frf GIVEN --out out.npz", {}),
     "classifier": ("classifier.npz", "given.npz", "label run.wav --classifier GIVEN", RUN),

@@ -38,7 +38,7 @@ async function show(name) {
   history.replaceState(null, "", `${location.pathname}#${name}`);
   if (!mounted[name]) {
     mounted[name] = import(`./${name}/view.js`).then((view) => view.mount(panelOf(name)));
-    mounted[name].catch((error) => told(`this view does not start: ${error.message}`));
+    mounted[name].catch((error) => told(`This view could not start: ${error.message}`));
   }
   const view = await mounted[name];
   if (shown !== name) { // another one was chosen meanwhile

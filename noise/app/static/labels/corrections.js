@@ -52,7 +52,7 @@ export class Corrections extends EventTarget {
   async seen({ id, version }) {
     if (id !== this.id || !this.saved || this.working || version === this.versions.get(id)) return;
     const wereNone = !this.rows.length;
-    if (await this.#read() && !wereNone) this.tell("changed elsewhere: shown as they are now");
+    if (await this.#read() && !wereNone) this.tell("labels were changed elsewhere; the current ones are shown");
   }
 
   get tracks() { return [...new Set(this.rows.map((row) => row.channel))]; }
@@ -118,7 +118,7 @@ export class Corrections extends EventTarget {
   }
 
   writeAll(all, kind = null) {
-    if (!this.saved) return this.tell("not changed: its labels are still being read");
+    if (!this.saved) return this.tell("not changed: the labels are still loading");
     this.#show(all);
     const { id, name, rows } = this, last = this.queue.at(-1);
     if (kind !== null && last?.kind === kind && last.id === id) last.rows = rows;
@@ -130,7 +130,7 @@ export class Corrections extends EventTarget {
   inTurn(act) {
     const { id, undoing } = this;
     if (!undoing) return act();
-    return undoing.then(() => (id === this.id ? this.inTurn(act) : this.tell("not changed: another recording is open by now")));
+    return undoing.then(() => (id === this.id ? this.inTurn(act) : this.tell("not changed: another recording is open now")));
   }
 
   // Undo the last change, or redo what was undone last; the number of its recording comes of it, null where there is none.

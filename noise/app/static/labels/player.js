@@ -127,8 +127,8 @@ export class RecordingPlayer extends Player {
     } else if (heard.some((sound) => sound.calibrated) && this.fullScale !== null) {
       said.push(`Calibrated sounds share one gain: full scale = ${this.fullScale} Pa (${(20 * Math.log10(this.fullScale / 2e-5)).toFixed(0)} dB peak re 20 µPa)`);
     }
-    if (heard.some((sound) => sound.kind === "pressure" && !sound.calibrated && !equal(sound))) said.push("not calibrated: played as it is in the file");
-    if (heard.some((sound) => sound.kind !== "pressure" && !equal(sound))) said.push("no sound pressure: played at a gain of its own");
+    if (heard.some((sound) => sound.kind === "pressure" && !sound.calibrated && !equal(sound))) said.push("not calibrated: played as in the file");
+    if (heard.some((sound) => sound.kind !== "pressure" && !equal(sound))) said.push("no sound pressure: scaled to be audible");
     if (this.band) said.push(`heard from ${this.band.low.toFixed(0)} to ${this.band.high.toFixed(0)} Hz`);
     return said.join("; ");
   }

@@ -285,6 +285,6 @@ export class RecordingPage {
   // What is done before a recording is there would be done to another.
   #act(action, event) {
     if (this.sound) action(event);
-    else if (this.id !== undefined) this.parts.saved.textContent = "not done: the recording is still being read";
+    else if (this.id !== undefined) this.parts.saved.textContent = "not done: the recording is still loading";
   }
 }
