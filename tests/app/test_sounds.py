@@ -15,7 +15,6 @@ from noise.app.opened import open_paths
 from noise.app.sounds import (
     SoundCache,
     bands,
-    equal,
     level_course,
     line,
     outline,
@@ -84,13 +83,6 @@ def test_levels_are_those_of_the_meter_of_all_tables(sounds):
     found = bands(track, {"start": "0.5", "end": "1.5"})
     assert found["level_a"] == pytest.approx(93.98, abs=0.05)
     assert found["third_octaves"]["1000"] == pytest.approx(93.98, abs=0.05)
-
-
-def test_what_is_ten_times_as_large_is_20_lu_louder(sounds):
-    loud = equal(sounds.track(0), {})
-    assert loud["peak"] == pytest.approx(np.sqrt(2.0), rel=1e-3)
-    assert loud["loudness"] == pytest.approx(0.0, abs=0.1)  # 0 dB re 1 Pa; K is 0 dB at 1 kHz
-    assert equal(sounds.track(1), {})["loudness"] is None  # shorter than a block has none
 
 
 @pytest.mark.parametrize(

@@ -302,20 +302,3 @@ def test_a_sound_beyond_full_scale_is_clipped_and_does_not_wrap():
     clips, _ = make_clips({"s1": Entry("run", duration=1.0, sound=2.0 * TONE_48)}, Gain(1.0, None))
     heard, _ = soundfile.read(io.BytesIO(clips["s1"].flac))
     assert np.abs(heard - np.clip(2.0 * TONE_48, -1.0, 1.0)).max() < 2.0**-14
-
-
-def test_recordings_of_two_tables_are_told_apart_by_their_folders(tmp_path):
-    for day in ("monday", "tuesday"):
-        write_recording(tmp_path / day / "run01", recording("squeal"))
-        (tmp_path / day / "labels.csv").write_text("file,label\nrun01.wav,creak\n")
-    tables = [tmp_path / day / "labels.csv" for day in ("monday", "tuesday")]
-    page = Page(review(tables, tmp_path / "page.html").path)
-    assert {one["title"] for one in page.about.values()} == {
-        "monday/run01.wav", "tuesday/run01.wav"
-    }  # fmt: skip
-
-
-@pytest.mark.parametrize("number", ["2.5", "-1", "1001", "many"])
-def test_a_number_of_sounds_that_is_none_is_refused(tmp_path, capsys, number):
-    assert main(["review", str(tmp_path), "--out", "page", f"--simulated={number}"]) == 2
-    assert "--simulated" in capsys.readouterr().err

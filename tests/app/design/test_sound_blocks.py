@@ -114,22 +114,6 @@ def test_what_cannot_be_carried_to_the_microphone_is_told_once_of_each_change(pl
     assert told(player.block(1))[0] is None
 
 
-def test_blocks_are_due_one_after_the_other_and_sooner_where_somebody_asks(player):
-    assert player.due(0.0) is None
-    player.start(7, 0, setting(PLAIN))
-    assert player.due(5.0) == (0.0, 7)
-    player.block(7)
-    assert player.due(6.0) == (0.0, 7)
-    player.block(7)
-    assert player.due(6.0) == (pytest.approx(BLOCK / RATE), 7)
-    player.sooner(7, 0.5 * BLOCK / RATE)
-    assert player.due(6.0) == (pytest.approx(0.5 * BLOCK / RATE), 7)
-    assert player.due(60.0) == (0.0, 7)  # who is that late has no more to catch up with
-    assert player.due(60.0 + BLOCK / RATE) == (0.0, 7)
-    player.stop(7)
-    assert player.due(60.0) is None
-
-
 @pytest.mark.parametrize(
     "said",
     [

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import time
 
 import pytest
 
-from models.errors import ParameterError
 from noise.app.design import design_of
 from noise.app.design_chart import SuggestionRequest, suggestions_of
 from noise.app.design_controls import bases_of
@@ -56,12 +54,3 @@ def test_the_change_that_is_suggested_ends_the_noise():
     )
     assert quiet["noise"] == "none"
     assert quiet["changes"] == []
-
-
-def test_the_speed_at_which_help_is_asked_for_is_that_which_is_heard():
-    run_up = setting({"motion": "run_up"})
-    assert SuggestionRequest.of(run_up, {"speed": -6.5}).speed == 6.5
-    assert SuggestionRequest.of(setting({"speed": -3.0}), {}).speed == 3.0
-    for wrong in ("fast", math.nan, 1e9):
-        with pytest.raises(ParameterError, match="speed"):
-            SuggestionRequest.of(run_up, {"speed": wrong})

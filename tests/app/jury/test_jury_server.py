@@ -64,20 +64,6 @@ def test_a_jury_is_asked_without_a_name_and_heard_at_one_gain(app, folder):
             assert level == pytest.approx(0.5 ** NAMES.index(name) / np.sqrt(2.0), rel=0.01)
 
 
-def test_votes_are_answered_by_what_is_next_and_undone(app, folder):
-    begun = app.json("api/juries", ASKED | {"listener": "L. Istener"})
-    one = f"api/juries/{begun['jury']}"
-    vote = {"place": 0, "vote": "second", "seconds": 2.5}
-    assert app.json(f"{one}/vote", vote)["waiting"] == 1
-    status, said = app.request(f"{one}/vote", vote)  # pressed twice
-    assert (status, b"not the one whose turn it is" in said) == (400, True)
-    assert app.request(f"{one}/undo", {"place": 1})[0] == 400
-    assert app.request(f"{one}/undo", {})[0] == 400
-    assert app.json(f"{one}/undo", {"place": 0})["waiting"] == 0
-    assert app.request(f"{one}/undo", {"place": 0})[0] == 400
-    assert begun["total"] == 6
-
-
 @pytest.mark.parametrize(
     ("said", "told"),
     [
@@ -100,17 +86,3 @@ def test_what_cannot_be_compared_is_said_and_begins_nothing(app, said, told):
     assert status == 400
     assert told in answer.decode()
     assert len(app.json("api/juries")["juries"]) == before
-
-
-def test_a_jury_whose_sounds_are_gone_keeps_its_result(app, folder, tmp_path):
-    names = ("a.wav", "b.wav")
-    write_tones(tmp_path, names)
-    with opened_app(tmp_path) as first:
-        first.json("api/juries", {"sounds": [0, 1], "question": "?"})
-        first.json("api/juries/1/vote", {"place": 0, "vote": "first", "seconds": 1})
-    (tmp_path / "a.wav").unlink()
-    with opened_app(tmp_path) as second:
-        assert not second.json("api/juries")["juries"][0]["open"]
-        status, said = second.request("api/juries/1")
-        assert (status, said.decode().count("a.wav: is not open")) == (400, 1)
-        assert len(second.json("api/juries/1/result")["sounds"]) == 2

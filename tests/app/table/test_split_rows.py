@@ -14,20 +14,7 @@ from noise.labels.summary import ASSUMED
 from noise.labels.table import COLUMNS
 from noise.recordings import write_recording
 from tests.helpers.corrected_table import correct, labels_of
-from tests.helpers.labelled_folder import made_row as row, write_folder
-
-
-def test_a_segment_with_new_borders_has_the_numbers_that_label_would_give_it(tmp_path):
-    time = np.arange(48_000) / 16_000.0
-    tone = np.where(time < 1.5, 0.01, 1.0) * np.sin(2.0 * np.pi * 800.0 * time)
-    write_recording(tmp_path / "a.wav", Recording(tone[None], 16_000.0, (Channel("pressure"),)))
-    write_folder(tmp_path, (), [row("a.wav", end=3.0, level_db=88.0, frequency_hz=None)])
-    quiet, loud = correct(
-        labels_of(tmp_path), 0, [Correction(0.0, 1.5, "none"), Correction(1.5, 3.0, "squeal")]
-    )
-    assert loud["level_db"] - quiet["level_db"] == pytest.approx(40.0, abs=0.1)
-    assert loud["level_db"] == pytest.approx(90.97, abs=0.02)
-    assert loud["frequency_hz"] == pytest.approx(800.0, rel=0.01)
+from tests.helpers.labelled_folder import made_row as row
 
 
 def logged_run(path, seconds):
