@@ -45,7 +45,7 @@ DESCRIPTION = (
     "it has started. The tables hold critical speeds with their margins to the use, and the "
     "change that ends the loudest noise. Each such change is verified by long runs, from rest "
     "and from the running noise. Tolerances give the probability that a part is noisy. Only "
-    "boundaries are simulated finely; the output says how each point is known. A design is a rig "
+    "boundaries are simulated finely; map.csv says how each point is known. A design is a rig "
     "file with the tables [design] and [tolerances], or the name of a material. The ranking, by "
     "mean loudness, is printed."
 )

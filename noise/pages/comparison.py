@@ -1,7 +1,7 @@
 """Designs compared: their maps side by side over the same axes, and what a script needs for more.
 
-The page itself draws which noise occurs where; its script draws from the same cells how loud it is,
-how each point is known, and what differs between any two designs. Each look has words, or a number,
+The page itself draws which noise occurs where; its script draws from the same cells how loud it is
+and what differs between any two designs. Each look has words, or a number,
 on the map as well, so that nothing is told by colour alone.
 """
 
@@ -64,35 +64,8 @@ DIFFERENCES = {
 }
 """Of a design against another."""
 
-WAYS = {
-    "simulated": Look("#41719c", "#1d3a55", "plain", "simulated"),
-    "refined": Look(
-        "#f3e2b0", "#a58a3c", "stripes",
-        "interpolated between simulated points of one noise",
-    ),
-    "unchanged": Look(
-        "#dcdfe8", "#767d92", "dots", "as at another temperature or fit"
-    ),
-}  # fmt: skip
-"""By how a point is known."""
-
-SAID = {"refined": "interpolated", "unchanged": "as elsewhere"}
-"""In short, how a point is known whose way of knowing does not say it."""
-
-SUBSTITUTED = Look("none", "#1d2329", "stripes", "the design has no data of its own there")
-"""Over the look of how a point is known."""
-
-
-def way_look(how: str) -> Look:
-    """Return the look of a way of knowing, also of one that no page has heard of.
-
-    Examples
-    --------
-    >>> way_look("simulated").mark, way_look("guessed").mark
-    ('simulated', 'guessed')
-    """
-    return WAYS.get(how, Look("#f6f6f6", "#55606b", "crosses", how or "not told"))
-
+_SAID = {"refined": "interpolated", "unchanged": "as at another temperature or fit"}
+"""How a point is known, where its name in the table does not say it."""
 
 _MOST_OPEN = 4
 """Comparisons that are unfolded when the page opens."""
@@ -111,7 +84,7 @@ class Place:
     maps : tuple of ConditionMap
         One a design; where there are several, one more for a script to draw their difference on.
     cells : dict
-        For the script: where the cells end, and of each design label, level and how it is known.
+        For the script: where the cells end, and label and level of each design.
     note : str
     """
 
@@ -133,14 +106,11 @@ class Compared:
         One an environment, motion, temperature and support.
     pair : tuple of int
         Numbers of the designs that are compared until others are chosen.
-    ways : tuple of str
-        How points are known.
     """
 
     names: tuple[str, ...]
     places: tuple[Place, ...]
     pair: tuple[int, int]
-    ways: tuple[str, ...]
     most_open: int = _MOST_OPEN
 
     @property
@@ -157,8 +127,7 @@ class Compared:
     @property
     def looks(self) -> dict[str, Look]:
         """Of all that is drawn."""
-        ways = {f"how-{n}": way_look(how) for n, how in enumerate(self.ways)}
-        return LABEL_LOOKS | LEVELS | DIFFERENCES | ways | {"substituted": SUBSTITUTED}
+        return LABEL_LOOKS | LEVELS | DIFFERENCES
 
     @property
     def keys(self) -> list[tuple[str, str, list[tuple[str, str]]]]:
@@ -166,9 +135,6 @@ class Compared:
         looks = self.looks
         kinds = {
             "level": ("L_Aeq in dB(A):", list(LEVELS)),
-            "how": (
-                "How a point is known:", [key for key in looks if key.startswith(("how", "sub"))]
-            ),
             "difference": ("Difference, B against A:", list(DIFFERENCES)),
         }  # fmt: skip
         if len(self.names) < 2:
@@ -185,7 +151,6 @@ class Compared:
             "names": self.names,
             "labels": MAP_LABELS,
             "steps": LEVEL_STEPS,
-            "said": [SAID.get(how, how) for how in self.ways],
             "pair": self.pair,
             "places": [one.cells for one in self.places],
         }
@@ -257,8 +222,6 @@ def compare_designs(
             continue
         keys[i, own.speed, own.interference] = key = f"m{len(heard) + 1}"
         heard[key] = entry
-    known = {point.how for one in maps for point in one.points}
-    ways = sorted(known, key=lambda how: (list(WAYS).index(how) if how in WAYS else 9, how))
     laid = tuple(
         _laid_out(
             [maps[i] for i in members],
@@ -269,13 +232,12 @@ def compare_designs(
             ],
             [silent.get(i, "") for i in members],
             len(names),
-            ways,
         )
         for members, points in zip(places, chosen, strict=True)
     )
     first, second = pair or (names[0], names[min(1, len(names) - 1)])
     at = names.index(first), names.index(second)
-    return Compared(tuple(names), laid, at, tuple(ways)), heard
+    return Compared(tuple(names), laid, at), heard
 
 
 def _places(maps: Sequence[ScreenMap]) -> list[list[int]]:
@@ -305,7 +267,6 @@ def _laid_out(
     heard: Sequence[tuple[SharedPoint, tuple[str, ...]]],
     silent: Sequence[str],
     n_designs: int,
-    ways: Sequence[str],
 ) -> Place:
     """Lay maps out whose designs have these numbers."""
     cells = common_cells(
@@ -343,17 +304,16 @@ def _laid_out(
         "x": [round(MAP_SIZE[0] * across.share(float(x)), 2) for x in cells[0].speed_edges],
         "y": [round(height * (1 - up.share(float(y))), 2) for y in cells[0].interference_edges],
         "designs": {
-            str(number): _cell_values(one, of, ways)
+            str(number): _cell_values(one, of)
             for one, of, number in zip(maps, cells, designs, strict=True)
         },
     }
     return Place(maps[0].where, tuple(laid), values, _note(maps, heard))
 
 
-def _cell_values(one: ScreenMap, cells: Cells, ways: Sequence[str]) -> dict[str, object]:
-    """Label, level and how it is known of each cell, the lowest row first."""
+def _cell_values(one: ScreenMap, cells: Cells) -> dict[str, object]:
+    """Label and level of each cell, the lowest row first."""
     points = [one.points[i] if i >= 0 else None for i in cells.point.ravel().tolist()]
-    notes = list(dict.fromkeys(["", *(point.note for point in one.points)]))
     return {
         # Numbers of labels; -1 where it was not screened.
         "label": [-1 if point is None else MAP_LABELS.index(point.label) for point in points],
@@ -361,9 +321,6 @@ def _cell_values(one: ScreenMap, cells: Cells, ways: Sequence[str]) -> dict[str,
             None if point is None or point.level is None else round(point.level, 1)
             for point in points
         ],
-        "how": [-1 if point is None else ways.index(point.how) for point in points],
-        "notes": notes,
-        "note": [0 if point is None else notes.index(point.note) for point in points],
     }
 
 
@@ -424,7 +381,7 @@ def _own_note(one: ScreenMap, silent: str) -> str:
 def _note(maps: Sequence[ScreenMap], heard: Sequence[tuple[SharedPoint, tuple[str, ...]]]) -> str:
     """How many points there are, how they are known, and how many are heard."""
     counts = Counter(point.how for one in maps for point in one.points if point.how)
-    how = "; ".join(f"{n} {way_look(how).mark}" for how, n in counts.most_common())
+    how = "; ".join(f"{n} {_SAID.get(how, how)}" for how, n in counts.most_common())
     n_points = counted(max(len(one.points) for one in maps), "point")
     of_all = " of each design; of all" if len(maps) > 1 else ""
     told = [f"{n_points}{of_all}: {how}." if how else f"{n_points}{of_all[:15]}."]

@@ -1,5 +1,5 @@
 // Condition maps: a click plays what is there, or the nearest sound of the same label, and says which.
-// Of designs compared it draws levels, how points are known, and what differs between two of them, A and B.
+// Of designs compared it draws levels and what differs between two of them, A and B.
 const short = (value) => Number(value.toPrecision(3)).toString();
 const at = (spot) => [parseFloat(spot.style.left) / 100, parseFloat(spot.style.bottom) / 100];
 
@@ -51,14 +51,10 @@ const comparison = (function () {
   }
 
   function drawDesign(map, place, of) {
-    if (look === "level") {
-      const step = (cell) => data.steps.filter((one) => of.level[cell] >= one).length;
-      draw(map, place, (cell) => !has(of, cell) ? "" : !noisy(of, cell) || of.level[cell] === null ? "none" : "level-" + step(cell),
-        (key, cells) => (key === "none" ? "quiet" : levels(of, cells)));
-    } else if (look === "how") {
-      draw(map, place, (cell) => (has(of, cell) ? "how-" + of.how[cell] : ""), () => "");
-      draw(map, place, (cell) => (has(of, cell) && of.note[cell] ? "substituted" : ""), () => "");
-    }
+    if (look !== "level") return;
+    const step = (cell) => data.steps.filter((one) => of.level[cell] >= one).length;
+    draw(map, place, (cell) => !has(of, cell) ? "" : !noisy(of, cell) || of.level[cell] === null ? "none" : "level-" + step(cell),
+      (key, cells) => (key === "none" ? "quiet" : levels(of, cells)));
   }
 
   // What B does against A in a cell.
@@ -110,8 +106,8 @@ const comparison = (function () {
   function says(place, design, cell) {
     const of = place.designs[design];
     if (!has(of, cell)) return "not screened";
-    const level = of.level[cell], note = of.notes[of.note[cell]];
-    return [data.labels[of.label[cell]], noisy(of, cell) && level !== null ? Math.round(level) + " dB(A)" : "", data.said[of.how[cell]] + (note ? ` (${note})` : "")].filter(Boolean).join(", ");
+    const level = of.level[cell];
+    return data.labels[of.label[cell]] + (noisy(of, cell) && level !== null ? `, ${Math.round(level)} dB(A)` : "");
   }
 
   // What designs do at a place of a map, in words, and their labels: both of the pair on its maps.
