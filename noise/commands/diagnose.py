@@ -12,8 +12,7 @@ from noise.commands.options import CHANGE, Option, changed, check_folder, seed
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
-    from noise.diagnosis.improvement import Improvement
-    from noise.diagnosis.outcome import Diagnosis
+    from noise.diagnosis.outcome import Diagnosis, Improvement
     from sim.effects.effect import Effect
 
 
@@ -101,8 +100,8 @@ def _read(options: Namespace, tell: Steps) -> tuple[Case, Mapping[str, Effect], 
 
 def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
     """Say the answer in sentences, and what of its notes was not told before."""
-    from noise.diagnosis.text.found import finding_of
     from noise.diagnosis.text.sentences import answer, closed_sentence
+    from noise.diagnosis.text.words import finding_of
 
     for sentence in answer(diagnosis):
         say(sentence)
@@ -114,7 +113,7 @@ def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
         if text not in told:
             note(text)
     if options.out is not None and diagnosis.improvement is not None:
-        from noise.diagnosis.text.improved_sentences import improved_sentence
+        from noise.diagnosis.improved_file import improved_sentence
 
         say(
             "improved.toml was fitted once more, in forms that a rig file can state and in floors "
@@ -140,7 +139,6 @@ def _write(options: Namespace, diagnosis: Diagnosis) -> list[Path]:
 
 
 def _next(options: Namespace, improvement: Improvement) -> list[str]:
-    from noise.diagnosis.improved_file import NAME
-    from noise.diagnosis.text.improved_sentences import improved_commands
+    from noise.diagnosis.improved_file import NAME, improved_commands
 
     return improved_commands(improvement, options.out / NAME, options.data, options.effects)

@@ -72,10 +72,9 @@ def _identified(options: Namespace, tell: Steps) -> tuple[Identification | None,
     """Return what was found, None where there is nothing, and whether recordings were refused."""
     tell("preparing")
     from noise.identification.identify import NothingSlipsError, identify_rig
-    from noise.identification.known import known_beforehand
-    from noise.identification.law_candidates import CANDIDATES
-    from noise.identification.measured import Measurements, read_measurements
-    from noise.identification.table_number import read_numbers
+    from noise.identification.law_model import CANDIDATES
+    from noise.identification.measured import Measurements, known_beforehand, read_measurements
+    from noise.identification.table_fit import read_numbers
 
     beforehand = known_beforehand(options.rig, change_table(options.change or ()))
     table = () if options.numbers is None else read_numbers(options.numbers)

@@ -31,9 +31,8 @@ from models.condition import FIXED, Condition, known_condition, same_support
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.recording import Recording
 from models.rig import Rig
-from noise.diagnosis.bench.channels import misplaced_torque
+from noise.diagnosis.bench.channels import length_unit, misplaced_torque
 from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
-from noise.diagnosis.bench.levels import length_unit
 from noise.diagnosis.evidence.reconstruction import reconstruct
 from noise.diagnosis.preparation.prepare import measured_speed, prepared
 from noise.diagnosis.preparation.settled_part import shortest

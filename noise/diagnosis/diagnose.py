@@ -20,22 +20,31 @@ from models.condition import known_condition
 from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
-from noise.diagnosis.bench.check import bench_findings
-from noise.diagnosis.bench.silent import unchecked_units
-from noise.diagnosis.causes.location import differences, locate, stage_findings
+from noise.diagnosis.bench.check import bench_findings, unchecked_units
+from noise.diagnosis.causes.location import (
+    StageNulls,
+    differences,
+    load_stage_nulls,
+    locate,
+    stage_findings,
+)
 from noise.diagnosis.causes.posterior import Posterior, load_posterior
-from noise.diagnosis.causes.stage_nulls import StageNulls, load_stage_nulls
 from noise.diagnosis.causes.verdict import (
     UNUSUAL,
     channel_costs,
     equivalent_pairs,
     next_measurement,
 )
-from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, StageFinding
 from noise.diagnosis.first_answer import FirstAnswer, first_answer
 from noise.diagnosis.gap.distance import Gap
 from noise.diagnosis.gap.signature import KINDS
-from noise.diagnosis.outcome import Diagnosis
+from noise.diagnosis.outcome import (
+    Agreement,
+    Diagnosis,
+    EffectFinding,
+    HypothesisFinding,
+    StageFinding,
+)
 from noise.diagnosis.text.words import joined
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage

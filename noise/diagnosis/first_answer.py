@@ -30,8 +30,7 @@ from numpy.typing import NDArray
 from models.rig import Rig
 from models.sensors import Sensors
 from models.units import CHANNEL_UNITS
-from noise.diagnosis.causes.bench_nulls import as_seldom, null_log_odds
-from noise.diagnosis.causes.posterior import CAUSES, Posterior
+from noise.diagnosis.causes.posterior import CAUSES, Posterior, as_seldom, null_log_odds
 from noise.diagnosis.causes.verdict import (
     UNUSUAL,
     Hypothesis,
@@ -42,9 +41,8 @@ from noise.diagnosis.causes.verdict import (
     unseen_causes,
     with_none,
 )
-from noise.diagnosis.evidence.bands import USABLE
-from noise.diagnosis.evidence.evidence import lacking_coherence
-from noise.diagnosis.evidence.summary import CaseTable, case_table
+from noise.diagnosis.evidence.channel_summary import USABLE
+from noise.diagnosis.evidence.summary import CaseTable, case_table, lacking_coherence
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.gap.distance import Gap
 from noise.diagnosis.simulated.model_runs import Model

@@ -1,14 +1,16 @@
-"""``diagnosis.json``: a diagnosis as JSON data, and back."""
+"""``diagnosis.json``: a diagnosis as JSON data, and back, by one table of its records."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, cast
+from dataclasses import dataclass
+from typing import Any
 
-from noise.diagnosis.findings import (
+from noise.diagnosis.outcome import (
     ROLES,
     Agreement,
+    Diagnosis,
     EffectFinding,
     HypothesisFinding,
     LabelsAndLevels,
@@ -16,13 +18,74 @@ from noise.diagnosis.findings import (
     Remainder,
     StageFinding,
 )
-from noise.diagnosis.outcome import Diagnosis
+
+
+@dataclass(frozen=True)
+class _Key:
+    """An entry of an object: its attribute, and how numbers are written."""
+
+    attribute: str
+    digits: int = 4
+    scale: float = 1.0
+    of: type | None = None
+    """Record that it is, or that it holds as values of an object or as entries of a list."""
+    optional: bool = False
+    """Whether a number may be missing; otherwise what is missing is not a number."""
+
 
 _FIGURES = (
     "gap_before", "gap_recalibrated", "gap_after", "gap_floor", "closed", "closed_low",
     "closed_high", "closed_by_effect",
 )  # fmt: skip
 """Of an effect."""
+
+_PLACE = {"channels": _Key("channels"), "band_hz": _Key("band", 1)}
+
+_KEYS: dict[type, dict[str, _Key]] = {
+    StageFinding: {name: _Key(name) for name in ("gap", "share", "p_value")},
+    Location: {"stage": _Key("stage"), **_PLACE}
+    | {name: _Key(name) for name in ("phase", "conditions", "p_value")},
+    EffectFinding: {name: _Key(name) for name in ("name", "stage", "probability")}
+    | {"parameters": _Key("parameters", 6), "strength": _Key("strength", optional=True)}
+    | {name: _Key(name, optional=True) for name in _FIGURES}
+    | {"fitted_with": _Key("fitted_with")},
+    HypothesisFinding: {
+        "causes": _Key("causes"),
+        "probability": _Key("probability"),
+        "gap_after": _Key("gap", optional=True),
+    },
+    Agreement: {
+        "recording": _Key("recording"),
+        "speed_rad_s": _Key("speed", 6),
+        "interference_mm": _Key("interference", 6, 1e3),
+        "gap": _Key("gap"),
+        "channels": _Key("channels"),
+    },
+    Remainder: {"gap": _Key("gap"), **_PLACE},
+    Diagnosis: {
+        "verdict": _Key("verdict"),
+        "equivalent": _Key("equivalent"),
+        "location": _Key("location", of=Location),
+        "map": _Key("differences", of=Location),
+        "stages": _Key("stages", of=StageFinding),
+        "effects": _Key("effects", of=EffectFinding),
+        "probabilities": _Key("probabilities"),
+        "parameters": _Key("parameters"),
+        "next_measurement": _Key("next_measurement"),
+        "held_out": _Key("held_out"),
+        "gap": _Key("gap"),
+        "gap_floor": _Key("floor"),
+        "p_value": _Key("p_value"),
+        "heard": _Key("labels_and_levels", of=LabelsAndLevels),
+        "hypotheses": _Key("hypotheses", of=HypothesisFinding),
+        "agreement": _Key("agreement", of=Agreement),
+        "remainder": _Key("remainder", of=Remainder),
+        "bench": _Key("bench"),
+        "faults": _Key("faults"),
+        "notes": _Key("notes"),
+        "seconds": _Key("seconds", 1),
+    },
+}
 
 
 def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]:
@@ -32,191 +95,74 @@ def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]
     ----------
     diagnosis : Diagnosis
     improved : str, optional
-        Name of the file beside it that holds the improved rig.
-
-    Examples
-    --------
-    >>> from noise.diagnosis.outcome import Diagnosis
-    >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
-    >>> as_json(nothing)["verdict"], as_json(nothing)["location"]
-    ([], None)
+        Name of the file of the improved rig that lies beside it.
     """
-    return {
-        "verdict": list(diagnosis.verdict),
-        "equivalent": [list(pair) for pair in diagnosis.equivalent],
-        "location": None if diagnosis.location is None else _location(diagnosis.location),
-        "map": [_location(place) for place in diagnosis.differences],
-        "stages": {
-            name: {
-                "gap": _rounded(stage.gap), "share": _rounded(stage.share),
-                "p_value": _rounded(stage.p_value),
-            }
-            for name, stage in diagnosis.stages.items()
-        },
-        "effects": [_effect(effect) for effect in diagnosis.effects],
-        "probabilities": {n: _rounded(p) for n, p in diagnosis.probabilities.items()},
-        "parameters": {
-            name: [_rounded(x) for x in interval] for name, interval in diagnosis.parameters.items()
-        },
-        "improved": improved,
-        "next_measurement": diagnosis.next_measurement,
-        "held_out": list(diagnosis.held_out),
-        "gap": _rounded(diagnosis.gap),
-        "gap_floor": _rounded(diagnosis.floor),
-        "p_value": _rounded(diagnosis.p_value),
-        "heard": [
-            {
-                "recording": heard.recording,
-                "label": {role: heard.of(role)[0] for role in ROLES},
-                "level_dba": {role: _rounded(heard.of(role)[1], 1) for role in ROLES},
-            }
-            for heard in diagnosis.labels_and_levels
-        ],
-        "hypotheses": [
-            {"causes": list(one.causes), "probability": _rounded(one.probability),
-             "gap_after": _rounded(one.gap)}
-            for one in diagnosis.hypotheses
-        ],
-        "agreement": [
-            {"recording": one.recording, "speed_rad_s": _rounded(one.speed, 6),
-             "interference_mm": _rounded(1e3 * one.interference, 6), "gap": _rounded(one.gap),
-             "channels": {name: _rounded(gap) for name, gap in one.channels.items()}}
-            for one in diagnosis.agreement
-        ],
-        "remainder": None if diagnosis.remainder is None else {
-            "gap": _rounded(diagnosis.remainder.gap),
-            "channels": list(diagnosis.remainder.channels),
-            "band_hz": [_rounded(f, 1) for f in diagnosis.remainder.band],
-        },
-        "bench": list(diagnosis.bench),
-        "faults": list(diagnosis.faults),
-        "notes": list(diagnosis.notes),
-        "seconds": _rounded(diagnosis.seconds, 1),
-    }  # fmt: skip
+    return _written(diagnosis, _Key("")) | {"improved": improved}
 
 
 def from_json(data: Mapping[str, Any]) -> Diagnosis:
     """Return the diagnosis that ``diagnosis.json`` holds, without its illustrations.
 
+    Parameters
+    ----------
+    data : mapping of str to anything
+        As `as_json` gives it.
+
     Raises
     ------
-    KeyError, TypeError, ValueError, AttributeError
-        The data are those of no diagnosis.
-
-    Examples
-    --------
-    >>> from noise.diagnosis.outcome import Diagnosis
-    >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
-    >>> from_json(as_json(nothing)).gap
-    0.9
+    KeyError, TypeError, ValueError
+        It is no diagnosis.
     """
-    return Diagnosis(
-        verdict=tuple(data["verdict"]),
-        equivalent=tuple((one, other) for one, other in data["equivalent"]),
-        location=None if data["location"] is None else _location_from(data["location"]),
-        stages={
-            name: StageFinding(*(_number(found[key]) for key in ("gap", "share", "p_value")))
-            for name, found in data.get("stages", {}).items()
-        },
-        effects=tuple(
-            EffectFinding(
-                each["name"],
-                each["stage"],
-                _number(each["probability"]),
-                dict(each.get("parameters") or {}),
-                cast("tuple[float, float] | None", tuple(each.get("strength") or ()) or None),
-                **{name: each.get(name) for name in _FIGURES},
-                fitted_with=tuple(each.get("fitted_with") or ()),
-            )
-            for each in data["effects"]
-        ),
-        probabilities={name: _number(p) for name, p in data["probabilities"].items()},
-        parameters={
-            name: (_number(low), _number(high)) for name, (low, high) in data["parameters"].items()
-        },
-        next_measurement=str(data.get("next_measurement") or ""),
-        held_out=tuple(data.get("held_out") or ()),
-        gap=_number(data.get("gap")),
-        floor=_number(data.get("gap_floor")),
-        p_value=_number(data.get("p_value")),
-        seconds=_number(data.get("seconds")),
-        notes=tuple(map(str, data.get("notes") or ())),
-        labels_and_levels=tuple(
-            LabelsAndLevels(
-                one["recording"],
-                *(one["label"].get(role) for role in ROLES),
-                *(one["level_dba"].get(role) for role in ROLES),
-            )
-            for one in data.get("heard") or ()
-        ),
-        differences=tuple(map(_location_from, data.get("map") or ())),
-        hypotheses=tuple(
-            HypothesisFinding(
-                tuple(one["causes"]), _number(one["probability"]), one.get("gap_after")
-            )
-            for one in data.get("hypotheses") or ()
-        ),
-        agreement=tuple(map(_agreement_from, data.get("agreement") or ())),
-        remainder=_remainder_from(data.get("remainder")),
-        bench=tuple(map(str, data.get("bench") or ())),
-        faults=tuple(map(str, data.get("faults") or ())),
-    )
+    for key in ("verdict", "equivalent", "location", "effects", "probabilities"):
+        data[key]
+    return _record(Diagnosis, _UNKNOWN | dict(data))
 
 
-def _location(place: Location) -> dict[str, Any]:
-    return {
-        "stage": place.stage,
-        "channels": list(place.channels),
-        "band_hz": [_rounded(f, 1) for f in place.band],
-        "phase": place.phase,
-        "conditions": place.conditions,
-        "p_value": _rounded(place.p_value),
-    }
+_UNKNOWN: dict[str, Any] = {
+    "stages": {}, "parameters": {}, "next_measurement": "", "held_out": [], "gap": None,
+    "gap_floor": None, "p_value": None, "seconds": None,
+}  # fmt: skip
+"""What a file may lack."""
 
 
-def _location_from(place: Mapping[str, Any]) -> Location:
-    low, high = map(_number, place["band_hz"])
-    return Location(
-        place["stage"], tuple(place["channels"]), (low, high), place["phase"],
-        place["conditions"], _number(place["p_value"]),
-    )  # fmt: skip
+def _written(value: Any, key: _Key) -> Any:
+    """Return a value of plain data: records as objects, numbers rounded, none as null."""
+    if isinstance(value, LabelsAndLevels):
+        return {
+            "recording": value.recording,
+            "label": {role: value.of(role)[0] for role in ROLES},
+            "level_dba": {role: _written(value.of(role)[1], _Key("", 1)) for role in ROLES},
+        }
+    if type(value) in _KEYS:
+        keys = _KEYS[type(value)].items()
+        return {name: _written(getattr(value, key.attribute), key) for name, key in keys}
+    if isinstance(value, Mapping):
+        return {name: _written(one, key) for name, one in value.items()}
+    if isinstance(value, tuple | list):
+        return [_written(one, key) for one in value]
+    if value is None or isinstance(value, str):
+        return value
+    return round(float(value * key.scale), key.digits) if math.isfinite(value) else None
 
 
-def _effect(effect: EffectFinding) -> dict[str, Any]:
-    return {
-        "name": effect.name,
-        "stage": effect.stage,
-        "probability": _rounded(effect.probability),
-        "parameters": {
-            name: value if isinstance(value, str) else _rounded(value, 6)
-            for name, value in effect.parameters.items()
-        },
-        "strength": None if effect.strength is None else [_rounded(x) for x in effect.strength],
-        **{name: _rounded(getattr(effect, name)) for name in _FIGURES},
-        "fitted_with": list(effect.fitted_with),
-    }
+def _record(kind: type, data: Mapping[str, Any]) -> Any:
+    """Return a record of the data of an object; what is not there stays at its default."""
+    if kind is LabelsAndLevels:
+        parts = (data["label"], data["level_dba"])
+        return LabelsAndLevels(data["recording"], *(of.get(r) for of in parts for r in ROLES))
+    return kind(**{
+        key.attribute: _read(data[name], key) for name, key in _KEYS[kind].items() if name in data
+    })  # fmt: skip
 
 
-def _agreement_from(found: Mapping[str, Any]) -> Agreement:
-    channels = {name: _number(gap) for name, gap in found["channels"].items()}
-    return Agreement(
-        found["recording"], _number(found["speed_rad_s"]),
-        1e-3 * _number(found["interference_mm"]), _number(found["gap"]), channels,
-    )  # fmt: skip
-
-
-def _remainder_from(found: Mapping[str, Any] | None) -> Remainder | None:
-    if found is None:
-        return None
-    low, high = map(_number, found["band_hz"])
-    return Remainder(_number(found["gap"]), tuple(found["channels"]), (low, high))
-
-
-def _rounded(value: float | None, digits: int = 4) -> float | None:
-    if value is None or not math.isfinite(value):
-        return None
-    return round(float(value), digits)
-
-
-def _number(value: object) -> float:
-    return float(cast("float", value)) if value is not None else math.nan
+def _read(value: Any, key: _Key) -> Any:
+    if value is None:
+        return None if key.optional or key.of is not None else math.nan
+    if isinstance(value, Mapping):
+        if key.of is not None and set(value) & set(_KEYS.get(key.of, {})):
+            return _record(key.of, value)
+        return {name: _read(one, key) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        records = key.of is not None
+        return tuple(_record(key.of, one) if records else _read(one, key) for one in value)  # type: ignore[arg-type]
+    return value if isinstance(value, str) else float(value) / key.scale

@@ -18,7 +18,7 @@ from noise.base import SURE_90
 from noise.identification.outcome import Number
 
 if TYPE_CHECKING:
-    from noise.identification.table_number import TableNumber
+    from noise.identification.table_fit import TableNumber
 
 
 UNITS = {

@@ -26,20 +26,17 @@ from models.rig import Rig
 from models.rig_file import rig_text
 from models.schema import remarks
 from noise.base import SURE_90
+from noise.diagnosis.bench.channels import unit_of
 from noise.diagnosis.bench.check import unit_findings
-from noise.diagnosis.bench.levels import unit_of
 from noise.identification.bushing_fit import fit_bushing
-from noise.identification.bushing_numbers import bushing_numbers, read_again
+from noise.identification.bushing_numbers import bushing_numbers, read_again, torque_levels
 from noise.identification.evidence import table_evidence, with_evidence
 from noise.identification.law_choice import MARGIN, Choice, choose_law, overall
-from noise.identification.law_model import LOCAL
-from noise.identification.law_priors import fitted_evidence
-from noise.identification.levels import torque_levels
+from noise.identification.law_model import LOCAL, fitted_evidence
 from noise.identification.outcome import Identification, Number, Seen, values_of
 from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.subjects import subjects_of
-from noise.identification.table_fit import held_against
-from noise.identification.table_number import TableNumber
+from noise.identification.table_fit import TableNumber, held_against
 from noise.identification.table_rig import identify_from_table
 from sim.effects import EFFECTS
 from sim.friction import friction_law
@@ -47,9 +44,8 @@ from sim.run import simulate
 from sim.temperature import at_temperature
 
 if TYPE_CHECKING:
-    from noise.identification.known import Beforehand
     from noise.identification.law_fit import LawFit
-    from noise.identification.measured import Measured, Measurements
+    from noise.identification.measured import Beforehand, Measured, Measurements
 
 _BAND = 50.0, 10e3
 """In which levels are compared [Hz]; assumed."""

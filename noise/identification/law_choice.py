@@ -24,17 +24,15 @@ from models.rig import Rig
 from noise.diagnosis.gap.distance import group_costs
 from noise.diagnosis.gap.signature import channel_signature, joined_signature
 from noise.diagnosis.simulated.repeats import Scatter, perturb_run
-from noise.identification.law_candidates import CANDIDATES
 from noise.identification.law_fit import LawFit, Sketch, fit_law, fit_some, sketch_law
-from noise.identification.law_model import LawModel
+from noise.identification.law_model import CANDIDATES, LawModel
 from noise.identification.outcome import LawScore
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
     from noise.identification.evidence import Evidence
-    from noise.identification.known import Beforehand
-    from noise.identification.measured import Measured
+    from noise.identification.measured import Beforehand, Measured
     from noise.identification.subjects import Subject
 
 _SETTLING = 0.1

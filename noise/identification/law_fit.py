@@ -21,11 +21,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from noise.identification.law_model import LOCAL, LawModel
-from noise.identification.law_priors import SHARE_ASSUMED, priors, share_error
+from noise.identification.law_model import LOCAL, SHARE_ASSUMED, LawModel, priors, share_error
 
 if TYPE_CHECKING:
-    from noise.identification.law_candidates import Candidate
+    from noise.identification.law_model import Candidate
 
 _STEP = 3e-4
 """Of the logarithms, for slopes."""

@@ -4,13 +4,17 @@ All are logarithms. A rig is never quite the same twice: each recording has a bu
 its own, which scatter about those of the rig, and these are what is to be found.
 
 What a model foretells of the excerpts of a recording, each begun where the recording has it.
+
+Laws of friction that an identification tries, simplest first, and what of each it searches.
+
+What is known of a law's numbers before they are fitted, and what recordings scatter by.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
@@ -32,10 +36,199 @@ from sim.solvers.contact_solver import ContactRun, Hook
 if TYPE_CHECKING:
     from noise.identification.bushing_fit import Known
     from noise.identification.evidence import Evidence
-    from noise.identification.excerpts import Excerpts
-    from noise.identification.law_candidates import Candidate
-    from noise.identification.subjects import Subject
+    from noise.identification.subjects import Excerpts, Subject
     from sim.friction.law import FrictionLaw
+
+
+_SCATTER = np.array([0.025, 0.025, 0.03, 0.03, 0.02, 0.008, 0.01])
+"""By which they scatter about the rig's [-]; a support's counts as its clamp's inertia;
+assumed."""
+
+_MEAN_WIDTH = np.array([0.6, 0.3, 1.0, 0.6])
+"""Relative standard deviation of the rig's about what is usual, or where a search begins [-];
+assumed."""
+
+_USUAL_DAMPING = 0.09
+"""[Nm s/rad] (Table 5.5)"""
+
+SHARE_ASSUMED = 0.02
+"""Relative standard error of a share that the recordings cannot tell; assumed."""
+
+
+def share_error(model: LawModel) -> float:
+    """Relative standard error of the elastomer's share of the damping beforehand [-].
+
+    What rings while the contact sticks tells all of it, while it slides the elastomer's; a
+    clamp that is bolted down only this.
+
+    Parameters
+    ----------
+    model : LawModel
+    """
+    if all(math.isinf(one.support) for one in model.subjects):
+        return SHARE_ASSUMED
+    return model.known.share_error
+
+
+def fitted_evidence(model: LawModel) -> dict[Evidence, int]:
+    """Return the group that each piece of evidence speaks of, where the fit has one.
+
+    Parameters
+    ----------
+    model : LawModel
+
+    Returns
+    -------
+    dict of Evidence to int
+        Torques are left out: those that a table states are levels, a law's are not.
+    """
+    places = {group: g for g, group in enumerate(model.groups)}
+    found = {}
+    for one in model.evidence:
+        if one.name not in LOCAL or one.name == "kinetic_torque":
+            continue
+        fit, support = one.interference, one.support_stiffness
+        i = LOCAL.index(one.name)
+        key: object = {"elastomer_stiffness": fit, "damping": (fit, support)}.get(one.name)
+        if (i, key) in places:
+            found[one] = places[i, key]
+    return found
+
+
+def priors(model: LawModel, loose: float = 1.0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return what is known of a vector x: matrix @ x - target is away by one each.
+
+    Parameters
+    ----------
+    model : LawModel
+    loose : float
+        Factor on what recordings may differ by [-].
+
+    Returns
+    -------
+    matrix : ndarray, shape (n_known, n)
+        [-]
+    target : ndarray, shape (n_known,)
+        [-]
+    """
+    n = model.n_common + model.candidate.n_parameters
+    rows, target = [], []
+
+    def row(places: dict[int, float], value: float) -> None:
+        line = np.zeros(n)
+        for place, factor in places.items():
+            line[place] = factor
+        rows.append(line)
+        target.append(value)
+
+    for r, groups in enumerate(model.group_of.tolist()):
+        for i, group in enumerate(groups):
+            weight = 1.0 / (loose * _SCATTER[i])
+            row({len(LOCAL) * r + i: weight, model.n_local + group: -weight}, 0.0)
+    own = np.stack([one.start for one in model.subjects])
+    inertia = model.known.inertia_error
+    width = np.array([*_MEAN_WIDTH, inertia, inertia, share_error(model)])
+    for g, (i, _) in enumerate(model.groups):
+        usual = float(np.median(own[model.group_of[:, i] == g, i]))
+        if i == LOCAL.index("damping"):
+            usual = math.log(_USUAL_DAMPING)
+        row({model.n_local + g: 1.0 / width[i]}, usual / width[i])
+    for one, g in fitted_evidence(model).items():
+        i = model.groups[g][0]
+        error = math.hypot(one.error, _SCATTER[i])
+        row({model.n_local + g: 1.0 / error}, math.log(one.value) / error)
+    for j, (low, high, _) in enumerate(model.candidate.free.values()):
+        weight = 2.0 / math.log(high / low)
+        row({model.n_common + j: weight}, weight * 0.5 * math.log(low * high))
+    return np.array(rows), np.array(target)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A law to be tried.
+
+    Parameters
+    ----------
+    name, words : str
+        In tables, and on pages.
+    law : str
+        Of `sim.friction`.
+    effect : str, optional
+        Of `sim.effects`; then it is what the searched parameters belong to.
+    free : mapping of str to tuple of float
+        Parameters that are searched: lowest, highest and some starts [the law's units].
+    fixed : mapping of str to float
+        Others that differ from the law's own [the law's units].
+    drops : tuple of float
+        What the critical torque exceeds the kinetic one by where a search begins, over what the
+        levels differ by [-].
+    """
+
+    name: str
+    words: str
+    law: str
+    effect: str | None = None
+    free: Mapping[str, tuple[float, float, tuple[float, ...]]] = field(default_factory=dict)
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    drops: tuple[float, ...] = (1.0,)
+
+    @property
+    def sticks(self) -> bool:
+        """Whether its contact truly sticks."""
+        return self.law == "coulomb"
+
+    @property
+    def n_parameters(self) -> int:
+        """Numbers that it has beyond the two torques of each fit."""
+        return len(self.free)
+
+
+_STIFFNESS = {"contact_stiffness_per_torque": (400.0, 9e3, (1500.0, 3500.0))}
+_DAMPING = {"contact_damping_per_torque": 6e-5}
+"""Next to the elastomer's damping it hardly counts."""
+
+CANDIDATES = (
+    Candidate("constant", "constant torques", "coulomb"),
+    Candidate(
+        "ageing", "static torque grows while it sticks", "coulomb", "static_ageing",
+        {"ageing_time": (5e-5, 0.1, (4e-4, 3e-3))},
+        drops=(1.0, 1.5),
+    ),
+    Candidate(
+        "stribeck", "torque falls with sliding speed", "coulomb", "velocity_weakening",
+        {"share": (0.005, 0.6, (0.05, 0.25)), "speed": (0.3, 40.0, (1.5, 5.0))},
+        drops=(0.05, 0.7),
+    ),
+    Candidate(
+        "bristle", "elastic contact, torque falls with speed", "stribeck_lorentzian", None,
+        {**_STIFFNESS, "first_speed": (0.2, 30.0, (1.2, 4.0))},
+        _DAMPING, (1.0, 2.0),
+    ),
+    Candidate(
+        "rate_and_state", "elastic contact, strength by age and slip", "rate_and_state", None,
+        {
+            **_STIFFNESS,
+            "ageing_time": (2e-5, 0.02, (1e-4, 1e-3)),
+            "renewal_angle": (6e-5, 5e-3, (2e-4,)),
+        },
+        _DAMPING, (1.0, 2.0),
+    ),
+    Candidate(
+        "memory", "elastic contact with memory, torque falls with speed", "contact_with_memory",
+        None,
+        {
+            "contact_stiffness_per_torque": (400.0, 4.9e3, (1200.0, 2400.0)),
+            "ageing_time": (2e-5, 0.02, (3e-4, 1.5e-3)),
+            "renewal_angle": (6e-5, 5e-3, (2e-4,)),
+            "weakening_share": (0.005, 1.0, (0.08,)),
+            "weakening_speed": (1.0, 60.0, (8.0,)),
+            "weakening_exponent": (1.0, 2.5, (1.4,)),
+        },
+        _DAMPING, (1.0, 2.0),
+    ),
+)  # fmt: skip
+"""By rising number of parameters."""
+
 
 _TOLERANCE = 1e-6
 """Of the solver, over one cycle."""

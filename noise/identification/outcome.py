@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from noise.identification.bushing_fit import BushingFit
-    from noise.identification.levels import Levels
+    from noise.identification.bushing_numbers import Levels
     from noise.identification.measured import Measured
     from noise.identification.static_test import StaticTest
-    from noise.identification.table_number import TableNumber
+    from noise.identification.table_fit import TableNumber
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class LawScore:
     Parameters
     ----------
     law : str
-        Of `noise.identification.law_candidates`.
+        Of `noise.identification.law_model`.
     held_out : float
         Distance of recordings that its fit has not seen, in floors [-].
     trained : float

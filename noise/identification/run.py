@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from noise.identification.identify import identify_rig
-from noise.identification.known import known_beforehand
-from noise.identification.measured import Measurements, read_measurements
+from noise.identification.measured import Measurements, known_beforehand, read_measurements
 from noise.identification.outcome import Identification, as_json
-from noise.identification.table_number import read_numbers
+from noise.identification.table_fit import read_numbers
 
 
 def identify(
@@ -29,7 +28,7 @@ def identify(
     rig : path, optional
         Rig file that states what is known, the two inertias above all.
     numbers : path, optional
-        Table of measured numbers, as `noise.identification.table_number` reads it.
+        Table of measured numbers, as `noise.identification.table_fit` reads it.
     seed : int
         Of simulated repeats.
 

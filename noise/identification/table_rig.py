@@ -22,13 +22,11 @@ from noise.base import SURE_90
 from noise.identification.evidence import UNITS, table_evidence, with_evidence
 from noise.identification.outcome import Identification, Number
 from noise.identification.static_test import static_evidence, static_notes
-from noise.identification.table_fit import TableFit, fit_table, score_table
-from noise.identification.table_number import TableNumber
+from noise.identification.table_fit import TableFit, TableNumber, fit_table, score_table
 from noise.screening.environments import FIT_PARAMETERS, scaled_fit
 
 if TYPE_CHECKING:
-    from noise.identification.known import Beforehand
-    from noise.identification.measured import Measurements
+    from noise.identification.measured import Beforehand, Measurements
 
 
 _WIDTH = 0.4

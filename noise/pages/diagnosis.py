@@ -17,28 +17,35 @@ from pathlib import Path
 
 from models.transfer_functions.files import write_transfer_function
 from noise.base.files import atomic
-from noise.diagnosis.findings import ROLES, SURE, Agreement, EffectFinding, LabelsAndLevels
 from noise.diagnosis.fit.closing import CLOSABLE
 from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.gap.signature import KINDS
-from noise.diagnosis.improved_file import NAME, RESPONSES, response_files
-from noise.diagnosis.outcome import Diagnosis
+from noise.diagnosis.improved_file import NAME, RESPONSES, improved_sentence, response_files
+from noise.diagnosis.outcome import (
+    ROLES,
+    SURE,
+    Agreement,
+    Diagnosis,
+    EffectFinding,
+    LabelsAndLevels,
+)
 from noise.diagnosis.outcome_json import as_json
-from noise.diagnosis.text.agreement_sentences import agreement_sentence
-from noise.diagnosis.text.found import begins, finding_of, parameter_name, stage_of_effect
-from noise.diagnosis.text.improved_sentences import improved_sentence
 from noise.diagnosis.text.sentences import answer, closed_sentence, closed_words
-from noise.diagnosis.text.verdict_sentences import headline, is_named
+from noise.diagnosis.text.verdict_sentences import agreement_sentence, headline, is_named
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
     STAGES,
+    begins,
     cause_of,
     evidence,
+    finding_of,
     floors,
     joined,
     number,
     p_number,
+    parameter_name,
     percent,
+    stage_of_effect,
 )
 from noise.pages import blocks as b
 from noise.pages.clips import Clip, Entry
@@ -208,7 +215,7 @@ def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
 
     Examples
     --------
-    >>> from noise.diagnosis.findings import StageFinding
+    >>> from noise.diagnosis.outcome import StageFinding
     >>> from noise.diagnosis.outcome import Diagnosis
     >>> found = {"drive": StageFinding(1.04, 0.02, 0.4)}
     >>> boxes = stage_boxes(Diagnosis((), (), None, found, (), {}, {}, "", (), 1.0, 1.0, 0.6, 1.0))
@@ -457,7 +464,7 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
 
     Examples
     --------
-    >>> from noise.diagnosis.findings import EffectFinding
+    >>> from noise.diagnosis.outcome import EffectFinding
     >>> from noise.diagnosis.outcome import Diagnosis
     >>> hum = EffectFinding("mains_hum", "measurement", 0.9, gap_before=7.7, gap_recalibrated=4.1,
     ...                     gap_after=1.3, gap_floor=1.0, closed=0.955)

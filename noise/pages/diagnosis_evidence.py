@@ -23,7 +23,7 @@ from features.kernels.spectra import autospectrum
 from models.drawing import BLUE, VERMILION, padded, styled, thinned
 from models.recording import Recording
 from noise.audio.sound import audible
-from noise.diagnosis.findings import ROLES, Illustration, LabelsAndLevels
+from noise.diagnosis.outcome import ROLES, Illustration, LabelsAndLevels
 from noise.diagnosis.text.words import number
 from noise.pages import blocks as b
 from noise.pages.cards import facts_of
@@ -85,7 +85,7 @@ def illustration_panels(illustration: Illustration) -> tuple[Panel, ...]:
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from noise.diagnosis.findings import Illustration
+    >>> from noise.diagnosis.outcome import Illustration
     >>> hiss = Recording(np.random.default_rng(1).normal(size=(1, 9600)), 48e3,
     ...                  (Channel("pressure"),))
     >>> (panel,) = illustration_panels(Illustration("hiss", hiss, hiss, None))
@@ -314,7 +314,7 @@ def illustration_entries(
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from noise.diagnosis.findings import Illustration
+    >>> from noise.diagnosis.outcome import Illustration
     >>> hiss = Recording(np.random.default_rng(1).normal(size=(1, 480)), 48e3,
     ...                  (Channel("pressure"),))
     >>> found = illustration_entries(Illustration("hiss", hiss, hiss, None))

@@ -13,7 +13,7 @@ import numpy as np
 from models.condition import Condition
 from models.drawing import BLUE, GREY, VERMILION, styled
 from noise.base.files import atomic
-from noise.identification.law_candidates import CANDIDATES
+from noise.identification.law_model import CANDIDATES
 from noise.identification.outcome import Forecast, Identification, Number, Seen, as_json
 from noise.identification.quantities import QUANTITIES
 from noise.pages import blocks as b
@@ -23,7 +23,7 @@ from noise.pages.page import page_html, write_page
 if TYPE_CHECKING:
     from noise.identification.ring_down import RingDown
     from noise.identification.static_test import StaticTest
-    from noise.identification.table_number import TableNumber
+    from noise.identification.table_fit import TableNumber
 
 
 _SHOWN = 0.03

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models.rig import LawSpec
-from noise.diagnosis.evidence.evidence import aligned
+from noise.diagnosis.evidence.summary import aligned
 from noise.training.causes.cases.benches import (
     DEPARTURES,
     MATERIALS,

@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from noise.diagnosis.evidence.angle_summary import angle_summary, shaft_speed
-from noise.diagnosis.evidence.bands import BAND_EDGES, band_bins
-from noise.diagnosis.evidence.channel_summary import channel_summary, hum_summary
+from noise.diagnosis.evidence.channel_summary import (
+    BAND_EDGES,
+    band_bins,
+    channel_summary,
+    hum_summary,
+)
 from noise.diagnosis.evidence.path_summary import common_residual, path_summary
+from noise.diagnosis.evidence.reconstruction import angle_summary, shaft_speed
 from noise.diagnosis.evidence.summary import summary
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.helpers.small_rigs import RATE, RIG, at, only, run

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from noise.diagnosis.evidence.evidence import (
+from noise.diagnosis.evidence.summary import (
     CONTEXT,
     MISSING,
     PARTS,

@@ -14,8 +14,7 @@ from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.gap.distance import group_costs
 from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
-from noise.diagnosis.simulated.nominal import nominal_repeats
-from noise.diagnosis.simulated.repeats import Scatter
+from noise.diagnosis.simulated.repeats import Scatter, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import (
     TransferFunctionCache,
     torque_transfer_functions,

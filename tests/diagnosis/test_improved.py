@@ -20,11 +20,10 @@ from models.rig_file import base_name, changed_rig_text, load_material_rig, load
 from noise.cli import main
 from noise.diagnosis.case import Case
 from noise.diagnosis.diagnose import case_remarks
-from noise.diagnosis.improved_file import check_base, improved_text
-from noise.diagnosis.improvement import Improvement
+from noise.diagnosis.improved_file import check_base, improved_commands, improved_text
+from noise.diagnosis.outcome import Improvement
 from noise.diagnosis.run import diagnose
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
-from noise.diagnosis.text.improved_sentences import improved_commands
 from noise.screening.design import load_design
 from sim.effects import EFFECTS
 from tests.helpers.answered_diagnoses import as_the_contract_has_it

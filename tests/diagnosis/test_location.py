@@ -7,15 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from noise.diagnosis.causes.location import differences, locate, stage_findings
-from noise.diagnosis.causes.stage_nulls import (
+from noise.diagnosis.causes.location import (
     STAGES,
+    differences,
     learn_stage_nulls,
     load_stage_nulls,
+    locate,
+    stage_findings,
     stage_of,
 )
-from noise.diagnosis.evidence.bands import BAND_EDGES
-from noise.diagnosis.findings import SURE
+from noise.diagnosis.evidence.channel_summary import BAND_EDGES
+from noise.diagnosis.outcome import SURE
 from sim.effects import EFFECTS
 from tests.helpers.made_posteriors import MOVES, NAMES, made_nulls, made_table
 from tests.helpers.small_rigs import table_of

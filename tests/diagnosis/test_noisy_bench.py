@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from noise.diagnosis.causes.bench_nulls import as_seldom
+from noise.diagnosis.causes.posterior import as_seldom
 from noise.diagnosis.gap.distance import gap_of, reference
 from noise.diagnosis.gap.signature import NAMES
 from noise.diagnosis.run import diagnose

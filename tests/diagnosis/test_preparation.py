@@ -13,10 +13,10 @@ from noise.diagnosis.evidence.path_summary import path_summary
 from noise.diagnosis.preparation.prepare import (
     at_measured_speeds,
     converter_step,
+    estimated_noise,
     prepared,
     with_seen_sensors,
 )
-from noise.diagnosis.preparation.sensor_noise import estimated_noise
 from noise.diagnosis.preparation.settled_part import settled_parts, shortest, start_of
 from sim.acquisition import Acquisition
 from tests.helpers.small_rigs import RIG

@@ -12,8 +12,7 @@ from hypothesis import given, settings, strategies as st
 
 from models.condition import FIXED, Condition
 from models.rig import LawSpec
-from noise.diagnosis.evidence.evidence import scale_of
-from noise.diagnosis.evidence.summary import case_table
+from noise.diagnosis.evidence.summary import case_table, scale_of
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.fit import fit_effects, fit_parameters, split, stated_candidates
 from noise.diagnosis.simulated.model_runs import OFFSETS, Model, with_offsets

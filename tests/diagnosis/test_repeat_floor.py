@@ -14,8 +14,7 @@ from noise.diagnosis.case import read_case
 from noise.diagnosis.gap.distance import gap_of, reference
 from noise.diagnosis.gap.floor import case_gap, floor_widening, repeat_gap
 from noise.diagnosis.gap.signature import GROUPS, NAMES, block_signatures, signature
-from noise.diagnosis.simulated.nominal import condition_key, nominal_recordings
-from noise.diagnosis.simulated.repeats import Scatter
+from noise.diagnosis.simulated.repeats import Scatter, condition_key, nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.blind.cases import run_case, write_case
 from tests.blind.design import draw_design

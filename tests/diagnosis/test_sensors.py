@@ -20,11 +20,9 @@ from noise.diagnosis.first_answer import poor_responses, unlearned_sensors
 from noise.diagnosis.gap.distance import Gap
 from noise.diagnosis.gap.floor import case_gap
 from noise.diagnosis.gap.signature import NAMES
-from noise.diagnosis.preparation.prepare import with_seen_sensors
-from noise.diagnosis.preparation.sensor_noise import estimated_noise
+from noise.diagnosis.preparation.prepare import estimated_noise, with_seen_sensors
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
-from noise.diagnosis.simulated.nominal import nominal_recordings
-from noise.diagnosis.simulated.repeats import Scatter
+from noise.diagnosis.simulated.repeats import Scatter, nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from noise.identification.measured import read_measurements
 from sim.acquisition import Acquisition

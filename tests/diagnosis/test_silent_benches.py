@@ -9,8 +9,7 @@ import pytest
 
 from models.rig_file import load_rig
 from models.sensors import Sensor, Sensors
-from noise.diagnosis.bench.check import bench_findings
-from noise.diagnosis.bench.silent import unchecked_units
+from noise.diagnosis.bench.check import bench_findings, unchecked_units
 from noise.diagnosis.case import Case, read_case
 from noise.diagnosis.run import diagnose
 from sim.acquisition import Acquisition

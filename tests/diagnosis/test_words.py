@@ -9,14 +9,18 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.diagnosis.findings import Agreement, Location, Remainder, StageFinding
-from noise.diagnosis.text.agreement_sentences import AGREES, agreement_sentence
+from noise.diagnosis.outcome import Agreement, Location, Remainder, StageFinding
 from noise.diagnosis.text.sentences import (
     answer,
     closed_sentence,
     location_sentence,
 )
-from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
+from noise.diagnosis.text.verdict_sentences import (
+    AGREES,
+    agreement_sentence,
+    headline,
+    verdict_sentence,
+)
 from noise.diagnosis.text.words import (
     CAUSES,
     STAGES,

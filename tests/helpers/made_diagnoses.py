@@ -8,8 +8,9 @@ from functools import cache
 from models.recording import Recording
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
-from noise.diagnosis.findings import (
+from noise.diagnosis.outcome import (
     Agreement,
+    Diagnosis,
     EffectFinding,
     HypothesisFinding,
     Illustration,
@@ -18,7 +19,6 @@ from noise.diagnosis.findings import (
     Remainder,
     StageFinding,
 )
-from noise.diagnosis.outcome import Diagnosis
 from sim.run import simulate
 
 STAGES = {

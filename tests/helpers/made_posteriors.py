@@ -7,8 +7,8 @@ from functools import cache
 
 import numpy as np
 
-from noise.diagnosis.causes.stage_nulls import learn_stage_nulls
-from noise.diagnosis.evidence.evidence import scale_of
+from noise.diagnosis.causes.location import learn_stage_nulls
+from noise.diagnosis.evidence.summary import scale_of
 from noise.training.causes.cases.truth import Truth
 from noise.training.causes.fit import Known, train_posterior
 from sim.effects import EFFECTS

@@ -10,7 +10,7 @@ import noise
 from models.rig_file import load_rig
 from noise.cli import main
 from noise.identification import law_choice
-from noise.identification.law_candidates import CANDIDATES
+from noise.identification.law_model import CANDIDATES
 from tests.blind.identify.rigs import make_rig, write_rig
 from tests.blind.identify.static import record_static, to_and_fro, write_static
 

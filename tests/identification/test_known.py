@@ -4,7 +4,7 @@ import tomllib
 from dataclasses import replace
 
 from models.rig_file import load_material_rig, rig_from, rig_text
-from noise.identification.known import known_beforehand
+from noise.identification.measured import known_beforehand
 
 INERTIAS = "elastomer_inertia_kgm2 = 1.6e-5\nclamp_inertia_kgm2 = 8e-4\n"
 

@@ -5,8 +5,8 @@ import pytest
 
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
-from noise.identification.excerpts import excerpts_of
 from noise.identification.law_model import foretold, friction_of
+from noise.identification.subjects import excerpts_of
 from sim.bushing import lumped_bushing
 from sim.motion import simulate_motion
 from sim.rig_effects import constant_version

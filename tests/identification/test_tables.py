@@ -13,11 +13,9 @@ from models.rig_file import load_material_rig, load_rig
 from noise.cli import main
 from noise.identification.bushing_fit import Known
 from noise.identification.evidence import Evidence, table_evidence, with_evidence
-from noise.identification.known import Beforehand
-from noise.identification.measured import Measurements
+from noise.identification.measured import Beforehand, Measurements
 from noise.identification.outcome import Number
-from noise.identification.table_fit import score_table
-from noise.identification.table_number import COLUMNS, TableNumber, read_numbers
+from noise.identification.table_fit import COLUMNS, TableNumber, read_numbers, score_table
 from noise.identification.table_rig import identify_from_table
 
 KNOWN = load_material_rig("fluorocarbon-thesis")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from models.recording import Channel, Recording
-from noise.diagnosis.findings import Illustration
+from noise.diagnosis.outcome import Illustration
 from noise.labels.segments import Segment
 from noise.pages.diagnosis_evidence import illustration_entries
 from noise.pages.report import ReportEntry, write_report

@@ -10,7 +10,7 @@ import pytest
 from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.identification import law_choice
-from noise.identification.law_candidates import CANDIDATES
+from noise.identification.law_model import CANDIDATES
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.review import review
 from noise.pages.screening import write_screening

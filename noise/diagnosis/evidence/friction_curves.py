@@ -17,9 +17,8 @@ from models.recording import Recording
 from models.rig import Rig
 from models.show import short_repr
 from noise.base import SURE_90
-from noise.diagnosis.evidence.angle_summary import shaft_speed
 from noise.diagnosis.evidence.contact_summary import slip_starts
-from noise.diagnosis.evidence.reconstruction import reconstruct
+from noise.diagnosis.evidence.reconstruction import reconstruct, shaft_speed
 from noise.diagnosis.simulated.repeats import Scatter
 from sim.bushing import lumped_bushing
 

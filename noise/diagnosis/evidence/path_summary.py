@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from features.kernels.spectra import segment_spectra
-from noise.diagnosis.evidence.bands import (
+from noise.diagnosis.evidence.channel_summary import (
     USABLE,
     band_bins,
     band_sums,
     bins_between,
     powers,
+    quantile,
     segment_frequency,
 )
-from noise.diagnosis.evidence.channel_summary import quantile
 
 Numbers = dict[str, float]
 

@@ -21,14 +21,12 @@ from numpy.typing import NDArray
 from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import LawSpec, Rig
-from noise.diagnosis.evidence.evidence import aligned
-from noise.diagnosis.evidence.summary import CaseTable, same_channels, summary
+from noise.diagnosis.evidence.summary import CaseTable, aligned, same_channels, summary
 from noise.diagnosis.gap.distance import Gap, Reference, group_costs
 from noise.diagnosis.gap.floor import references_of, repeat_gap
 from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
-from noise.diagnosis.simulated.nominal import condition_key
-from noise.diagnosis.simulated.repeats import Scatter
+from noise.diagnosis.simulated.repeats import Scatter, condition_key
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect
 

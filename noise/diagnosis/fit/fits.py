@@ -23,12 +23,12 @@ from models.rig import LawSpec
 from noise.base import SURE_90
 from noise.classifier import load_classifier
 from noise.diagnosis.evidence.friction_curves import friction_curves
-from noise.diagnosis.findings import EffectFinding, Illustration, LabelsAndLevels, Remainder
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit import Fitted
 from noise.diagnosis.fit.improve import improved_rig
-from noise.diagnosis.gap.by_channel import worst_places
+from noise.diagnosis.gap.floor import worst_places
+from noise.diagnosis.outcome import EffectFinding, Illustration, LabelsAndLevels, Remainder
 from noise.diagnosis.simulated.model_runs import OFFSETS, Model, ModelRuns
 from noise.labels.segments import file_label, label_recording
 
@@ -126,7 +126,7 @@ def _illustration(case: Case, i: int, before: Simulated, after: Simulated | None
 
 _LEFT = 2.0
 """Floors from which on a gap after a fit is one to explain; assumed. Of simulated repeats 5 % are
-farther off (`noise.diagnosis.text.agreement_sentences.AGREES`)."""
+farther off (`noise.diagnosis.text.verdict_sentences.AGREES`)."""
 
 
 def remainder_of(comparison: CaseComparison, model: Model, held: Sequence[int]) -> Remainder | None:

@@ -23,7 +23,7 @@ from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import rms
 from noise.diagnosis.fit.fit import fit_closer, fit_effects
-from noise.diagnosis.improvement import Improvement
+from noise.diagnosis.outcome import Improvement
 from noise.diagnosis.simulated.model_runs import OFFSETS, Model, with_effects
 from noise.diagnosis.simulated.transfer_functions import shift_clamp_mode, with_chain_effects
 from sim.bushing import lumped_bushing
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 CLOSED = 1.75
 """Floors up to which a gap counts as closed; assumed. Two of the simulated repeats that
-`noise.diagnosis.text.agreement_sentences.AGREES` tells of leave more in 9 %, mostly where one fell
+`noise.diagnosis.text.verdict_sentences.AGREES` tells of leave more in 9 %, mostly where one fell
 into another regime."""
 
 _UNDETERMINED = 1.4

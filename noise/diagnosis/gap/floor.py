@@ -5,10 +5,13 @@ differ by what this rig's repeats differ by, and where none was repeated, blocks
 at least how steady it is. Recordings that differ by more than simulated repeats widen the floor in
 proportion; such that differ by less do not narrow it, since two runs on one afternoon say little
 of the next assembly.
+
+The gap of each channel: which ones a model describes, and where it does not.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
@@ -18,7 +21,6 @@ from numpy.typing import NDArray
 
 from models.recording import Recording
 from models.rig import Rig
-from noise.diagnosis.gap.by_channel import channel_distances
 from noise.diagnosis.gap.distance import (
     LEAST_SCALE,
     Gap,
@@ -28,11 +30,110 @@ from noise.diagnosis.gap.distance import (
     reference,
     with_least_scatter,
 )
-from noise.diagnosis.gap.signature import GROUPS, block_signatures, group_of, signature
-from noise.diagnosis.simulated.nominal import condition_key, nominal_repeats
-from noise.diagnosis.simulated.repeats import Scatter
+from noise.diagnosis.gap.signature import (
+    EDGES,
+    GROUPS,
+    KINDS,
+    block_signatures,
+    group_of,
+    signature,
+)
+from noise.diagnosis.simulated.repeats import Scatter, condition_key, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 from sim.effects.effect import Effect
+
+_LIKE_THE_MOST = 0.5
+"""Share of the largest deviation from which on others are as large; assumed."""
+
+
+def channel_distances(
+    signatures: Sequence[NDArray[np.float64]], references: Sequence[Reference]
+) -> NDArray[np.float64]:
+    """Distance of each recording from its repeats, channel by channel.
+
+    The torque's cycle counts as torque.
+
+    Parameters
+    ----------
+    signatures : sequence of ndarray, shape (n_values,)
+        One a recording As of `noise.diagnosis.gap.signature.signature`.
+    references : sequence of Reference
+        One a recording.
+
+    Returns
+    -------
+    ndarray, shape (n_recordings, n_kinds)
+        In units of what repeats differ by in the channel, `KINDS` [-]; NaN where there is none.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.gap.distance import reference
+    >>> from noise.diagnosis.gap.signature import NAMES
+    >>> runs = np.random.default_rng(0).normal(size=(13, len(NAMES)))
+    >>> runs[12, : len(NAMES) // 4] += 8.0
+    >>> torque, *others = channel_distances([runs[12]], [reference(list(runs[:12]))])[0]
+    >>> bool(torque > 2.0), bool(max(others) < 1.5)
+    (True, True)
+    """
+    floors: dict[int, NDArray[np.float64]] = {}
+    rows = []
+    for values, one in zip(signatures, references, strict=True):
+        if id(one) not in floors:
+            each = [_costs(one.deviation(repeat)) for repeat in one.repeats]
+            n = len(each)
+            # a repeat that is one of those the mean is of lies nearer to it than another would
+            floors[id(one)] = np.mean(each, axis=0) * (n + 1.0) / (n - 1.0)
+        rows.append(np.sqrt(_costs(one.deviation(values)) / floors[id(one)]))
+    return np.array(rows)
+
+
+def worst_places(
+    deviations: NDArray[np.float64],
+) -> tuple[tuple[str, ...], tuple[float, float]]:
+    """Tell in which channels and band deviations are largest.
+
+    Parameters
+    ----------
+    deviations : ndarray, shape (n_recordings, n_values)
+        In standard deviations of repeats [-].
+
+    Returns
+    -------
+    channels : tuple of str
+    band : (float, float)
+        Of the bands of the first of them [Hz].
+
+    Examples
+    --------
+    >>> from noise.diagnosis.gap.signature import NAMES
+    >>> off = np.ones((2, len(NAMES)))
+    >>> off[:, [NAMES.index(f"pressure_{f}") for f in (400, 449, 504)]] = 30.0
+    >>> channels, (low, high) = worst_places(off)
+    >>> channels, round(low), round(high)
+    (('pressure',), 400, 566)
+    """
+    costs = np.array([_costs(row) for row in deviations])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # channels that were not recorded
+        of_channels = np.sqrt(np.nanmean(costs, axis=0))
+        size = np.sqrt(np.nanmean(deviations**2, axis=0))
+    known = np.nan_to_num(of_channels)
+    order = np.argsort(-known)
+    worst = int(order[0])
+    channels = tuple(KINDS[i] for i in order if known[i] >= _LIKE_THE_MOST * known[worst])
+    inside = np.nan_to_num(size[worst == _GROUP_OF])
+    bands = np.flatnonzero(inside >= _LIKE_THE_MOST * inside.max())
+    return channels, (float(EDGES[bands[0]]), float(EDGES[bands[-1] + 1]))
+
+
+def _costs(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean cost of each of `KINDS`, the torque's with that of its cycle."""
+    *channels, cycle = group_costs(deviation)
+    torque = KINDS.index("torque")
+    if np.isfinite(cycle):
+        channels[torque] = 0.5 * (channels[torque] + cycle)
+    return np.array(channels)
+
 
 N_REPEATS = 12
 """Simulated repeats a condition; what a diagnosis may cost settles it; assumed."""

@@ -27,7 +27,7 @@ _RESOLUTION = 12.0
 """Of the spectra [Hz]; the lowest bands share their lines with their neighbours; assumed."""
 
 _USABLE = 0.42
-"""Share of the sampling rate up to which a band counts; as of `noise.diagnosis.evidence.bands`."""
+"""Share of the sampling rate up to which a band counts; as of `channel_summary`."""
 
 _SENSOR_NOISE = {"torque": 0.025, "acceleration": 0.1, "pressure": 4e-3}
 """White noise from 0 to 15 kHz, rms in the channel's unit, five times that of good sensors: added

@@ -25,7 +25,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from models.condition import known_condition
-from noise.diagnosis.evidence.bands import segment_frequency
+from noise.diagnosis.evidence.channel_summary import segment_frequency
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.diagnosis.text.words import joined
 

@@ -23,10 +23,12 @@ from models.recording import Recording
 from models.rig import Fit, LawSpec, Rig
 from models.sensors import Sensor
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
-from noise.diagnosis.simulated.heard import chain_changes, heard_of, n_closed
-from noise.diagnosis.simulated.nominal import condition_key
 from noise.diagnosis.simulated.repeats import (
     Scatter,
+    chain_changes,
+    condition_key,
+    heard_of,
+    n_closed,
     perturb_run,
     plan_repeat,
     record,

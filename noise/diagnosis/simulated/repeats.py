@@ -4,6 +4,19 @@ A bushing is pressed in again, warms by a few kelvin, wears: between two runs of
 stiffness, torques and damping come out a few per cent apart, and nobody's fault. A simulation that
 is to be compared with one recording is therefore run as several replicates, each of a rig drawn
 about the nominal one.
+
+Nominal repeats: a condition simulated quickly and often, with the rig as its file has it.
+
+The transfer functions are those of the structure, applied to the simulated
+torque, so a repeat costs a few milliseconds. A rig file that lists effects beyond friction and
+drive is run through impulse responses instead, as the models are that a fit compares.
+
+What accelerometer and microphone see of a motion, by the responses that the rig file has.
+
+A measured response is taken line by line, as it is where recordings are compared with what their
+torque should make of them: a causal impulse response of it would lack what only errors of the
+measurement explain, which at low frequencies can be most of it. What effects change about the
+structure is added to it.
 """
 
 from __future__ import annotations
@@ -14,28 +27,331 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import rfft
 
-from models.condition import Condition, KnownCondition
-from models.radiation.impulse_responses import ImpulseResponses
+from models.condition import Condition, KnownCondition, known_condition
+from models.radiation.impulse_responses import ImpulseResponses, radiate_pulses
 from models.recording import Channel, Recording
 from models.rig import Fit, Rig
-from models.sensors import Sensors
+from models.sensors import Sensor, Sensors
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.simulated.heard import chain_changes, heard_of, n_closed
+from noise.diagnosis.evidence.reconstruction import closed_length, closed_spectrum
+from noise.diagnosis.simulated.transfer_functions import (
+    TransferFunctionCache,
+    chain_of,
+    predict_outputs,
+    shift_clamp_mode,
+    with_clamp_shifted,
+)
 from sim.acquisition import Acquisition, decimate_sensed, digitise
+from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
-from sim.effects.effect import ActiveEffect, activated
+from sim.effects import EFFECTS
+from sim.effects.effect import ActiveEffect, Effect, activated
 from sim.motion import Motion
 from sim.run import (
     DIAGNOSIS,
     Plan,
+    Sound,
     apply_sensor_effects,
+    pulse_force,
     radiate_motion,
     run_motion,
     sensor_signals,
 )
 from sim.shaft import ConstantSpeed
 from sim.temperature import at_temperature
+
+_FADE = 0.1
+"""In which a torque fades in and out [s], outside of the recording."""
+
+_GOING_ON = 0.12
+"""For which a torque goes on after the recording, turned back in time [s]."""
+
+
+def n_closed(plan: Plan) -> int:
+    """Return how many samples the transforms of a plan's torque have."""
+    n = plan.n_settling + plan.n_kept + round(_GOING_ON * plan.rate)
+    return closed_length(n, plan.rate)
+
+
+def chain_changes(
+    before: ImpulseResponses, after: ImpulseResponses, length: int
+) -> dict[str, NDArray[np.complex128]]:
+    """Return what effects change about the ways from the torque.
+
+    Parameters
+    ----------
+    before, after : ImpulseResponses
+        At the rate of the motion.
+    length : int
+        Of the transforms, as of `n_closed`.
+
+    Returns
+    -------
+    dict of str to ndarray of complex, shape (length // 2 + 1,)
+        Of ``acceleration`` and ``pressure``, where they change [output unit per N m].
+    """
+    changes = {}
+    for name in _OUTPUTS:
+        one, other = (getattr(paths, f"torque_to_{name}") for paths in (before, after))
+        if one is other:
+            continue
+        change = np.zeros(max(one.size, other.size))
+        change[: other.size] += other
+        change[: one.size] -= one
+        changes[name] = np.asarray(rfft(change, length))
+    return changes
+
+
+def heard_of(
+    motion: Motion,
+    plan: Plan,
+    rig: Rig,
+    transfer_functions: Mapping[str, TransferFunction],
+    changes: Mapping[str, NDArray[np.complex128]],
+    paths: ImpulseResponses | None,
+    effects: Sequence[ActiveEffect] = (),
+) -> Sound:
+    """Send the torque of a motion, and pulses, to the sensors.
+
+    Parameters
+    ----------
+    motion : Motion
+        As `plan` has it.
+    plan : Plan
+    rig : Rig
+        Of the transfer functions; the clamp's mode is moved to where the plan's rig has it.
+    transfer_functions : mapping of str to TransferFunction
+        Of ``acceleration`` and ``pressure``, as `torque_transfer_functions` gives them.
+    changes : mapping of str to ndarray of complex, shape (n_lines,)
+        As of `chain_changes` [output unit per N m].
+    paths : ImpulseResponses, optional
+        Of pulses; asked for where an effect makes them.
+    effects : sequence of ActiveEffect
+
+    Returns
+    -------
+    Sound
+        As long as the motion; right while the plan keeps it.
+    """
+    kept = slice(plan.n_settling, plan.n_settling + plan.n_kept)
+    more = round(_GOING_ON * plan.rate)
+    torque = motion.torque[: kept.stop]
+    torque = np.concatenate([torque, torque[-2 : -2 - more : -1]])
+    mean = float(torque[kept].mean())
+    torque = mean + faded(torque - mean, plan.rate)
+    at = (plan.interference, plan.support_stiffness)
+    bushing, scattered = lumped_bushing(rig, *at), lumped_bushing(plan.rig, *at)
+    spectrum = with_clamp_shifted(
+        closed_spectrum(torque, plan.rate), torque.size, plan.rate, bushing, scattered
+    )
+    found = predict_outputs(spectrum, torque.size, plan.rate, transfer_functions, changes)
+    acceleration, pressure = (found[name][: kept.stop] for name in _OUTPUTS)
+    force, pulses = pulse_force(motion, effects), np.zeros_like(pressure)
+    if paths is not None and np.any(force):
+        struck, pulses = radiate_pulses(paths, force)
+        acceleration, pressure = acceleration + struck, pressure + pulses
+    return Sound(acceleration, pressure, pulses)
+
+
+def faded(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Fade in and out.
+
+    Errors of a measured response have it ring before and after whatever is sudden, for as long as
+    its lines are fine. What rings on from before a recording must be in it, but the start from rest
+    and the end of the simulation must not.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        [any unit]
+    rate : float
+        [Hz]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of the signal]
+
+    Examples
+    --------
+    >>> faded(np.ones(9), 40.0).round(2)
+    array([0.  , 0.25, 0.75, 1.  , 1.  , 1.  , 0.75, 0.25, 0.  ])
+    """
+    n = round(_FADE * rate)
+    slope = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, n))
+    gain = np.ones(signal.size)
+    gain[:n], gain[-n:] = slope, slope[::-1]
+    return np.asarray(signal * gain)
+
+
+_RUNNING_OUT = 0.12
+"""Simulated after a recording ends [s]."""
+
+_OUTPUTS = ("acceleration", "pressure")
+
+
+def nominal_recordings(
+    rig: Rig,
+    condition: KnownCondition,
+    transfer_functions: Mapping[str, TransferFunction],
+    *,
+    rate: float,
+    seconds: float,
+    seeds: Sequence[int],
+    scatter: Scatter | None = None,
+    library: Mapping[str, Effect] | None = None,
+) -> list[Recording]:
+    """Simulate repeats of a run of the rig as its file has it.
+
+    Parameters
+    ----------
+    rig : Rig
+    condition : KnownCondition
+    transfer_functions : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them for this condition.
+    rate, seconds : float
+        [Hz], [s]
+    seeds : sequence of int
+        One a repeat.
+    scatter : Scatter, optional
+    library : mapping of str to Effect, optional
+        Effects that the rig's can be found among.
+
+    Returns
+    -------
+    list of Recording
+
+    Raises
+    ------
+    ParameterError
+        The rig cannot be simulated.
+    """
+    scatter = scatter or Scatter()
+    effects = activated(rig.effects, library or EFFECTS)
+    if any(e.effect.force or e.effect.chain or e.effect.sensors for e in effects):
+        return [
+            _with_effects(rig, condition, effects, transfer_functions, rate, seconds, seed, scatter)
+            for seed in seeds
+        ]
+    decimation = DIAGNOSIS.decimation(rate)
+    before = round(DIAGNOSIS.settling * rate)
+    kept = slice(before, before + round(seconds * rate))
+    n = (kept.stop + round(_RUNNING_OUT * rate)) * decimation
+    at = (condition.interference, condition.support_stiffness)
+    bushing = lumped_bushing(rig, *at)
+    corners = {name: rig.sensors.of(name).antialias for name in CHANNELS}
+    recordings = []
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        once, found = perturb_run(rig, condition, scatter, rng)
+        plan = plan_repeat(once, found, effects, rate=DIAGNOSIS.rate(rate), seconds=seconds)
+        motion = repeat_motion(replace(plan, n_settling=0, n_kept=n), rng)
+        # What a sensor's filter does to a sound, it does to the torque that makes it.
+        by_filter = {
+            corner: decimate_sensed(motion.torque, decimation, plan.rate, Sensor(antialias=corner))
+            for corner in {corners[name] for name in ("torque", *_OUTPUTS)}
+        }
+        angle = decimate_sensed(motion.shaft_angle, decimation, plan.rate, rig.sensors.of("angle"))
+        lumped = lumped_bushing(once, *at)
+        outputs: dict[str, NDArray[np.float64]] = {}
+        for corner in {corners[name] for name in _OUTPUTS}:
+            paths = {n: transfer_functions[n] for n in _OUTPUTS if corners[n] == corner}
+            torque = _steadied(by_filter[corner], kept, rate)
+            spectrum = with_clamp_shifted(
+                closed_spectrum(torque, rate), torque.size, rate, bushing, lumped
+            )
+            outputs |= predict_outputs(spectrum, torque.size, rate, paths)
+        signals = {
+            "torque": by_filter[corners["torque"]][kept],
+            **{name: outputs[name][kept] for name in _OUTPUTS},
+            "angle": angle[kept] - angle[before],
+        }
+        through = rig.sensors.unfiltered()
+        recordings.append(record(signals, rate, condition, rng, scatter, sensors=through))
+    return recordings
+
+
+def nominal_repeats(
+    template: Recording,
+    rig: Rig,
+    transfer_functions: TransferFunctionCache,
+    seeds: Sequence[int],
+    scatter: Scatter | None = None,
+    library: Mapping[str, Effect] | None = None,
+) -> list[Recording]:
+    """Simulate repeats at the condition, rate and length of a recording.
+
+    Parameters
+    ----------
+    template : Recording
+    rig : Rig
+    transfer_functions : TransferFunctionCache
+        Of the rig.
+    seeds, scatter, library
+        As of `nominal_recordings`.
+
+    Returns
+    -------
+    list of Recording
+    """
+    return nominal_recordings(
+        rig, known_condition(template.condition), transfer_functions.of(template),
+        rate=template.rate, seconds=template.duration, seeds=seeds, scatter=scatter,
+        library=library,
+    )  # fmt: skip
+
+
+def condition_key(recording: Recording) -> tuple[float, ...]:
+    """Return what recordings that can be repeats of each other have in common.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Returns
+    -------
+    tuple of float
+        Speed [rad/s], interference [m], support stiffness [Nm/rad], sampling rate [Hz] and length
+        [s].
+    """
+    c = known_condition(recording.condition)
+    return (c.speed, c.interference, c.support_stiffness, recording.rate, recording.duration)
+
+
+def _with_effects(
+    rig: Rig,
+    condition: KnownCondition,
+    effects: Sequence[ActiveEffect],
+    transfer_functions: Mapping[str, TransferFunction],
+    rate: float,
+    seconds: float,
+    seed: int,
+    scatter: Scatter,
+) -> Recording:
+    """Simulate a repeat with effects beyond the contact, as models are that a fit compares."""
+    rng, fine = np.random.default_rng(seed), DIAGNOSIS.rate(rate)
+    once, found = perturb_run(rig, condition, scatter, rng)
+    at = (condition.interference, condition.support_stiffness)
+    bushing, lumped = lumped_bushing(rig, *at), lumped_bushing(once, *at)
+    shifted = {name: shift_clamp_mode(h, bushing, lumped) for name, h in transfer_functions.items()}
+    impacts = any(active.effect.force or active.effect.chain for active in effects)
+    paths = chain_of(rig, *at, shifted, fine, impacts=impacts)
+    paths = changed_chain(paths, effects, np.random.default_rng(0))  # one structure for all runs
+    plan = plan_repeat(once, found, effects, rate=fine, seconds=seconds)
+    motion = repeat_motion(plan, rng)
+    signals = sensor_signals(motion, radiate_motion(motion, paths, effects), plan.n_settling)
+    signals = apply_sensor_effects(signals, effects, fine, rng)
+    return record(
+        signals, rate, condition, rng, scatter,
+        decimation=DIAGNOSIS.decimation(rate), sensors=rig.sensors,
+    )  # fmt: skip
+
+
+def _steadied(torque: NDArray[np.float64], kept: slice, rate: float) -> NDArray[np.float64]:
+    mean = torque[kept].mean()
+    return np.asarray(mean + faded(torque - mean, rate))
 
 
 @dataclass(frozen=True)

@@ -9,16 +9,17 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.findings import SHOWN_IN, SURE, EffectFinding
-from noise.diagnosis.text.agreement_sentences import (
+from noise.diagnosis.outcome import SHOWN_IN, SURE, EffectFinding
+from noise.diagnosis.text.verdict_sentences import (
     agreement_sentence,
     far_ones,
     remainder_sentence,
+    verdict_sentence,
 )
-from noise.diagnosis.text.found import PHASES, begins, stages_acting
-from noise.diagnosis.text.verdict_sentences import verdict_sentence
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
+    PHASES,
+    begins,
     cause_of,
     evidence,
     floors,
@@ -26,6 +27,7 @@ from noise.diagnosis.text.words import (
     joined,
     p_number,
     percent,
+    stages_acting,
 )
 
 if TYPE_CHECKING:
@@ -144,7 +146,7 @@ def closed_words(finding: EffectFinding | None, of: str = "", interval: str = ""
 
     Examples
     --------
-    >>> from noise.diagnosis.findings import EffectFinding
+    >>> from noise.diagnosis.outcome import EffectFinding
     >>> closed_words(EffectFinding("mains_hum", "measurement", 0.9, closed=0.96, closed_low=0.91,
     ...                            closed_high=0.99))
     '96 % (91 % to 99 %)'
@@ -165,7 +167,7 @@ def closed_sentence(finding: EffectFinding) -> str:
 
     Examples
     --------
-    >>> from noise.diagnosis.findings import EffectFinding
+    >>> from noise.diagnosis.outcome import EffectFinding
     >>> closed_sentence(EffectFinding("mains_hum", "measurement", 0.9, closed=0.96, closed_low=0.91,
     ...                               closed_high=0.99))
     'The fit explains 96 % of the deviation (90 % interval 91 % to 99 %).'

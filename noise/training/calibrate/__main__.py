@@ -20,8 +20,7 @@ from joblib import Parallel, delayed
 from models.errors import BushingNoiseError
 from models.rig_file import load_material_rig
 from noise.base.files import atomic
-from noise.identification.table_fit import TableFit, TableScore, fit_table
-from noise.identification.table_number import TableNumber
+from noise.identification.table_fit import TableFit, TableNumber, TableScore, fit_table
 from noise.training.calibrate.report import (
     material_toml,
     measured_speeds,

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from models.condition import FIXED
 from models.rig import Rig
-from noise.identification.table_fit import TableScore
-from noise.identification.table_number import TableNumber
+from noise.identification.table_fit import TableNumber, TableScore
 from noise.noise_definition import label_by_physics
 from noise.training.calibrate.thesis_table import CELLS, NOISES, THIN_CELLS
 from noise.training.calibrate.unknowns import UNKNOWNS

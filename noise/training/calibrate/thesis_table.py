@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from models.condition import FIXED
-from noise.identification.table_number import TableNumber
+from noise.identification.table_fit import TableNumber
 from noise.thesis.runs import LONG, SHORT
 from sim.analysis.slips import LEAST_SUDDEN
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from models.errors import ParameterError
 from noise.base.files import check_target
 from noise.base.progress import counted, say, track
-from noise.diagnosis.causes.stage_nulls import learn_stage_nulls
+from noise.diagnosis.causes.location import learn_stage_nulls
 from noise.training.causes.cases.draw import SHARED
 from noise.training.causes.fit import null_scale, train_posterior
 from noise.training.causes.report import is_kept, report, with_forms

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from noise.base.trees import BoostedTrees
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
-from noise.diagnosis.evidence.evidence import evidence, scale_of
+from noise.diagnosis.evidence.summary import evidence, scale_of
 from noise.diagnosis.simulated.repeats import CHANNELS
 from noise.training.causes.cases.truth import Truth, seen_through
 from noise.training.trees import as_arrays
@@ -238,7 +238,7 @@ def null_scale(cases: Sequence[Known], names: Sequence[str]) -> NDArray[np.float
     Returns
     -------
     ndarray, shape (n_names,)
-        As of `noise.diagnosis.evidence.evidence.scale_of` [unit of the number].
+        As of `noise.diagnosis.evidence.summary.scale_of` [unit of the number].
     """
     without_cause = [case for case in cases if case.truth.kind == "none"]
     quiet = [case for case in without_cause if not case.departures]
