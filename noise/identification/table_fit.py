@@ -201,7 +201,7 @@ def score_table(
     Examples
     --------
     >>> from models.rig_file import load_material_rig
-    >>> from noise.identification.table_number import TableNumber
+    >>> from noise.identification.table_fit import TableNumber
     >>> number = TableNumber("effective_stiffness", 464.0, 0.279e-3, 2214.0)
     >>> round(score_table(load_material_rig("fluorocarbon"), [number]).found[number])
     511

@@ -13,13 +13,13 @@ from noise.screening.map.batches import LABELS
 from noise.screening.map.grid import Grid
 from noise.screening.ranking.plain_words import plain_words
 
-from noise.diagnosis.findings import Agreement, EffectFinding, StageFinding
 from noise.diagnosis.gap.distance import closed_fraction
-from noise.diagnosis.text.agreement_sentences import far_ones
-from noise.diagnosis.text.found import finding_of
+from noise.diagnosis.outcome import Agreement, EffectFinding, StageFinding
 from noise.diagnosis.text.sentences import answer, closed_sentence
+from noise.diagnosis.text.verdict_sentences import far_ones
+from noise.diagnosis.text.words import finding_of
 from noise.identification.outcome import Identification, LawScore, Number
-from noise.identification.table_number import TableNumber
+from noise.identification.table_fit import TableNumber
 from noise.labels.summary import result_lines
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.identification import write_identification
