@@ -16,8 +16,10 @@ How the shaft comes to its speed within a recording: from rest, run up, or swing
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,7 +27,7 @@ from numpy.typing import NDArray
 
 from models.rig import LawSpec
 from models.sensors import Sensor, Sensors
-from noise.diagnosis.cases.draws import log_uniform
+from noise.diagnosis.cases.draws import draw_numbers, log_uniform
 from noise.diagnosis.cases.strengths import drawn_effect
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects import EFFECTS
@@ -110,64 +112,13 @@ STARTS: Mapping[str, Callable[[float, np.random.Generator], Course]] = {
 end as a function of time."""
 
 
-MATERIALS = {
-    "fluorocarbon": 0.09, "natural-rubber": 0.035, "natural-rubber-film-removed": 0.02,
-    "natural-rubber-film": 0.015, "PDMS": 0.015,
-}  # fmt: skip
+_TABLE = tomllib.loads((resources.files(__package__) / "laws.toml").read_text("utf-8"))
+
+MATERIALS: Mapping[str, float] = _TABLE["materials"]
 """Shipped ones with laws of their own, and how often each is met."""
 
-OWN_LAWS = {
-    "contact_with_memory": 0.18, "rate_and_state": 0.12, "stribeck_exponential": 0.07,
-    "stribeck_gaussian": 0.07, "stribeck_lorentzian": 0.07, "lugre": 0.12, "ageing": 0.08,
-    "bond_population": 0.06, "master_curve": 0.05, "maxwell_slip": 0.05, "viscous": 0.015,
-    **MATERIALS,
-}  # fmt: skip
+OWN_LAWS = {name: float(row["share"]) for name, row in _TABLE["laws"].items()} | {**MATERIALS}
 """Laws, or materials that have one, and how often each is met."""
-
-Range = tuple[float, float]
-
-_CONTACT: dict[str, Range] = {
-    "contact_stiffness_per_torque": (900.0, 4500.0),
-    "contact_damping_per_torque": (1e-5, 1.2e-4),
-}
-_FALLING: dict[str, Range] = {"first_speed": (0.3, 4.0), "second_speed": (8.0, 40.0)}
-
-_LOG: dict[str, dict[str, Range]] = {
-    "ageing": {**_CONTACT, "renewal_angle": (5e-5, 6e-4), "ageing_time": (3e-4, 4e-3)},
-    "bond_population": {
-        "bond_stiffness_per_torque": (900.0, 3500.0), "bonding_time": (8e-4, 5e-3),
-        "rupture_stretch": (1.3e-4, 5e-4),
-    },
-    "contact_with_memory": {
-        **_CONTACT, "renewal_angle": (5e-5, 6e-4), "ageing_time": (5e-5, 8e-4),
-        "weakening_speed": (8.0, 40.0),
-    },
-    "lugre": {**_CONTACT, "stribeck_speed": (0.3, 4.0)},
-    "master_curve": {**_CONTACT, "peak_speed": (3e-3, 0.2)},
-    "maxwell_slip": {**_CONTACT, "stribeck_speed": (0.3, 4.0)},
-    "rate_and_state": {
-        **_CONTACT, "renewal_angle": (1e-4, 1e-3), "ageing_time": (5e-5, 1e-3),
-        "direct_speed": (1e-3, 0.1),
-    },
-    "stribeck_exponential": {**_CONTACT, **_FALLING},
-    "stribeck_gaussian": {**_CONTACT, **_FALLING},
-    "stribeck_lorentzian": {**_CONTACT, **_FALLING},
-    "viscous": {**_CONTACT, "doubling_speed": (6.0, 60.0)},
-}  # fmt: skip
-"""Ranges whose logarithms are drawn evenly, for a rig of the thesis's size."""
-
-_EVEN: dict[str, dict[str, Range]] = {
-    "bond_population": {"rubbing_share": (0.1, 0.6), "viscous_share_per_speed": (0.0, 0.025)},
-    "contact_with_memory": {"weakening_share": (0.0, 0.2), "weakening_exponent": (1.0, 3.0)},
-    "lugre": {"viscous_share_per_speed": (0.0, 0.008)},
-    "master_curve": {"width": (0.7, 2.5), "peak_share": (1.0, 1.3), "floor_share": (0.8, 1.0)},
-    "maxwell_slip": {"spread": (0.1, 0.7)},
-    "rate_and_state": {"direct_effect": (0.0, 0.02)},
-    "stribeck_exponential": {"second_share": (0.0, 0.5)},
-    "stribeck_gaussian": {"second_share": (0.0, 0.5)},
-    "stribeck_lorentzian": {"second_share": (0.0, 0.5)},
-}
-"""Ranges that are drawn from evenly."""
 
 
 def draw_law(name: str, rng: np.random.Generator) -> LawSpec:
@@ -179,9 +130,8 @@ def draw_law(name: str, rng: np.random.Generator) -> LawSpec:
     >>> sorted(draw_law("maxwell_slip", np.random.default_rng(0)).parameters)[-2:]
     ['spread', 'stribeck_speed']
     """
-    values = {key: log_uniform(rng, *ends) for key, ends in _LOG[name].items()}
-    values |= {key: float(rng.uniform(*ends)) for key, ends in _EVEN.get(name, {}).items()}
-    return LawSpec(name, values)
+    ranges = {key: spec for key, spec in _TABLE["laws"][name].items() if key != "share"}
+    return LawSpec(name, draw_numbers(ranges, rng))
 
 
 def scaled_law(law: LawSpec, *, angle: float, time: float, torque: float) -> LawSpec:

@@ -13,6 +13,7 @@ from scipy.fft import irfft
 from models.radiation.impulse_responses import ImpulseResponses
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
+from noise.diagnosis.cases.draws import log_uniform, log_uniforms
 
 if TYPE_CHECKING:
     from sim.bushing import LumpedBushing
@@ -112,15 +113,9 @@ class Structure:
         pressure = late * _modes(frequency, self.plate)
         if not self.bushing.clamp_is_fixed:
             s = 2j * np.pi * frequency
-            turning = (
-                s
-                * s
-                / (
-                    self.bushing.support_stiffness
-                    + self.bushing.support_damping * s
-                    + self.bushing.clamp_inertia * s * s
-                )
-            )
+            bushing = self.bushing
+            swinging = bushing.support_damping * s + bushing.clamp_inertia * s * s
+            turning = s * s / (bushing.support_stiffness + swinging)
             acceleration = acceleration + self.lever * turning
             pressure = pressure + self.clamp_to_pressure * late * turning
         return acceleration, pressure
@@ -168,29 +163,22 @@ def draw_structure(
     fixed = bushing.clamp_is_fixed
     stiffer = 1.0 if fixed else (bushing.support_stiffness / 2214.0) ** 0.67
     n_beams, n_plate = int(rng.integers(2, 7)), int(rng.integers(*trade.modes))
-    beams = np.array(
-        [
-            stiffer * _log_uniform(rng, 500.0, 7500.0, n_beams),
-            rng.uniform(0.008, 0.03, n_beams),
-            (0.2 if fixed else 1.0) * rng.uniform(3.0, 18.0, n_beams) * _signs(rng, n_beams),
-        ]
-    )
+    frequency = stiffer * log_uniforms(rng, 500.0, 7500.0, n_beams)
+    damping, constant = rng.uniform(0.008, 0.03, n_beams), rng.uniform(3.0, 18.0, n_beams)
+    constant *= (0.2 if fixed else 1.0) * rng.choice([-1.0, 1.0], n_beams)
+    beams = np.array([frequency, damping, constant])
     if fixed:
         n = int(rng.integers(2, 6))
-        low = [
-            _log_uniform(rng, 110.0, 900.0, n),
-            rng.uniform(0.01, 0.03, n),
-            rng.uniform(0.4, 2.5, n),
-        ]
-        beams = np.concatenate([beams, np.array(low)], axis=1)
-    loud = 0.012 * trade.loud * float(_log_uniform(rng, 0.4, 2.5, 1)[0])
+        low, damping = log_uniforms(rng, 110.0, 900.0, n), rng.uniform(0.01, 0.03, n)
+        beams = np.concatenate([beams, [low, damping, rng.uniform(0.4, 2.5, n)]], axis=1)
+    loud = 0.012 * trade.loud * log_uniform(rng, 0.4, 2.5)
     plate = [
-        _log_uniform(rng, 110.0, 12e3, n_plate),
+        log_uniforms(rng, 110.0, 12e3, n_plate),
         rng.uniform(*trade.damping_ratios, n_plate),
         loud * rng.standard_normal(n_plate),
     ]
     anchors = [
-        _log_uniform(rng, 1500.0, 12e3, 8),
+        log_uniforms(rng, 1500.0, 12e3, 8),
         rng.uniform(0.008, 0.04, 8),
         (0.6 if fixed else 1.2) * rng.standard_normal(8),
     ]
@@ -229,11 +217,3 @@ def _as_measured(
     spread = size * np.sqrt((1.0 - coherence) / (2.0 * impacts * coherence))
     error = rng.standard_normal((2, _LINES.size)) * spread / math.sqrt(2.0)
     return np.asarray(gain * (response + error[0] + 1j * error[1])), coherence
-
-
-def _log_uniform(rng: np.random.Generator, low: float, high: float, n: int) -> NDArray[np.float64]:
-    return np.exp(rng.uniform(math.log(low), math.log(high), n))
-
-
-def _signs(rng: np.random.Generator, n: int) -> NDArray[np.float64]:
-    return rng.choice([-1.0, 1.0], n)
