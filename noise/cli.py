@@ -146,7 +146,10 @@ def _run(arguments: list[str]) -> int:
         meant = _meant(unknown[0].partition("=")[0], known)
         return _failed(f"unrecognized: {' '.join(unknown)}{meant} ({options_there})")
     set_verbosity(quiet=options.quiet, verbose=options.verbose)
-    return load_command(options.command).run(options)
+    try:
+        return load_command(options.command).run(options)
+    finally:
+        set_verbosity()
 
 
 def _meant(word: str, known: Iterable[str]) -> str:

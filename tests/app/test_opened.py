@@ -20,6 +20,7 @@ def test_a_folder_has_its_recordings_and_the_table_in_it(folder):
     assert [job.name for job in opened.jobs] == ["a.wav", "b.wav"]
     assert opened.table == folder / "labels.csv"
     assert opened.job(1).path == folder / "b.wav"
+    assert opened.folder == folder.parent  # nothing is saved among the recordings
     with pytest.raises(ParameterError, match="no recording 2"):
         opened.job(2)
 
@@ -36,6 +37,8 @@ def test_several_paths_and_a_rig_are_opened_together(folder, tmp_path):
     opened = open_paths([folder, other / "c.wav", tmp_path / "rig.toml"], tmp_path / "all.csv")
     assert [job.name for job in opened.jobs] == ["a.wav", "b.wav", "c.wav"]
     assert (opened.rigs, opened.table) == ((tmp_path / "rig.toml",), tmp_path / "all.csv")
+    assert opened.folder == tmp_path  # beside the rig file
+    assert open_paths([folder], save=tmp_path / "mine").folder == tmp_path / "mine"
 
 
 @pytest.mark.parametrize(

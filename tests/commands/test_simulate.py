@@ -242,3 +242,21 @@ def test_what_a_suspension_file_says_wrongly_is_named(tmp_path, old, new, says):
     with pytest.raises(ParameterError, match=says) as refused:
         load_suspension(path)
     assert str(refused.value).startswith(f"rig file {path}")
+
+
+def test_a_recording_of_somebody_else_is_replaced_only_if_told_to(tmp_path, capsys):
+    call = ["simulate", "--speed", "5", "--seconds", "0.05", "--quiet", "--out"]
+    foreign, own = tmp_path / "foreign.wav", tmp_path / "own"
+    foreign.write_bytes(b"measured")
+    assert main([*call, str(foreign)]) == 2
+    assert "--force to replace it" in capsys.readouterr().err
+    assert foreign.read_bytes() == b"measured"
+    assert main([*call, str(foreign), "--force"]) == 0
+    assert [main([*call, str(own)]), main([*call, str(own)])] == [0, 0]
+    assert capsys.readouterr().err == ""  # as it is quiet
+
+
+def test_a_speed_that_may_be_meant_in_rpm_is_asked_about(tmp_path, capsys):
+    out = str(tmp_path / "run")
+    assert main(["simulate", "--speed", "60", "--seconds", "0.05", "--out", out]) == 0
+    assert "if you mean 60 rpm, give --speed 6.28" in capsys.readouterr().err

@@ -75,7 +75,7 @@ def renamed(found, names):
         designs=tuple(replace(one, name=known[one.name]) for one in found.designs),
         **{
             part: tuple(replace(one, design=known[one.design]) for one in getattr(found, part))
-            for part in ("maps", "critical", "statistics", "standings")
+            for part in ("maps", "critical", "standings")
         },
         files=(),
     )

@@ -87,7 +87,7 @@ def test_a_stretch_of_both_tracks_is_labelled_by_a_drag_and_a_key(browser, tmp_p
         opened.press("Control+z")
         opened.page.locator(".saved").filter(has_text="undone").wait_for()
         assert len(read_label_table(tmp_path / "labels.csv")) == 2
-        opened.press("Control+Shift+z", "a")
+        opened.press("Control+Shift+z", "c")
         opened.page.get_by_role("option").filter(has_text=re.compile(", corrected")).wait_for()
         assert {r["label_source"] for r in read_label_table(tmp_path / "labels.csv")} == {"human"}
         opened.close()

@@ -62,7 +62,7 @@ export function build(element) {
     plot: canvas("plot"), marks: canvas("marks"), frequencies: canvas("axis frequencies"), legend: canvas("legend", "Colours of levels"),
     course: canvas("course", "A-weighted level over time, Fast"), courseAxis: canvas("axis course"), times: canvas("times"),
     chosen: made("div", { className: "chosen" }), labels: group("Label of the segment"), shares: made("dl", { className: "shares" }), source: made("p"), conditions: made("p", { className: "conditions" }),
-    split: button("Split", "S: at the cursor, or where it is played"), join: button("Join", "Delete: to the segment before it"), undo: button("Undo", "Ctrl+Z"), redo: button("Redo", "Ctrl+Shift+Z"), agree: button("Confirm all", "A: all labels of this recording are right"),
+    split: button("Split", "S: at the cursor, or where it is played"), join: button("Join", "Delete: to the segment before it"), undo: button("Undo", "Ctrl+Z"), redo: button("Redo", "Ctrl+Shift+Z"), agree: button("Confirm all", "C: all labels of this recording are right"),
     stack: made("div", { className: "stack" }), stackAxes: made("div", { className: "stack" }),
     bands: canvas("bands", "Third octaves"), bandsText: made("p", { className: "facts" }), dialog: helpDialog(),
   };
@@ -90,7 +90,7 @@ export function build(element) {
       group("View", parts.out, parts.in, parts.left, parts.right, parts.whole, parts.fit, parts.harmonic),
       group("Correcting", parts.split, parts.join, parts.undo, parts.redo, parts.agree, parts.help)),
     parts.lanes,
-    made("p", { className: "shortcuts", textContent: `Drag: select · 1–5: ${LABELS.join(", ")} · A: confirm all · Ctrl+Z: undo · Space: play · ?: keys` }),
+    made("p", { className: "shortcuts", textContent: `Drag: select · 1–5: ${LABELS.join(", ")} · C: confirm all · Ctrl+Z: undo · Space: play · ?: keys` }),
     made("div", { className: "under" }, parts.readout, parts.levelRead, parts.legend),
     made("div", { className: "below" },
       made("section", { ariaLabel: "Segment" }, parts.chosen, parts.labels, parts.source, parts.conditions, parts.shares),

@@ -4,7 +4,7 @@ import { made } from "../dom.js";
 const TOLD = [
   ["Drag", "select a stretch; Esc ends the selection"],
   ["1 2 3 4 5", "label creak, squawk, squeal, none, unknown: the selection becomes a segment; without one, the segment at the cursor"],
-  ["A", "confirm all labels of this recording"],
+  ["C", "confirm all labels of this recording"],
   ["Ctrl+Z Ctrl+Shift+Z", "undo, redo a correction; also U"],
   ["Space", "play, pause"],
   ["L", "loop on, off: the selection, else the chosen segment, else all"],

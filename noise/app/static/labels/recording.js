@@ -272,7 +272,7 @@ export class RecordingPage {
     const beside = (sign) => () => { segments.choose(segments.at + sign); if (segments.chosen) timeline.go(segments.chosen.start_s); };
     const actions = {
       " ": () => this.toggle("play"), l: () => this.toggle("looping"), e: () => this.toggle("equal"), h: () => this.toggle("harmonic"),
-      x: () => this.changeOver(), b: () => this.keepAsB(), s: () => splitHere(this), a: () => agree(this),
+      x: () => this.changeOver(), b: () => this.keepAsB(), s: () => splitHere(this), c: () => agree(this),
       u: () => undo(this), "Ctrl+z": () => undo(this), "Ctrl+Shift+z": () => undo(this, true), "Ctrl+y": () => undo(this, true),
       Delete: () => joinHere(this), Backspace: () => joinHere(this), ArrowLeft: step(-1), ArrowRight: step(1), "[": beside(-1), "]": beside(1),
       "+": () => timeline.zoom(ZOOM), "=": () => timeline.zoom(ZOOM), "-": () => timeline.zoom(1 / ZOOM), 0: () => timeline.whole(), f: () => this.fit(),
