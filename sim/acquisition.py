@@ -330,11 +330,6 @@ class Decimation:
         self._half = self._filter.size // 2
         self._held: NDArray[np.float64] | None = None
 
-    @property
-    def lookahead(self) -> int:
-        """Samples that it must be given after the last that is to be kept."""
-        return self._half
-
     def __call__(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return those of the next samples that are known by now."""
         if self._held is None:

@@ -85,12 +85,6 @@ LEARNING = replace(DIAGNOSIS, least_rate=60e3)
 """Of the cases that it was fitted to: usual rates are still at least halved, so that what lies
 above half of them is filtered out as in a recording and does not fold back."""
 
-SCREENING = Timing(least_rate=30e3, settling=0.6)
-"""Of a point of a map, named by its physics: creaks reach 15 kHz."""
-
-SCREENING_SLOW = Timing(least_rate=30e3, settling=1.5)
-"""Of a point whose vibration still grows or dies after that; some creaks set in that late."""
-
 REGIME_RATE = 15e3
 """Of a motion of which only the regime and slow lines are asked [Hz]; it resolves stick, and the
 solution does not depend on it."""

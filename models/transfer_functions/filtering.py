@@ -109,35 +109,6 @@ def filter_period(
     return np.asarray(irfft(spectrum, n))
 
 
-def filter_signal(
-    signal: NDArray[np.float64], rate: float, transfer: TransferFunction
-) -> NDArray[np.float64]:
-    """Send a signal through a transfer function, as if its ends went on.
-
-    Parameters
-    ----------
-    signal : ndarray, shape (n,)
-        In the transfer function's input [unit].
-    rate : float
-        Sampling rate [Hz].
-    transfer : TransferFunction
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        In the output [unit].
-
-    Examples
-    --------
-    >>> double = TransferFunction(np.array([0.0, 4e3]), np.array([2.0 + 0j, 2.0 + 0j]))
-    >>> bool(np.allclose(filter_signal(np.ones(100), 8e3, double), 2.0))
-    True
-    """
-    n = next_fast_len(2 * signal.size, real=True)
-    bridge = np.linspace(signal[-1], signal[0], n - signal.size + 2)[1:-1]
-    return filter_period(np.concatenate([signal, bridge]), rate, transfer)[: signal.size]
-
-
 FINER = 8
 """By how much lines are refined before straight lines join them [-]."""
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models.rig import LawSpec
-from models.transfer_functions.filtering import filter_signal, impulse_response
+from models.transfer_functions.filtering import filter_period, impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.estimated_forms import estimated_forms, wiener_estimate
@@ -54,7 +54,7 @@ def test_what_the_contact_does_is_not_estimated():
 
 def test_a_transfer_is_found_beneath_noise_and_not_where_there_was_nothing():
     rng, rate = np.random.default_rng(0), 8e3
-    x = filter_signal(rng.standard_normal(16000), rate, _low_pass())
+    x = filter_period(rng.standard_normal(16000), rate, _low_pass())
     r = 0.5 * np.roll(x, 8)
     pairs = [(x, r + 0.02 * rng.standard_normal(x.size))]
     found = wiener_estimate(pairs, rate, 0.02, noise=lambda f: [np.full(f.size, 0.02**2)])

@@ -10,7 +10,6 @@ from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.run import (
     DIAGNOSIS,
-    SCREENING,
     SIMULATION,
     plan_run,
     pulse_force,
@@ -50,7 +49,6 @@ def test_the_stages_one_by_one_are_the_run():
         (SIMULATION, 25.6e3, 102.4e3, 0.5),
         (DIAGNOSIS, 30e3, 90e3, 0.25),
         (DIAGNOSIS, 25.6e3, 76.8e3, 0.25),
-        (SCREENING, 30e3, 30e3, 0.6),
     ],
 )
 def test_presets_are_what_shipped_models_have_seen(timing, rate, fine, settling):
