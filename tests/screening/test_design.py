@@ -7,12 +7,11 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.screening.axis_values import axis_values, spread, text_values
+from noise.screening.axis_values import text_values
 from noise.screening.design import load_design
 from noise.screening.environments import environment, environment_names, in_environment
-from noise.screening.grid import grid_of
 from noise.screening.parts import middle_of_use
-from noise.screening.tolerances import Tolerance, nominal_values, read_tolerances, varied
+from noise.screening.tolerances import nominal_values, read_tolerances, varied
 
 DESIGN = """\
 name = "rig"
@@ -60,24 +59,6 @@ def test_a_design_file_says_rig_use_and_tolerances(tmp_path):
     ]  # fmt: skip
 
 
-def test_a_material_alone_is_a_design(tmp_path):
-    assert load_design(written(tmp_path, 'material = "PDMS"')).rig.friction.name == "lugre"
-    assert load_design("Natural-Rubber").name == "natural-rubber"
-
-
-def test_what_nobody_says_is_the_rigs():
-    grid = grid_of(load_design("fluorocarbon"))
-    assert grid.interference == (0.178e-3, 0.279e-3, 0.381e-3)
-    assert grid.support_stiffness == (2214.0, 3745.0, math.inf)
-    assert (grid.speed[0], grid.speed[-1], grid.use) == (0.25, 13.0, (0.25, 13.0))
-
-
-def test_an_environment_has_its_own_temperature(tmp_path):
-    design = load_design(written(tmp_path, DESIGN))
-    assert grid_of(design).temperature == (-10.0, 23.0)
-    assert grid_of(design, where="hot").temperature == (80.0,)
-
-
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
@@ -106,12 +87,6 @@ def test_what_cannot_be_used_is_named_with_its_file(tmp_path, changed, message):
     assert "\n" not in str(refused.value)
 
 
-@pytest.mark.parametrize("given", ["teflon", "nowhere.toml"])
-def test_a_design_that_is_not_there_is_named(given):
-    with pytest.raises(ParameterError, match=given):
-        load_design(given)
-
-
 @given(
     st.floats(0.01, 50.0).map(lambda x: round(x, 4)),
     st.floats(0.01, 50.0).map(lambda x: round(x, 4)),
@@ -123,11 +98,6 @@ def test_a_range_has_its_ends_and_as_many_points_as_asked(low, wide, points):
     assert values[0] == pytest.approx(low)
     assert values[-1] == pytest.approx(low + wide)
     assert all(a < b for a, b in pairwise(values))
-
-
-def test_lists_are_sorted_and_each_value_counts_once():
-    assert axis_values([5, "1..2/2", 1.0], "x") == (1.0, 2.0, 5.0)
-    assert spread(3.0, 3.0, 1) == (3.0,)
 
 
 def test_tolerances_become_factors_on_the_nominal_value():
@@ -181,22 +151,8 @@ def test_every_environment_but_dry_is_marked_as_assumed_number_by_number(name):
     assert any(number != 1.0 for number in numbers)
 
 
-def test_dry_changes_nothing():
-    rig = load_design("fluorocarbon").rig
-    assert in_environment(rig, environment("dry")) is rig
-
-
 @pytest.mark.parametrize("name", ["cold", "hot"])
 def test_what_a_material_says_of_temperature_stands_in_for_the_factors_of_cold_and_hot(name):
     rig = load_design("fluorocarbon").rig
     assert in_environment(rig, environment(name)) is rig
     assert in_environment(rig, environment("wet")) is not rig
-
-
-def test_an_unknown_environment_is_named_with_those_there_are():
-    with pytest.raises(ParameterError, match="'mud' is unknown; there are dry, cold, hot"):
-        environment("mud")
-
-
-def test_a_tolerance_is_a_value():
-    assert Tolerance("damping", "relative", 0.1).name == "damping"

@@ -51,11 +51,3 @@ def test_after_a_kill_only_the_rest_is_simulated_and_the_map_is_the_same(tmp_pat
     assert first.n_points + second.n_points == undisturbed.n_points
     for name in ("regime", "label", "level", "level_max", "how"):
         assert getattr(found, name).tobytes() == getattr(whole, name).tobytes()
-
-
-def test_of_a_design_that_was_changed_since_all_is_simulated(tmp_path):
-    undisturbed, other = Judge(), Judge()
-    mapped(undisturbed, tmp_path / "undisturbed", change=1.5)
-    mapped(Judge(), tmp_path)
-    mapped(other, tmp_path, change=1.5)
-    assert other.n_points == undisturbed.n_points

@@ -17,7 +17,6 @@ from noise.screening.screen import screen
 from noise.screening.summary import summary_lines
 from noise.screening.tables import screening_tables
 from noise.screening.vibration import Condition
-from sim.analysis.critical_speeds import critical_speeds
 from tests.screening.long_runs import label_after
 
 SUPPORTS = (2214.0, 3745.0, math.inf)
@@ -84,21 +83,6 @@ def test_points_are_labelled_as_recordings_of_them_are(material):
         assert heard == ("none" if found.persists else found.label)
 
 
-def test_critical_speeds_are_those_of_the_search_to_a_step_of_the_map():
-    speeds = tuple(np.arange(2.0, 9.51, 0.25))
-    fit, supports = 0.279e-3, (2214.0, math.inf)
-    use = Use(speed=speeds, interference=(fit,), support_stiffness=supports)
-    found = screen([Design("one", FLUOROCARBON)], use)
-    for point, support in zip(found.critical, supports, strict=True):
-        searched = critical_speeds(FLUOROCARBON, fit, support, speeds)
-        assert point.v_crit1 == pytest.approx(searched.v_crit1, abs=0.26)
-        assert point.v_crit1_high - point.v_crit1 in (0.25, math.inf)
-        # A vibration that only persists counts, which the search from rest does not see.
-        assert point.v_crit2 >= searched.v_crit2 - 0.26
-        assert point.v_crit2_stability <= point.v_crit2
-        assert point.margin_v_crit2 <= 2.0 - point.v_crit2 or math.isinf(point.v_crit2)
-
-
 def test_a_constant_torque_sticks_and_slips_where_stability_sees_nothing():
     use = Use(speed=tuple(np.arange(0.5, 9.01, 0.25)), support_stiffness=(3745.0,))
     found = screen(["fluorocarbon-thesis"], replace(use, interference=(0.279e-3,)))
@@ -133,18 +117,6 @@ def test_temperature_makes_a_difference_only_to_a_material_that_says_how():
     assert np.array_equal(blind.label[0], blind.label[1])
 
 
-def test_a_map_over_temperature_is_noisy_in_the_cold_and_silent_in_the_heat():
-    use = Use(
-        speed=(1.0, 5.0, 9.0), support_stiffness=(2214.0,), interference=(0.279e-3,),
-        temperature=(10.0, 80.0),
-    )  # fmt: skip
-    found = mapped("fluorocarbon", use)
-    assert "unchanged" not in found.how
-    assert (found.label[0] != "none").all()
-    assert (found.label[1] == "none").all()
-    assert (found.growth[0] > found.growth[1]).all()
-
-
 def test_a_bar_that_swings_on_the_road_makes_noise_where_its_rubber_does():
     swing = Condition(2.0 * math.pi * 2.0 * math.radians(15), 0.381e-3, 2214.0, frequency=2.0)
     loud = evaluate_point(FLUOROCARBON, swing)
@@ -176,11 +148,6 @@ def test_the_design_that_is_quieter_by_construction_is_ranked_first():
     assert [(one.rank, one.design) for one in found.standings] == [(1, "damped"), (2, "as it is")]
     assert found.standings[0].mean_loudness < found.standings[1].mean_loudness
     assert found.standings[0].margin_stability > found.standings[1].margin_stability
-
-
-def test_equal_designs_share_a_rank_and_are_told_apart():
-    found = screen(["PDMS", "pdms"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,)))
-    assert [(one.rank, one.design) for one in found.standings] == [(1, "PDMS"), (1, "PDMS (2)")]
 
 
 @pytest.mark.slow

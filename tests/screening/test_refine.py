@@ -27,16 +27,6 @@ def test_a_region_larger_than_the_coarse_cells_is_found_to_the_point(row, column
     assert found.open == 0
 
 
-def test_a_stride_of_one_simulates_every_point():
-    assert refined_map((2, 3, 7), lambda points: points[:, 2] % 2, stride=(1, 1)).simulated.all()
-
-
-def test_few_rows_tell_nothing_of_each_other():
-    code_at = lambda points: NOISE * (points[:, 1] == 1).astype(np.int64)  # noqa: E731
-    found = refined_map((1, 3, 100), code_at)
-    assert np.array_equal(found.codes, brute((1, 3, 100), code_at))
-
-
 def test_instability_finds_a_slit_that_falls_between_the_corners():
     slit = lambda points: NOISE * ((points[:, 2] > 18) & (points[:, 2] < 22))  # noqa: E731
     shape = (1, 1, 65)

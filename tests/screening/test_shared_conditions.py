@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, example, given, settings, strategies as st
 from models.errors import ParameterError
 from models.rig import Fit, damping_at
 from models.rig_file import load_material_rig
-from noise.screening.design import Design, Swinging, Use, load_design
-from noise.screening.grid import grid_of, shared_grid, shared_motions
+from noise.screening.design import Design, Swinging, Use
+from noise.screening.grid import grid_of, shared_grid
 from noise.screening.point import evaluate_point
 from noise.screening.provenance import point_notes, rows_of
 from noise.screening.screen import screen
@@ -118,18 +118,6 @@ def test_what_one_was_asked_all_are(designs, asked):
         assert list(axis_values) == sorted(set(axis_values))
 
 
-def test_a_use_reaches_from_the_slowest_to_the_fastest_of_all():
-    slow, fast = (Design("", THESIS, Use(speed=speed)) for speed in ((1.0, 4.0), (2.0, 9.0)))
-    assert shared_grid([slow, fast]).use == (1.0, 9.0)
-    assert shared_grid([slow, fast], Use(speed=(3.0, 5.0))).speed == (3.0, 5.0)
-
-
-def test_swings_of_one_amplitude_are_one_map():
-    uses = [Use(swinging=Swinging(0.2, (1.0,))), Use(swinging=Swinging(0.2, (2.0,))), Use()]
-    designs = [Design("", THESIS, use) for use in uses]
-    assert shared_motions(designs) == [None, Swinging(0.2, (1.0, 2.0))]
-
-
 def test_maps_over_other_points_are_not_ranked(quick):
     found = screen(["PDMS", "fluorocarbon"], Use(speed=(1.0, 9.0)))
     refuse_unlike(found.maps)
@@ -192,17 +180,3 @@ def test_a_fit_that_is_held_makes_the_same_noise_and_is_not_simulated_twice():
         one = evaluate_point(FLUOROCARBON, Condition(2.0, interference, 2214.0))
         assert one.label == found.label[0, 0, row, 0]
         assert one.level == found.level[0, 0, row, 0]
-
-
-def test_a_copy_by_base_has_the_same_map_bit_for_bit(tmp_path):
-    path = tmp_path / "copy.toml"
-    path.write_text('base = "fluorocarbon"\n[design]\nname = "copy"\n', encoding="utf-8")
-    assert load_design(path).rig == FLUOROCARBON
-    use = Use(
-        speed=tuple(np.arange(1.0, 13.0)),
-        interference=(0.279e-3, 0.35e-3),
-        support_stiffness=(3745.0,),
-    )
-    original, copy = screen(["fluorocarbon", path], use).maps
-    for name in ("regime", "label", "level", "level_max", "how", "growth", "note"):
-        np.testing.assert_array_equal(getattr(original, name), getattr(copy, name))
