@@ -398,7 +398,7 @@ def _log_columns(table: ForeignTable) -> tuple[NDArray[np.float64], NDArray[np.f
 
     if not any(table.names):
         return table.values[:, 0], table.values[:, 1]
-    found = {}
+    found: dict[str, NDArray[np.float64]] = {}
     for name, unit, column in zip(table.names, table.units, table.values.T, strict=True):
         quantity, factor = quantity_of_unit(unit) or (name.lower(), 1.0)
         found.setdefault("speed" if quantity == "speed_rad_s" else quantity, factor * column)
