@@ -49,51 +49,36 @@ def recorded(request, tmp_path_factory):
     return pressure_file(tmp_path_factory.mktemp("levels") / "run", SOUNDS[request.param]())
 
 
-@pytest.fixture
-def labelled(recorded):
-    """The row of the label table; these recordings have one label throughout."""
-    (row,) = label(recorded)
-    return row
+def test_every_part_tells_the_levels_of_the_label_table(recorded, tmp_path):
+    (row,) = label(recorded)  # these recordings have one label throughout
+    levels = {name: row[name] for name in LEVELS}
 
-
-def test_render_tells_the_levels_of_the_label_table(recorded, labelled, tmp_path):
     assert main(["render", str(recorded), "--out", str(tmp_path / "heard.wav")]) == 0
     (part,) = json.loads((tmp_path / "heard.json").read_text())["parts"]
-    assert {name: part[name] for name in LEVELS} == {name: labelled[name] for name in LEVELS}
+    assert {name: part[name] for name in LEVELS} == levels
     assert main(["render", str(recorded), str(recorded), "--out", str(tmp_path / "set")]) == 0
-    for row in csv_rows(tmp_path / "set" / "levels.csv"):
-        assert [float(row[name]) for name in LEVELS] == [labelled[name] for name in LEVELS]
+    for one in csv_rows(tmp_path / "set" / "levels.csv"):
+        assert {name: float(one[name]) for name in LEVELS} == levels
 
+    recording = read_recording(recorded)
+    found = recording_features(recording)
+    assert round(found["pressure_level"], 2) == row["level_db"]
+    assert round(found["pressure_level_a"], 2) == row["level_dba"]
+    compared = labels_and_levels("run", recording, recording, None)
+    assert round(compared.level_measured, 2) == row["level_dba"]
 
-def test_features_tell_the_levels_of_the_label_table(recorded, labelled):
-    found = recording_features(read_recording(recorded))
-    assert round(found["pressure_level"], 2) == labelled["level_db"]
-    assert round(found["pressure_level_a"], 2) == labelled["level_dba"]
-
-
-def test_a_review_tells_the_levels_of_the_label_table(recorded, labelled, tmp_path):
     page = tmp_path / "review.html"
     assert main(["review", str(recorded), "--out", str(page)]) == 0
     text = html.unescape(page.read_text(encoding="utf-8"))
-    assert f"<span>{labelled['level_dba']:.1f} dB(A)</span>" in text
-    assert MOST_ON_A_PAGE.findall(text) == [f"{labelled['l_afmax_dba']:.1f}"]
+    assert f"<span>{row['level_dba']:.1f} dB(A)</span>" in text
+    assert MOST_ON_A_PAGE.findall(text) == [f"{row['l_afmax_dba']:.1f}"]
 
-
-def test_the_app_tells_the_levels_of_the_label_table(recorded, labelled):
     track = SoundCache(open_paths([recorded])).track(0)
     found = bands(track, {})
-    assert [found[name] for name in ("level", "level_a", "level_af_max")] == [
-        labelled[name] for name in LEVELS
-    ]
+    assert [found[name] for name in ("level", "level_a", "level_af_max")] == [*levels.values()]
     course = level_course(track)
     assert course["unit"] == "dB(A) re 20 µPa"
-    assert max(course["levels"]) == pytest.approx(labelled["l_afmax_dba"], abs=0.011)
-
-
-def test_a_diagnosis_tells_the_levels_of_the_label_table(recorded, labelled):
-    recording = read_recording(recorded)
-    found = labels_and_levels("run", recording, recording, None)
-    assert round(found.level_measured, 2) == labelled["level_dba"]
+    assert max(course["levels"]) == pytest.approx(row["l_afmax_dba"], abs=0.011)
 
 
 def test_segments_have_the_levels_of_what_they_hold(tmp_path):
