@@ -11,6 +11,7 @@ TIME = np.arange(400) / RATE
 FORCE = np.where((TIME > 2e-3) & (TIME < 3e-3), 80 * np.sin(np.pi * (TIME - 2e-3) / 1e-3), 0.0)
 RESPONSE = 30 * np.exp(-200 * TIME) * np.sin(2 * np.pi * 700 * TIME)
 G = 9.80665
+GERMAN = {"separator": ";", "comma": True}
 
 
 def written(path, header, columns, separator=",", encoding="utf-8", comma=False):
@@ -34,12 +35,12 @@ def written(path, header, columns, separator=",", encoding="utf-8", comma=False)
         (
             "Zeit [s];Kraft [N];Beschl. [m/s²]\n",
             (TIME, FORCE, RESPONSE),
-            {"separator": ";", "comma": True, "encoding": "cp1252"},
+            GERMAN | {"encoding": "cp1252"},
         ),
         (
             "sep=;\nZeit;Kraft;Beschleunigung\nms;kN;g\n",
             (1e3 * TIME, FORCE / 1e3, RESPONSE / G),
-            {"separator": ";", "comma": True, "encoding": "utf-8-sig"},
+            GERMAN | {"encoding": "utf-8-sig"},
         ),
         (
             "Time\tHammer\tAcc\n(µs)\t(N)\t(m/s²)\n",
@@ -73,11 +74,7 @@ def test_a_pressure_in_the_heading_is_the_response(tmp_path):
 @pytest.mark.parametrize(
     ("header", "columns", "message"),
     [
-        (
-            "Time (s),Force (N),Response (V)\n",
-            (TIME, FORCE, RESPONSE),
-            "'Response' is in 'V'",
-        ),
+        ("Time (s),Force (N),Response (V)\n", (TIME, FORCE, RESPONSE), "'Response' is in 'V'"),
         ("s,N,V\n", (TIME, FORCE, RESPONSE), "is in 'V'"),
         ("t (s),a (m/s),F (N)\n", (TIME, RESPONSE, FORCE), "'a' is velocity 'm/s'"),
         ("Time (Hz),Force,Response\n", (TIME, FORCE, RESPONSE), "'Time' is frequency 'Hz'"),
