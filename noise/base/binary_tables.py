@@ -91,7 +91,6 @@ def write_workbook(
     """Write one sheet: its header frozen, numbers as numbers, no text ever a formula."""
     from openpyxl import Workbook
     from openpyxl.cell import WriteOnlyCell
-    from openpyxl.styles import Font
     from openpyxl.utils import get_column_letter
 
     lines = [list(map(finite_or_fixed, columns, row)) for row in rows]
@@ -109,17 +108,14 @@ def write_workbook(
         width = min(longest, _WIDEST) + 2
         sheet.column_dimensions[get_column_letter(place + 1)].width = width
 
-    def cell(value: Cell, *, bold: bool = False) -> Any:
+    def cell(value: Cell) -> Any:
         of_text: Any = WriteOnlyCell(sheet)
         of_text.value = value[:_LONGEST_TEXT] if isinstance(value, str) else value
         if isinstance(value, str):
             of_text.data_type = "s"  # what begins like a formula is none
-        if bold:
-            of_text.font = Font(bold=True)
         return of_text
 
-    sheet.append([cell(column, bold=True) for column in columns])
-    for line in lines:
+    for line in (columns, *lines):
         sheet.append([cell(value) if isinstance(value, str) else value for value in line])
     if columns:
         sheet.auto_filter.ref = f"A1:{get_column_letter(len(columns))}{len(lines) + 1}"

@@ -14,7 +14,7 @@ import json
 import math
 import numbers
 import sys
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from datetime import date, time
 from importlib import import_module
@@ -151,24 +151,30 @@ def write_table(
     bad.wav,
     """
     ending = "" if path is None else Path(path).suffix.lower()
-    cells = _Cells(rows, columns, (date, time) if ending == ".xlsx" else ())
-    columns = [readable(column) for column in columns]
+    rows = list(rows) if isinstance(rows, Iterator) else rows  # they may be gone through twice
+    known, columns = columns, [readable(column) for column in columns]
+    as_it_is = (date, time) if ending == ".xlsx" else ()
+
+    def cells() -> Iterator[list[Any]]:
+        for row in rows:
+            yield [v if isinstance(v, as_it_is) else _cell(v) for v in map(row.get, known)]
+
     if path is None:
         if sys.stdout is None:
             raise ParameterError("standard output is closed; name a file for the table")
-        write_csv(sys.stdout, columns, cells)
+        write_csv(sys.stdout, columns, cells())
         sys.stdout.flush()
         return
     path = Path(path)
     check_table_path(path, columns)
     with atomic(path) as temporary:
         if ending == ".parquet":
-            write_parquet(temporary, columns, cells)
+            write_parquet(temporary, columns, cells())
         elif ending == ".xlsx":
-            write_workbook(temporary, columns, cells, path.stem)
+            write_workbook(temporary, columns, cells(), path.stem)
         elif ending == ".jsonl":
             with temporary.open("w", encoding="utf-8", newline="") as file:
-                for row in cells:
+                for row in cells():
                     named = dict(zip(columns, map(finite, row), strict=True))
                     file.write(json.dumps(named, ensure_ascii=False) + "\n")
         else:
@@ -331,24 +337,6 @@ def plain_cell(value: object) -> Cell:
     return float(value) if isinstance(value, numbers.Real) else str(value)
 
 
-class _Cells:
-    """Rows as they are written, each made when it is its turn; to be gone through again."""
-
-    def __init__(
-        self,
-        rows: Iterable[Mapping[str, object]],
-        columns: Sequence[str],
-        as_it_is: tuple[type, ...] = (),
-    ) -> None:
-        self._rows = list(rows) if isinstance(rows, Iterator) else rows
-        self._columns, self._as_it_is = columns, as_it_is
-
-    def __iter__(self) -> Iterator[list[Any]]:
-        for row in self._rows:
-            cells = map(row.get, self._columns)
-            yield [one if isinstance(one, self._as_it_is) else _cell(one) for one in cells]
-
-
 def _cell(value: object) -> Cell:
     plain = plain_cell(value)
     if isinstance(plain, str):  # such as a name, which may hold what no UTF-8 can
@@ -357,16 +345,17 @@ def _cell(value: object) -> Cell:
 
 
 def _write_csv(
-    path: Path, columns: Sequence[str], cells: Iterable[Sequence[Cell]], there: Path
+    path: Path, columns: Sequence[str], cells: Callable[[], Iterable[Sequence[Cell]]], there: Path
 ) -> None:
     """Write in the form of the table that is there; in that of programs where it is none."""
     form = PLAIN
     with suppress(BushingNoiseError), reading(there, "table", largest=LARGEST_TEXT):
         form = csv_form(*decoded(there.read_bytes()))
-    try:
-        with path.open("w", encoding=form.encoding, newline="") as file:
-            write_csv(file, columns, cells, form)
-    except UnicodeEncodeError:  # a name that the code page of the file there has not
-        form = form._replace(encoding="utf-8", head=f"\ufeff{form.head}")
-        with path.open("w", encoding=form.encoding, newline="") as file:
-            write_csv(file, columns, cells, form)
+    # A code page may not have a letter of a name.
+    for one in (form, form._replace(encoding="utf-8", head=f"\ufeff{form.head}")):
+        with (
+            suppress(UnicodeEncodeError),
+            path.open("w", encoding=one.encoding, newline="") as file,
+        ):
+            write_csv(file, columns, cells(), one)
+            return

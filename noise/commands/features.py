@@ -134,31 +134,23 @@ def _windows(
     path: Path, name: str, recording: RecordingBlocks, opened: ExitStack
 ) -> Iterator[dict[str, object]]:
     """Yield the rows of the windows of a recording, which is closed after the last one."""
-    from noise.labels.windows import tracks
+    from features.windows.table import HOP, LENGTH
+    from models.errors import ParameterError
+    from noise.labels.windows import FEATURE_NAMES, WindowPages, has_window_channel, tracks
     from noise.recordings.files import names_channels
 
     with opened:
         for channel, track in tracks(recording, per_track=not names_channels(path)):
-            for row in _windows_of(path, track):
-                yield {"file": name, "channel": channel, **row}
-
-
-def _windows_of(path: Path, blocks: RecordingBlocks) -> Iterator[dict[str, object]]:
-    """Yield the rows of the windows of one channel or of all that a recording names."""
-    from features.windows.table import HOP, LENGTH
-    from models.errors import ParameterError
-    from noise.labels.windows import FEATURE_NAMES, WindowPages, has_window_channel
-
-    if not has_window_channel(blocks):
-        raise ParameterError(
-            f"{path}: has no channel of pressure, acceleration or torque sampled at 1000 Hz or "
-            "more, so that no window can be described"
-        )
-    for page in WindowPages(blocks):
-        for i, values in enumerate(page.features.tolist(), start=page.first):
-            end = min(i * HOP + LENGTH, blocks.n_samples / blocks.rate)
-            named = dict(zip(FEATURE_NAMES, values, strict=True))
-            yield {"start_s": i * HOP, "end_s": round(end, 6), **named}
+            if not has_window_channel(track):
+                raise ParameterError(
+                    f"{path}: has no channel of pressure, acceleration or torque sampled at 1000 "
+                    "Hz or more, so that no window can be described"
+                )
+            for page in WindowPages(track):
+                for i, values in enumerate(page.features.tolist(), start=page.first):
+                    end = round(min(i * HOP + LENGTH, track.n_samples / track.rate), 6)
+                    place = {"file": name, "channel": channel, "start_s": i * HOP, "end_s": end}
+                    yield place | dict(zip(FEATURE_NAMES, values, strict=True))
 
 
 def _pitch(blocks: RecordingBlocks) -> dict[str, float]:
