@@ -9,7 +9,6 @@ from noise.diagnosis.evidence.channel_summary import (
     BAND_EDGES,
     band_bins,
     channel_summary,
-    hum_summary,
 )
 from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.reconstruction import angle_summary, shaft_speed
@@ -73,13 +72,6 @@ def test_a_delay_is_seen_in_its_channel_alone(recording, numbers_of, name, by):
     assert late[f"{other}_delay"] == plain[f"{other}_delay"]
 
 
-def test_a_late_torque_makes_both_other_channels_early(recording, numbers_of):
-    plain = numbers_of(recording)
-    late = numbers_of(_changed(recording, "torque", lambda x: _delayed(x, 3e-4)))
-    for name in OTHER:
-        assert late[f"{name}_delay"] - plain[f"{name}_delay"] == pytest.approx(-300.0, abs=10.0)
-
-
 @pytest.mark.parametrize("name", ["torque", "acceleration", "pressure"])
 def test_clipping_is_seen_where_it_is(recording, numbers_of, name):
     def clipped(x):
@@ -120,22 +112,6 @@ def test_hum_is_seen_where_it_is(recording, numbers_of, name, mains):
         assert humming[f"{name}_hum_level"] > plain[f"{name}_hum_level"] + 0.3
         assert stands_out(OTHER[name]) == 0.0
         assert stands_out("torque") == 0.0
-
-
-def test_hum_has_lines_at_the_odd_harmonics_of_a_square_wave():
-    time = np.arange(25600) / RATE
-    noise = 0.1 * np.random.default_rng(0).normal(size=time.size)
-    square = hum_summary(np.sign(np.sin(2 * np.pi * 50 * time)) + noise, RATE)
-    assert square["hum_odd_50"] > square["hum_even_50"] + 3
-    assert square["hum_50"] > square["hum_60"] + 5
-    assert max(hum_summary(noise, RATE)[k] for k in ("hum_50", "hum_60")) < 4
-
-
-def test_the_level_of_hum_is_that_of_its_amplitude():
-    time = np.arange(25600) / RATE
-    for amplitude in (0.01, 1.0, 30.0):
-        level = hum_summary(amplitude * np.sin(2 * np.pi * 50 * time), RATE)["hum_level"]
-        assert level == pytest.approx(np.log(amplitude), abs=0.05)
 
 
 def test_white_noise_raises_the_floor_by_its_level():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models.rig import LawSpec
-from models.transfer_functions.filtering import filter_period, impulse_response
+from models.transfer_functions.filtering import filter_period
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.estimated_forms import estimated_forms, wiener_estimate
@@ -65,14 +65,3 @@ def test_a_transfer_is_found_beneath_noise_and_not_where_there_was_nothing():
 def _low_pass():
     frequency = np.linspace(0.0, 4e3, 401)
     return TransferFunction(frequency, (frequency < 1000.0).astype(complex))
-
-
-def test_an_impulse_response_has_the_levels_of_its_transfer_function_within_the_table():
-    f = np.arange(0.0, 10e3 + 1.0, 2.5)
-    x = f / 700.0
-    transfer = TransferFunction(f, 20.0 * -(x**2) / (1.0 - x**2 + 0.04j * x))
-    rate, n = 96e3, 24000
-    taps = impulse_response(transfer, rate, n)
-    at_lines = np.array([80.0, 200.0, 690.0, 2000.0, 6000.0])
-    got = np.exp(-2j * np.pi * np.outer(at_lines, np.arange(n)) / rate) @ taps
-    assert np.abs(got) == pytest.approx(np.abs(transfer.at(at_lines, falls_below=True)), rel=0.05)

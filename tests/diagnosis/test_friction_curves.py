@@ -53,12 +53,6 @@ def test_a_heated_contact_loses_torque_over_time_and_angle():
         assert curve.torque[-1] < curve.torque[0]
 
 
-def test_scatter_widens_the_interval(plain):
-    scattered = _curves(("critical_torque_scatter", {"scatter": 0.15, "correlation": 0.0}))
-    width = np.median(plain.time.high - plain.time.low)
-    assert np.median(scattered.time.high - scattered.time.low) > 1.3 * width
-
-
 def test_a_shaft_that_turns_the_other_way_has_the_same_contact():
     recording = run(at(2.0), seconds=0.5)
     mirrored = replace(recording, samples=-recording.samples, condition=at(-2.0))
@@ -71,11 +65,3 @@ def test_without_torque_or_slips_there_is_nothing_to_draw():
     assert friction_curves(only(run(at(2.0)), "pressure"), RIG) is None
     assert _curves(speed=30.0) is None
     assert contact_panels({}) == ()
-
-
-def test_a_panel_says_what_it_shows(plain):
-    panels = contact_panels({"measured": plain, "before": plain})
-    assert len(panels) == 4
-    assert "sliding speed" in panels[0].alt
-    assert panels[1].alt.count(" Nm") == 2
-    assert all(panel.svg.startswith(b"<?xml") for panel in panels)

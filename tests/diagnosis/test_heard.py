@@ -59,19 +59,3 @@ def test_what_effects_on_the_structure_change_is_added_to_what_was_measured():
     assert np.array_equal(plain["torque"], echoing["torque"])
     assert np.array_equal(plain["acceleration"], echoing["acceleration"])
     assert np.std(echoing["pressure"] - plain["pressure"]) > 0.1 * np.std(plain["pressure"])
-
-
-def test_an_effect_of_no_motion_has_no_motion_made_again(monkeypatch):
-    made = []
-    from noise.diagnosis.simulated import model_runs
-
-    move = model_runs.repeat_motion
-    monkeypatch.setattr(
-        model_runs, "repeat_motion", lambda *given: made.append(given) or move(*given)
-    )
-    runs = ModelRuns(PLAIN, EFFECTS, {})
-    for amount in (0.1, 0.2, 0.3):
-        for name in ("clipping", "room_reflections"):
-            spec = LawSpec(name, {"amount": amount})
-            runs.noise_free_signature(Model(effects=(spec,)), RUN, 0)
-    assert len(made) == 1

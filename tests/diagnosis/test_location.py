@@ -94,15 +94,6 @@ def test_what_shows_at_speed_alone_is_said_to(nulls):
     assert locate(backwards, nulls).conditions == "speed_rad_s <= -3"
 
 
-def test_the_null_is_the_largest_of_each_case_in_order():
-    rng = np.random.default_rng(4)
-    tables = [made_table(rng) for _ in range(30)]
-    largest = learn_stage_nulls(tables, NAMES, np.ones(len(NAMES))).largest
-    assert largest.shape == (30, len(STAGES))
-    assert (np.diff(largest, axis=0) >= 0).all()
-    assert (largest >= 0).all()
-
-
 def test_a_number_with_a_long_tail_does_not_hide_the_others_of_its_stage():
     rng = np.random.default_rng(4)
     tables = [made_table(rng) for _ in range(200)]

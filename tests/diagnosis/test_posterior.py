@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.diagnosis.causes.posterior import CAUSES, calibrated, load_posterior, odds_features
+from noise.diagnosis.causes.posterior import CAUSES, load_posterior
 from noise.diagnosis.causes.verdict import (
     equivalent_pairs,
     joint_probabilities,
@@ -160,19 +160,6 @@ def test_a_cause_that_no_case_has_or_all_have_is_never_or_always_there():
     scores = grow_cause_trees(x, y, n_rounds=3, seed=0).scores(x)
     assert (scores[:, 0] < -5.0).all()
     assert (scores[:, 2] > 5.0).all()
-
-
-def test_more_votes_make_a_cause_more_probable():
-    weights = np.tile([0.0, 1.0, -0.3, -0.2], (len(CAUSES), 1))
-    low, high = np.full((1, len(CAUSES)), 0.2), np.full((1, len(CAUSES)), 0.2)
-    high[0, 3] = 0.6
-    before, after = calibrated(low, weights)[0], calibrated(high, weights)[0]
-    assert after[3] > before[3]
-    assert after[4] < before[4]  # as another one is stronger
-    sure = np.zeros((1, len(CAUSES)))
-    sure[0, 0] = 1e3
-    assert np.isfinite(odds_features(sure)).all()
-    assert np.isfinite(calibrated(sure, weights)).all()
 
 
 def test_causes_at_work_are_those_of_the_case():

@@ -130,10 +130,6 @@ def test_blocks_tell_how_far_a_noise_scatters(transfers):
     assert ratio == pytest.approx(1.0, abs=0.3)
 
 
-def test_a_recording_of_too_few_blocks_tells_nothing(transfers):
-    assert block_signatures(_runs(transfers, (1,))[0]) is None
-
-
 def test_repeats_that_differ_more_than_simulated_ones_widen_the_floor(transfers):
     simulated = [_signatures(transfers, range(100, 112), at=at) for at in AT]
     usual = [_signatures(transfers, range(4), at=at) for at in AT]
@@ -163,13 +159,6 @@ def test_one_long_recording_that_drifts_widens_the_floor(transfers):
     drifting = replace(steady, samples=steady.samples * gain)
     assert repeat_gap([steady], repeats).widened == 1.0
     assert repeat_gap([drifting], repeats).widened > 1.2
-
-
-def test_repeats_that_are_all_the_same_differ_by_the_least_scatter():
-    same = [np.zeros(len(NAMES))] * 8
-    repeats = reference(same)
-    assert 0.4 < np.sqrt(repeats.squared(np.full(len(NAMES), 0.03))) < 2.0
-    assert np.sqrt(repeats.squared(np.full(len(NAMES), 0.3))) > 3.0
 
 
 def test_channels_that_are_missing_do_not_count(transfers):

@@ -98,7 +98,7 @@ def location_sentence(diagnosis: Diagnosis) -> str:
         parts.append(f"where {_conditions(place.conditions)}")
     elif len(far_ones(diagnosis)) == len(diagnosis.agreement):  # else it shows at some of them
         parts.append("in all conditions")
-    though = "" if sure else "though "
+    though = "" if sure else "though there alone "
     said = f"{', '.join(parts)}; {though}{evidence(place.p_value)} ({p_number(place.p_value)})."
     return f"{said} {_surer(diagnosis)}".strip()
 
