@@ -137,35 +137,6 @@ def _distribution(
     return model.distribution(index, segment_features(table, model.names, known))
 
 
-def _intervals(
-    model: Inference, runs: Runs, index: int, calibrated: int, subset: int, others: int
-) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_]]:
-    """Return the ends of the intervals on the quantity's scale, and where there is one."""
-    at = (index, subset, calibrated, others)
-    outside = model.outside[at]
-    values = _distribution(model, runs, index, calibrated, int(model.used[at]), others)
-    if outside[0] < 0:
-        nothing = np.zeros(len(values), dtype=bool)
-        return values[:, 0], values[:, -1], nothing
-    narrow = model.is_narrow(index, values, outside)
-    return values[:, outside[2]], values[:, -1 - outside[3]], narrow
-
-
-def interval_coverage(model: Inference, runs: Runs) -> dict[str, dict[str, float | int]]:
-    """Count how often intervals hold, as `noise.training.inference.fit.coverage` describes it."""
-    found: dict[str, dict[str, float | int]] = {}
-    for index, calibrated, subset, others in _cases():
-        low, high, narrow = _intervals(model, runs, index, calibrated, subset, others)
-        y = rounded(runs.scaled[:, index])
-        held = (low <= y) & (y <= high)
-        found[_case_name(index, calibrated, subset, others)] = {
-            "n": len(y),
-            "told": round(float(np.mean(narrow)), 4),
-            "covered": round(float(np.mean(held[narrow])), 4) if narrow.any() else 0.0,
-        }
-    return found
-
-
 def rounded(y: NDArray[np.float64]) -> NDArray[np.float32]:
     """Round as the leaves' values are, so that what is equal stays equal.
 
@@ -317,7 +288,23 @@ def coverage(model: Inference, samples: Iterable[RunSample]) -> dict[str, dict[s
         By quantity, recording, channels and what is logged, such as ``speed/rig/pressure/none``:
         ``n`` samples, share ``told`` of them with an interval, share ``covered`` of those told.
     """
-    return interval_coverage(model, _as_arrays(list(samples), model.names))
+    runs = _as_arrays(list(samples), model.names)
+    found: dict[str, dict[str, float | int]] = {}
+    for index, calibrated, subset, others in _cases():
+        at = (index, subset, calibrated, others)
+        outside, y = model.outside[at], rounded(runs.scaled[:, index])
+        values = _distribution(model, runs, index, calibrated, int(model.used[at]), others)
+        if outside[0] < 0:
+            narrow = np.zeros(len(values), dtype=bool)
+        else:
+            narrow = model.is_narrow(index, values, outside)
+        held = (values[:, outside[2]] <= y) & (y <= values[:, -1 - outside[3]])
+        found[_case_name(index, calibrated, subset, others)] = {
+            "n": len(y),
+            "told": round(float(np.mean(narrow)), 4),
+            "covered": round(float(np.mean(held[narrow])), 4) if narrow.any() else 0.0,
+        }
+    return found
 
 
 def _as_arrays(samples: list[RunSample], names: tuple[str, ...]) -> Runs:
