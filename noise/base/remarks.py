@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 
 NEVER_SLIPS = (
-    "nothing ever slips in this run: the contact holds from first to last, so that no friction is "
-    "heard; check critical_torque_Nm, or let it turn for longer"
+    "nothing slips in this run: the contact sticks from beginning to end, so there is no friction "
+    "noise; check critical_torque_Nm, or let it turn for longer"
 )
 
 

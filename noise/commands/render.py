@@ -97,8 +97,8 @@ OPTIONS = (
         "also has how far they are below the whole sound (default: all)"
     ),
     Option("--sound-quality").help(
-        "tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
-        "needs the extra sound-quality, and some seconds a second of sound; 10 minutes at most"
+        "add loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality. It needs the "
+        "extra sound-quality, and some seconds per second of sound; 10 minutes at most"
     ),
     *CALIBRATION,
     CONDITION,

@@ -18,11 +18,11 @@ from noise.commands.options import (
 )
 
 DESCRIPTION = (
-    "Put recordings, labels, screens and diagnoses on one page that needs nothing else: to be "
-    "mailed, projected and printed. Sounds at one gain that is stated, spectrograms under a "
-    "moving cursor, labels in time, maps of conditions that play what is clicked, and two "
-    "sounds side by side, changed over without a gap. Press ? on the page for its keys. What "
-    "cannot be used is named on the page, and the exit code is then 1."
+    "Put recordings, labels, screens and diagnoses on one page, to mail, project and print. It "
+    "needs no network. It has sounds at one stated gain, spectrograms under a moving cursor, "
+    "labels over time, and maps of conditions that play where you click. A and B switch between "
+    "two sounds without a gap. Press ? on the page for its keys. Inputs that cannot be used are "
+    "named on the page, and the exit code is then 1."
 )
 
 EPILOG = (

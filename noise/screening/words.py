@@ -155,19 +155,19 @@ def margin_words(margin: float, use: tuple[float, float]) -> str:
     Examples
     --------
     >>> margin_words(math.inf, (1.0, 5.0)), margin_words(-1.0, (1.0, 5.0))
-    ('nothing vibrates', 'the use reaches 1 rad/s into what vibrates')
+    ('nothing vibrates', 'worst case: up to 1 rad/s of the operating range vibrates')
     """
     if math.isnan(margin):
         return ""
     if margin == math.inf:
         return "nothing vibrates"
     if margin > 0.0:
-        return f"at least {margin:.3g} rad/s from what vibrates"
+        return f"margin {margin:.3g} rad/s to the vibrating range"
     if margin == 0.0:
-        return "no margin to what vibrates"
+        return "no margin to the vibrating range"
     if -margin >= use[1] - use[0]:
-        return "every speed of use vibrates, at worst"
-    return f"the use reaches {-margin:.3g} rad/s into what vibrates"
+        return "worst case: the whole operating range vibrates"
+    return f"worst case: up to {-margin:.3g} rad/s of the operating range vibrates"
 
 
 def advice_words(noise: str, at: Condition, offers: Sequence[Offer], most: int = 3) -> str:

@@ -9,10 +9,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from noise.screening.map.batches import LABELS
-from noise.screening.map.grid import Grid
-from noise.screening.ranking.plain_words import plain_words
 
+from noise.base.labels import NAMED
 from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.outcome import Agreement, EffectFinding, StageFinding
 from noise.diagnosis.text.sentences import answer, closed_sentence
@@ -23,6 +21,9 @@ from noise.identification.table_fit import TableNumber
 from noise.labels.summary import result_lines
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.identification import write_identification
+from noise.screening.grid import Grid
+from noise.screening.mapping import PERSISTS
+from noise.screening.words import use_words
 from tests.helpers.made_diagnoses import KINDS, PARAMETERS, PLACE, STAGES
 
 OUTCOMES = 40
@@ -194,19 +195,25 @@ MEASURED = TableNumber("effective_stiffness", 464.0, 0.279e-3, 2214.0), 470.0
 
 
 def test_what_is_said_of_a_design_is_what_its_map_shows():
+    kinds = ("none", *NAMED, PERSISTS)
     for seed in range(5 * OUTCOMES):
         rng = np.random.default_rng(seed)
         speed = tuple(np.cumsum(rng.integers(1, 4, rng.integers(1, 9))).astype(float).tolist())
         grid = Grid(speed, (), (2.79e-4, 3.81e-4), (2214.0,), (23.0,), (speed[0], speed[-1]))
-        share = rng.dirichlet(np.full(len(LABELS), 0.5))
-        labels = rng.choice(LABELS, grid.shape, p=share)
-        words = plain_words(SimpleNamespace(grid=grid, label=labels), np.nan)
-        assert words.startswith("quiet at all") == bool((labels == "none").all()), words
-        for name, first, last in re.findall(r"(\w+?)s from ([\d.]+) to ([\d.]+) rad/s", words):
+        share = rng.dirichlet(np.full(len(kinds), 0.5))
+        labels = rng.choice(kinds, grid.shape, p=share)
+        words = use_words(SimpleNamespace(grid=grid, label=labels))
+        assert words.startswith("quiet in its use") == bool((labels == "none").all()), words
+        if found := re.match(r"noisy at (\d+)% of its use", words):
+            noisy = np.mean(np.isin(labels, NAMED))
+            assert float(found[1]) == pytest.approx(100.0 * noisy, abs=0.51), words
+        said = r"(\w+)s (?:at (\d+)% of the use, )?from ([\d.]+) to ([\d.]+) rad/s"
+        for name, percent, first, last in re.findall(said, words):
             there = np.array(speed)[(labels == name).any(axis=(0, 1, 2))]
             assert (float(first), float(last)) == (there.min(), there.max()), words
-        for name, percent in re.findall(r"(\w+?)s at (\d+)% of the use", words):
-            assert float(percent) == pytest.approx(100.0 * np.mean(labels == name), abs=0.51), words
+            if percent:
+                mean = 100.0 * np.mean(labels == name)
+                assert float(percent) == pytest.approx(mean, abs=0.51), words
 
 
 def test_the_line_of_a_file_is_its_longest_row():
@@ -214,7 +221,7 @@ def test_the_line_of_a_file_is_its_longest_row():
         rng = np.random.default_rng(seed)
         ends = np.cumsum(rng.uniform(0.3, 3.0, 4))
         rows = [
-            {"file": "a.wav", "label": str(rng.choice(LABELS)), "start_s": float(start),
+            {"file": "a.wav", "label": str(rng.choice((*NAMED, "none"))), "start_s": float(start),
              "end_s": float(end), "frequency_hz": 100.0 * i, "level_dba": 60.0 + i}
             for i, (start, end) in enumerate(zip([0.0, *ends[:-1]], ends, strict=True))
         ]  # fmt: skip
