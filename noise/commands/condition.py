@@ -188,7 +188,6 @@ def run_arguments(
         asked = "is needed" if options.speed is None else "can be given, not both"
         raise ParameterError(f"exactly one of --speed and --oscillate {asked}")
     seconds = _or(options.seconds, DEFAULT_SECONDS)
-    stiffness = _or(options.support_stiffness, _SUPPORT.default)
     if round(seconds * rate) < _LEAST_SAMPLES:
         raise ParameterError(
             f"--seconds {seconds:g} is too short at {rate:g} Hz; a recording holds "
@@ -197,12 +196,20 @@ def run_arguments(
     library = effect_library(options.effects)
     rig = _rig(options, library, rig)
     low, high = (1e3 * limit for limit in rig.interference_range)
-    nearest = min(max(_FIT.default, low), high)
-    interference_mm = _or(options.interference, nearest)
+    interference_mm = _or(options.interference, min(max(_FIT.default, low), high))
     _note_idle(options.effects, rig, library)
     shaft, turning = shaft_motion(options, seconds)
-    notes = _remarks(options, rig, shaft, library, interference_mm, stiffness)
-    notes += tuple(sensor_remarks(rig.sensors, rate))
+    arguments: dict[str, Any] = {
+        "rig": rig,
+        "shaft": shaft,
+        "interference": interference_mm / 1e3,
+        "support_stiffness": _or(options.support_stiffness, _SUPPORT.default),
+        "temperature": _or(options.temperature, _TEMPERATURE.default),
+        "seconds": seconds,
+        "library": library,
+    }
+    notes = (*_remarks(options, arguments), *sensor_remarks(rig.sensors, rate))
+    stiffness = arguments["support_stiffness"]
     support = "clamp fixed" if math.isinf(stiffness) else f"{stiffness:g} Nm/rad"
     say(f"simulating {seconds:g} s: {turning}, {interference_mm:g} mm, {support}, {rig.material}")
 
@@ -211,19 +218,9 @@ def run_arguments(
     from models.sensors import Sensors
     from sim.acquisition import THESIS_CONVERTER, Acquisition
 
-    arguments = {
-        "rig": rig,
-        "shaft": shaft,
-        "interference": interference_mm / 1e3,
-        "support_stiffness": stiffness,
-        "temperature": _or(options.temperature, _TEMPERATURE.default),
-        "seconds": seconds,
-        "acquisition": Acquisition(
-            rate=rate, sensors=THESIS_CONVERTER if options.converter else Sensors()
-        ),
-        "library": library,
-        "rng": np.random.default_rng(options.seed),
-    }
+    sensors = THESIS_CONVERTER if options.converter else Sensors()
+    arguments["acquisition"] = Acquisition(rate=rate, sensors=sensors)
+    arguments["rng"] = np.random.default_rng(options.seed)
     return arguments, notes
 
 
@@ -254,17 +251,12 @@ def with_notes(
     return replace(run.recording, notes=(*notes, *found))
 
 
-def _remarks(
-    options: Namespace,
-    rig: Rig,
-    shaft: ShaftMotion,
-    library: Mapping[str, Effect],
-    interference_mm: float,
-    stiffness: float,
-) -> tuple[str, ...]:
+def _remarks(options: Namespace, arguments: Mapping[str, Any]) -> tuple[str, ...]:
+    rig, top = arguments["rig"], arguments["shaft"].top_speed(arguments["seconds"])
     low, high = (1e3 * limit for limit in rig.interference_range)
+    interference_mm = 1e3 * arguments["interference"]
     found = []
-    if options.speed is not None and (top := shaft.top_speed(_or(options.seconds, 1.0))) > _FAST:
+    if options.speed is not None and top > _FAST:
         found.append(
             f"--speed is in rad/s: {top:.3g} rad/s are {top * 30.0 / math.pi:.4g} rpm; if you mean "
             f"{top:.3g} rpm, give --speed {top * math.pi / 30.0:.3g}"
@@ -279,12 +271,12 @@ def _remarks(
         )
     found += use_remarks(
         rig,
-        speed=[shaft.top_speed(_or(options.seconds, DEFAULT_SECONDS))],
-        interference=[interference_mm / 1e3],
-        support_stiffness=[stiffness],
-        temperature=[_or(options.temperature, _TEMPERATURE.default)],
+        speed=[top],
+        **{
+            name: [arguments[name]] for name in ("interference", "support_stiffness", "temperature")
+        },
     )
-    found += effect_remarks(rig, library)
+    found += effect_remarks(rig, arguments["library"])
     found.append(temperature_remark(rig, options.temperature))
     return tuple(text for text in found if text)
 
