@@ -15,7 +15,6 @@ from noise.cli import main
 from noise.labels.tracks import label_track, read_label_track
 from noise.recordings import write_recording
 from noise.training.classifier.own_recordings import read_labelled
-from noise.training.classifier.own_samples import own_samples
 
 RATE = 16_000.0
 
@@ -115,17 +114,6 @@ def test_what_is_no_label_track_is_refused(tmp_path, content):
     (tmp_path / "a.txt").write_bytes(content)
     with pytest.raises(RecordingError, match=r"a\.txt"):
         read_label_track(tmp_path / "a.txt")
-
-
-def test_a_window_that_cannot_be_analysed_is_named(tmp_path):
-    write(tmp_path / "none" / "a")
-    good, _ = read_labelled(tmp_path)
-    angle = Recording(np.zeros((1, 16_000)), RATE, (Channel("angle"),))
-    write_recording(tmp_path / "none" / "b", angle)
-    samples, refusals = own_samples(read_labelled(tmp_path)[0])
-    assert [sample.name for sample in samples] == [good[0].name]
-    assert len(refusals) == 1
-    assert "b.wav" in refusals[0]
 
 
 def clicks(seed):

@@ -226,7 +226,7 @@ class Bench:
     stated : bool
         Whether the rig file states noise and converter.
     law : str
-        Of `noise.training.causes.cases.laws.OWN_LAWS`; empty for the constant one.
+        Of `noise.training.causes.cases.benches.OWN_LAWS`; empty for the constant one.
     sizes : mapping of str to float
         Factors from the thesis's rig, by `SIZES` [-].
     listed : tuple of LawSpec
@@ -240,7 +240,7 @@ class Bench:
     responses : str
         How the hammer test was: ``good``, ``poor`` or ``none``.
     start : str
-        Of `noise.training.causes.cases.starts.STARTS`; empty where recordings are settled.
+        Of `noise.training.causes.cases.benches.STARTS`; empty where recordings are settled.
     """
 
     departures: tuple[str, ...] = ()

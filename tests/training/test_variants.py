@@ -133,14 +133,6 @@ def test_a_drawn_curve_rises_from_nothing_to_one(seed):
     assert np.diff(table[1:]).min() >= -1e-12
 
 
-def test_the_same_seed_gives_the_same_variant():
-    first, second = (
-        played(draw_variant("critical_torque_scatter", 0.7, np.random.default_rng(4)))
-        for _ in range(2)
-    )
-    assert np.array_equal(first["torque"], second["torque"])
-
-
 def test_a_case_may_have_a_form_that_the_simulator_lacks():
     forms = [
         form not in EFFECTS[name].forms
