@@ -255,7 +255,7 @@ def _remarks(options: Namespace, arguments: Mapping[str, Any]) -> tuple[str, ...
     rig, top = arguments["rig"], arguments["shaft"].top_speed(arguments["seconds"])
     low, high = (1e3 * limit for limit in rig.interference_range)
     interference_mm = 1e3 * arguments["interference"]
-    found = []
+    found: list[str | None] = []
     if options.speed is not None and top > _FAST:
         found.append(
             f"--speed is in rad/s: {top:.3g} rad/s are {top * 30.0 / math.pi:.4g} rpm; if you mean "
