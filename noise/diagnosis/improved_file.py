@@ -1,7 +1,4 @@
-"""``improved.toml``: the rig file of what closes a gap, and when not to trust it.
-
-The improved rig in words: what it has, how far it closes the gap, and what to call next.
-"""
+"""``improved.toml``: the rig file of what closes a gap, in a file and in words."""
 
 from __future__ import annotations
 

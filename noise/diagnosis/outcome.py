@@ -1,8 +1,7 @@
 """Outcome of a diagnosis as plain data: for the report, for `diagnosis.json`, for a notebook.
 
-The improved rig of a diagnosis: parameters recalibrated, effects put in, how sure that is.
-
-What a diagnosis finds, piece by piece: stages, places, effects, what is heard, what is shown.
+It holds what is found piece by piece (stages, places, effects, what is heard and shown) and the
+improved rig, with how sure its numbers are.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Numbers of the rig, each with its 90 % interval, and the recordings read by them.
 
-Levels of the torque in one recording: what breaks the contact, and what it slides at.
+Levels of the torque in a recording are what breaks the contact, and what it slides at.
 """
 
 from __future__ import annotations

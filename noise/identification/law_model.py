@@ -1,13 +1,11 @@
-"""What a fit of a law searches: numbers of each recording, their means over a rig, the law's own.
+"""Laws of friction as a fit searches them, and what they predict of excerpts of recordings.
+
+A fit searches numbers of each recording, their means over a rig, and the law's own.
 
 All are logarithms. A rig is never quite the same twice: each recording has a bushing and torques of
 its own, which scatter about those of the rig, and these are what is to be found.
 
-What a model foretells of the excerpts of a recording, each begun where the recording has it.
-
-Laws of friction that an identification tries, simplest first, and what of each it searches.
-
-What is known of a law's numbers before they are fitted, and what recordings scatter by.
+Excerpts begin where the recording has them, and what recordings scatter by is known beforehand.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Recordings that a rig can be identified from: torque, the shaft's angle, and what is stated.
 
-What is known of a rig before it is identified: the keys that a rig file really has.
+What is known of a rig beforehand are the keys that its file really has.
 """
 
 from __future__ import annotations

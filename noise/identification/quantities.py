@@ -4,7 +4,7 @@ They have the names of the thesis's table. Critical speeds are where the sudden 
 oscillation, crosses its limit (`sim.analysis.regime`) for the last time on a grid of speeds,
 interpolated between its points, so that a small change of a parameter shows.
 
-A run from rest once it has settled, as numbers read off a torque record are read off it.
+They are read off a run from rest once it has settled, as off a torque record.
 """
 
 from __future__ import annotations

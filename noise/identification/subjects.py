@@ -1,7 +1,5 @@
 """Recordings that laws are fitted to, and where a search begins with each.
 
-Excerpts of a recording that a model is to foretell: each begins in the midst of a slip.
-
 Stick-slip is chaotic over many cycles but not within one. So a model begins where a recording
 shows what it does, and foretells a cycle or two. In the midst of a slip a contact has forgotten
 what it did before, and stick, break and slip are still to come.

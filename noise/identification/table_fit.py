@@ -4,7 +4,7 @@ A number's misfit is mostly log(simulated / measured), times its weight. Groups 
 root mean square, add up to the cost that the search lowers. A regime changes at a stroke, so the
 search follows no slope.
 
-Measured numbers of a rig: what a table of measurements holds beside or instead of recordings.
+A table of measured numbers comes beside recordings or instead of them.
 """
 
 from __future__ import annotations

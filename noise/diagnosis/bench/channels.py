@@ -5,13 +5,10 @@ sixth and six times its size whatever is missing in the contact, a path's gain b
 and thirty (impacts at slips make it seventeen); a unit is named where the factor is that of a usual
 one, is the same in all recordings, and the channel follows from the torque in all else.
 
-How large each channel is against what the rig file and the conditions would make of it.
-
-Angle against the speed that was set, torque against the kinetic torque of the fit, acceleration and
-sound against what the rig's own path makes of the recorded torque: ratios of quantities that hold
-whatever the contact does, so that an effect moves them little and a wrong unit much.
-
-Factors by which a number in a usual wrong unit is off, so that a finding can name the unit.
+Measured are angle against the speed that was set, torque against the kinetic torque of the fit,
+acceleration and sound against what the rig's own path makes of the recorded torque: ratios of
+quantities that hold whatever the contact does, so that an effect moves them little and a wrong unit
+much.
 """
 
 from __future__ import annotations

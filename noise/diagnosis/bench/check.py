@@ -3,13 +3,9 @@
 Asked before anything else: the posterior of causes has learned with right benches, and names a
 cause for whatever else it is shown. What is found is told, and no cause is named.
 
-Recordings of another friction than the rig file's: of another level, or of a known material.
-
 The torque of the contact is what a material and its fit make of it; no effect takes half of it away
 at every condition. Another law at the same level is told where a shipped material predicts mean,
 swing and frequency of the torque in every recording, and the rig file does not.
-
-Units of acceleration and sound where nothing slips: by the noise of sensors, or not at all.
 
 Where the contact slides smoothly the torque makes nothing of acceleration and sound, and what they
 hold is the noise of their sensors. A unit that is a thousand times another moves it beyond what any

@@ -3,7 +3,7 @@
 A dead channel is left out and the others are looked at. A channel that clips is kept, since what
 clipping does to it is known; its range is told, so that somebody sets it higher.
 
-Stated conditions against what torque and angle say themselves: speed, its sign, their order.
+Stated conditions are held against what torque and angle say themselves: speed, its sign, order.
 """
 
 from __future__ import annotations

@@ -7,8 +7,6 @@ recording belongs to a stage, a channel, a band or a phase of the cycle; how unl
 is follows from the largest one that cases without a cause have in that stage, which corrects for
 the number of looks.
 
-What numbers and stages differ by where nothing is the matter, as simulated cases show it.
-
 A p-value of a stage is the share of cases without a cause in which a difference is as surprising
 as its most surprising one. A few numbers have long tails in such cases, as what a converter's steps
 or a start do to them; so each number is as surprising as its own tail says, a power law through two

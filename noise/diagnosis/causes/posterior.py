@@ -5,12 +5,11 @@ The causes are not exclusive, an effect may come with another; ``none``, ``param
 their logarithmic odds, the strongest other ones and those of ``none``, fitted on cases that the
 trees have not seen.
 
-What the cause posterior says of a bench where nothing is the matter: simulated cases of it.
-
-Of each condition of a case a few repeats are simulated, as noisy as its sensors are. Some of them
-in the place of the recordings, others in that of what the rig file predicts, are a case without a
-cause, and there are many such choices. Sensors that the posterior has not learned with change what
-it says of these cases as they change what it says of the recordings.
+What it says of a bench where nothing is the matter is simulated where sensors are unlike those that
+it learned with. Of each condition of a case a few repeats are simulated, as noisy as its sensors
+are. Some of them in the place of the recordings, others in that of what the rig file predicts, are
+a case without a cause, and there are many such choices. Sensors that the posterior has not learned
+with change what it says of these cases as they change what it says of the recordings.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 """Health of a channel in numbers: clipping, offset, hum, noise floor.
 
 None needs a model: a sensor that fails shows it in its own signal.
-
-Bands in which the diagnosis compares channels, and how loud a signal is in each.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ elastomer can be looked at sample by sample, without a simulation whose phase wa
 Differentiation makes noise of what the cell does not resolve, so everything is band-limited to
 `LIMIT`; the clamp's free decay from before the recording is not known, so `LEAD` is left out.
 
-How evenly the shaft turns, in numbers, and its speed, from its angle.
+The shaft's speed, and how evenly it turns, follow from its angle.
 """
 
 from __future__ import annotations

@@ -1,21 +1,17 @@
 """Summary of a recording in some four hundred numbers, and of a case against its rig file.
 
 A *case* is what a user brings: recordings of one rig over several conditions, and its file. Each
-number is taken from the recording and from simulated repeats of its condition; what matters is
-the difference, its size against the repeats' own scatter, and how both change from condition to
+number is taken from the recording and from simulated repeats of its condition; what matters is the
+difference, its size against the repeats' own scatter, and how both change from condition to
 condition and between repeats of one.
 
-A case as one row of numbers, from which the posterior is computed.
-
-Each number of a recording becomes its difference from the rig file's simulation, in units of what
-it scatters by on this bench: what simulated repeats differ by (over all conditions of the case,
-since a few of one say little), and what gains and hammer tests of quiet benches add to that
-(`scale`). Over the recordings of a case these things count: how large the difference is in the
-middle, in its own unit and in that, how sure it is, how it spreads, where it is largest, whether it
-grows with speed, and how much repeats of one condition differ; beside them what was measured, and
-what bench it was.
-
-What is known of the bench of a case: numbers that say what the others mean there.
+From these a case becomes one row, of which the posterior is computed. Each number of a recording
+becomes its difference from the rig file's simulation, in units of what it scatters by on this
+bench: what simulated repeats differ by (over all conditions of the case, since a few of one say
+little), and what gains and hammer tests of quiet benches add to that (`scale`). Over the recordings
+of a case these things count: how large the difference is in the middle, in its own unit and in
+that, how sure it is, how it spreads, where it is largest, whether it grows with speed, and how much
+repeats of one condition differ; beside them what was measured, and what bench it was.
 """
 
 from __future__ import annotations

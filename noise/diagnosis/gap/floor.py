@@ -5,8 +5,6 @@ differ by what this rig's repeats differ by, and where none was repeated, blocks
 at least how steady it is. Recordings that differ by more than simulated repeats widen the floor in
 proportion; such that differ by less do not narrow it, since two runs on one afternoon say little
 of the next assembly.
-
-The gap of each channel: which ones a model describes, and where it does not.
 """
 
 from __future__ import annotations

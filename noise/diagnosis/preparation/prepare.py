@@ -1,25 +1,16 @@
-"""What is done to recordings and to the rig before they are compared.
+"""Preparation of recordings, and of the rig, before they are compared.
 
 In order: the start is left out, the speed is what the angle says, the noise and the resolution of
 sensors are taken from the recordings, where the rig file does not state them, and of recordings
 that are long or finely sampled a part is looked at.
 
-As much of long and finely sampled recordings as a diagnosis looks at.
-
 Whatever is compared with a recording is simulated as long and as finely, many times over. Two
 seconds hold a hundred slips and more, and nothing above 10 kHz counts, so that more of a recording
 would cost in proportion and tell little.
 
-The sensors of a rig as recordings show them, where its file does not state their noise.
-
-The step of a converter, found in the samples that went through it: all are multiples of it.
-
-The speed that recordings were made at, by the shaft's angle.
-
-A sidecar says what was set. Recordings of one stated condition are repeats of each other and get
-one speed, the mean of theirs: what they differ by is what repeats differ by.
-
-The noise of sensors, estimated from recordings of a rig at work.
+The step of a converter is that of which all samples are multiples. A sidecar says what was set.
+Recordings of one stated condition are repeats of each other and get one speed, the mean of theirs:
+what they differ by is what repeats differ by.
 
 A recording has no silence, but high above what the rig sounds at there is little else than noise
 for a few milliseconds between slips: of all short segments the quietest, in the quietest bands, in

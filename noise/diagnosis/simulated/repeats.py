@@ -5,13 +5,10 @@ stiffness, torques and damping come out a few per cent apart, and nobody's fault
 is to be compared with one recording is therefore run as several replicates, each of a rig drawn
 about the nominal one.
 
-Nominal repeats: a condition simulated quickly and often, with the rig as its file has it.
-
-The transfer functions are those of the structure, applied to the simulated
-torque, so a repeat costs a few milliseconds. A rig file that lists effects beyond friction and
-drive is run through impulse responses instead, as the models are that a fit compares.
-
-What accelerometer and microphone see of a motion, by the responses that the rig file has.
+Nominal repeats are of the rig as its file has it. Their transfer functions are those of the
+structure, applied to the simulated torque, so a repeat costs a few milliseconds. A rig file that
+lists effects beyond friction and drive is run through impulse responses instead, as the models are
+that a fit compares.
 
 A measured response is taken line by line, as it is where recordings are compared with what their
 torque should make of them: a causal impulse response of it would lack what only errors of the

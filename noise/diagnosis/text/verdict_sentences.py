@@ -1,9 +1,7 @@
-"""The verdict of a diagnosis in a few words and in a sentence.
+"""The verdict of a diagnosis in words, and whether the rig file describes its rig.
 
 A cause is the headline only where it is likely and the stage that it acts in differs; otherwise it
 is said what differs, and what it may be.
-
-Whether a rig file describes its rig, and where not: the first thing that a diagnosis says.
 """
 
 from __future__ import annotations

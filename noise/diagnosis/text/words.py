@@ -4,8 +4,6 @@ An effect's name is for programs; an engineer in a hurry needs a clause that say
 the rig. Chances are worded by one scale, that of the Intergovernmental Panel on Climate Change
 (Mastrandrea et al. 2010, Guidance note on consistent treatment of uncertainties), because it says
 which number a word stands for; the number always follows the word.
-
-What a diagnosis holds of one cause, and words for phases and parameters.
 """
 
 from __future__ import annotations
