@@ -21,6 +21,7 @@ from noise.screening.axis_values import spread
 from noise.screening.design import Use
 from noise.screening.point import evaluate_point
 from noise.screening.screen import screen
+from noise.screening.vibration import Condition
 from sim.analysis.critical_speeds import regime_at
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.bushing import lumped_bushing
@@ -73,7 +74,7 @@ def main() -> None:
         used = time.process_time()
         found = screen(["fluorocarbon"], GRID)
         used = time.process_time() - used
-        counts = {how: found.count(how) for how in ("simulated", "stability", "refined")}
+        counts = {how: found.count(how) for how in ("simulated", "refined")}
         print(f"{found.points} conditions: {found.seconds:.1f} s, {used:.1f} s of processor time")
         print(f"  {counts}, {found.maps[0].open} beside a boundary as their nearest neighbour")
     rng = np.random.default_rng(1)
@@ -85,7 +86,7 @@ def main() -> None:
         vibrates = by_solve_ivp(speed, *where) > LEAST_OSCILLATION
         looped += time.process_time() - start
         start = time.process_time()
-        evaluate_point(RIG, speed, interference=where[0], support_stiffness=where[1])
+        evaluate_point(RIG, Condition(speed, *where))
         own += time.process_time() - start
         alike += vibrates == (regime_at(RIG, speed, *where, seconds=SECONDS) != "steady sliding")
     print(f"solve_ivp, {sample} conditions: {looped / sample:.2f} s each, {alike} regimes alike")
