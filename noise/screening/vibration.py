@@ -48,8 +48,8 @@ _STARTED = 0.4
 _RAMP = 0.05
 """In which the speed is changed [s]."""
 
-_SLOW = 0.25
-"""Share of the speed at which a contact most likely sticks and slips if it does at any [-]."""
+_SLOWER = (0.97, 0.85, 0.5, 0.25)
+"""Shares of the speed at which a contact is brought to stick and slip that slides stably at any."""
 
 _SURE = 10.0
 """Growth from which on sliding soon vibrates [1/s]."""
@@ -209,7 +209,17 @@ def running(
         solver = _solver(rig, at)
         solver.go_on_from(started.solver, at.speed)
         return _followed(solver, at, growth, longest=longest)
-    start = _unstable_speed(rig, at) or _SLOW * at.speed
+    unstable = _unstable_speed(rig, at)
+    shares = (unstable / at.speed,) if unstable is not None else _SLOWER
+    for share in shares:
+        course = _continued(rig, at, growth, share * at.speed, longest)
+        if course.lasts:
+            break
+    return course
+
+
+def _continued(rig: Rig, at: Condition, growth: float, start: float, longest: float) -> Course:
+    """Let a rig vibrate at a speed [rad/s], and bring it to that of a condition."""
     solver = _solver(rig, replace(at, speed=start), top_speed=max(start, at.speed))
     n, beyond = round(_STARTED * RATE), steps_beyond(RATE)
     ramp = np.linspace(start, at.speed, round(_RAMP * RATE))

@@ -61,8 +61,8 @@ def boundary(rig, at):
 
 
 def starts_of(at):
-    """From rest, and through three slower speeds."""
-    return [[at.speed], *([share * at.speed, at.speed] for share in (0.97, 0.85, 0.5))]
+    """From rest, and through four slower speeds."""
+    return [[at.speed], *([share * at.speed, at.speed] for share in (0.97, 0.85, 0.7, 0.5))]
 
 
 def judged(rig, at):
@@ -85,7 +85,9 @@ def score(rows):
     return {
         "none": len(of["none"]),
         "none_but_sounds": sum(
-            row["running"] or row["heard"] != "none" for row in of["none"] if row["sound"] == "none"
+            # What oscillates from rest and is labelled none is too faint to be heard.
+            row["heard"] != "none" or (row["running"] and not row["rest"])
+            for row in of["none"]
         ),
         "persists": len(of["persists"]),
         "persists_but_from_rest": sum(row["rest"] for row in of["persists"]),
