@@ -3,7 +3,7 @@ import { api } from "../api.js";
 import { made } from "../dom.js";
 
 const AGAIN = 700, AFTER = 1000; // ms
-const USUAL = 20; // that the first map takes [s]
+const USUAL = 30; // that the first map takes [s]
 
 export class Chart {
   constructor(panel, design) {
@@ -37,7 +37,7 @@ export class Chart {
       if (mine !== this.following || this.design.hidden()) return false;
       const since = (performance.now() - began) / 1000, left = Math.ceil(this.took - since);
       Object.assign(this.progress, { hidden: false, value: Math.min(0.95, since / this.took) });
-      this.said.textContent = left > 0 ? `Computing the map: about ${left} s left.` : "Computing the map: nearly done.";
+      this.said.textContent = left > 0 ? `Computing the map: about ${left} s left.` : "Computing the map: it takes longer than expected.";
       return true;
     });
     if (!answer) return;

@@ -24,7 +24,7 @@ export async function mount(panel) {
   const copy = made("button", { type: "button" });
   const reset = made("button", { type: "button", textContent: "Reset to base" });
   const tools = made("div", { className: "tools", role: "group", ariaLabel: "Play and compare" });
-  tools.append(play, made("span", { className: "group" }, ...slots), copy, reset, made("span", { className: "soft", textContent: "keys Space, A, B" }));
+  tools.append(play, made("span", { className: "group" }, ...slots), copy, reset, made("span", { className: "soft", textContent: "Keys: Space, A, B" }));
   const start = made("div", { className: "row choice" }, made("label", { htmlFor: "design-base", textContent: "Base" }), base);
   const rows = made("div", { className: "controls" });
   const name = made("p", { className: "name" }), level = made("p", { className: "level" }), gain = made("span", { className: "gain" });
