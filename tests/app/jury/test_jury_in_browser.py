@@ -22,7 +22,7 @@ def louder(pair):
 
 
 def test_votes_by_keys_outlive_a_kill_and_go_on_in_the_same_order(browser, folder):
-    with opened_app(folder) as app:
+    with opened_app(folder, "--save-to", folder) as app:
         jury = JuryPage(browser, app).begin()
         order = pairs(folder)
         for place in range(3):
@@ -34,7 +34,7 @@ def test_votes_by_keys_outlive_a_kill_and_go_on_in_the_same_order(browser, folde
         jury.page.keyboard.press("0")  # it is not answered, and the page says so
         jury.page.locator(".voting .saved").filter(has_text="not saved").wait_for()
         jury.page.close()
-    with opened_app(folder) as app:
+    with opened_app(folder, "--save-to", folder) as app:
         jury = JuryPage(browser, app)
         assert pairs(folder) == order
         jury.page.get_by_role("button", name="Go on with jury 1").click()
@@ -63,7 +63,7 @@ def read_table_of(download):
 
 
 def test_what_was_looked_at_before_is_neither_in_the_page_nor_asked_for_nor_heard(browser, folder):
-    with opened_app(folder) as app:
+    with opened_app(folder, "--save-to", folder) as app:
         jury = JuryPage(browser, app, tapped=True)
         page = jury.page
         page.locator("#tab-labels").click()
@@ -92,7 +92,7 @@ def test_what_was_looked_at_before_is_neither_in_the_page_nor_asked_for_nor_hear
 
 
 def test_a_and_b_are_heard_in_step_at_one_gain(browser, folder):
-    with opened_app(folder) as app:
+    with opened_app(folder, "--save-to", folder) as app:
         jury = JuryPage(browser, app, tapped=True).begin()
         ratio = 2.0 ** (NAMES.index(pairs(folder)[0][1]) - NAMES.index(pairs(folder)[0][0]))
         levels = [np.abs(jury.hear(side)).max() for side in "aba"]
@@ -110,7 +110,7 @@ def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, fo
         assert accessibility_errors(jury.page) == []
         assert jury.page.evaluate("document.documentElement.scrollWidth") <= width
 
-    with opened_app(folder) as app:
+    with opened_app(folder, "--save-to", folder) as app:
         jury = JuryPage(browser, app, width)
         jury.page.wait_for_function("() => !document.querySelector('.begin').disabled")
         check()

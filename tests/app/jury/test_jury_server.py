@@ -30,7 +30,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def app(folder):
-    with opened_app(folder) as running:
+    with opened_app(folder, "--save-to", folder) as running:
         yield running
 
 
