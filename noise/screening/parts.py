@@ -49,7 +49,7 @@ ASSUMED = (
 _SPEEDS = 9
 """Of the use, at which growth is asked."""
 
-_PARTS = 128
+_PARTS = 64
 _INDICES = 128
 """Samples of the Sobol' indices, times the number of tolerances and two."""
 
