@@ -2,6 +2,9 @@
 
 Windows of half a second begin every quarter of a second. The signal goes on for half a second after
 the last of them begins, so that what is cut into such chunks has windows across the cuts.
+
+An event that fills a part of a window only is described as if it went on
+(`features.windows.events`): its edges, and what surrounds it, say nothing of what sounds.
 """
 
 from __future__ import annotations
@@ -13,12 +16,8 @@ from numpy.typing import NDArray
 
 from features.windows.blocks import FRAME_RATE, RATE
 from features.windows.declared import TOP_FEATURES, WINDOW_FEATURES
-from features.windows.frames import (
-    FRAME_COLUMNS,
-    describe_frames,
-    frame_count,
-    trajectory_features,
-)
+from features.windows.events import events_within, prolonged
+from features.windows.frames import FRAME_COLUMNS, Frames, describe_frames, trajectory_features
 from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythm_features
 from features.windows.spectra import SEGMENT_HOP, long_spectra
 from features.windows.tones import tone_features
@@ -33,6 +32,8 @@ _LEAST_FRAMES = 3
 
 _FRAMES_OF = round(LENGTH * FRAME_RATE) - 3
 """Frames that lie in a window as a whole."""
+
+_FLUX = FRAME_COLUMNS.index("flux")
 
 WINDOW_NAMES = tuple(feature.name for feature in WINDOW_FEATURES)
 """Of the columns of `WindowTable.features`, by `features.windows.declared.WINDOW_FEATURES`."""
@@ -104,28 +105,19 @@ def describe_windows(
     >>> describe_windows(hiss, hiss, nothing, scale=1.0, windows=3, limit=7e3).features.shape[0]
     3
     """
-    n = sound.size
     start = np.arange(windows) * HOP
     frames = describe_frames(sound, limit)
-    count = frame_count(n)
-    first = np.minimum((start * FRAME_RATE).astype(np.int64), count - 1)
-    last = np.minimum(first + _FRAMES_OF, count)
-    spectra = max(1, -(-(n - SEGMENT_HOP) // SEGMENT_HOP))
-    of_spectra = np.minimum((start * (RATE // SEGMENT_HOP)).astype(np.int64), spectra - 1)
-    until = np.minimum(of_spectra + 3, spectra)
-    power, blows = envelope(sound), envelope(high)
-    begin = np.minimum((start * ENVELOPE_RATE).astype(np.int64), power.size)
-    end = np.minimum(begin + round(LENGTH * ENVELOPE_RATE), power.size)
-    features = np.concatenate(
-        [
-            trajectory_features(frames, first, last),
-            tone_features(long_spectra(sound, spectra), of_spectra, until, limit),
-            rhythm_features(power, begin, end),
-            rhythm_features(blows, begin, end),
-            _tops(top, power, blows, windows),
-        ],
-        axis=1,
-    )
+    power = envelope(sound)
+    features = _features(frames, power, (sound, high, top), start, limit)
+    which, begin, end = events_within(frames.bands, start)
+    if which.size:
+        longer = prolonged((sound, high, top), begin, end, round(LENGTH * RATE))
+        apart = np.arange(which.size) * LENGTH
+        of_events = describe_frames(longer[0], limit)
+        # The first frame of an event has none before it.
+        at = np.round(apart * FRAME_RATE).astype(np.int64)
+        of_events.values[at, _FLUX] = of_events.values[at + 1, _FLUX]
+        features[which] = _features(of_events, envelope(longer[0]), longer, apart, limit)
     unit = 20.0 * np.log10(max(scale, 1e-300))
     level = _means(power, windows, round(HOP * ENVELOPE_RATE))
     values = np.concatenate([frames.values, frames.bands], axis=1)
@@ -134,27 +126,55 @@ def describe_windows(
     return WindowTable(features, (10.0 * np.log10(level + 1e-20) + unit).astype(np.float32), values)
 
 
+def _features(
+    frames: Frames,
+    power: NDArray[np.float32],
+    parts: tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]],
+    start: NDArray[np.float64],
+    limit: float,
+) -> NDArray[np.float32]:
+    """Return the features of windows that begin at `start` [s] in sound, its high part and top."""
+    sound, high, top = parts
+    count = len(frames.values)
+    first = np.minimum(np.round(start * FRAME_RATE).astype(np.int64), count - 1)
+    last = np.minimum(first + _FRAMES_OF, count)
+    spectra = max(1, -(-(sound.size - SEGMENT_HOP) // SEGMENT_HOP))
+    of_spectra = np.minimum((start * (RATE // SEGMENT_HOP)).astype(np.int64), spectra - 1)
+    until = np.minimum(of_spectra + 3, spectra)
+    blows = envelope(high)
+    begin = np.minimum((start * ENVELOPE_RATE).astype(np.int64), power.size)
+    end = np.minimum(begin + round(LENGTH * ENVELOPE_RATE), power.size)
+    return np.concatenate(
+        [
+            trajectory_features(frames, first, last),
+            tone_features(long_spectra(sound, spectra), of_spectra, until, limit),
+            rhythm_features(power, begin, end),
+            rhythm_features(blows, begin, end),
+            _tops(top, power, blows, np.round(start * FRAME_RATE).astype(np.int64)),
+        ],
+        axis=1,
+    )
+
+
 def _tops(
     top: NDArray[np.float32],
     power: NDArray[np.float32],
     blows: NDArray[np.float32],
-    windows: int,
+    first: NDArray[np.int64],
 ) -> NDArray[np.float32]:
     per_frame = ENVELOPE_RATE // FRAME_RATE
     n = min(len(top), power.size // per_frame)
-    out = np.full((windows, len(TOP_FEATURES)), np.nan, dtype=np.float32)
-    hop, length = round(HOP * FRAME_RATE), round(LENGTH * FRAME_RATE)
+    out = np.full((first.size, len(TOP_FEATURES)), np.nan, dtype=np.float32)
+    length = round(LENGTH * FRAME_RATE)
     below = power[: n * per_frame].reshape(n, per_frame).mean(axis=1)
     high = blows[: n * per_frame].reshape(n, per_frame).mean(axis=1)
     columns = np.stack([below, high, top[:n, 0], top[:n, 1]], axis=1)
-    whole = min(windows, max(0, (n - length) // hop + 1))
-    if whole:
-        rows = np.lib.stride_tricks.sliding_window_view(columns, length, axis=0)[::hop][:whole]
-        out[:whole] = _top_features(rows)
-    for w in range(whole, windows):
-        part = columns[w * hop : w * hop + length]
-        if len(part) >= _LEAST_FRAMES:
-            out[w] = _top_features(part.T[None])[0]
+    whole = first + length <= n
+    if whole.any():
+        rows = np.lib.stride_tricks.sliding_window_view(columns, length, axis=0)[first[whole]]
+        out[whole] = _top_features(rows)
+    for w in np.flatnonzero(~whole & (n - first >= _LEAST_FRAMES)).tolist():
+        out[w] = _top_features(columns[first[w] :].T[None])[0]
     return out
 
 

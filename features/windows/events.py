@@ -1,0 +1,150 @@
+"""Events in windows: where a sound that fills a part of a window only begins and ends.
+
+A squeal of a fifth of a second has the features of its onset, its end and the quiet about it, if
+all of a window is described, and these speak for a stranger. So what lies inside the event is
+mirrored at its end until it fills the window, and that is described. An event is a stretch that
+stands out of its surroundings in some half octave; what a creak's blows have between them belongs
+to it. One that fills a window, or is as short as a single blow, is left as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from features.windows.blocks import FRAME_RATE, RATE
+
+_BEFORE, _AFTER = 75, 125
+"""Frames before and after the beginning of a window that are its surroundings."""
+
+_FLOOR = 0.2
+"""Share of the surroundings that lie below their floor [-]."""
+
+_RANGE_DB = 80.0
+"""What lies farther below the loudest frame of a window is no floor of it [dB]: silence."""
+
+_RISE_DB = 8.0
+"""Least that an event stands above the floor [dB]."""
+
+_DROP_DB = 14.0
+"""What lies farther below the loudest frame of an event is outside of it [dB]."""
+
+_GAP = 18
+"""Most frames from one blow of a creak to the next."""
+
+_OF_WINDOW = 47
+"""Frames that lie in a window as a whole."""
+
+_LEAST, _MOST = 8, 40
+"""Frames of an event that is described by itself, at least and at most."""
+
+_INSET = 0.01
+"""What is cut off at either end of the event's frames [s]: they begin before it."""
+
+
+def events_within(
+    bands: NDArray[np.float32], start: NDArray[np.float64]
+) -> tuple[NDArray[np.intp], NDArray[np.int64], NDArray[np.int64]]:
+    """Find the windows that an event fills in part.
+
+    Parameters
+    ----------
+    bands : ndarray of float32, shape (n_frames, n_bands)
+        Level in half octaves [dB], as `features.windows.frames.describe_frames` gives it; what lies
+        outside of them counts as silence.
+    start : ndarray, shape (n_windows,)
+        Beginning of each window [s].
+
+    Returns
+    -------
+    which : ndarray of int, shape (n_events,)
+        Windows with such an event; of several, that with most in it.
+    begin, end : ndarray of int, shape (n_events,)
+        Samples at `features.windows.blocks.RATE` between which it lies.
+
+    Examples
+    --------
+    >>> bands = np.full((200, 11), -60.0, dtype=np.float32)
+    >>> bands[110:130, 5] = -10.0
+    >>> which, begin, end = events_within(bands, np.arange(7) * 0.25)
+    >>> which.tolist(), (begin / RATE).round(2).tolist(), (end / RATE).round(2).tolist()
+    ([3, 4], [1.11, 1.11], [1.31, 1.31])
+    """
+    silence = np.full((_AFTER + _OF_WINDOW, bands.shape[1]), -200.0, dtype=np.float32)
+    around = np.concatenate([silence[:_BEFORE], bands, silence])
+    which, begin, end = [], [], []
+    for w, first in enumerate(np.round(start * FRAME_RATE).astype(int).tolist()):
+        inside = slice(_BEFORE, _BEFORE + min(_OF_WINDOW, len(bands) - first))
+        context = around[first : first + _BEFORE + _AFTER]
+        rank = int(_FLOOR * (len(context) - 1))
+        floor = np.partition(context, rank, axis=0)[rank]
+        floor = np.maximum(floor, context[inside].max(initial=-200.0) - _RANGE_DB)
+        above = (context - floor).max(axis=1)
+        highest = float(above[inside].max(initial=0.0))
+        if highest < _RISE_DB:
+            continue
+        at = np.flatnonzero(above >= max(_RISE_DB, highest - _DROP_DB))
+        gaps = np.flatnonzero(np.diff(at) > _GAP)
+        ends = np.stack([at[np.append(0, gaps + 1)], at[np.append(gaps, at.size - 1)]], axis=1)
+        shared = np.clip(ends, inside.start, inside.stop - 1)
+        longest = int(np.ptp(shared, axis=1).argmax())
+        if _LEAST <= np.ptp(shared[longest]) <= _MOST:
+            # All of it that fills a window, with the part in this one.
+            a = max(int(ends[longest, 0]), int(shared[longest, 1]) - _OF_WINDOW)
+            which.append(w)
+            begin.append(first - _BEFORE + a)
+            end.append(first - _BEFORE + min(int(ends[longest, 1]), a + _OF_WINDOW))
+    inset, hop = round(_INSET * RATE), RATE // FRAME_RATE
+    return (
+        np.array(which, dtype=np.intp),
+        np.array(begin, dtype=np.int64) * hop + inset,
+        np.array(end, dtype=np.int64) * hop + 2 * inset,
+    )
+
+
+def prolonged(
+    parts: Sequence[NDArray[np.float32]],
+    begin: NDArray[np.int64],
+    end: NDArray[np.int64],
+    length: int,
+) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
+    """Mirror events at their ends until they are as long as a window, one after the other.
+
+    Parameters
+    ----------
+    parts : sequence of three ndarrays of float32
+        Sound, its high part and its top, as `features.windows.table.describe_windows` takes them.
+    begin, end : ndarray of int, shape (n_events,)
+        Samples of the sound.
+    length : int
+        Of each window [samples].
+
+    Returns
+    -------
+    tuple of three ndarrays of float32
+        The same of `n_events` windows in a row.
+
+    Examples
+    --------
+    >>> ramp = np.arange(800, dtype=np.float32)
+    >>> top = np.zeros((5, 2), dtype=np.float32)
+    >>> longer = prolonged((ramp, ramp, top), np.array([320]), np.array([323]), 800)
+    >>> longer[0][:8].tolist(), longer[2].shape
+    ([320.0, 321.0, 322.0, 322.0, 321.0, 320.0, 320.0, 321.0], (5, 2))
+    """
+    hop = RATE // FRAME_RATE
+    first = begin // hop
+    scales = ((begin, end, length), (begin, end, length))
+    scales += ((first, np.maximum(end // hop, first + 1), length // hop),)
+    sound, high, top = (
+        np.concatenate(
+            [
+                part[np.pad(np.arange(a, min(b, len(part))), (0, n), mode="symmetric")[:n]]
+                for a, b in zip(*edges, strict=True)
+            ]
+        )
+        for part, (*edges, n) in zip(parts, scales, strict=True)
+    )
+    return sound, high, top
