@@ -55,3 +55,6 @@ DARK_LABELS = ("creak", "squeal")
 
 LABEL_COLOURS = {label: LABEL_LOOKS[label].colour for label in LABELS}
 """Of areas."""
+
+SURROUNDINGS = ("any", "car", "rig")
+"""Where recordings are made: what else may be heard there decides how sure a name has to be."""

@@ -7,7 +7,7 @@ how it is trained is the business of `noise.training.classifier.fit`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.show import short_repr
-from noise.base.labels import LABELS
+from noise.base.labels import LABELS, SURROUNDINGS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import BoostedTrees
 
 CLASSIFIER = ModelKind(
-    "classifier", 4, "bushing-noise train --out", ("noise.classifier", "classifier.npz")
+    "classifier", 5, "bushing-noise train --out", ("noise.classifier", "classifier.npz")
 )
+
+Thresholds = tuple[float, float, float]
+"""Probability from which creak, squawk and squeal are named [-]."""
 
 _FLOOR = 1e-3
 """Share of the votes that no few hundred trees can tell less than [-]."""
@@ -67,9 +70,9 @@ class Classifier:
         For sound alone, and for sound with what else was measured.
     card : mapping
         How it was trained: seed, counts, scores.
-    thresholds : tuple of 3 floats
-        Probability [-] from which creak, squawk and squeal are named; below it the label is
-        ``unknown``.
+    thresholds : mapping of str to tuple of 3 floats
+        By `noise.base.labels.SURROUNDINGS`: probability [-] from which creak, squawk and squeal are named; below it
+        the label is ``unknown``.
 
     Examples
     --------
@@ -83,7 +86,9 @@ class Classifier:
     trees: BoostedTrees
     calibrations: tuple[Calibration, Calibration]
     card: Mapping[str, object]
-    thresholds: tuple[float, float, float] = (0.5, 0.5, 0.5)
+    thresholds: Mapping[str, Thresholds] = field(
+        default_factory=lambda: dict.fromkeys(SURROUNDINGS, (0.5, 0.5, 0.5))
+    )
 
     classes = LABELS
 
@@ -116,10 +121,14 @@ class Classifier:
         Examples
         --------
         >>> shipped = load_classifier()
-        >>> max(shipped.sensitive(2.0).thresholds) < max(shipped.thresholds)
+        >>> shipped.sensitive(2.0).thresholds["car"] < shipped.thresholds["car"]
         True
         """
-        return replace(self, thresholds=at_sensitivity(self.thresholds, sensitivity))
+        others = {
+            name: at_sensitivity(thresholds, sensitivity)
+            for name, thresholds in self.thresholds.items()
+        }
+        return replace(self, thresholds=others)
 
     def save(self, path: str | Path) -> None:
         """Write the classifier into an NPZ file, whole or not at all.
@@ -133,15 +142,13 @@ class Classifier:
             "labels": LABELS,
             "feature_names": self.feature_names,
             "calibrations": [asdict(calibration) for calibration in self.calibrations],
-            "thresholds": self.thresholds,
+            "thresholds": dict(self.thresholds),
             "card": dict(self.card),
         }
         save_model(path, CLASSIFIER, header, self.trees.arrays())
 
 
-def at_sensitivity(
-    thresholds: tuple[float, float, float], sensitivity: float
-) -> tuple[float, float, float]:
+def at_sensitivity(thresholds: Thresholds, sensitivity: float) -> Thresholds:
     """Return the probabilities from which noises are named at other odds [-].
 
     Parameters
@@ -204,11 +211,14 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Cla
     sound, all_channels = (_calibration(stored) for stored in header["calibrations"])
     if tuple(header["labels"]) != LABELS or trees.base.shape != (len(LABELS),):
         raise ValueError("its labels are others")
-    creak, squawk, squeal = (float(p) for p in header["thresholds"])
-    if not all(0.0 < p < 1.0 for p in (creak, squawk, squeal)):
-        raise ValueError("a threshold of it is no probability")
+    thresholds = {}
+    for name in SURROUNDINGS:
+        creak, squawk, squeal = (float(p) for p in header["thresholds"][name])
+        if not all(0.0 < p < 1.0 for p in (creak, squawk, squeal)):
+            raise ValueError("a threshold of it is no probability")
+        thresholds[name] = (creak, squawk, squeal)
     names = tuple(header["feature_names"])
-    return Classifier(names, trees, (sound, all_channels), header["card"], (creak, squawk, squeal))
+    return Classifier(names, trees, (sound, all_channels), header["card"], thresholds)
 
 
 def _calibration(stored: Mapping[str, Any]) -> Calibration:

@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.base.files import check_target, export_paths, locked
+from noise.base.labels import SURROUNDINGS
 from noise.base.progress import counted, note
 from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_recordings, run_batch
-from noise.commands.options import CALIBRATION, Option, full_scale_of, number, seed
+from noise.commands.options import CALIBRATION, Option, full_scale_of, number, one_of, seed
 
 if TYPE_CHECKING:
     from noise.labels.labelling import Labelling
@@ -48,10 +49,15 @@ OPTIONS = (
     Option("--classifier FILE.npz", Path).help(
         "classifier that `bushing-noise train` made (default: the one that is shipped)"
     ),
+    Option("--surroundings rig|car|any", one_of(*SURROUNDINGS)).help(
+        "what else may be heard: of animals, alarms or music a name has to be surer than of what "
+        "sounds in a car or at a rig (default: rig where an operating condition is logged, which "
+        "gets the likeliest label, else any). How many false names were counted is noted"
+    ),
     Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0).help(
         "how readily a noise is named, a ratio of odds from 0.1 to 10 (default: 1): 2 names a "
         "noise at half the odds, so fainter ones and more that are none. How many false names were "
-        "counted is told for any but 1. Nothing changes where an operating condition is logged: "
+        "counted is noted for any but 1. Nothing changes where an operating condition is logged: "
         "there the likeliest label is said"
     ),
     Option("--loudness").help(
@@ -108,27 +114,28 @@ def run(options: Namespace) -> int:
         *models,
         full_scale=full_scale_of(options),
         sensitivity=options.sensitivity,
+        surroundings=options.surroundings,
         loudness=options.loudness,
     )
-    _note_sensitivity(work)
+    _note_false_names(work)
     return run_batch(options, work, jobs, also=export, keep=keep, lines=result_lines)
 
 
-def _note_sensitivity(work: Labelling) -> None:
-    """Say how many false names were counted at another sensitivity than 1."""
-    if work.sensitivity == 1.0:
+def _note_false_names(work: Labelling) -> None:
+    """Say how many false names the surroundings and another sensitivity than 1 bring."""
+    if work.sensitivity == 1.0 and work.surroundings is None:
         return
-    counted_at, hours = work.false_names_an_hour()
-    nearest = min(counted_at, key=lambda s: abs(math.log(s / work.sensitivity)), default=None)
+    counted = work.false_names()
+    nearest = min(counted, key=lambda s: abs(math.log(float(s) / work.sensitivity)), default=None)
     if nearest is None:
-        note("the classifier's card does not say how many false names a sensitivity brings")
-    else:
-        there, at_1 = counted_at[nearest], counted_at[1.0]
-        note(
-            f"at a sensitivity of {nearest:g} this classifier gave {there:.0f} false names an hour "
-            f"of real sounds that are no noise ({at_1:.0f} at 1), counted in {hours:g} h: "
-            f"{there * hours:.0f} names ({at_1 * hours:.0f})"
-        )
+        note("the classifier's card does not say how many false names to expect")
+        return
+    there = counted[nearest]
+    note(
+        f"at a sensitivity of {float(nearest):g} real sounds that are no noise and may be heard "
+        f"there got {there['an_hour']:.0f} false names an hour ({there['low']:.0f} to "
+        f"{there['high']:.0f} at 95 %: {there['names']} in {there['hours']:g} h)"
+    )
 
 
 def _note_assumed(rows: list[dict[str, object]]) -> None:

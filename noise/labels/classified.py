@@ -58,7 +58,9 @@ class Classified:
     cells: CellLevels
 
 
-def classified(blocks: RecordingBlocks, classifier: Classifier) -> Classified:
+def classified(
+    blocks: RecordingBlocks, classifier: Classifier, *, at_rig: bool = False
+) -> Classified:
     """Describe and classify all windows of a recording.
 
     Parameters
@@ -66,6 +68,8 @@ def classified(blocks: RecordingBlocks, classifier: Classifier) -> Classified:
     blocks : RecordingBlocks
         As for `noise.labels.windows.window_features`.
     classifier : Classifier
+    at_rig : bool
+        Whether nothing but a bushing is expected to sound.
 
     Returns
     -------
@@ -85,7 +89,7 @@ def classified(blocks: RecordingBlocks, classifier: Classifier) -> Classified:
         joined_frames(shown),
         pages.cells,
     )
-    if at_a_condition(blocks):
+    if at_rig:
         found.probabilities[:, LABELS.index("unknown")] *= _STRANGERS
         found.probabilities[:] /= found.probabilities.sum(axis=1, keepdims=True)
     silent = _silent_windows(blocks, found)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from models.errors import ParameterError
 from noise.base.files import locked
+from noise.base.labels import SURROUNDINGS
 from noise.base.model_file import model_digest
 from noise.base.tables import check_table_path
 from noise.batch import BatchRows, Done, find_jobs, open_journal, perform_all
@@ -32,6 +34,7 @@ def label(
     classifier: str | Path | None = None,
     inference: str | Path | None = None,
     full_scale: PascalPerFullScale | None = None,
+    surroundings: str | None = None,
     loudness: bool = False,
     out: str | Path | None = None,
     fresh: bool = False,
@@ -48,6 +51,9 @@ def label(
         Files that ``bushing-noise train`` made; by default those that are shipped.
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+    surroundings : {"any", "car", "rig"}, optional
+        What else may be heard; by default ``rig`` where an operating condition is logged, else
+        ``any``.
     loudness : bool
         Whether the loudness N5 of segments is told as well, by the extra ``sound-quality``.
     out : path, optional
@@ -91,7 +97,17 @@ def label(
     check_table_path(out)
     given = [paths] if isinstance(paths, str | Path) else paths
     jobs = find_jobs([Path(path) for path in given])
-    work = Labelling(_absolute(classifier), _absolute(inference), full_scale, loudness=loudness)
+    if surroundings not in (None, *SURROUNDINGS):
+        raise ParameterError(
+            f"surroundings {surroundings!r} are unknown; there are {', '.join(SURROUNDINGS)}"
+        )
+    work = Labelling(
+        _absolute(classifier),
+        _absolute(inference),
+        full_scale,
+        surroundings=surroundings,
+        loudness=loudness,
+    )
     work.prepare()
     # Refused before the work.
     with_corrections(None if out is None else Path(out), [], [job.name for job in jobs])
@@ -130,6 +146,8 @@ class Labelling:
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     sensitivity : float
         Odds at which a noise is named, over the classifier's own [ratio].
+    surroundings : str, optional
+        What else may be heard, as `noise.labels.segments.label_recording` takes it.
     loudness : bool
         Whether the loudness N5 of each segment is told as well.
 
@@ -143,6 +161,7 @@ class Labelling:
     inference: Path | None = None
     full_scale: PascalPerFullScale | None = None
     sensitivity: float = 1.0
+    surroundings: str | None = None
     loudness: bool = False
 
     doing = "labelling"
@@ -165,27 +184,27 @@ class Labelling:
         return {
             "full_scale": self.full_scale,
             "sensitivity": self.sensitivity,
+            "surroundings": self.surroundings,
             "loudness": self.loudness,
             "classifier": model_digest(self.classifier, CLASSIFIER),
             "inference": model_digest(self.inference, INFERENCE),
         }
 
-    def false_names_an_hour(self) -> tuple[dict[float, float], float]:
-        """Return what the card counted, by sensitivity [1/h], and in how much sound [h].
+    def false_names(self) -> Mapping[str, Any]:
+        """Return the card's count of false names in these surroundings; empty where it has none.
 
-        Empty where it counted nothing.
+        By sensitivity, as `noise.training.classifier.operating_point.false_name_rate` gives it.
         """
-        counted = self._loaded.card.get("real_sources_left_out")
-        if not isinstance(counted, dict):
-            return {}, 0.0
-        found = {float(s): float(n) for s, n in counted["false_names_an_hour"].items()}
-        return found, float(counted["background_hours"])
+        counted = self._loaded.card.get("false_names")
+        return counted[self.surroundings or "any"] if isinstance(counted, dict) else {}
 
     def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
         """Return the rows of a recording, and whether it is calibrated."""
         with open_blocks(path, full_scale=self.full_scale) as recording:
             per_track = not names_channels(path)
-            segments: list[Segment] = label_recording(recording, self._loaded, per_track=per_track)
+            segments: list[Segment] = label_recording(
+                recording, self._loaded, per_track=per_track, surroundings=self.surroundings
+            )
             if self.loudness:
                 segments = with_loudness(recording, segments)
             rows = label_rows(name, recording, segments, self._inference)
@@ -205,10 +224,4 @@ class Labelling:
 
     def __getstate__(self) -> dict[str, object]:
         """Leave the loaded models here: elsewhere they are loaded again."""
-        return {
-            "classifier": self.classifier,
-            "inference": self.inference,
-            "full_scale": self.full_scale,
-            "sensitivity": self.sensitivity,
-            "loudness": self.loudness,
-        }
+        return {field.name: getattr(self, field.name) for field in fields(self)}

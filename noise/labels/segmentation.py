@@ -38,6 +38,12 @@ _OWN_SHARE = 0.5
 _CHANGE = 0.15
 """How likely a change of label from one window to the next is, relative to none [-]."""
 
+_OVER_REST = 3.0
+"""Odds that a name needs over those that it has in the rest of the recording [ratio]."""
+
+_LEAST_REST = 4
+"""Fewer windows are no rest to compare with."""
+
 _LEAST = 1e-4
 """Probability that none falls below [-]."""
 
@@ -135,7 +141,10 @@ def labelled_stretches(
     group = np.concatenate([[0], np.cumsum(np.diff(path) != 0)])
     speaking = _speaking(path, group, level)
     p = _heard(probabilities, group, speaking)
-    names = (p.argmax(axis=1) if thresholds is None else named(p, thresholds))[group]
+    if thresholds is None:
+        names = p.argmax(axis=1)[group]
+    else:
+        names = _over_the_rest(named(p, thresholds), p, probabilities, group)[group]
     # A noise too short to leave the path of `none` is no longer than it is heard.
     noise = probabilities[np.arange(n), names]
     outside = (path == _NONE) & (names < NOISES) & (noise < probabilities[:, _NONE])
@@ -148,6 +157,27 @@ def labelled_stretches(
     first = np.concatenate([[True], names[1:] != names[:-1]])
     edges = np.concatenate([np.flatnonzero(first), [n]])
     return edges, names[first], _heard(probabilities, np.cumsum(first) - 1, speaking)
+
+
+def _over_the_rest(
+    names: NDArray[np.intp],
+    p: NDArray[np.float64],
+    probabilities: NDArray[np.float64],
+    group: NDArray[np.intp],
+) -> NDArray[np.intp]:
+    """Take back the names of stretches that are hardly likelier there than in what has no name.
+
+    What hums or clicks all through a recording is a part of its background.
+    """
+    rest = probabilities[names[group] >= NOISES, :NOISES]
+    if len(rest) < _LEAST_REST:
+        return names
+    usual = np.clip(np.median(rest, axis=0), _LEAST, 1.0 - _LEAST)
+    own = np.clip(p[:, :NOISES], _LEAST, 1.0 - _LEAST)
+    over = own / (1.0 - own) / (usual / (1.0 - usual))
+    noise = names < NOISES
+    few = noise & (over[np.arange(names.size), np.where(noise, names, 0)] < _OVER_REST)
+    return np.where(few, p.shape[1] - 1, names)
 
 
 def _speaking(

@@ -144,7 +144,11 @@ class Segments(list[Segment]):
 
 
 def label_recording(
-    recording: Recording | RecordingBlocks, classifier: Classifier, *, per_track: bool = False
+    recording: Recording | RecordingBlocks,
+    classifier: Classifier,
+    *,
+    per_track: bool = False,
+    surroundings: str | None = None,
 ) -> Segments:
     """Label a recording.
 
@@ -155,6 +159,9 @@ def label_recording(
     classifier : Classifier
     per_track : bool
         Whether each channel is labelled on its own, as the tracks of a plain sound file are.
+    surroundings : str, optional
+        What else may be heard, of `noise.base.labels.SURROUNDINGS`; by default ``rig`` where
+        an operating condition is stated, else ``any``.
 
     Returns
     -------
@@ -174,7 +181,7 @@ def label_recording(
     return Segments(
         segment
         for name, track in found
-        for segment in with_weighted_levels(track, _label(track, classifier, name))
+        for segment in with_weighted_levels(track, _label(track, classifier, name, surroundings))
     )
 
 
@@ -206,11 +213,15 @@ def file_label(segments: list[Segment]) -> Segment:
     return max(audible or segments, key=lambda segment: segment.end - segment.start)
 
 
-def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> list[Segment]:
+def _label(
+    blocks: RecordingBlocks, classifier: Classifier, channel: str, surroundings: str | None
+) -> list[Segment]:
     if not has_window_channel(blocks):
         return [_nothing_to_tell(blocks, channel)]
-    found = classified(blocks, classifier)
-    thresholds = None if at_a_condition(blocks) else classifier.thresholds
+    at_rig = surroundings in (None, "rig") and at_a_condition(blocks)
+    found = classified(blocks, classifier, at_rig=at_rig)
+    # At a condition nothing but the bushing is expected to sound: the likeliest label is said.
+    thresholds = None if at_rig else classifier.thresholds[surroundings or "any"]
     edges, names, heard = labelled_stretches(found.probabilities, thresholds, found.level)
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
     last_cell = found.cells.count
