@@ -71,8 +71,8 @@ class Classifier:
     card : mapping
         How it was trained: seed, counts, scores.
     thresholds : mapping of str to tuple of 3 floats
-        By `noise.base.labels.SURROUNDINGS`: probability [-] from which creak, squawk and squeal are named; below it
-        the label is ``unknown``.
+        By `noise.base.labels.SURROUNDINGS`: probability [-] from which creak, squawk and squeal
+        are named; below it the label is ``unknown``.
 
     Examples
     --------

@@ -12,7 +12,7 @@ from models.errors import ParameterError
 from noise.base.files import check_target
 from noise.base.progress import Steps, counted, say, steps, track
 from noise.base.tables import TABLE_ENDINGS
-from noise.commands.options import Option, one_of, refuse, seed, whole_number
+from noise.commands.options import Option, refuse, seed, whole_number
 
 if TYPE_CHECKING:
     from noise.classifier import Classifier
@@ -44,11 +44,6 @@ OPTIONS = (
         "unknown), by a label table, or by Audacity's label tracks (run07.txt beside run07.wav). "
         "If a table has corrections (label_source is human), only these count. Probabilities, "
         "thresholds and the printed score come from trees that were grown without the file itself"
-    ),
-    Option("--surroundings any|car|rig", one_of("any", "car", "rig"), "any").help(
-        "where the classifier is to be used. Sounds that cannot occur there, such as animals in "
-        "a car, are left out, so there is less to tell apart. Your own recordings are always "
-        "learned (default: any)"
     ),
     Option("--samples N", whole_number(1)).help(
         "simulated bushings and other bodies to learn from (default: 4300), beside which 0.6 "
@@ -108,7 +103,6 @@ def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Cla
         n_training=n or N_TRAINING,
         n_test=max(1, n // _PART_TO_SCORE) if n else N_TEST,
         added=added,
-        surroundings=options.surroundings,
         keep=options.keep,
         progress=_simulating,
         growing=partial(_growing, tell),

@@ -4,20 +4,23 @@ How probable a name is, and from where on it is said, is not asked of what the t
 kinds of body and of background, and the sources of real sounds, are parted into five, and trees
 that were grown without one part vote on it. Those votes calibrate, and those votes are scored:
 each part by the calibration of the other four.
+
+A few dozen real sounds of friction are lost among thousands of simulated ones, so trees are grown
+of the real sounds alone as well, and a share of their log odds is added.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
+from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
-from features.windows.table import HOP
-from noise.base.labels import LABELS
+from noise.base.labels import LABELS, SURROUNDINGS
 from noise.base.trees import BoostedTrees
-from noise.classifier.model import Calibration, Classifier, at_sensitivity, has_more_than_sound
+from noise.classifier.model import Calibration, Classifier, Thresholds, has_more_than_sound
 from noise.labels.segmentation import NOISES, clearest, named as labels_named
 from noise.labels.windows import FEATURE_NAMES, columns_of
 from noise.training.classifier.described_samples import Sample
@@ -29,15 +32,21 @@ from noise.training.classifier.masked_rows import (
     masked_rows,
 )
 from noise.training.classifier.operating_point import (
-    false_names,
+    Background,
+    false_name_rate,
     fit_calibration,
     fit_thresholds,
     scores,
 )
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
+from noise.training.classifier.surroundings import may_sound
 from noise.training.trees import grow_boosted_trees
 
-_N_ROUNDS = 220
+_N_ROUNDS, _REAL_ROUNDS = 220, 50
+"""Trees a class: of all sounds, and of the real ones alone."""
+
+_REAL_SHARE = 0.3
+"""Of the log odds of the real sounds' trees that is added [-]; by sources left out."""
 
 _SENSITIVITIES = (0.5, 1.0, 2.0, 4.0)
 """For which false names are counted [ratio of odds]."""
@@ -53,10 +62,13 @@ class LeftOut:
         Probabilities of the windows, by the sound alone [-].
     together : list of ndarray, shape (n_windows, 5)
         The same with its other channels [-]; None where it has none.
+    part : ndarray of int, shape (n_sounds,)
+        What was left out together.
     """
 
     alone: list[NDArray[np.float64]]
     together: list[NDArray[np.float64] | None]
+    part: NDArray[np.int64]
 
 
 def grown(
@@ -82,14 +94,15 @@ def grown(
     known: NDArray[np.bool_] = np.asarray(np.isfinite(x).any(axis=0))
     x = x[:, known]
 
-    def trees_of(rows: NDArray[np.bool_]) -> BoostedTrees:
-        next(fits, None)
-        return _trees(x[rows], y[rows], weight[rows], seed)
-
+    real = np.array([isinstance(sound, OwnSample) for sound in sounds])[owner]
+    growing = Parallel(n_jobs=-1, return_as="generator")(
+        delayed(_summed_trees)(x[rows], y[rows], weight[rows], real[rows], seed)
+        for rows in (part[owner] != k for k in range(N_FOLDS + 1))  # the last has all
+    )
     alone: list[NDArray[np.float64]] = [np.empty(0)] * len(sounds)
     together: list[NDArray[np.float64] | None] = [None] * len(sounds)
-    for k in range(N_FOLDS):
-        trees = trees_of(part[owner] != k)
+    for k, trees in enumerate(growing):
+        next(fits, None)
         for i in np.flatnonzero(part == k).tolist():
             features = sounds[i].features
             kinds = SUBSETS[0] if isinstance(sounds[i], Sample) else KINDS
@@ -98,10 +111,11 @@ def grown(
                 together[i] = trees.probabilities(features[:, known])
     labels = columns_of_labels(sounds)
     heavy = np.array([s.weight for s in sounds])
+    counts = np.array([not (isinstance(s, OwnSample) and s.varied) for s in sounds])
     several = np.array([p is not None for p in together])
     calibrations, calibrated = [], []
-    for votes, held in ((alone, np.ones(len(sounds), dtype=bool)), (together, several)):
-        held = held if held.any() else np.ones(len(sounds), dtype=bool)
+    for votes, held in ((alone, counts), (together, several & counts)):
+        held = held if held.any() else counts
         voted = [p if p is not None else alone[i] for i, p in enumerate(votes)]
         calibrations.append(_calibration(voted, labels, heavy, np.flatnonzero(held)))
         without = [
@@ -110,11 +124,15 @@ def grown(
         ]
         calibrated.append([without[part[i]](p) for i, p in enumerate(voted)])
     left_out = LeftOut(
-        calibrated[0], [p if s else None for p, s in zip(calibrated[1], several, strict=True)]
+        calibrated[0],
+        [p if s else None for p, s in zip(calibrated[1], several, strict=True)],
+        part,
     )
-    thresholds = fit_thresholds(_real_backgrounds(sounds, left_out))
+    thresholds = {
+        name: fit_thresholds([b.probabilities for b in real_backgrounds(sounds, left_out, name)])
+        for name in SURROUNDINGS
+    }
     names = tuple(name for name, k in zip(FEATURE_NAMES, known, strict=True) if k)
-    trees = trees_of(np.ones(y.size, dtype=bool))
     return Classifier(names, trees, (calibrations[0], calibrations[1]), {}, thresholds), left_out
 
 
@@ -129,18 +147,53 @@ def with_trees_of(
     sounds : sequence of Sample or OwnSample
     seed : int
     """
-    x, y, weight, _ = masked_rows(sounds)
-    columns = columns_of(classifier)
-    trees = _trees(x[:, columns], y, weight, seed)
-    return Classifier(
-        classifier.feature_names, trees, classifier.calibrations, {}, classifier.thresholds
+    x, y, weight, owner = masked_rows(sounds)
+    real = np.array([isinstance(sound, OwnSample) for sound in sounds])[owner]
+    trees = _summed_trees(x[:, columns_of(classifier)], y, weight, real, seed)
+    return replace(classifier, trees=trees, card={})
+
+
+def _summed_trees(
+    x: NDArray[np.float32],
+    y: NDArray[np.int64],
+    weight: NDArray[np.float64],
+    real: NDArray[np.bool_],
+    seed: int,
+) -> BoostedTrees:
+    """Grow trees of all rows, and add a share of what trees of the real ones say."""
+    trees = _trees(x, y, weight, seed, _N_ROUNDS)
+    unknown = LABELS.index("unknown")
+    known = np.unique(y[real])
+    if known.min(initial=unknown) >= NOISES or unknown not in known:
+        return trees
+    own = _trees(x[real], y[real], weight[real], seed, _REAL_ROUNDS)
+    # A label of which there is no real sound is as likely as `unknown`.
+    alike = np.where(np.isin(np.arange(len(LABELS)), known), np.arange(len(LABELS)), unknown)
+    chosen = [np.flatnonzero(own.classes == k) for k in alike]
+    n = len(trees.feature)
+    return BoostedTrees(
+        roots=np.concatenate([trees.roots, *(own.roots[c] + n for c in chosen)]),
+        classes=np.concatenate(
+            [trees.classes, np.repeat(np.arange(len(LABELS)), list(map(len, chosen)))]
+        ).astype(np.int16),
+        feature=np.concatenate([trees.feature, own.feature]),
+        threshold=np.concatenate([trees.threshold, own.threshold]),
+        children=np.concatenate([trees.children, own.children + np.int32(n)]),
+        missing_left=np.concatenate([trees.missing_left, own.missing_left]),
+        value=np.concatenate([trees.value, _REAL_SHARE * own.value]),
+        base=trees.base + _REAL_SHARE * own.base[alike],
     )
 
 
 def _trees(
-    x: NDArray[np.float32], y: NDArray[np.int64], weight: NDArray[np.float64], seed: int
+    x: NDArray[np.float32],
+    y: NDArray[np.int64],
+    weight: NDArray[np.float64],
+    seed: int,
+    n_rounds: int,
 ) -> BoostedTrees:
     """Grow trees of rows whose labels are balanced."""
+    x = x.copy()
     # Bins need one value at least of what none of these has, and trees one row of each label.
     x[0, ~np.isfinite(x).any(axis=0)] = 0.0
     absent = np.setdiff1d(np.arange(len(LABELS)), y)
@@ -148,7 +201,7 @@ def _trees(
     x = np.concatenate([x, np.repeat(x[:1], absent.size, axis=0)])
     y = np.concatenate([y, absent])
     weight = np.concatenate([weight, np.full(absent.size, 1e-9)])
-    return grow_boosted_trees(x, y, weight=weight / weight.mean(), n_rounds=_N_ROUNDS, seed=seed)
+    return grow_boosted_trees(x, y, weight=weight / weight.mean(), n_rounds=n_rounds, seed=seed)
 
 
 def _source(sound: Sample | OwnSample, i: int) -> str:
@@ -168,18 +221,30 @@ def _calibration(
     )
 
 
-def _real_backgrounds(
-    sounds: Sequence[Sample | OwnSample], left_out: LeftOut
-) -> list[NDArray[np.float64]]:
+def real_backgrounds(
+    sounds: Sequence[Sample | OwnSample], left_out: LeftOut, surroundings: str
+) -> list[Background]:
+    """Return the real sounds that are no noise and may be heard in some surroundings.
+
+    Parameters
+    ----------
+    sounds : sequence of Sample or OwnSample
+    left_out : LeftOut
+        Of these sounds.
+    surroundings : str
+        Of `noise.base.labels.SURROUNDINGS`.
+    """
     return [
-        p
-        for sound, p in zip(sounds, left_out.alone, strict=True)
-        if isinstance(sound, OwnSample) and LABELS.index(sound.label) >= NOISES
+        Background(p, int(part))
+        for sound, p, part in zip(sounds, left_out.alone, left_out.part, strict=True)
+        if isinstance(sound, OwnSample)
+        and LABELS.index(sound.label) >= NOISES
+        and may_sound(sound.kind, surroundings)
     ]
 
 
 def left_out_scores(
-    sounds: Sequence[Sample | OwnSample], left_out: LeftOut, thresholds: tuple[float, float, float]
+    sounds: Sequence[Sample | OwnSample], left_out: LeftOut, thresholds: Mapping[str, Thresholds]
 ) -> dict[str, object]:
     """Scores of kinds and of sources that the trees and the calibration had not known.
 
@@ -188,8 +253,8 @@ def left_out_scores(
     sounds : sequence of Sample or OwnSample
     left_out : LeftOut
         Of these sounds.
-    thresholds : tuple of 3 floats
-        Probability [-] from which each noise is named.
+    thresholds : mapping of str to tuple of 3 floats
+        By surroundings: probability [-] from which each noise is named.
 
     Returns
     -------
@@ -209,26 +274,21 @@ def left_out_scores(
             said[f"{name}_kinds_left_out"] = scores(
                 p, columns_of_labels([s for s, _ in held]), unknown
             )
-    heard = [
-        (s, p) for s, p in zip(sounds, left_out.alone, strict=True) if isinstance(s, OwnSample)
-    ]
     recall = {}
     for label in LABELS[:NOISES]:
-        right = [_name(p, thresholds) == LABELS.index(label) for s, p in heard if s.label == label]
+        right = [
+            _name(p, thresholds["any"]) == LABELS.index(label)
+            for s, p in zip(sounds, left_out.alone, strict=True)
+            if isinstance(s, OwnSample) and s.label == label and not s.varied
+        ]
         if right:
             recall[label] = {"n": len(right), "recall": round(float(np.mean(right)), 4)}
-    backgrounds = _real_backgrounds(sounds, left_out)
-    if backgrounds:
-        said["real_sources_left_out"] = {
-            "recall": recall,
-            "background_hours": round(sum(map(len, backgrounds)) * HOP / 3600.0, 3),
-            "false_names_an_hour": {
-                f"{s:g}": round(
-                    float(false_names(backgrounds, at_sensitivity(thresholds, s)).sum()), 1
-                )
-                for s in _SENSITIVITIES
-            },
-        }
+    said["real_sources_left_out"] = recall
+    said["false_names"] = {
+        name: {f"{s:g}": false_name_rate(found, s) for s in _SENSITIVITIES}
+        for name in SURROUNDINGS
+        if (found := real_backgrounds(sounds, left_out, name))
+    }
     return said
 
 
@@ -242,7 +302,7 @@ def named(p: NDArray[np.float64], classifier: Classifier) -> int:
     classifier : Classifier
         Whose thresholds count.
     """
-    return _name(p, classifier.thresholds)
+    return _name(p, classifier.thresholds["any"])
 
 
 def _name(p: NDArray[np.float64], thresholds: Sequence[float]) -> int:

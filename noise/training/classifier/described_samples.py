@@ -31,7 +31,6 @@ from noise.training.classifier.friction_sources.friction_sounds import (
     FRICTION_SOUNDS,
     friction_sound,
 )
-from noise.training.classifier.surroundings import may_sound
 from noise.training.draws import log_uniform, wandering
 from sim.acquisition import Acquisition
 
@@ -174,7 +173,7 @@ class Drawn:
     ambiguous: bool = False
 
 
-def draw(rng: np.random.Generator, *, bushings: bool = True, surroundings: str = "any") -> Drawn:
+def draw(rng: np.random.Generator, *, bushings: bool = True) -> Drawn:
     """Draw a sample.
 
     Parameters
@@ -182,8 +181,6 @@ def draw(rng: np.random.Generator, *, bushings: bool = True, surroundings: str =
     rng : numpy.random.Generator
     bushings : bool
         Whether it may be a simulated bushing, which takes ten times as long as any other.
-    surroundings : str
-        What else may sound, of `noise.training.classifier.surroundings.SURROUNDINGS`.
 
     Returns
     -------
@@ -198,8 +195,7 @@ def draw(rng: np.random.Generator, *, bushings: bool = True, surroundings: str =
     shares = {group: share for group, share in SHARES.items() if bushings or group != "bushing"}
     group = _picked(shares, rng)
     if group == "background":
-        heard = {name: w for name, w in WEIGHTS.items() if may_sound(name, surroundings)}
-        return draw_from(f"background:{_picked(heard, rng)}", rng)
+        return draw_from(f"background:{_picked(WEIGHTS, rng)}", rng)
     if group == "friction":
         label = _picked(_LABEL_SHARES, rng)
         kinds = {name: row["weight"] for name, row in _FRICTION.items() if row["label"] == label}
@@ -312,6 +308,9 @@ _QUIET_DB = 30.0
 _OUTSIDE = 0.2
 """How far a window may reach beyond the time for which the label holds [s]."""
 
+_OF_EVENT = 0.9
+"""Share of a short event that lies in a window of it [-]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Sample:
@@ -336,15 +335,13 @@ class Sample:
     weight = 1.0
 
 
-def draw_sample(
-    seed: np.random.SeedSequence, *, bushings: bool = True, surroundings: str = "any"
-) -> Sample:
+def draw_sample(seed: np.random.SeedSequence, *, bushings: bool = True) -> Sample:
     """Draw one sample and describe the part of it where its label holds.
 
     It is no simulated bushing unless `bushings`.
     """
     (other,) = seed.spawn(1)
-    drawn = draw(np.random.default_rng(seed), bushings=bushings, surroundings=surroundings)
+    drawn = draw(np.random.default_rng(seed), bushings=bushings)
     return describe_drawn(swelling(drawn, np.random.default_rng(other)))
 
 
@@ -352,9 +349,10 @@ def describe_drawn(drawn: Drawn) -> Sample:
     """Describe the windows of a drawn recording in which its label holds and something sounds."""
     found = window_features(RecordingBlocks.of(drawn.recording))
     start = np.arange(len(found.features)) * HOP
-    outside = np.maximum(drawn.span[0] - start, 0.0) + np.maximum(
-        np.minimum(start + LENGTH, drawn.recording.duration) - drawn.span[1], 0.0
-    )
-    kept = (outside <= _OUTSIDE) & (found.level > found.level.max() - _QUIET_DB)
-    kept[np.argmin(outside - 1e-6 * found.level)] |= not kept.any()
+    end = np.minimum(start + LENGTH, drawn.recording.duration)
+    inside = np.minimum(end, drawn.span[1]) - np.maximum(start, drawn.span[0])
+    # Of a window that holds a short event all but that is left aside as it is described.
+    enough = np.minimum(end - start - _OUTSIDE, _OF_EVENT * (drawn.span[1] - drawn.span[0]))
+    kept = (inside >= enough) & (found.level > found.level.max() - _QUIET_DB)
+    kept[np.argmax(inside + 1e-6 * found.level)] |= not kept.any()
     return Sample(found.features[kept], drawn.label, drawn.ambiguous, drawn.source)

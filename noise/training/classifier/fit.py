@@ -41,6 +41,7 @@ from numpy.typing import NDArray
 from models.blocks import RecordingBlocks
 from models.errors import ParameterError
 from models.foreign_file import read_arrays, reading
+from models.recording import Channel, Recording
 from noise.base.files import atomic
 from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
@@ -49,8 +50,15 @@ from noise.classifier.model import Classifier
 from noise.labels.segmentation import clearest
 from noise.labels.windows import FEATURE_NAMES, columns_of, window_features
 from noise.recordings import read_recording
+from noise.training.classifier.augmentation.recorder import augmented
 from noise.training.classifier.cross_fitting import grown, left_out_scores, named, with_trees_of
-from noise.training.classifier.described_samples import Sample, draw_sample
+from noise.training.classifier.described_samples import (
+    Drawn,
+    Sample,
+    describe_drawn,
+    draw_sample,
+    swelling,
+)
 from noise.training.classifier.masked_rows import (
     KINDS,
     SUBSETS,
@@ -61,22 +69,29 @@ from noise.training.classifier.masked_rows import (
 )
 from noise.training.classifier.operating_point import scores
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, own_card
-from noise.training.classifier.surroundings import may_sound
+from noise.training.draws import log_uniform, low_pass
 
 _KIND = ModelKind(
     "set of real sounds",
-    1,
+    2,
     "python -m noise.training.classifier.fit FOLDER, not into",
     ("noise.training.classifier", "real_sounds.npz"),
 )
 
-_LABELS = {"creak": "creak", "squawk": "squawk", "squeal": "squeal", "background": "unknown"}
+_LABELS = {
+    "creak": "creak",
+    "squawk": "squawk",
+    "squeal": "squeal",
+    "bowed": "squawk",
+    "background": "unknown",
+    "background: vehicle": "unknown",
+}
 """What a class is called; others hang on a bound of the definition."""
 
 _FRICTION = ("hacksaw", "hand_saw")
 """Files called so are friction, whatever their class: neither a noise nor a stranger."""
 
-_CLEAN = re.compile(r"(CC0|CC BY [34]|CC-BY |MIT)")
+_CLEAN = re.compile(r"(skid\.ogg )?(CC0|CC BY [34]|CC-BY |MIT)")
 """How a licence begins that lets anyone learn from a sound and pass on what was learned."""
 
 _WEIGHT_OF_NOISE, _WEIGHT_OF_OTHERS = 15.0, 4.0
@@ -84,6 +99,13 @@ _WEIGHT_OF_NOISE, _WEIGHT_OF_OTHERS = 15.0, 4.0
 
 _QUIET_DB = 30.0
 """Windows that lie so far below a sound's loudest are pauses."""
+
+_VARIATIONS = 20
+"""Of each sound that is a noise: parts of it at other speeds, in other places and recorders."""
+
+_SPEEDS = (0.78, 1.28)
+_LENGTHS = (0.15, 2.5)
+"""Of a variation, over the sound's own [-] and as a part of it [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,14 +116,11 @@ class RealSounds:
     ----------
     samples : tuple of OwnSample
         Each a whole sound, by the name of its source.
-    kinds : tuple of str
-        Of the sounds, as their files are called.
     licences : mapping of str to str
         By source.
     """
 
     samples: tuple[OwnSample, ...]
-    kinds: tuple[str, ...]
     licences: Mapping[str, str]
 
 
@@ -118,21 +137,54 @@ def load_real_sounds() -> RealSounds:
 
 def describe_folder(folder: Path) -> RealSounds:
     """Describe the sounds of a folder that have a clean licence."""
-    samples, kinds, licences = [], [], {}
+    samples, licences = [], {}
     with (folder / "sources.csv").open(encoding="utf-8", newline="") as table:
         rows = [row for row in csv.DictReader(table) if _CLEAN.match(row["licence"])]
-    for row in rows:
+    for number, row in enumerate(rows):
         label = _LABELS.get(row["class"])
         if label is None or any(word in row["file"] for word in _FRICTION):
             continue
-        blocks = RecordingBlocks.of(read_recording(folder / row["file"]))
-        found = window_features(blocks.track(0))
+        recording = read_recording(folder / row["file"])
+        found = window_features(RecordingBlocks.of(recording).track(0))
         loud = found.level > found.level.max() - _QUIET_DB
-        source = _source(row["source"], row["licence"])
-        samples.append(_sample(found.features[loud], label, source))
-        kinds.append(Path(row["file"]).stem)
+        source, kind = _source(row["source"], row["licence"]), Path(row["file"]).stem
+        samples.append(_sample(found.features[loud], label, source, kind))
         licences[source] = row["licence"]
-    return RealSounds(tuple(samples), tuple(kinds), licences)
+        if label != "unknown":
+            rng = np.random.default_rng([number, 3])
+            for _ in range(_VARIATIONS):
+                varied = _varied(recording.samples[0], recording.rate, rng)
+                features = describe_drawn(varied).features
+                samples.append(_sample(features, label, source, kind, varied=True))
+    return RealSounds(tuple(samples), licences)
+
+
+def _varied(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -> Drawn:
+    """Record a loud part of a sound anew, at another speed, in another place."""
+    n = min(sound.size, round(log_uniform(*_LENGTHS, rng) * rate))
+    loudest = np.abs(sound).max()
+    parts = [sound[first : first + n] for first in rng.integers(0, sound.size - n + 1, 10)]
+    part = next((one for one in parts if np.abs(one).max() > 0.5 * loudest), parts[-1])
+    speed = log_uniform(*_SPEEDS, rng)
+    step = speed * rate / _RATE
+    if step > 1.0:  # what is above half the new rate would fold back
+        part = low_pass(part, 0.45 * _RATE, rate)
+    part = np.interp(np.arange(0.0, part.size - 1.0, step), np.arange(part.size), part)
+    fade = min(round(0.005 * _RATE), part.size // 4)
+    ramp = np.linspace(0.0, 1.0, fade)
+    part[:fade] *= ramp
+    part[part.size - fade :] *= ramp[::-1]
+    before, after = (rng.uniform(0.0, 0.7, 2) * _RATE).astype(int) if rng.random() < 0.5 else (0, 0)
+    span = (before / _RATE, (before + part.size) / _RATE)
+    clip = augmented(np.pad(part, (before, after)), _RATE, rng, span=span)
+    recording = Recording(
+        clip.samples[None, :], float(clip.rate), (Channel("pressure"),), calibrated=False
+    )
+    return swelling(Drawn(recording, "", None, "", clip.span), rng)
+
+
+_RATE = 48_000.0
+"""Sampling rate of variations [Hz]."""
 
 
 def _source(said: str, licence: str) -> str:
@@ -148,9 +200,13 @@ def _source(said: str, licence: str) -> str:
     return repository
 
 
-def _sample(features: NDArray[np.float32], label: str, source: str) -> OwnSample:
-    noise = label not in ("none", "unknown")
-    return OwnSample(features, label, source, _WEIGHT_OF_NOISE if noise else _WEIGHT_OF_OTHERS)
+def _sample(
+    features: NDArray[np.float32], label: str, source: str, kind: str, *, varied: bool = False
+) -> OwnSample:
+    weight = _WEIGHT_OF_NOISE if label != "unknown" else _WEIGHT_OF_OTHERS
+    return OwnSample(
+        features, label, source, weight / _VARIATIONS if varied else weight, kind, varied
+    )
 
 
 def _store(found: RealSounds, path: Path) -> None:
@@ -158,7 +214,8 @@ def _store(found: RealSounds, path: Path) -> None:
         "feature_names": FEATURE_NAMES,
         "labels": [s.label for s in found.samples],
         "sources": [s.name for s in found.samples],
-        "kinds": found.kinds,
+        "kinds": [s.kind for s in found.samples],
+        "varied": [s.varied for s in found.samples],
         "licences": found.licences,
         "card": {},
     }
@@ -179,9 +236,10 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Rea
     x = np.full((len(arrays["features"]), len(FEATURE_NAMES)), np.nan, dtype=np.float32)
     x[:, _COLUMNS] = arrays["features"]
     each = np.split(x, np.cumsum(arrays["counts"])[:-1])
-    told = zip(each, header["labels"], header["sources"], strict=True)
+    columns = (header[name] for name in ("labels", "sources", "kinds", "varied"))
     return RealSounds(
-        tuple(_sample(*one) for one in told), tuple(header["kinds"]), header["licences"]
+        tuple(_sample(*one, varied=varied) for *one, varied in zip(each, *columns, strict=True)),
+        header["licences"],
     )
 
 
@@ -281,7 +339,6 @@ def train(
     n_training: int = N_TRAINING,
     n_test: int = N_TEST,
     added: Sequence[OwnSample] = (),
-    surroundings: str = "any",
     keep: Path | None = None,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
     growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
@@ -296,8 +353,6 @@ def train(
     added : sequence of OwnSample
         Of the user's own recordings, to learn from as well
         (`noise.training.classifier.own_samples`).
-    surroundings : str
-        What else may sound, of `noise.training.classifier.surroundings.SURROUNDINGS`.
     keep : Path, optional
         File that keeps the simulated samples (`noise.training.classifier.fit`): they are
         taken from it where it holds those of the same call by the same program.
@@ -324,29 +379,23 @@ def train(
     """
     n_made_up = round(_MADE_UP * n_training)
     total = n_made_up + n_training + n_test
-    call = (seed, n_training, n_test, surroundings)
+    call = (seed, n_training, n_test)
     samples = None if keep is None else load_samples(keep, call)
     if samples is None:
-        samples = _drawn(seed, n_made_up, total, surroundings, progress)
+        samples = _drawn(seed, n_made_up, total, progress)
         if keep is not None:
             save_samples(keep, call, samples)
     real = load_real_sounds()
-    heard = [
-        sample
-        for sample, kind in zip(real.samples, real.kinds, strict=True)
-        if may_sound(kind, surroundings)
-    ]
     card: dict[str, object] = {
         "seed": seed,
-        "surroundings": surroundings,
-        "real_sounds": _counts(heard),
-        "licences": sorted({f"{s.name}: {real.licences[s.name]}" for s in heard}),
+        "real_sounds": _counts(sample for sample in real.samples if not sample.varied),
+        "licences": sorted(f"{name}: {licence}" for name, licence in real.licences.items()),
     }
     return learn(
         samples,
         n_made_up + n_training,
         seed=seed,
-        real=heard,
+        real=real.samples,
         added=added,
         card=card,
         growing=growing,
@@ -357,15 +406,13 @@ def _drawn(
     seed: int,
     n_made_up: int,
     total: int,
-    surroundings: str,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None,
 ) -> list[Sample]:
     seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
     seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
     draw = ending_with_this(draw_sample)
     drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(draw)(seeds[i], bushings=i >= n_made_up, surroundings=surroundings)
-        for i in range(total)
+        delayed(draw)(seeds[i], bushings=i >= n_made_up) for i in range(total)
     )
     return list(progress(drawn, total) if progress else drawn)
 

@@ -2,27 +2,30 @@
 
 Six numbers are fitted on what trees said that had seen nothing of the kind or the source: the log
 loss of each sample where it sounds most like a noise is the smallest. A noise is named where it is
-more probable than a threshold of its own, so high that real backgrounds are seldom called so: one
-that everyday sounds are seldom taken for need not be as sure as another.
+more probable than a threshold of its own, so high that real backgrounds that may be heard in the
+same surroundings are seldom called so: one that everyday sounds are seldom taken for need not be as
+sure as another. How many false names that leaves is counted on sources that chose no threshold.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
+from scipy.stats import chi2
 
 from features.windows.table import HOP
-from noise.classifier.model import Calibration
+from noise.classifier.model import Calibration, at_sensitivity
 from noise.labels.segmentation import NOISES, clearest, labelled_stretches
 
 FALSE_NAMES_AN_HOUR = 5.0
 """So many segments of real backgrounds are called each of the noises, at most."""
 
-_LEAST, _MOST = 0.5, 0.97
-"""Threshold between which none is sought [-]: a noise that is named is likelier than all else."""
+_LEAST, _MOST = 0.25, 0.97
+"""Between them thresholds are sought [-]."""
 
 _PRIOR = 20.0
 """So many recordings weigh as much as the wish that the six numbers change nothing."""
@@ -93,7 +96,7 @@ def fit_thresholds(
     >>> clear, creaky = [0.0, 0.0, 0.0, 0.1, 0.9], [0.7, 0.0, 0.0, 0.0, 0.3]
     >>> found = fit_thresholds([np.array([clear] * 900), *[np.array([creaky] * 9)] * 9])
     >>> np.round(found, 2).tolist()
-    [0.7, 0.5, 0.5]
+    [0.7, 0.25, 0.25]
     """
     tried = np.arange(_LEAST, _MOST, 0.01).tolist()
     counts = np.array([false_names(backgrounds, (t, t, t)) for t in tried])
@@ -128,6 +131,63 @@ def false_names(
     names = [labelled_stretches(p, thresholds)[1] for p in backgrounds]
     found = np.bincount(np.concatenate([*names, np.arange(0)]), minlength=NOISES)[:NOISES]
     return np.asarray(found * 3600.0 / (HOP * max(1, sum(map(len, backgrounds)))))
+
+
+@dataclass(frozen=True, eq=False)
+class Background:
+    """A real sound that is no noise, as trees saw it that knew none of its source.
+
+    Parameters
+    ----------
+    probabilities : ndarray, shape (n_windows, n_labels)
+        [-]
+    part : int
+        Sources of one part are left out together.
+    """
+
+    probabilities: NDArray[np.float64]
+    part: int
+
+
+def false_name_rate(backgrounds: Sequence[Background], sensitivity: float) -> dict[str, float]:
+    """Count false names on sources that chose no threshold.
+
+    The thresholds that count a part's names are those of all other parts.
+
+    Parameters
+    ----------
+    backgrounds : sequence of Background
+    sensitivity : float
+        [ratio of odds]
+
+    Returns
+    -------
+    dict
+        ``names`` in so many ``hours``, that is ``an_hour`` [1/h], with the 95 % interval of a
+        Poisson count from ``low`` to ``high`` [1/h].
+
+    Examples
+    --------
+    >>> other, creak = [0.0, 0.0, 0.0, 0.1, 0.9], [0.9, 0.0, 0.0, 0.0, 0.1]
+    >>> found = false_name_rate([Background(np.array([other] * 7200), part) for part in (0, 1)], 1)
+    >>> found["names"], found["hours"], found["an_hour"], found["high"]
+    (0, 1.0, 0.0, 3.7)
+    """
+    names, windows = 0, 0
+    for part in {background.part for background in backgrounds}:
+        own = [b.probabilities for b in backgrounds if b.part == part]
+        thresholds = fit_thresholds([b.probabilities for b in backgrounds if b.part != part])
+        found = [labelled_stretches(p, at_sensitivity(thresholds, sensitivity))[1] for p in own]
+        names += int(sum(np.sum(labels < NOISES) for labels in found))
+        windows += sum(map(len, own))
+    hours = HOP * max(1, windows) / 3600.0
+    return {
+        "names": names,
+        "hours": round(hours, 3),
+        "an_hour": round(names / hours, 1),
+        "low": round(float(chi2.ppf(0.025, 2 * names)) / 2.0 / hours, 1) if names else 0.0,
+        "high": round(float(chi2.ppf(0.975, 2 * names + 2)) / 2.0 / hours, 1),
+    }
 
 
 def scores(p: NDArray[np.float64], y: NDArray[np.int64], unknown: int) -> dict[str, object]:

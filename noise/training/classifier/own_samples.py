@@ -51,12 +51,18 @@ class OwnSample:
         together.
     weight : float
         Simulated samples that it counts as [-].
+    kind : str
+        What sounds, as its file is called; empty where it may sound anywhere.
+    varied : bool
+        Whether it is a variation of another sound, by which nothing is calibrated or scored.
     """
 
     features: NDArray[np.float32]
     label: str
     name: str
     weight: float = OWN_WEIGHT
+    kind: str = ""
+    varied: bool = False
 
 
 def own_samples(windows: Iterable[OwnWindow]) -> tuple[list[OwnSample], list[str]]:

@@ -1,7 +1,7 @@
 """What else may sound where recordings are made: a car or a rig has no animals, no keyboards.
 
-What cannot sound there is not learned, neither of made-up sounds nor of real ones; so it cannot be
-taken for a noise less often at the price of noises that are missed.
+What cannot sound there does not decide how sure a name has to be, at the price of noises that are
+missed.
 """
 
 from __future__ import annotations
@@ -9,10 +9,8 @@ from __future__ import annotations
 import re
 
 from models.errors import ParameterError
+from noise.base.labels import SURROUNDINGS
 from noise.training.classifier.background_sounds import BACKGROUND_SOUNDS
-
-SURROUNDINGS = ("any", "car", "rig")
-"""Names of places."""
 
 
 def may_sound(kind: str, surroundings: str) -> bool:
@@ -23,7 +21,7 @@ def may_sound(kind: str, surroundings: str) -> bool:
     kind : str
         Of a made-up sound, or a file's name with a kind in it.
     surroundings : str
-        One of `SURROUNDINGS`.
+        One of `noise.base.labels.SURROUNDINGS`.
 
     Raises
     ------
