@@ -193,7 +193,7 @@ class Labelling:
     def false_names(self) -> Mapping[str, Any]:
         """Return the card's count of false names in these surroundings; empty where it has none.
 
-        By sensitivity, as `noise.training.classifier.operating_point.false_name_rate` gives it.
+        By sensitivity, as `noise.training.classifier.operating_point.false_name_rates` gives it.
         """
         counted = self._loaded.card.get("false_names")
         return counted[self.surroundings or "any"] if isinstance(counted, dict) else {}

@@ -27,6 +27,10 @@ from noise.labels.table import COLUMNS, CONDITIONS
 from noise.recordings.files import names_channels
 from noise.recordings.rotation import agrees, as_logged
 
+_SHORTEST = 0.2
+"""Shortest segment whose name can be trusted [s]: of shorter squeals fewer than half are named
+right."""
+
 _DIGITS = 4
 """Of what is inferred, which is known to far fewer."""
 
@@ -136,7 +140,12 @@ def _row(
             row[f"{column}_high"] = _inferred_in_unit(column, interval.high)
             row[f"{column}_source"] = "inferred"
     assumed = f"conditions inferred {ASSUMED}" if assumes_material(row) else ""
-    remarks = [text for text in (speed_remark(blocks, speed), assumed) if text]
+    short = (
+        f"shorter than {_SHORTEST:g} s: its name is not to be trusted"
+        if segment.label in NAMED and segment.end - segment.start < _SHORTEST
+        else ""
+    )
+    remarks = [text for text in (speed_remark(blocks, speed), assumed, short) if text]
     row["note"] = "; ".join(remarks) or None
     return row
 

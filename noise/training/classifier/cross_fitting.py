@@ -19,6 +19,7 @@ from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from noise.base.labels import LABELS, SURROUNDINGS
+from noise.base.processes import ending_with_this
 from noise.base.trees import BoostedTrees
 from noise.classifier.model import Calibration, Classifier, Thresholds, has_more_than_sound
 from noise.labels.segmentation import NOISES, clearest, named as labels_named
@@ -33,7 +34,7 @@ from noise.training.classifier.masked_rows import (
 )
 from noise.training.classifier.operating_point import (
     Background,
-    false_name_rate,
+    false_name_rates,
     fit_calibration,
     fit_thresholds,
     scores,
@@ -93,10 +94,10 @@ def grown(
     x, y, weight, owner = masked_rows(sounds)
     known: NDArray[np.bool_] = np.asarray(np.isfinite(x).any(axis=0))
     x = x[:, known]
-
     real = np.array([isinstance(sound, OwnSample) for sound in sounds])[owner]
+    grow = ending_with_this(_summed_trees)
     growing = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(_summed_trees)(x[rows], y[rows], weight[rows], real[rows], seed)
+        delayed(grow)(x[rows], y[rows], weight[rows], real[rows], seed, _N_ROUNDS)
         for rows in (part[owner] != k for k in range(N_FOLDS + 1))  # the last has all
     )
     alone: list[NDArray[np.float64]] = [np.empty(0)] * len(sounds)
@@ -149,7 +150,7 @@ def with_trees_of(
     """
     x, y, weight, owner = masked_rows(sounds)
     real = np.array([isinstance(sound, OwnSample) for sound in sounds])[owner]
-    trees = _summed_trees(x[:, columns_of(classifier)], y, weight, real, seed)
+    trees = _summed_trees(x[:, columns_of(classifier)], y, weight, real, seed, _N_ROUNDS)
     return replace(classifier, trees=trees, card={})
 
 
@@ -159,9 +160,10 @@ def _summed_trees(
     weight: NDArray[np.float64],
     real: NDArray[np.bool_],
     seed: int,
+    n_rounds: int,
 ) -> BoostedTrees:
     """Grow trees of all rows, and add a share of what trees of the real ones say."""
-    trees = _trees(x, y, weight, seed, _N_ROUNDS)
+    trees = _trees(x, y, weight, seed, n_rounds)
     unknown = LABELS.index("unknown")
     known = np.unique(y[real])
     if known.min(initial=unknown) >= NOISES or unknown not in known:
@@ -285,7 +287,7 @@ def left_out_scores(
             recall[label] = {"n": len(right), "recall": round(float(np.mean(right)), 4)}
     said["real_sources_left_out"] = recall
     said["false_names"] = {
-        name: {f"{s:g}": false_name_rate(found, s) for s in _SENSITIVITIES}
+        name: false_name_rates(found, _SENSITIVITIES)
         for name in SURROUNDINGS
         if (found := real_backgrounds(sounds, left_out, name))
     }

@@ -98,10 +98,13 @@ def fit_thresholds(
     >>> np.round(found, 2).tolist()
     [0.7, 0.25, 0.25]
     """
-    tried = np.arange(_LEAST, _MOST, 0.01).tolist()
-    counts = np.array([false_names(backgrounds, (t, t, t)) for t in tried])
-    few = np.concatenate([counts <= FALSE_NAMES_AN_HOUR, np.ones((1, NOISES), dtype=bool)])
-    creak, squawk, squeal = ([*tried, _MOST][first] for first in few.argmax(axis=0).tolist())
+    tried = np.append(np.arange(_LEAST, _MOST, 0.01), _MOST)
+    low, high = np.zeros(NOISES, dtype=int), np.full(NOISES, tried.size - 1)
+    while (low < high).any():  # the higher, the fewer
+        middle = (low + high) // 2
+        few = false_names(backgrounds, tried[middle]) <= FALSE_NAMES_AN_HOUR
+        low, high = np.where(few, low, np.minimum(middle + 1, high)), np.where(few, middle, high)
+    creak, squawk, squeal = tried[low].tolist()
     return creak, squawk, squeal
 
 
@@ -149,7 +152,9 @@ class Background:
     part: int
 
 
-def false_name_rate(backgrounds: Sequence[Background], sensitivity: float) -> dict[str, float]:
+def false_name_rates(
+    backgrounds: Sequence[Background], sensitivities: Sequence[float]
+) -> dict[str, dict[str, float]]:
     """Count false names on sources that chose no threshold.
 
     The thresholds that count a part's names are those of all other parts.
@@ -157,36 +162,40 @@ def false_name_rate(backgrounds: Sequence[Background], sensitivity: float) -> di
     Parameters
     ----------
     backgrounds : sequence of Background
-    sensitivity : float
+    sensitivities : sequence of float
         [ratio of odds]
 
     Returns
     -------
     dict
-        ``names`` in so many ``hours``, that is ``an_hour`` [1/h], with the 95 % interval of a
-        Poisson count from ``low`` to ``high`` [1/h].
+        By sensitivity: ``names`` in so many ``hours``, that is ``an_hour`` [1/h], with the 95 %
+        interval of a Poisson count from ``low`` to ``high`` [1/h].
 
     Examples
     --------
-    >>> other, creak = [0.0, 0.0, 0.0, 0.1, 0.9], [0.9, 0.0, 0.0, 0.0, 0.1]
-    >>> found = false_name_rate([Background(np.array([other] * 7200), part) for part in (0, 1)], 1)
-    >>> found["names"], found["hours"], found["an_hour"], found["high"]
-    (0, 1.0, 0.0, 3.7)
+    >>> other = [0.0, 0.0, 0.0, 0.1, 0.9]
+    >>> quiet = [Background(np.array([other] * 7200), part) for part in (0, 1)]
+    >>> false_name_rates(quiet, [1.0])
+    {'1': {'names': 0, 'hours': 1.0, 'an_hour': 0.0, 'low': 0.0, 'high': 3.7}}
     """
-    names, windows = 0, 0
+    names = dict.fromkeys(sensitivities, 0)
     for part in {background.part for background in backgrounds}:
         own = [b.probabilities for b in backgrounds if b.part == part]
         thresholds = fit_thresholds([b.probabilities for b in backgrounds if b.part != part])
-        found = [labelled_stretches(p, at_sensitivity(thresholds, sensitivity))[1] for p in own]
-        names += int(sum(np.sum(labels < NOISES) for labels in found))
-        windows += sum(map(len, own))
-    hours = HOP * max(1, windows) / 3600.0
+        for sensitivity in sensitivities:
+            limits = at_sensitivity(thresholds, sensitivity)
+            found = [labelled_stretches(p, limits)[1] for p in own]
+            names[sensitivity] += int(sum(np.sum(labels < NOISES) for labels in found))
+    hours = HOP * max(1, sum(len(b.probabilities) for b in backgrounds)) / 3600.0
     return {
-        "names": names,
-        "hours": round(hours, 3),
-        "an_hour": round(names / hours, 1),
-        "low": round(float(chi2.ppf(0.025, 2 * names)) / 2.0 / hours, 1) if names else 0.0,
-        "high": round(float(chi2.ppf(0.975, 2 * names + 2)) / 2.0 / hours, 1),
+        f"{sensitivity:g}": {
+            "names": n,
+            "hours": round(hours, 3),
+            "an_hour": round(n / hours, 1),
+            "low": round(float(chi2.ppf(0.025, 2 * n)) / 2.0 / hours, 1) if n else 0.0,
+            "high": round(float(chi2.ppf(0.975, 2 * n + 2)) / 2.0 / hours, 1),
+        }
+        for sensitivity, n in names.items()
     }
 
 
