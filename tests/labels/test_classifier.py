@@ -92,6 +92,14 @@ def test_what_a_sound_fades_into_does_not_name_it():
         assert heard[0, 2] == pytest.approx(p_squeal)
 
 
+def test_what_sounds_all_through_a_recording_is_no_name_of_a_part_of_it():
+    other, hardly, clearly = ([p, 0.0, 0.0, 0.0, 1.0 - p] for p in (0.4, 0.6, 0.9))
+    for louder, name in ((hardly, "unknown"), (clearly, "creak")):
+        p = np.array([other] * 8 + [louder] * 8)
+        _, names, _ = labelled_stretches(p, [0.5] * 3)
+        assert LABELS[names[-1]] == name
+
+
 def test_a_window_half_in_a_noise_does_not_name_the_silence_beside_it():
     none, half, creak = (np.eye(5)[[3]], [[0.0, 0.0, 0.0, 0.3, 0.7]], np.eye(5)[[0]])
     p = np.concatenate([none, none, none, half, creak, creak, creak, creak])

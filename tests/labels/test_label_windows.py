@@ -96,6 +96,30 @@ def test_a_tone_and_a_row_of_blows_are_described_as_such(reference):
     assert 10.0 * 2.0 ** values["high_blow_rate"] == pytest.approx(40.0, rel=0.1)
 
 
+@pytest.mark.parametrize("seconds", [0.15, 0.3])
+def test_a_short_tone_in_faint_noise_is_described_as_if_it_went_on(seconds):
+    rate, begin = 16_000, 0.9
+    faint = 0.01 * np.random.default_rng(0).standard_normal(3 * rate)
+    time = np.arange(faint.size) / rate
+    tone = np.sin(2 * np.pi * 2900.0 * time)
+    short = np.where((time > begin) & (time < begin + seconds), tone, 0.0)
+    one, steady = described(faint + short, rate).features, described(faint + tone, rate).features
+    whole = [w for w in range(len(one)) if 0.25 * w < begin and 0.25 * w + 0.5 > begin + seconds]
+    assert whole
+    for name, tolerance in {
+        "peak_frequency": 0.01,
+        "line_frequency": 0.01,
+        "tone_share": 0.02,
+        "tone_steady": 0.05,
+        "range": 1.0,
+        "flux": 0.05,
+        "onset_mean": 3.0,
+        "band_rise": 10.0,
+    }.items():
+        column = FEATURE_NAMES.index(f"pressure_{name}")
+        assert one[whole, column] == pytest.approx(steady[whole, column], abs=tolerance), name
+
+
 @pytest.mark.parametrize("seconds", [1e-3, 0.02, 0.2, 0.49, 0.51, 1.0, 7.1, 14.3, 21.0])
 def test_windows_and_levels_reach_to_the_end(seconds):
     samples = noise(seconds, 16_000)
