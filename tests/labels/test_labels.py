@@ -6,6 +6,7 @@ import math
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -77,6 +78,20 @@ def test_noises_begin_and_end_where_they_were_put_to_50_ms(
         assert found.label == noise
         assert found.start == pytest.approx(begin, abs=0.05)
         assert found.end == pytest.approx(begin + length, abs=0.05)
+
+
+def test_what_else_may_be_heard_decides_how_sure_a_name_has_to_be(squeal):
+    strict = dict.fromkeys(("any", "rig"), (0.9999,) * 3) | {"car": (0.3,) * 3}
+    classifier = replace(CLASSIFIER, thresholds=strict)
+    heard = sound(squeal)
+    for surroundings, name in ((None, "unknown"), ("any", "unknown"), ("car", "squeal")):
+        segments = label_recording(heard, classifier, surroundings=surroundings)
+        assert file_label(segments).label == name
+    # At a stated condition of a rig nothing else is expected to sound.
+    at = replace(heard, condition=Condition(speed=10.0))
+    for surroundings, name in ((None, "squeal"), ("rig", "squeal"), ("any", "unknown")):
+        segments = label_recording(at, classifier, surroundings=surroundings)
+        assert file_label(segments).label == name
 
 
 def test_levels_are_re_20_upa_or_full_scale():
