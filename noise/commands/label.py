@@ -50,14 +50,14 @@ OPTIONS = (
         "classifier that `bushing-noise train` made (default: the one that is shipped)"
     ),
     Option("--surroundings rig|car|any", one_of(*SURROUNDINGS)).help(
-        "what else may be heard: of animals, alarms or music a name has to be surer than of what "
-        "sounds in a car or at a rig (default: rig where an operating condition is logged, which "
-        "gets the likeliest label, else any). How many false names were counted is noted"
+        "where the recording was made. A car or a rig has no animals, alarms or music, so a name "
+        "need not be as sure (default: rig where an operating condition is logged, which gets the "
+        "likeliest label; else any). A note says how many false names to expect"
     ),
     Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0).help(
         "how readily a noise is named, a ratio of odds from 0.1 to 10 (default: 1): 2 names a "
-        "noise at half the odds, so fainter ones and more that are none. How many false names were "
-        "counted is noted for any but 1. Nothing changes where an operating condition is logged: "
+        "noise at half the odds, so fainter ones and more that are none. A note says how many "
+        "false names to expect at any but 1. Nothing changes where an operating condition is logged: "
         "there the likeliest label is said"
     ),
     Option("--loudness").help(
