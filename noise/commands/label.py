@@ -57,8 +57,8 @@ OPTIONS = (
     Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0).help(
         "how readily a noise is named, a ratio of odds from 0.1 to 10 (default: 1): 2 names a "
         "noise at half the odds, so fainter ones and more that are none. A note says how many "
-        "false names to expect at any but 1. Nothing changes where an operating condition is logged: "
-        "there the likeliest label is said"
+        "false names to expect at any but 1. Nothing changes where an operating condition is "
+        "logged: there the likeliest label is said"
     ),
     Option("--loudness").help(
         "add the loudness N5 (ISO 532-1) of calibrated segments, in the column "
