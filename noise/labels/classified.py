@@ -31,7 +31,7 @@ _SILENT_LEVEL_DBFS = -90.0
 _SURELY = 6.0
 """What is louder than silence by so much in its described part needs no second look [dB]."""
 
-_STRANGERS = 0.5
+_STRANGERS = 0.3
 """Odds of a sound that is none of the noises and no quiet where an operating condition is stated,
 over those elsewhere [-]; assumed: of the recordings that the classifier learned from, a third are
 such sounds."""

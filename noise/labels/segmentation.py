@@ -35,8 +35,9 @@ in it is echo, the end of a fade or a codec's rest, which a trim or another form
 _OWN_SHARE = 0.5
 """Of a window in what it holds [-]."""
 
-_CHANGE = 0.15
-"""How likely a change of label from one window to the next is, relative to none [-]."""
+_CHANGE = 0.3
+"""How likely a change of label from one window to the next is, relative to none [-]: with less, a
+squeal of two windows is lost among those beside it."""
 
 _OVER_REST = 3.0
 """Odds that a name needs over those that it has in the rest of the recording [ratio]."""
@@ -294,7 +295,9 @@ def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDA
     for i, middle in enumerate(middles.tolist()):
         low = 0.5 * (middles[i - 1] + middle) if i else 0.0
         high = 0.5 * (middles[i + 1] + middle) if i + 1 < middles.size else np.inf
-        times.append(_change(frames, middle, float(low), float(high)))
+        first = _change(frames, middle, float(low), float(high))
+        # Once more with as much on either side of it.
+        times.append(_change(frames, first, float(low), float(high)))
     return np.array(times)
 
 

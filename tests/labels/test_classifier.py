@@ -67,7 +67,7 @@ def test_calibrated_probabilities_are_as_often_right_as_they_say():
 
 def test_few_backgrounds_are_called_each_noise_at_its_threshold():
     rng = np.random.default_rng(3)
-    backgrounds = [np.tile(rng.dirichlet((0.4, 0.4, 0.4, 0.5, 0.5)), (160, 1)) for _ in range(125)]
+    backgrounds = [np.tile(rng.dirichlet((0.4, 0.4, 0.4, 0.5, 0.5)), (40, 1)) for _ in range(125)]
     thresholds = np.array(fit_thresholds(backgrounds))
     assert np.all((thresholds > 0.25) & (thresholds < 0.97))
     assert np.all(false_names(backgrounds, thresholds) <= FALSE_NAMES_AN_HOUR)

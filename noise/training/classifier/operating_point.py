@@ -21,8 +21,9 @@ from features.windows.table import HOP
 from noise.classifier.model import Calibration, at_sensitivity
 from noise.labels.segmentation import NOISES, clearest, labelled_stretches
 
-FALSE_NAMES_AN_HOUR = 5.0
-"""So many segments of real backgrounds are called each of the noises, at most."""
+FALSE_NAMES_AN_HOUR = np.array([15.0, 8.0, 20.0])
+"""So many segments of real backgrounds are called creak, squawk and squeal, at most: of an hour of
+short sounds that follow each other; at these real creaks and squeals of other sources are named."""
 
 _LEAST, _MOST = 0.25, 0.97
 """Between them thresholds are sought [-]."""
@@ -98,11 +99,14 @@ def fit_thresholds(
     >>> np.round(found, 2).tolist()
     [0.7, 0.25, 0.25]
     """
+    hours = HOP * max(1, sum(map(len, backgrounds))) / 3600.0
+    # One name in little time is no evidence.
+    most = np.maximum(FALSE_NAMES_AN_HOUR, 1.0 / hours)
     tried = np.append(np.arange(_LEAST, _MOST, 0.01), _MOST)
     low, high = np.zeros(NOISES, dtype=int), np.full(NOISES, tried.size - 1)
     while (low < high).any():  # the higher, the fewer
         middle = (low + high) // 2
-        few = false_names(backgrounds, tried[middle]) <= FALSE_NAMES_AN_HOUR
+        few = false_names(backgrounds, tried[middle]) <= most
         low, high = np.where(few, low, np.minimum(middle + 1, high)), np.where(few, middle, high)
     creak, squawk, squeal = tried[low].tolist()
     return creak, squawk, squeal
