@@ -166,6 +166,11 @@ def test_no_more_is_fitted_once_one_closes_all(fitted):
     assert fitted(before, {PARTIAL: 1.0})[1] == [PARTIAL]
 
 
+def test_nothing_is_added_to_what_closes_all(fitted):
+    before = chances({PARTIAL: 0.6, PAIR: 0.3}, unknown=0.05)
+    assert fitted(before, {PARTIAL: 1.0})[1] == [PARTIAL]
+
+
 def test_the_first_three_are_fitted_where_the_likeliest_does_not_close_all(fitted):
     third = frozenset({"static_ageing"})
     before = chances({PARTIAL: 0.96, WEAK: 0.01, third: 0.005}, unknown=0.001, parameters=0.001)

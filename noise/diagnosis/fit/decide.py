@@ -322,9 +322,10 @@ def fit_hypotheses(
     for count in range(_MOST):
         now = updated(hypotheses, fits)
         done = {*fits.of, *fits.impossible, *_NO_FIT}
-        unfitted = {h: p for h, p in now.items() if h not in done}
+        whole = [h for h in fits.of if fits.gap(fits.least(h)) <= _ALL]
+        unfitted = {h: p for h, p in now.items() if h not in done and not any(x < h for x in whole)}
         if sum(unfitted.values()) < 1.0 - _ENOUGH:
-            if count >= _FEWEST or any(fits.gap(fits.least(h)) <= _ALL for h in fits.of):
+            if count >= _FEWEST or whole:
                 break
             unfitted = {h: p for h, p in unfitted.items() if len(h) == 1}
             least = 0.0 if fits.of else _LIKELY
