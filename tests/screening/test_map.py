@@ -87,7 +87,10 @@ def test_a_constant_torque_sticks_and_slips_where_stability_sees_nothing():
     use = Use(speed=tuple(np.arange(0.5, 9.01, 0.25)), support_stiffness=(3745.0,))
     found = screen(["fluorocarbon-thesis"], replace(use, interference=(0.279e-3,)))
     (point,) = found.critical
-    assert point.v_crit1 == point.v_crit2 == pytest.approx(7.0, abs=0.3)
+    label = found.maps[0].label[0, 0, 0]
+    from_rest = np.array(use.speed)[(label != "none") & (label != "persists")]
+    assert from_rest[-1] == pytest.approx(7.0, abs=0.3)
+    assert point.v_crit1 >= from_rest[-1]  # vibration that only persists counts
     assert point.v_crit2_stability == 0.0
     assert point.margin_stability == math.inf
 
