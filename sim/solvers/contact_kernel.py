@@ -8,6 +8,8 @@ or a law's sliding turns, its length is sought at which that happens just at its
 begins with the new right-hand side. Outputs are read within the step that covers them.
 """
 
+from __future__ import annotations
+
 import math
 
 from numba import float64, int64, njit, types
@@ -24,8 +26,6 @@ from sim.solvers.contact_rates import (
     Limits,
     Rows,
     contact_rates,
-    larger,
-    smaller,
 )
 from sim.solvers.tsitouras import (
     NODES,
@@ -110,7 +110,7 @@ def _bracketed(h, far, low, high, far_low, far_high, side):
     if far_low > 0.0:
         margin = 0.4 * _TIME_TOLERANCE
         secant = low + (high - low) * far_low / (far_low - far_high)
-        h = smaller(larger(secant, low + margin), high - margin)
+        h = min(max(secant, low + margin), high - margin)
     return h, low, high, far_low, far_high, side
 
 
@@ -129,7 +129,7 @@ def _turn_within(start, end_speed, k, h, slide, far_start, far_end):
             break
         x_next = x - far * (x - x_before) / (far - far_before)
         x_before, far_before = x, far
-        x = smaller(larger(x_next, 0.0), 1.0)
+        x = min(max(x_next, 0.0), 1.0)
     return x
 
 
@@ -148,14 +148,14 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
     s, has_law, context = bushing.system, bushing.law != 0, bushing.context
     k, start, end, u = rows.stages, rows.start, rows.end, rows.state
     slope, step, tolerance = drive.slope, drive.step, limits.tolerance
-    n, d, output = direction_out.size, u.size, k.shape[1] - 1
+    n, d = direction_out.size, u.size
     lag = d - N_LAG if hooks.n > 0 else d
-    last = larger(drive.speed.size - 2, 0)  # segment of the drive
+    last = max(drive.speed.size - 2, 0)  # segment of the drive
     t_crit, t_kin = s[8], s[9]
     bushing.contact[CRITICAL], bushing.contact[KINETIC] = t_crit, t_kin
     kink = _KINK * t_kin * s[6]
     # The twist at the critical torque, and the speed that it becomes when released.
-    twist_scale = larger(t_crit, t_kin) / s[2]
+    twist_scale = max(t_crit, t_kin) / s[2]
     speed_scale = twist_scale * math.sqrt(s[2] * s[6])
     per_angle, per_speed = 1.0 / twist_scale, 1.0 / speed_scale
     # How near the end of stick or slip counts as there, by whether it slides.
@@ -180,13 +180,13 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             length = t1 - t0
             fill_between(u, start, k, rows.weights, (sample * step - t0) / length, length)
             time = (first + sample) * step
-            i = smaller(sample, last)
+            i = min(sample, last)
             stick_time = time - stick_start if mode == 0 else stick_length
             friction, e, holding, critical, caught, shaft = contact_rates(
-                output, (sample - i) * step, i, time, stick_time, mode, bushing, hooks,
+                N_STAGES, (sample - i) * step, i, time, stick_time, mode, bushing, hooks,
                 drive, rows,
             )  # fmt: skip
-            surface = k[0, output]
+            surface = k[0, N_STAGES]
             out[0, sample], out[1, sample] = friction, e
             out[2, sample], out[3, sample], out[4, sample] = u[0], surface, u[2]
             out[5, sample], out[6, sample] = u[3], shaft
@@ -213,9 +213,9 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             i0 += 1
             if abs(slope[i0] - slope[i0 - 1]) > kink:
                 fresh = True
-        aim = smaller(limits.longest, step_of_stick if mode == 0 and not has_law else step_of_slip)
+        aim = min(limits.longest, step_of_stick if mode == 0 and not has_law else step_of_slip)
         i_last, limit = _stretch(drive, last, n, kink, i0, t0 + aim)
-        h = smaller(aim, limit - t0)
+        h = min(aim, limit - t0)
         # Whether stick or slip ends in it: brackets of that, and how far from it they are.
         low, high, far_low, far_high, side = 0.0, -1.0, far_start, 0.0, 0.0
         begin = 0 if fresh else 1
@@ -225,7 +225,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             for stage in range(begin, N_STAGES):
                 fill_stage(u, start, k, stage, h)
                 t = t0 + NODES[stage] * h
-                i = smaller(larger(int(t / step), i0), i_last)
+                i = min(max(int(t / step), i0), i_last)
                 time = first * step + t
                 stick_time = time - stick_start if mode == 0 else stick_length
                 friction, e, holding, critical, caught, shaft = contact_rates(
@@ -309,12 +309,12 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
         if h == aim:
             follows, error_before = h * factor, error
         else:
-            follows = larger(aim, h * factor)
+            follows = max(aim, h * factor)
         far_start, fresh = far, False
         if has_law or mode != 0:
-            step_of_slip = smaller(follows, limits.longest)
+            step_of_slip = min(follows, limits.longest)
         else:
-            step_of_stick = smaller(follows, limits.longest)
+            step_of_stick = min(follows, limits.longest)
             end[1] = k[0, N_STAGES - 1]  # the surface goes with the shaft
         if has_law:
             if ends:  # the sliding turns

@@ -1,6 +1,6 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any, disable-error-code=call-arg
-# ruff: noqa: ANN001, ANN201
+# ruff: noqa: ANN001
 """What moves the lumped model at one instant, with any friction law and any effects.
 
 Compiled into `sim.solvers.contact_kernel` where it is used: what is called through pointers makes
@@ -8,12 +8,13 @@ every variable go through memory at each call, and a further call would do so tw
 reads of the inner states is a view made once, since making one costs more than the call.
 """
 
+from __future__ import annotations
+
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from models.compilation import PART
 from sim.contact import (
@@ -39,6 +40,10 @@ from sim.contact import (
     pointer,
 )
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
 _CREEP_ACCURACY = 1e-4
 """Of a creep's share before its last secant, which squares it."""
 
@@ -46,18 +51,6 @@ _MOST_CREEP_PASSES = 30
 
 
 @njit(forceinline=True, **PART)
-def larger(a, b):
-    """Return the larger of two numbers; numba compiles its own anew for each of its callers."""
-    return a if a > b else b
-
-
-@njit(forceinline=True, **PART)
-def smaller(a, b):
-    """Return the smaller of two numbers."""
-    return a if a < b else b
-
-
-@njit(**PART)
 def contact_rates(
     stage, since, i, time, stick_time, mode, bushing, hooks, drive, rows
 ) -> tuple[float, float, float, float, float, float]:
@@ -118,7 +111,7 @@ def contact_rates(
             if turn > 0 and gap != gap_before:
                 change = -gap * (share - share_before) / (gap - gap_before)
             share_before, gap_before = share, gap
-            share = smaller(larger(share + change, 0.0), 1.0)
+            share = min(max(share + change, 0.0), 1.0)
             surface = shaft * (1.0 - share)
             e = k_e * twist + c_e * (surface - u[3])
             if settled:
@@ -126,7 +119,7 @@ def contact_rates(
         e += (contact[STIFFNESS] - k_e) * twist + contact[ELASTOMER_TORQUE]
         kinetic = contact[KINETIC]
         # What slides at a torque can be held by it, whatever an effect says.
-        critical = larger(contact[CRITICAL], kinetic)
+        critical = max(contact[CRITICAL], kinetic)
         if contact[SHAFT_INERTIA] != math.inf:
             mobility = 1.0 / contact[SHAFT_INERTIA]
             shaft_torque = contact[SHAFT_TORQUE]

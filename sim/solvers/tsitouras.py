@@ -10,13 +10,15 @@ variable at a time: what has just been written by itself is read by itself, wher
 once would wait for the writing to end.
 """
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
 from numba import njit
 
 from models.compilation import PART
-from sim.solvers.contact_rates import N_MOTION, N_STAGES, larger, smaller
+from sim.solvers.contact_rates import N_MOTION, N_STAGES
 
 NODES = np.array([0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0, 1.0])
 """Of the stages, in shares of the step."""
@@ -71,13 +73,37 @@ _inlined = njit(forceinline=True, **PART)
 
 
 @_inlined
+def _change(k, j, stage) -> float:
+    change = 0.0
+    for b in range(stage):
+        change += STAGES[stage, b] * k[j, b]
+    return change
+
+
+@_inlined
 def fill_stage(u, start, k, stage, h) -> None:
     """Fill the state `u` of a stage of a step of length `h` from `start`, with the rates `k`."""
-    for j in range(u.size):
-        change = 0.0
-        for b in range(stage):
-            change += STAGES[stage, b] * k[j, b]
-        u[j] = start[j] + h * change
+    if stage == 0:
+        for j in range(u.size):
+            u[j] = start[j]
+    elif stage == 1:
+        for j in range(u.size):
+            u[j] = start[j] + h * _change(k, j, 1)
+    elif stage == 2:
+        for j in range(u.size):
+            u[j] = start[j] + h * _change(k, j, 2)
+    elif stage == 3:
+        for j in range(u.size):
+            u[j] = start[j] + h * _change(k, j, 3)
+    elif stage == 4:
+        for j in range(u.size):
+            u[j] = start[j] + h * _change(k, j, 4)
+    elif stage == 5:
+        for j in range(u.size):
+            u[j] = start[j] + h * _change(k, j, 5)
+    else:
+        for j in range(u.size):
+            u[j] = start[j] + h * _change(k, j, 6)
 
 
 @_inlined
@@ -119,11 +145,11 @@ def step_error(k, h, start, end, first_lag, per_angle, per_speed) -> float:
         total += error
         error = abs(h * error)
         if N_MOTION <= j < first_lag:
-            scale = larger(abs(start[j]), abs(end[j])) + h * abs(k[j, 0]) + 1e-300
-            largest = larger(largest, error / scale)
+            scale = max(abs(start[j]), abs(end[j])) + h * abs(k[j, 0]) + 1e-300
+            largest = max(largest, error / scale)
         else:
             place = j if j < N_MOTION else j - first_lag
-            largest = larger(largest, error * (per_angle if place % 2 == 0 else per_speed))
+            largest = max(largest, error * (per_angle if place % 2 == 0 else per_speed))
     return largest if math.isfinite(total) else math.inf
 
 
@@ -135,9 +161,9 @@ def factor_of_step(error, error_before) -> float:
     half the rejections of one without memory; powers that are roots of roots cost no logarithm.
     """
     if error > 1.0:
-        return larger(_SAFETY / math.sqrt(math.sqrt(error)), _LEAST_FACTOR)
-    ratio = math.sqrt(larger(error_before, _SMALLEST_ERROR)) / error
-    return smaller(_SAFETY * math.sqrt(math.sqrt(math.sqrt(ratio))), _MOST_FACTOR)
+        return max(_SAFETY / math.sqrt(math.sqrt(error)), _LEAST_FACTOR)
+    ratio = math.sqrt(max(error_before, _SMALLEST_ERROR)) / error
+    return min(_SAFETY * math.sqrt(math.sqrt(math.sqrt(ratio))), _MOST_FACTOR)
 
 
 @_inlined
