@@ -118,7 +118,7 @@ def run(options: Namespace) -> int:
         )
     elif left > _LEFT:
         note(
-            f"{100 * left:.3g} % of a response is left at the end of its record (or is noise). "
+            f"{100 * left:.3g} % of a response has not died away at its end (or is noise). "
             "Peaks are then too low and damping is wrong: record for longer, or use --window"
         )
     transfer = estimate_transfer_function(

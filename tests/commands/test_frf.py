@@ -138,9 +138,9 @@ def test_a_response_that_has_not_died_away_is_noted_and_windowed(tmp_path, monke
         np.save(f"hit-{number}.npy", ringing_on(rng))
     files = [f"hit-{number}.npy" for number in range(3)]
     assert main(["frf", *files, "--modes", "modes.csv"]) == 0
-    assert "of a response is left at the end" in capsys.readouterr().err
+    assert "of a response has not died away" in capsys.readouterr().err
     assert main(["frf", *files, "--modes", "modes.csv", "--window"]) == 0
-    assert "is left at the end" not in capsys.readouterr().err
+    assert "has not died away" not in capsys.readouterr().err
     (mode,) = csv_rows("modes.csv")
     assert float(mode["frequency_hz"]) == pytest.approx(400.0, rel=1e-4)
     assert float(mode["damping_ratio"]) == pytest.approx(0.0005, rel=0.03)
