@@ -27,9 +27,9 @@ from noise.labels.table import COLUMNS, CONDITIONS
 from noise.recordings.files import names_channels
 from noise.recordings.rotation import agrees, as_logged
 
-_SHORTEST = 0.2
-"""Shortest segment whose name can be trusted [s]: of shorter squeals fewer than half are named
-right."""
+_SHORTEST = 0.1
+"""Shortest segment whose name can be trusted [s]: a shorter event is not described by itself
+(`features.windows.events`); squeals of the rig of this length are named."""
 
 _DIGITS = 4
 """Of what is inferred, which is known to far fewer."""
