@@ -11,8 +11,11 @@ from typing import NamedTuple
 LABELS = ("creak", "squawk", "squeal", "none", "unknown")
 """The labels, in the order of all tables of probabilities."""
 
-MAP_LABELS = (*LABELS, "persists")
-"""Those of a screened point, which may sound only where a vibration already runs."""
+PERSISTS = "persists"
+"""What a map shows where a vibration goes on, but none breaks out from rest."""
+
+MAP_LABELS = (*LABELS, PERSISTS)
+"""What maps of screened points show."""
 
 NAMED = LABELS[:3]
 """Those that are the name of a noise."""
@@ -44,7 +47,7 @@ LABEL_LOOKS = {
     "squawk": Look("#e69f00", "#7d5600", "dots", "Sk"),
     "squeal": Look("#b5478a", "#6b1f4e", "lines", "Sl"),
     "none": Look("#c3d4df", "#6f8596", "plain", "\N{EN DASH}"),
-    "persists": Look("#f3dfae", "#7d5600", "hatches", "P"),
+    PERSISTS: Look("#f3dfae", "#7d5600", "hatches", "P"),
     "unknown": Look("#f6f6f6", "#55606b", "crosses", "?"),
 }
 """By label, and of where a vibration only persists once started; vermilion and orange are those of

@@ -255,12 +255,24 @@ def _value(row: Mapping[str, object], column: str, where: str) -> object:
     if column in _TEXTS:
         return text or None
     if column == "calibrated":
-        if text.lower() not in _TRUE | _FALSE:
-            raise RecordingError(f"{where} has {column} {text!r}, expected true or false")
-        return text.lower() in _TRUE
+        return cell_truth(row, column, where)
     if text in ("fixed", "inf") and column.startswith(_SUPPORT):
         return math.inf
     return cell_number(row, column, where)
+
+
+def cell_truth(row: Mapping[str, object], column: str, where: str) -> bool:
+    """Read true or false from a cell, as spreadsheets in the languages of Europe write them.
+
+    Examples
+    --------
+    >>> cell_truth({"calibrated": "WAHR"}, "calibrated", "row 1")
+    True
+    """
+    text = str(row[column]).strip()
+    if text.lower() not in _TRUE | _FALSE:
+        raise RecordingError(f"{where} has {column} {text!r}, expected true or false")
+    return text.lower() in _TRUE
 
 
 def check_name(value: object, column: str, where: str) -> None:

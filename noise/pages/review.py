@@ -19,13 +19,13 @@ from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.foreign_file import LARGEST_JSON, parse_json, reading, refusing
 from models.rig import Rig
 from models.show import short_repr
-from noise.base.labels import MAP_LABELS
+from noise.base.labels import LABELS, PERSISTS
 from noise.base.progress import counted
 from noise.base.tables import read_table
 from noise.diagnosis.outcome_json import from_json
 from noise.diagnosis.text.sentences import answer
 from noise.diagnosis.text.verdict_sentences import headline
-from noise.labels.table import cell_number, check_name
+from noise.labels.table import cell_number, cell_truth, check_name
 from noise.pages import blocks as b
 from noise.pages.clips import Entry, common_gain, label_counts, labels_sentence, make_clips
 from noise.pages.comparison import Compared, compare_designs
@@ -134,8 +134,10 @@ def _maps(path: Path, rows: Sequence[dict[str, object]]) -> list[ScreenMap]:
         if missing:
             raise RecordingError(f"{where} has no {missing[0]}")
         label = str(row["label"])
-        if label not in MAP_LABELS:
-            raise RecordingError(f"{where} has label {label!r}, expected {', '.join(MAP_LABELS)}")
+        if label not in LABELS:
+            raise RecordingError(f"{where} has label {label!r}, expected {', '.join(LABELS)}")
+        if row.get("persists") not in (None, "") and cell_truth(row, "persists", where):
+            label = PERSISTS
         check_name(row["design"], "design", where)
         number = partial(cell_number, row, where=where)
         key = (
@@ -192,7 +194,7 @@ def read_diagnosis(path: Path) -> b.Section:
     >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
     >>> with tempfile.TemporaryDirectory() as name:
     ...     write_diagnosis(Path(name), nothing)
-    ...     read_diagnosis(Path(name) / "diagnosis.json").title.partition(": ")[2]
+    ...     read_diagnosis(Path(name) / "diagnosis.json").heading.partition(": ")[2]
     'No gap'
     """
     with reading(path, "diagnosis", error=RecordingError, largest=LARGEST_JSON):

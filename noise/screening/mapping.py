@@ -27,6 +27,7 @@ from scipy.spatial import cKDTree
 
 from models.rig import Rig
 from models.show import short_repr
+from noise.base.labels import PERSISTS
 from noise.screening.batches import LABELS, Batch, Evaluator
 from noise.screening.grid import Grid
 from noise.screening.point import REGIMES
@@ -36,9 +37,6 @@ from sim.temperature import at_temperature
 
 Cell = tuple[int, int, int, int, int]
 """Plane, first and last row, first and last column."""
-
-PERSISTS = "persists"
-"""Label of a point at which a vibration goes on, but none breaks out from rest."""
 
 HOW = ("simulated", "refined", "unchanged")
 """How a point is known: run, as the simulated points about it, as at another temperature or fit."""

@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.show import short_repr
+from noise.base.labels import PERSISTS
 from noise.screening.advice import Offer
 from noise.screening.grid import Grid
-from noise.screening.mapping import PERSISTS, DesignMap
+from noise.screening.mapping import DesignMap
 from noise.screening.margins import CriticalPoint
 from noise.screening.parts import Robustness
 from noise.screening.vibration import Condition

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from noise.base.labels import PERSISTS
 from noise.screening.standing import SHARED
 from noise.screening.tolerances import PARAMETERS
 
@@ -109,8 +110,8 @@ _MAP: Columns = {
     "interference_mm": lambda found, at: _short(1e3 * found.grid.interference[at[2]]),
     "support_stiffness_Nm_rad": lambda found, at: _support(found.grid.support_stiffness[at[1]]),
     "regime": lambda found, at: str(found.regime[at]),
-    "label": lambda found, at: str(found.label[at]),
-    "sound": lambda found, at: str(found.sound[at]),
+    "label": lambda found, at: str(found.sound[at]),
+    "persists": lambda found, at: str(found.label[at]) == PERSISTS,
     "label_by_physics": lambda found, at: str(found.physics[at]),
     "growth_1_s": lambda found, at: round(float(found.growth[at]), 3),
     "level_dba": lambda found, at: round(float(found.level[at]), 2),

@@ -11,9 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from noise.base.labels import PERSISTS
 from noise.screening.advice import Offer
 from noise.screening.axis_values import axis_words
-from noise.screening.mapping import PERSISTS, DesignMap
+from noise.screening.mapping import DesignMap
 from noise.screening.parts import Robustness
 from noise.screening.vibration import Condition
 

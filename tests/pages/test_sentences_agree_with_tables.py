@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from noise.base.labels import NAMED
+from noise.base.labels import NAMED, PERSISTS
 from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.outcome import Agreement, EffectFinding, StageFinding
 from noise.diagnosis.text.sentences import answer, closed_sentence
@@ -22,7 +22,6 @@ from noise.labels.summary import result_lines
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.identification import write_identification
 from noise.screening.grid import Grid
-from noise.screening.mapping import PERSISTS
 from noise.screening.words import use_words
 from tests.helpers.made_diagnoses import KINDS, PARAMETERS, PLACE, STAGES
 

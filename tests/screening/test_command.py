@@ -38,7 +38,7 @@ def test_maps_margins_ranking_and_pictures_are_written(tmp_path, capsys):
     assert len(points) == 6
     assert set(points[0]) >= {
         "design", "environment", "temperature_C", "speed_rad_s", "interference_mm",
-        "support_stiffness_Nm_rad", "regime", "label", "sound", "label_by_physics", "level_dba",
+        "support_stiffness_Nm_rad", "regime", "label", "persists", "label_by_physics", "level_dba",
         "loudness_n5_sone", "how",
     }  # fmt: skip
     quiet, loud = points[0], points[3]
