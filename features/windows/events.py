@@ -49,7 +49,7 @@ last one to the end [s]: frames of 32 ms stand out as soon as a third of them do
 
 
 def events_within(
-    bands: NDArray[np.float32], start: NDArray[np.float64]
+    bands: NDArray[np.float32], start: NDArray[np.floating]
 ) -> tuple[NDArray[np.intp], NDArray[np.int64], NDArray[np.int64]]:
     """Find the windows that an event fills in part.
 
@@ -146,8 +146,8 @@ def prolonged(
     ]
     begin, end = np.array(peaks, dtype=np.int64).reshape(-1, 2).T
     first = begin // hop
-    scales = ((begin, end, length), (begin, end, length))
-    scales += ((first, np.maximum(end // hop, first + 2), length // hop),)
+    samples = begin, end, length
+    frames = first, np.maximum(end // hop, first + 2), length // hop
     sound, high, top = (
         np.concatenate(
             [
@@ -155,7 +155,7 @@ def prolonged(
                 for a, b in zip(*edges, strict=True)
             ]
         )
-        for part, (*edges, n) in zip(parts, scales, strict=True)
+        for part, (*edges, n) in zip(parts, (samples, samples, frames), strict=True)
     )
     return sound, high, top
 

@@ -130,7 +130,7 @@ def _features(
     frames: Frames,
     power: NDArray[np.float32],
     parts: tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]],
-    start: NDArray[np.float64],
+    start: NDArray[np.floating],
     limit: float,
 ) -> NDArray[np.float32]:
     """Return the features of windows that begin at `start` [s] in sound, its high part and top."""
