@@ -275,7 +275,7 @@ def _own_bushing(given: Mapping[str, Any], where: str) -> Rig:
         law = _material(shipped)["friction"]["law"]
         raise ParameterError(
             f"{where}: has its own [[fit]] under the name of {shipped}, but no friction law (that "
-            f'of {shipped} is {law}). Write base = "{shipped}" in place of material to keep law '
+            f'of {shipped} is {law}): write base = "{shipped}" in place of material to keep law '
             f'and effects of {shipped}, or [friction] law = "coulomb" for constant torques'
         )
     del bench["sleeve"]

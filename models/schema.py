@@ -6,6 +6,7 @@ remarks on values that are unusual; and writing. Fields without a declaration ar
 """
 
 import math
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
@@ -243,7 +244,8 @@ class Quantity(Entry):
         """Whether a value [`unit`] can be."""
         closed = self.low != 0.0 if self.closed is None else self.closed
         above = self.low <= value if closed else self.low < value
-        return math.isfinite(value) and above and value <= self.high
+        largest = sys.float_info.max  # an integer may be larger than any float
+        return -largest <= value <= largest and above and value <= self.high
 
     @property
     def wanted(self) -> str:

@@ -127,8 +127,8 @@ def prolonged(
 
     Returns
     -------
-    tuple of three ndarrays of float32
-        The same of `n_events` windows in a row.
+    tuple of three ndarrays of float32, shape (n_samples,), (n_samples,) and (n_frames, n_bands)
+        The same of `n_events` windows in a row, in the unit of the parts, such as [Pa].
 
     Examples
     --------

@@ -44,7 +44,7 @@ def ranking_rows(found: Screening) -> list[list[b.Cell | str]]:
 
 def _row(one: Standing, found: Screening) -> list[b.Cell | str]:
     loudest = "quiet" if one.rank is not None else ""
-    if math.isfinite(one.loudest_level):
+    if math.isfinite(one.loudest_level) and not one.never_slips:
         loudest = f"{one.loudest_level:.0f} dB(A)"
     shares = {name: one.shares[name] for name in SHARED if one.shares.get(name)}
     ends = np.cumsum([0.0, *shares.values()])

@@ -234,7 +234,7 @@ def growth_rates(
     Parameters
     ----------
     rig : Rig
-    temperature, support, interference, speed : ndarray, one-dimensional
+    temperature, support, interference, speed : ndarray, shape (n_values,) each
         [degree Celsius], [Nm/rad], [m] and [rad/s]
 
     Returns
@@ -433,7 +433,7 @@ def interpolated(
     Returns
     -------
     ndarray, same shape
-        In the unit of the values.
+        In the unit of the values, such as [dB].
 
     Examples
     --------

@@ -165,6 +165,15 @@ def robustness(
     ------
     ParameterError
         A part cannot be simulated.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from noise.screening.design import Use
+    >>> use = Use(speed=(1.0,), interference=(0.279e-3,), support_stiffness=(2214.0,))
+    >>> quiet = Design("PDMS", load_material_rig("PDMS"), use)
+    >>> robustness(quiet, np.random.default_rng(0), parts=4, workers=1).noisy.value
+    0.0
     """
     at = at or middle_of_use(design)
     use = grid_of(design).use

@@ -288,7 +288,18 @@ def _outcome(sizes: NDArray[np.float64], growth: float) -> bool | None:
 
 
 def oscillation(torque: NDArray[np.float64]) -> float:
-    """Return the standard deviation of a torque over its mean, re an oscillation's least [-]."""
+    """Return the standard deviation of a torque over its mean, re an oscillation's least.
+
+    Parameters
+    ----------
+    torque : ndarray, shape (n,)
+        [Nm]
+
+    Returns
+    -------
+    float
+        [-]
+    """
     mean = abs(float(np.mean(torque)))
     return float(np.std(torque)) / (LEAST_OSCILLATION * mean) if mean > 0.0 else math.inf
 

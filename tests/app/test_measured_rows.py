@@ -33,7 +33,7 @@ def test_one_track_of_a_long_recording_is_corrected_and_the_other_stays(tmp_path
     write_table(tmp_path / "labels.csv", COLUMNS, rows)
     pieces = [Correction(0.0, 125.0, "none", "2"), Correction(125.0, 130.0, "squeal", "2")]
     found = correct(tmp_path, [Correction(0.0, 130.0, "none", "1"), *pieces])
-    assert [row["label_source"] for row in found] == ["classifier", "human", "human"]
+    assert [row["label_source"] for row in found] == ["classifier", "classifier", "human"]
     assert found[2]["level_dbfs"] == pytest.approx(-23.01, abs=0.02)
 
 

@@ -130,7 +130,7 @@ def load_real_sounds() -> RealSounds:
     Examples
     --------
     >>> sorted({sample.label for sample in load_real_sounds().samples})
-    ['creak', 'squeal', 'unknown']
+    ['creak', 'squawk', 'squeal', 'unknown']
     """
     return load_model(None, _KIND, _built)
 
