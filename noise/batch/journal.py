@@ -39,6 +39,10 @@ _TABLES = """
 """
 
 
+_TABLE = "table"
+"""Key by which it is known that the table has been written."""
+
+
 class Journal:
     """Results by their keys; see `open_journal` and `kept_results`.
 
@@ -46,7 +50,14 @@ class Journal:
     ----------
     path : Path or None
         None is a file that goes with the journal.
+
+    Attributes
+    ----------
+    table_written : bool
+        Whether the table beside it was last written by a call with the same options.
     """
+
+    table_written = False
 
     def __init__(self, path: Path | None = None) -> None:
         self._path = path
@@ -60,6 +71,7 @@ class Journal:
         """Forget what is of another call, or all of it."""
         call = (RESULTS_VERSION, identity)
         found = self._database.execute("select version, identity from call").fetchone()
+        self.table_written = found == call and self.get(_TABLE) is not None
         if found == call and not fresh:
             return
         if found is not None and not fresh and self._path is not None and len(self):
@@ -99,6 +111,10 @@ class Journal:
         """Keep what came of a recording; `identity` is the file's from before it was read."""
         if done.error is None:
             self.add(_key(job), identity, done.calibrated, done.rows)
+
+    def note_table(self) -> None:
+        """Keep that the table is written."""
+        self.add(_TABLE)
 
     def __len__(self) -> int:
         return int(self._database.execute("select count(*) from result").fetchone()[0])

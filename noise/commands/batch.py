@@ -127,6 +127,7 @@ def run_batch(
         except KeyboardInterrupt as interrupt:
             stopped = _exit_code(interrupt)
             rows, written = _write(options, work, made, also, keep, table=not to_read)
+        journal.note_table()
     read = f"{len(outcomes)} of " * bool(stopped) + counted(len(jobs), "recording")
     say(f"{'interrupted: ' * bool(stopped)}{read}, {len(refused)} refused")
     if lines is not None and (to_read or out is not None):

@@ -96,7 +96,7 @@ def run(options: Namespace) -> int:
     with_corrections(options.out, [], [job.name for job in jobs])
 
     def keep(out: Path | None, rows: Iterable[dict[str, object]]) -> list[dict[str, object]]:
-        return with_corrections(out, list(rows))
+        return with_corrections(out, list(rows), continues=getattr(rows, "continues", False))
 
     def export(rows: Iterable[dict[str, object]]) -> list[Path]:
         rows = list(rows)

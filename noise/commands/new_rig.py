@@ -40,8 +40,8 @@ name = "my rig"
 {fits}
 # elastomer_stiffness = "-10 %"
 # critical_torque = "+10 %"
-# kinetic_torque_Nm = {kinetic:g}
-# damping_Nms_rad = {damping:g}
+# kinetic_torque = "+10 %"
+# damping = "x1.2"
 
 # [sensors]
 # noise = {{ torque = 0.01, acceleration = 0.1, pressure = 2e-3 }}   # rms, in Nm, m/s2 and Pa
@@ -94,9 +94,7 @@ def new_rig_text(material: str) -> str:
     rig = load_material_rig(material)
     return _TEXT.format(
         base=rig.material or material,
-        effects=", ".join(f'"{one.name}"' for one in rig.effects) or '"slip_pulse"',
+        effects=", ".join(f'"{one}"' for one in rig.effects) or '"slip_pulse"',
         fits="\n".join(f"#   {fit_text(fit)}" for fit in rig.fits),
-        kinetic=min(fit.kinetic_torque for fit in rig.fits),
-        damping=next(iter(rig.fits[0].damping.values())),
         interference=[round(1e3 * fit.interference, 6) for fit in rig.fits],
     )

@@ -13,7 +13,7 @@ from pathlib import Path
 from models.errors import ParameterError, RecordingError
 from noise.base.labels import LABELS
 from noise.base.progress import readable
-from noise.labels.table import HUMAN, own_columns, read_label_table
+from noise.labels.table import CLASSIFIER, HUMAN, own_columns, read_label_table
 
 Row = Mapping[str, object]
 Place = tuple[str, float, float]
@@ -82,7 +82,11 @@ def version(rows: Sequence[Row]) -> str:
 
 
 def with_corrections(
-    path: Path | None, rows: list[dict[str, object]], names: Iterable[str] = ()
+    path: Path | None,
+    rows: list[dict[str, object]],
+    names: Iterable[str] = (),
+    *,
+    continues: bool = False,
 ) -> list[dict[str, object]]:
     """Return new rows of a table, with those recordings as they were that somebody has corrected.
 
@@ -94,13 +98,17 @@ def with_corrections(
         By `COLUMNS`.
     names : iterable of str
         Recordings that rows will be of, where there are none yet.
+    continues : bool
+        Whether the table that is there was written by a call with the same options.
 
     Returns
     -------
     list of dict
         Where some row of a recording's track is by a human in the table that is there, all rows of
         that track are those of that table: whoever moves a border changes both sides of it. So are
-        labels of a table of one's own, which says of none that a classifier gave it. Tracks
+        labels of a table of one's own, which says of none that a classifier gave it. A row is by a
+        human, too, where the table continues and its label is another than the new one though all
+        probabilities are the same. Tracks
         that the new rows do not have come last. What the table has in columns of its own stays with
         the stretch of time that it is beside.
 
@@ -133,7 +141,28 @@ def with_corrections(
             "another table"
         ) from None
     _check_names(path, before, known)
-    return with_corrected_rows(before, rows)
+    return with_corrected_rows(_signed(before, rows) if continues else before, rows)
+
+
+def _signed(
+    before: Iterable[dict[str, object]], rows: Iterable[dict[str, object]]
+) -> list[dict[str, object]]:
+    """Sign the rows whose label alone was changed: same segment, same probabilities, other label.
+
+    Whoever corrects a table in a spreadsheet may leave `label_source` as it was.
+    """
+    new = {(readable(str(row.get("file"))), place(row)): row for row in rows}
+
+    def changed(row: dict[str, object]) -> bool:
+        now = new.get((readable(str(row.get("file"))), place(row)))
+        if now is None or row.get("label_source") != CLASSIFIER or not row.get("label"):
+            return False
+        return row["label"] != now["label"] and all(
+            isinstance(row.get(name), float) and row.get(name) == now.get(name)
+            for name in (f"p_{label}" for label in LABELS)
+        )
+
+    return [row | {"label_source": HUMAN} if changed(row) else row for row in before]
 
 
 def _check_names(path: Path, before: Iterable[dict[str, object]], known: set[str]) -> None:

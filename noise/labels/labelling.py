@@ -124,8 +124,9 @@ def label(
             return LabelTable(rows)
         # Nobody may correct the table between the look at its corrections and the writing.
         with locked(Path(out)):
-            table = LabelTable(with_corrections(Path(out), rows))
+            table = LabelTable(with_corrections(Path(out), rows, continues=journal.table_written))
             table.write(out)
+            journal.note_table()
     return table
 
 

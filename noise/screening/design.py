@@ -29,6 +29,7 @@ import shutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from models.errors import BushingNoiseError, ParameterError
 from models.foreign_file import refusing
@@ -176,10 +177,11 @@ def load_design(given: str | Path) -> Design:
 
 def _read_design(path: Path, where: str) -> Design:
     content = read_toml(path, where)
-    table = as_table(content.pop("design", {}), "design", where)
-    tolerances = content.pop("tolerances", {})
+    plain = {key: value for key, value in content.items() if key not in ("design", "tolerances")}
+    rig = rig_from(plain, path.parent, where)
+    table = as_table(_stated("design", content, path.parent, where), "design", where)
+    tolerances = _stated("tolerances", content, path.parent, where)
     refuse_unknown(table, _USE_KEYS, f"{where}, design")
-    rig = rig_from(content, path.parent, where)
     named = table.get("name", content.get("name", path.stem))
     return Design(
         name=as_text(named, "name", f"{where}, design"),
@@ -187,6 +189,19 @@ def _read_design(path: Path, where: str) -> Design:
         use=_use(table, f"{where}, design"),
         tolerances=read_tolerances(tolerances, where, rig.effects),
     )
+
+
+def _stated(key: str, content: Mapping[str, Any], folder: Path, where: str) -> Any:
+    """Return a table of a design file, or that of the file that it changes, but for its name."""
+    if key in content:
+        return content[key]
+    base = folder / str(content.get("base", ""))
+    if not base.is_file():
+        return {}
+    table = _stated(key, read_toml(base, where), base.parent, where)
+    if isinstance(table, Mapping):
+        return {name: value for name, value in table.items() if name != "name"}
+    return table
 
 
 def _use(table: Mapping[str, object], where: str) -> Use:

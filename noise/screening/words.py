@@ -208,12 +208,13 @@ def advice_words(noise: str, at: Condition, offers: Sequence[Offer], most: int =
 
 def limit_words(offers: Sequence[Offer], noise: str) -> list[str]:
     """Say of changes that reach a limit before they end the noise how far they go."""
+    end = {one.name for one in offers if one.ends}  # in the other direction
     return [
         f"{one.words} reaches the limit, and the {noise} goes on ({one.limit})"
         if one.percent
-        else f"{one.name.replace('_', ' ')} cannot be changed that way ({one.limit})"
+        else f"{one.name.replace('_', ' ')} alone does not end it ({one.limit})"
         for one in offers
-        if not one.ends and one.limit
+        if one.name not in end and one.limit
     ]
 
 

@@ -222,3 +222,28 @@ def test_labelling_loads_neither_simulator_nor_training(tmp_path):
     call = [sys.executable, "-c", _CODE, str(path), str(tmp_path / "labels.csv")]
     said = subprocess.run(call, capture_output=True, text=True, check=True).stderr
     assert said.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize("fresh", [[], ["--fresh"]], ids=["resumed", "fresh"])
+def test_a_label_that_was_changed_in_the_table_alone_is_never_lost(squeal, tmp_path, fresh):
+    write_recording(tmp_path / "run", sound(squeal))
+    table = tmp_path / "labels.csv"
+    given = ["label", str(tmp_path / "run.wav"), "--out", str(table)]
+    assert main(given) == 0
+    text = table.read_text(encoding="utf-8")
+    assert ",squeal," in text
+    table.write_text(text.replace(",squeal,", ",squawk,"), encoding="utf-8")
+    assert main([*given, *fresh]) == 0
+    with table.open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["label"] == "squawk"]
+    assert [row["label_source"] for row in rows] == ["human"]
+
+
+def test_another_sensitivity_names_anew_what_nobody_corrected(squeal, tmp_path):
+    faint = sound(squeal + np.random.default_rng(0).normal(0.0, 2.0 * squeal.std(), squeal.size))
+    write_recording(tmp_path / "run", faint)
+    given = ["label", str(tmp_path / "run.wav"), "--out", str(tmp_path / "labels.csv")]
+    for sensitivity in ("0.1", "10", "1"):
+        assert main([*given, "--sensitivity", sensitivity]) == 0
+        with (tmp_path / "labels.csv").open(encoding="utf-8", newline="") as file:
+            assert {row["label_source"] for row in csv.DictReader(file)} == {"classifier"}

@@ -1,7 +1,9 @@
 """Copies of design files beside a screen: each is the design that was screened."""
 
+import pytest
+
 from models.rig_file import load_rig
-from noise.screening.design import copy_design_file
+from noise.screening.design import copy_design_file, load_design
 
 
 def written(path, text):
@@ -27,3 +29,14 @@ def test_a_base_of_the_same_folder_goes_with_the_copy(tmp_path):
     before = load_rig(source)
     (tmp_path / "base.toml").unlink()
     assert load_rig(copy) == before
+
+
+def test_a_changed_design_has_the_use_and_the_tolerances_of_its_base(tmp_path):
+    (tmp_path / "one.toml").write_text(
+        'base = "fluorocarbon"\n[design]\nname = "one"\ninterference_mm = [0.279]\n'
+        "[tolerances]\nelastomer_stiffness = 0.05\n"
+    )
+    (tmp_path / "two.toml").write_text('base = "one.toml"\n[change]\ndamping = "x2"\n')
+    one, two = (load_design(tmp_path / f"{name}.toml") for name in ("one", "two"))
+    assert (two.name, two.use, two.tolerances) == ("two", one.use, one.tolerances)
+    assert two.use.interference == pytest.approx((0.279e-3,))
