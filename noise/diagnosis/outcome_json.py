@@ -97,7 +97,8 @@ def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]
     improved : str, optional
         Name of the file of the improved rig that lies beside it.
     """
-    return _written(diagnosis, _Key("")) | {"improved": improved}
+    written: dict[str, Any] = _written(diagnosis, _Key(""))
+    return written | {"improved": improved}
 
 
 def from_json(data: Mapping[str, Any]) -> Diagnosis:
@@ -115,7 +116,8 @@ def from_json(data: Mapping[str, Any]) -> Diagnosis:
     """
     for key in ("verdict", "equivalent", "location", "effects", "probabilities"):
         data[key]
-    return _record(Diagnosis, _UNKNOWN | dict(data))
+    diagnosis: Diagnosis = _record(Diagnosis, _UNKNOWN | dict(data))
+    return diagnosis
 
 
 _UNKNOWN: dict[str, Any] = {

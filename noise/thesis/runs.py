@@ -10,7 +10,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
-from typing import TypedDict
 
 import numpy as np
 
@@ -102,14 +101,7 @@ class Case:
         return f"{self.place()}, {self.speed:g} rad/s"
 
 
-class Both(TypedDict):
-    """Values of the columns of these names."""
-
-    exact: float
-    calibrated: float
-
-
-def both(found: Callable[[str, Case], float], case: Case) -> Both:
+def both(found: Callable[[str, Case], float], case: Case) -> dict[str, float]:
     """Compute a number of a case with the thesis's equations and with the calibrated material.
 
     Examples

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import lru_cache
 from importlib import resources
+from typing import Any
 
 from noise.thesis import (
     anchors,
@@ -104,7 +105,8 @@ def group_rows(group: Callable[[], Iterable[Values]]) -> Iterator[Row]:
     [8.86, 101.6]
     """
     for row, values in zip(published_rows()[group.__name__], group(), strict=True):
-        yield replace(row, **values, why=reasons().get((row.item, row.condition), ""))
+        computed: dict[str, Any] = dict(values)
+        yield replace(row, **computed, why=reasons().get((row.item, row.condition), ""))
 
 
 def thesis_rows(groups: Iterable[Callable[[], Iterable[Values]]]) -> list[Row]:

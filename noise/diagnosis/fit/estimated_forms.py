@@ -13,7 +13,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -121,7 +121,7 @@ def _compared(comparison: CaseComparison, i: int) -> _Compared:
     transfers: Mapping[str, TransferFunction] = {}
     if "torque" in measured:
         transfers = comparison.runs.transfer_functions.whole(recording)
-    expected = {
+    expected: dict[str, NDArray[np.float64]] = {
         kind: predict(measured["torque"], recording.rate, transfers[kind])
         for kind in ("acceleration", "pressure")
         if transfers and kind in measured
@@ -178,7 +178,7 @@ def _beside(having: Sequence[_Compared], *, bolted: bool) -> Callable[..., Impul
         if not bolted and not np.any(paths.pulse_to_acceleration):
             return paths  # the clamp is bolted down
         n = round(_FREE * paths.rate)
-        more = {
+        more: dict[str, Any] = {
             f"torque_to_{kind}": padded_sum([
                 getattr(paths, f"torque_to_{kind}"),
                 values["amount"] * impulse_response(transfer, paths.rate, n),
