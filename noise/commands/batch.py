@@ -22,7 +22,7 @@ from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_number
 
 if TYPE_CHECKING:
-    from noise.batch import Done, Job, Journal, Work
+    from noise.batch import BatchRows, Done, Job, Journal, Work
     from noise.recordings.meaning import PascalPerFullScale
 
     Rows = Iterable[dict[str, object]]
@@ -72,7 +72,7 @@ def run_batch(
     work: Work,
     jobs: Sequence[Job],
     also: Callable[[Rows], Sequence[Path]] = lambda _: (),
-    keep: Callable[[Path | None, Rows], Rows] = lambda _, rows: rows,
+    keep: Callable[[Path | None, BatchRows], Rows] = lambda _, rows: rows,
     lines: Callable[[Rows], Iterable[str]] | None = None,
 ) -> int:
     """Go through the recordings, write the table, return the exit code.
@@ -169,9 +169,9 @@ def _progress(
 def _write(
     options: Namespace,
     work: Work,
-    made: Rows,
+    made: BatchRows,
     also: Callable[[Rows], Sequence[Path]],
-    keep: Callable[[Path | None, Rows], Rows],
+    keep: Callable[[Path | None, BatchRows], Rows],
     *,
     table: bool,
 ) -> tuple[Rows, list[Path]]:

@@ -21,6 +21,7 @@ from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_rec
 from noise.commands.options import CALIBRATION, Option, full_scale_of, number, one_of, seed
 
 if TYPE_CHECKING:
+    from noise.batch import BatchRows
     from noise.labels.labelling import Labelling
 
 
@@ -95,8 +96,8 @@ def run(options: Namespace) -> int:
     # Or its corrections could not be kept after all the work.
     with_corrections(options.out, [], [job.name for job in jobs])
 
-    def keep(out: Path | None, rows: Iterable[dict[str, object]]) -> list[dict[str, object]]:
-        return with_corrections(out, list(rows), continues=getattr(rows, "continues", False))
+    def keep(out: Path | None, rows: BatchRows) -> list[dict[str, object]]:
+        return with_corrections(out, list(rows), continues=rows.continues)
 
     def export(rows: Iterable[dict[str, object]]) -> list[Path]:
         rows = list(rows)

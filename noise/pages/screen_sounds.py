@@ -23,7 +23,7 @@ from features.kernels.levels import a_weighted_level
 from models.errors import BushingNoiseError
 from models.rig import Rig
 from noise.audio.sound import audible
-from noise.base.labels import LABELS
+from noise.base.labels import LABELS, PERSISTS
 from noise.base.progress import track
 from noise.batch import one_thread
 from noise.pages.clips import RATE, Entry
@@ -381,7 +381,7 @@ def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: 
     )
     sound = audible(run.recording, RATE).astype(np.float32)
     note = f"simulated, {a_weighted_level(run.recording['pressure'], RATE):.0f} dB(A)"
-    if point.label == "persists":
+    if point.label == PERSISTS:
         note += " from rest; a vibration that runs already goes on"
     if point.how == INTERPOLATED:
         level = "" if point.level is None else f", {point.level:.0f} dB(A)"
@@ -389,7 +389,7 @@ def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: 
     return Entry(
         title=f"{screened.design}: {point.speed:.3g} rad/s, {point.interference:.3g} mm, "
         f"{screened.where}",
-        rows=({"label": "none" if point.label == "persists" else point.label},),
+        rows=({"label": "none" if point.label == PERSISTS else point.label},),
         condition=replace(run.recording.condition, material=screened.design),
         duration=SECONDS,
         sound=sound,

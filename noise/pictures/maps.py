@@ -22,14 +22,14 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from models.drawing import axes_or_new, styled
-from noise.base.labels import LABEL_LOOKS
+from noise.base.labels import LABEL_LOOKS, PERSISTS
 from noise.pictures.figure import new_figure, support_words
 from sim.analysis.regime import Regime
 
 if TYPE_CHECKING:
     from noise.screening.mapping import DesignMap
 
-_SIMULATED = ("none", "persists", "squeal", "squawk", "creak")
+_SIMULATED = ("none", PERSISTS, "squeal", "squawk", "creak")
 _FEW_ROWS = 8
 _LEVELS = 40.0, 100.0
 """Of the colours of levels [dB]."""
@@ -160,8 +160,8 @@ def _draw_labels(axes: Axes, found: DesignMap, temperature: int, support: int) -
     codes = np.select([label == name for name in _SIMULATED], range(len(_SIMULATED)))
     colours = ListedColormap([LABEL_LOOKS[name].colour for name in _SIMULATED])
     axes.pcolormesh(_edges(speed), _edges(rows), codes, cmap=colours, vmin=-0.5, vmax=4.5)
-    hatched = np.where(label == "persists", 1.0, -1.0)
-    if (label == "persists").any() and min(label.shape) > 1:
+    hatched = np.where(label == PERSISTS, 1.0, -1.0)
+    if (label == PERSISTS).any() and min(label.shape) > 1:
         axes.contourf(speed, rows, hatched, levels=[0.0, 2.0], colors="none", hatches=["///"])
     axes.grid(visible=False)
     _say_quiet(axes, found, temperature, support)
@@ -206,7 +206,7 @@ def _handles(found: DesignMap) -> list[Patch | Line2D]:
                 facecolor=LABEL_LOOKS[label].colour,
                 edgecolor="#444444",
                 label=label,
-                hatch="///" if label == "persists" else None,
+                hatch="///" if label == PERSISTS else None,
             )
             for label in _SIMULATED[::-1]
         ),

@@ -25,6 +25,7 @@ from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
 from models.recording import Recording
 from models.rig import Rig, damping_at
+from noise.base.labels import PERSISTS
 from noise.classifier import Classifier, load_classifier
 from noise.labels.segments import file_label, label_recording
 from noise.noise_definition import LEAST_LEVEL, NoiseCriteria, noise_criteria
@@ -142,7 +143,7 @@ def evaluate_point(rig: Rig, at: Condition) -> PointResult:
         found = vibration_at(rig, at)
         if not found.course.lasts:
             return SILENT
-        return heard_of(rig, at, found.course.motion, persists=found.state == "persists")
+        return heard_of(rig, at, found.course.motion, persists=found.state == PERSISTS)
     return heard_of(rig, at, _motion(rig, at, at.frequency))
 
 
@@ -151,11 +152,15 @@ def is_noisy(rig: Rig, at: Condition) -> bool:
     course = vibration_at(rig, at).course
     if not course.lasts:
         return False
-    start = max(0, course.motion.torque.size - round((JUDGED + _RINGING) * RATE))
-    sound = _sound(at_temperature(rig, at.temperature), at, course.motion.since(start))
+    sound = _sound(at_temperature(rig, at.temperature), at, _last_part(course.motion))
     heard = sound.pressure[-round(JUDGED * RATE) :]
     levels = weighted_levels(lambda first, last: heard[first:last], heard.size, RATE)
     return levels.level_a >= LEAST_LEVEL
+
+
+def _last_part(motion: Motion) -> Motion:
+    """Cut to the part that is judged, and before it what still rings in it."""
+    return motion.since(max(0, motion.torque.size - round((JUDGED + _RINGING) * RATE)))
 
 
 def heard_of(rig: Rig, at: Condition, motion: Motion, *, persists: bool = False) -> PointResult:
@@ -175,11 +180,10 @@ def heard_of(rig: Rig, at: Condition, motion: Motion, *, persists: bool = False)
     PointResult
     """
     swings = at.frequency is not None
-    n = motion.torque.size
     if at.frequency is not None:
         start = round(0.25 / at.frequency * RATE)
     else:
-        motion = motion.since(max(0, n - round((JUDGED + _RINGING) * RATE)))
+        motion = _last_part(motion)
         start = motion.torque.size - round(JUDGED * RATE)
     intervals = fast_intervals(motion.since(start), swings=swings)
     if all(oscillation(interval.torque) <= 1.0 for interval in intervals):

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.rig import Rig
+from noise.base.labels import PERSISTS
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.stability import steady_sliding
 from sim.effects import EFFECTS
@@ -175,7 +176,7 @@ def vibration_at(
     rested = _followed(_solver(rig, at), at, growth, longest=longest)
     if rested.lasts:
         return Vibration("breaks out", growth, rested)
-    return Vibration("persists" if course.lasts else "none", growth, course)
+    return Vibration(PERSISTS if course.lasts else "none", growth, course)
 
 
 def growth_at(rig: Rig, at: Condition) -> float:
