@@ -190,23 +190,6 @@ class Remainder:
     band: tuple[float, float]
 
 
-@dataclass(frozen=True)
-class LabelsAndLevels:
-    """What the user hears of it, of one held-out recording: label and level [dB(A)]."""
-
-    recording: str
-    label_measured: str | None
-    label_before: str | None
-    label_after: str | None
-    level_measured: float | None
-    level_before: float | None
-    level_after: float | None
-
-    def of(self, role: str) -> tuple[str | None, float | None]:
-        """Return label and level [dB(A)] of ``measured``, ``before`` or ``after``."""
-        return getattr(self, f"label_{role}"), getattr(self, f"level_{role}")
-
-
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Illustration:
@@ -289,7 +272,6 @@ class Diagnosis:
         That it took [s].
     notes : tuple of str
         What is missing and what that costs; channels in bad health.
-    labels_and_levels : tuple of LabelsAndLevels
     illustrations : tuple of Illustration
     differences : tuple of Location
         Every stage, channel, band and phase with its p-value, corrected for the number of looks;
@@ -330,7 +312,6 @@ class Diagnosis:
     p_value: float
     seconds: float
     notes: tuple[str, ...] = ()
-    labels_and_levels: tuple[LabelsAndLevels, ...] = ()
     illustrations: tuple[Illustration, ...] = ()
     differences: tuple[Location, ...] = ()
     improvement: Improvement | None = None

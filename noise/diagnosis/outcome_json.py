@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from noise.diagnosis.outcome import (
-    ROLES,
     Agreement,
     Diagnosis,
     EffectFinding,
     HypothesisFinding,
-    LabelsAndLevels,
     Location,
     Remainder,
     StageFinding,
@@ -76,7 +74,6 @@ _KEYS: dict[type, dict[str, _Key]] = {
         "gap": _Key("gap"),
         "gap_floor": _Key("floor"),
         "p_value": _Key("p_value"),
-        "heard": _Key("labels_and_levels", of=LabelsAndLevels),
         "hypotheses": _Key("hypotheses", of=HypothesisFinding),
         "agreement": _Key("agreement", of=Agreement),
         "remainder": _Key("remainder", of=Remainder),
@@ -129,12 +126,6 @@ _UNKNOWN: dict[str, Any] = {
 
 def _written(value: Any, key: _Key) -> Any:
     """Return a value of plain data: records as objects, numbers rounded, none as null."""
-    if isinstance(value, LabelsAndLevels):
-        return {
-            "recording": value.recording,
-            "label": {role: value.of(role)[0] for role in ROLES},
-            "level_dba": {role: _written(value.of(role)[1], _Key("", 1)) for role in ROLES},
-        }
     if type(value) in _KEYS:
         keys = _KEYS[type(value)].items()
         return {name: _written(getattr(value, key.attribute), key) for name, key in keys}
@@ -149,9 +140,6 @@ def _written(value: Any, key: _Key) -> Any:
 
 def _record(kind: type, data: Mapping[str, Any]) -> Any:
     """Return a record of the data of an object; what is not there stays at its default."""
-    if kind is LabelsAndLevels:
-        parts = (data["label"], data["level_dba"])
-        return LabelsAndLevels(data["recording"], *(of.get(r) for of in parts for r in ROLES))
     return kind(**{
         key.attribute: _read(data[name], key) for name, key in _KEYS[kind].items() if name in data
     })  # fmt: skip

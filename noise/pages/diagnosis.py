@@ -22,12 +22,10 @@ from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.improved_file import NAME, RESPONSES, improved_sentence, response_files
 from noise.diagnosis.outcome import (
-    ROLES,
     SURE,
     Agreement,
     Diagnosis,
     EffectFinding,
-    LabelsAndLevels,
 )
 from noise.diagnosis.outcome_json import as_json
 from noise.diagnosis.text.sentences import answer, closed_sentence, closed_words
@@ -109,7 +107,7 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
     entries: dict[str, Entry] = {}
     clips: dict[str, Clip] = {}
     shown: Sequence[b.Block] = ()
-    if diagnosis.illustrations or diagnosis.labels_and_levels:
+    if diagnosis.illustrations:
         # Figures and sounds load much that a quick answer, which has none, need not wait for.
         from noise.pages.diagnosis_evidence import draw_comparisons
 
@@ -422,10 +420,6 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
         "Parameters, relative to the rig file, 90 % intervals": (
             ("Parameter", "Interval", "About 1.0"), parameter_rows(diagnosis.parameters),
         ),
-        "Labels and levels of held-out recordings": (
-            ("Recording", "Measured", "Nominal model", "Fitted model"),
-            [_heard_row(heard) for heard in diagnosis.labels_and_levels],
-        ),
         "The likeliest sets of causes": (
             ("At work together", "Probability", "Gap left, held out [floors]"), hypotheses,
         ),
@@ -580,15 +574,3 @@ def _fitted_words(diagnosis: Diagnosis) -> str:
         return "The fitted model has refitted parameters and no effect."
     named = joined([cause_of(name).name for name in diagnosis.verdict])
     return f"The fitted model has {named} and refitted parameters."
-
-
-def _heard_row(heard: LabelsAndLevels) -> list[str]:
-    """Name of a recording, and for each role label and level in words."""
-    row = [heard.recording]
-    for role in ROLES:
-        label, level = heard.of(role)
-        known = "level not determined" if level is None else f"{number(level, '.1f')} dB(A)"
-        row.append(f"{label or 'label not determined'}, {known}")
-        if label is None and level is None:
-            row[-1] = NOT_DETERMINED
-    return row

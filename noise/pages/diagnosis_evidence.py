@@ -10,20 +10,20 @@ matched, and the one full scale is what the loudest of all sounds needs.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.levels import band_levels, band_power
+from features.kernels.levels import a_weighted_level, band_levels, band_power
 from features.kernels.slips import torque_slips
 from features.kernels.spectra import autospectrum
 from models.drawing import BLUE, VERMILION, padded, styled, thinned
 from models.recording import Recording
 from noise.audio.sound import audible
-from noise.diagnosis.outcome import ROLES, Illustration, LabelsAndLevels
+from noise.diagnosis.outcome import ROLES, Illustration
 from noise.diagnosis.text.words import number
 from noise.pages import blocks as b
 from noise.pages.cards import facts_of
@@ -295,16 +295,12 @@ LONGEST = 4.0
 """Of a sound on the page [s]; what is longer is played from its beginning."""
 
 
-def illustration_entries(
-    illustration: Illustration, heard: Sequence[LabelsAndLevels] = ()
-) -> dict[str, Entry]:
+def illustration_entries(illustration: Illustration) -> dict[str, Entry]:
     """Return what is heard of an illustration, by role.
 
     Parameters
     ----------
     illustration : Illustration
-    heard : sequence of LabelsAndLevels
-        Labels and levels, of any recordings.
 
     Returns
     -------
@@ -326,32 +322,16 @@ def illustration_entries(
         recording = getattr(illustration, role)
         if recording is not None and recording.first("pressure") is not None:
             sound = audible(recording, RATE)[: round(LONGEST * RATE)].astype(np.float32)
-            entries[role] = replace(
-                _entry(illustration.name, role, sound, heard),
+            level = a_weighted_level(recording["pressure"], recording.rate)
+            entries[role] = Entry(
+                f"{illustration.name}, {CURVES[role].label}",
+                duration=sound.size / RATE,
+                sound=sound,
+                note=f"{number(level, '.1f')} dB(A)" if math.isfinite(level) else "",
                 orders=recorded_orders(recording),
                 fast_levels=recorded_levels(recording),
             )
     return entries
-
-
-def _entry(
-    name: str,
-    role: str,
-    sound: NDArray[np.float32],
-    heard: Sequence[LabelsAndLevels],
-) -> Entry:
-    known = next((one for one in heard if one.recording == name), None)
-    label, level = (None, None) if known is None else known.of(role)
-    note = "" if known is None else "level not determined"
-    if level is not None and math.isfinite(level):
-        note = f"{number(level, '.1f')} dB(A)"
-    return Entry(
-        f"{name}, {CURVES[role].label if role in CURVES else role}",
-        () if label is None else ({"label": label},),
-        duration=sound.size / RATE,
-        sound=sound,
-        note=note,
-    )
 
 
 def draw_comparisons(
@@ -380,7 +360,7 @@ def draw_comparisons(
     entries: dict[str, Entry] = {}
     groups: list[b.Block] = []
     for illustration in diagnosis.illustrations:
-        found = illustration_entries(illustration, diagnosis.labels_and_levels)
+        found = illustration_entries(illustration)
         keys = [f"s{len(entries) + i}" for i in range(1, len(found) + 1)]
         entries |= dict(zip(keys, found.values(), strict=True))
         known = facts_of(Entry(illustration.name, condition=illustration.measured.condition))

@@ -123,7 +123,8 @@ def test_a_pair_whose_search_stopped_short_leaves_what_one_of_it_leaves():
         (6.0, 5.0, [6.0, 6.0, 1.0, 1.0], True),
         (6.0, 1.2, 1.2, True),  # as much as parameters close, of a large gap
         (6.0, 1.2, 5.0, False),
-        ([6.0, 6.0, 1.0, 1.0], [5.0, 5.0, 1.0, 1.0], [2.0, 2.0, 1.0, 1.0], True),
+        ([6.0, 6.0, 1.0, 1.0], [5.0, 5.0, 1.0, 1.0], [2.0, 2.0, 1.0, 1.0], False),
+        ([6.0, 6.0, 1.0, 1.0], [5.0, 5.0, 1.0, 1.0], [2.0, 2.0, 0.9, 0.9], True),
         (1.2, 1.1, 1.2, False),
     ],
 )
@@ -138,6 +139,17 @@ def test_what_is_held_out_has_a_gap_where_more_than_one_condition_has():
     assert max(gaps[i] for i in held) == 3.0
     assert max(gaps[i] for i in fitted) == 4.0
     assert split(at, [4.0, 1.0, 1.0, 1.0, 1.0]) == split(at)
+    alike = [at[0], *at]  # where one condition alone has a gap, its repeats are parted
+    fitted, held = split(alike, [4.0, 4.0, 1.0, 1.0, 1.0, 1.0])
+    assert 0 in fitted
+    assert 1 in held
+
+
+def test_it_is_said_where_no_fit_could_be_tried_on_a_gap_it_had_not_seen():
+    fits = fits_of([6.0, 6.0, 1.0, 1.0], 1.0, {PARTIAL: 1.0})
+    judged = decide.Judged(None, (2, 3), fits, {}, {}, ())
+    assert "record the condition" in fit_notes(judged)[0]
+    assert not fit_notes(decide.Judged(None, (2, 3), fits_of(6.0, 1.0, {}), {}, {}, ()))
 
 
 @pytest.fixture

@@ -178,3 +178,11 @@ def test_the_map_lists_what_differs_alone(nulls):
     places = differences(_table({"pressure_gain_9": 30.0}), nulls)
     assert places
     assert max(place.p_value for place in places) <= SURE
+
+
+def test_the_p_value_of_a_stage_falls_below_what_the_number_of_cases_can_show(nulls):
+    far, farther = (
+        stage_findings(_table({"pressure_gain_9": size}), nulls)["radiation"].p_value
+        for size in (300.0, 3000.0)
+    )
+    assert farther < far < len(STAGES) / (len(nulls.largest) + 1.0)

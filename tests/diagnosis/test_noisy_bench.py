@@ -66,4 +66,9 @@ def test_a_gap_above_its_floor_is_never_said_to_be_no_more_than_repeats(tmp_path
     large = replace(quiet, verdict=(), gap=2.4, p_value=2e-4)
     assert headline(large) == "No cause to name"
     assert "by more than simulated repeats do" in verdict_sentence(large)
-    assert "no more than repeats do" in verdict_sentence(replace(large, gap=1.1, p_value=0.4))
+    small = replace(large, gap=0.9, p_value=0.4, agreement=())
+    assert "no more than repeats do" in verdict_sentence(small)
+    far = tuple(replace(one, gap=2.5) for one in quiet.agreement)
+    for above in (replace(small, gap=1.1), replace(small, agreement=far)):
+        assert "no more than repeats" not in verdict_sentence(above)
+        assert "may be chance" in verdict_sentence(above)

@@ -14,7 +14,6 @@ from noise.diagnosis.outcome import (
     EffectFinding,
     HypothesisFinding,
     Illustration,
-    LabelsAndLevels,
     Location,
     Remainder,
     StageFinding,
@@ -97,7 +96,6 @@ def none():
         p_value=0.61,
         agreement=AGREEMENT[1:],
         illustrations=(illustration("run03", run(), run(), None),),
-        labels_and_levels=(LabelsAndLevels("run03", "creak", "creak", None, 78.2, 77.9, None),),
     )
 
 
@@ -140,8 +138,6 @@ def one_effect():
             illustration("run03", run(PARTIAL), run(), run(PARTIAL)),
             illustration("a/very_long_name_of_a_recording" * 3, run(HUM), run(), run(HUM)),
         ),
-        labels_and_levels=(LabelsAndLevels("run03", "squawk", "creak", "squawk", 78.2, 84.9, 78.6),
-               LabelsAndLevels("run07", "none", "squeal", None, 51.0, 66.2, None)),
     )  # fmt: skip
 
 

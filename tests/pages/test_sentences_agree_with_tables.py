@@ -55,7 +55,7 @@ class Page:
 
 def drawn_diagnosis(kind, rng):
     """A diagnosis of a kind with numbers of its own, those that hang on others as they do."""
-    made = replace(KINDS[kind](), illustrations=(), labels_and_levels=(), improvement=None)
+    made = replace(KINDS[kind](), illustrations=(), improvement=None)
     n = int(rng.integers(1, 7))
     gaps = rng.lognormal(0.6, 0.8, n)
     found = tuple(

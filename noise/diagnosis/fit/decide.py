@@ -157,16 +157,15 @@ class CaseFits:
         """Tell whether a fit closes some of the gap of recordings held out.
 
         Of what parameters leave; where these leave nothing, as much of the whole gap as would be
-        remarkable. Where there was none, all recordings tell, in which an effect may still show.
+        remarkable. Where there was none to close, it must at least leave less.
         """
         after = self.least(hypothesis)
-        for part in (self.held_out, lambda squared: squared):
-            gap, left, now = (rms(part(x)) for x in (self.before, self.recalibrated, after))
-            if left >= 1.0 + CLOSABLE:
-                return closed_of(left, now) >= _CLOSES
-            if gap >= 1.0 + CLOSABLE:
-                return closed_of(gap, now) >= _AS_PARAMETERS * room_of(gap)
-        return rms(after) < rms(self.recalibrated)
+        gap, left, now = (rms(self.held_out(x)) for x in (self.before, self.recalibrated, after))
+        if left >= 1.0 + CLOSABLE:
+            return closed_of(left, now) >= _CLOSES
+        if gap >= 1.0 + CLOSABLE:
+            return closed_of(gap, now) >= _AS_PARAMETERS * room_of(gap)
+        return now < left
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,10 +268,16 @@ def fit_notes(judged: Judged) -> list[str]:
             f"probabilities are of {joined(judged.among)} and of no gap, as if there were no other"
         )
     if judged.fits is not None:
+        fits = judged.fits
+        if rms(fits.held_out(fits.before)) < 1.0 + CLOSABLE <= rms(fits.before[[*fits.fitted_to]]):
+            found.append(
+                "what was held out hardly deviates, so that no fit could be tried on a deviation "
+                "that it had not seen: record the condition that deviates once more"
+            )
         found += [
             f"{' and '.join(sorted(names))} was not fitted, since no model of it can be simulated: "
             f"{why}"
-            for names, why in judged.fits.impossible.items()
+            for names, why in fits.impossible.items()
         ]
     return found
 

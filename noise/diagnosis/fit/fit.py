@@ -171,6 +171,7 @@ def split(
     The fastest is among those held out, and the slowest where there are several: what closes there
     is foretold and not only filled in. Where no gap shows there but in several others, the one of
     these with the second largest takes the place of one of them: without a gap nothing closes.
+    Where a single condition shows one, half of its recordings are held out, if there are several.
 
     Parameters
     ----------
@@ -186,6 +187,8 @@ def split(
     ([0, 1, 2, 3], [4])
     >>> split(at, [4.0, 3.0, 3.0, 1.0, 1.0])
     ([0, 3, 4], [1, 2])
+    >>> split(at, [1.0, 3.0, 3.0, 1.0, 1.0])
+    ([0, 1, 3], [2, 4])
     """
     different = list(dict.fromkeys(conditions))
     if len(different) == 1:
@@ -202,9 +205,12 @@ def split(
     showing = sorted((c for c in largest if largest[c] > SHOWS), key=lambda c: -largest[c])
     if len(showing) > 1 and not set(showing) & set(out):
         out = [*out[:-1], showing[1]]
-    held = [i for i, c in enumerate(conditions) if c in out]
-    fitted = [i for i, c in enumerate(conditions) if c not in out]
-    return fitted, held
+    held = {i for i, c in enumerate(conditions) if c in out}
+    if len(showing) == 1:
+        alike = [i for i, c in enumerate(conditions) if c == showing[0]]
+        if len(alike) > 1:
+            held = (held - set(alike)) | set(alike[len(alike) // 2 :])
+    return [i for i in range(len(conditions)) if i not in held], sorted(held)
 
 
 SHOWS = 1.5

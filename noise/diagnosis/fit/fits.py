@@ -3,8 +3,6 @@
 What is left once the likeliest hypothesis is fitted: how much, in which channel and band.
 
 Held-out recordings beside simulations of them, to be seen and heard.
-
-Label and level of a recording and of its simulations, as the user hears them.
 """
 
 from __future__ import annotations
@@ -16,21 +14,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.levels import a_weighted_level
 from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import LawSpec
 from noise.base import SURE_90
-from noise.classifier import load_classifier
 from noise.diagnosis.evidence.friction_curves import friction_curves
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit import Fitted
 from noise.diagnosis.fit.improve import improved_rig
 from noise.diagnosis.gap.floor import worst_places
-from noise.diagnosis.outcome import EffectFinding, Illustration, LabelsAndLevels, Remainder
+from noise.diagnosis.outcome import EffectFinding, Illustration, Remainder
 from noise.diagnosis.simulated.model_runs import OFFSETS, Model, ModelRuns
-from noise.labels.segments import file_label, label_recording
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
@@ -43,34 +38,8 @@ if TYPE_CHECKING:
     from noise.diagnosis.simulated.model_runs import Model
 
 
-def labels_and_levels(
-    name: str, measured: Recording, before: Recording, after: Recording | None
-) -> LabelsAndLevels:
-    """Label three recordings of one condition, and give their A-weighted levels."""
-    return LabelsAndLevels(
-        recording=name,
-        label_measured=_label(measured),
-        label_before=_label(before),
-        label_after=None if after is None else _label(after),
-        level_measured=_level(measured),
-        level_before=_level(before),
-        level_after=None if after is None else _level(after),
-    )
-
-
-def _label(recording: Recording) -> str:
-    return file_label(label_recording(recording, load_classifier())).label
-
-
-def _level(recording: Recording) -> float:
-    row = recording.first("pressure")
-    if row is None:
-        return math.nan
-    return a_weighted_level(recording.samples[row], recording.rate)
-
-
-_DRAWN, _HEARD = 2, 3
-"""Held-out recordings that are drawn, and that are listened to."""
+_DRAWN = 2
+"""Held-out recordings that are drawn and can be listened to."""
 
 _SEED = 7
 
@@ -94,24 +63,6 @@ def illustrations_of(
         Simulate a recording.
     """
     return tuple(_illustration(case, i, before, after) for i in held[:_DRAWN])
-
-
-def heard_of(
-    case: Case, held: Sequence[int], before: Simulated, after: Simulated
-) -> tuple[LabelsAndLevels, ...]:
-    """Listen to held-out recordings and to simulations of them.
-
-    Parameters
-    ----------
-    case, held, before, after
-        As of `illustrations_of`.
-    """
-    return tuple(
-        labels_and_levels(
-            case.names[i], case.recordings[i], before(case.recordings[i]), after(case.recordings[i])
-        )
-        for i in held[:_HEARD]
-    )
 
 
 def _illustration(case: Case, i: int, before: Simulated, after: Simulated | None) -> Illustration:
@@ -206,7 +157,6 @@ def add_fits(
         diagnosis,
         parameters=_intervals(best),
         remainder=remainder_of(comparison, best.model, held),
-        labels_and_levels=heard_of(case, held, nominal, shown),
         illustrations=illustrations_of(case, held, nominal, shown),
         improvement=improvement,
     )
