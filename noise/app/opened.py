@@ -17,6 +17,7 @@ from noise.base.tables import TABLE_ENDINGS, check_table_path
 from noise.batch import Job, find_jobs
 
 _TABLE = "labels.csv"
+"""Beside the folder of recordings with the folder's name before it; in it where it is there."""
 
 
 @dataclass(frozen=True)
@@ -80,9 +81,8 @@ def open_paths(
     paths : sequence of Path
         Recordings, folders that are searched for them at any depth, one label table, rig files.
     table : Path, optional
-        Label table to write, which may be there; by default the one that was named, or
-        ``labels.csv`` in the folder (or beside the recording) that was.
-
+        Label table to write, which may be there; by default the one that was named, ``labels.csv``
+        where it is already in the folder of recordings, or else ``FOLDER-labels.csv`` beside it.
     samples : int, optional
         Simulated samples to learn from beside corrections [-].
     seed : int
@@ -124,9 +124,15 @@ def open_paths(
     first = (sounds or rigs or [Path.cwd()])[0].absolute()
     folder = first if first.is_dir() else first.parent
     if table is None and jobs:
-        table = tables[0] if tables else folder / _TABLE
+        table = tables[0] if tables else _table_of(folder)
     if save is None and rigs:
         save = rigs[0].absolute().parent
     elif save is None and sounds:
         save = folder.parent
     return Opened(tuple(jobs), table, tuple(rigs), save or folder, tuple(sounds), samples, seed)
+
+
+def _table_of(folder: Path) -> Path:
+    """Return the label table of a folder of recordings, in which nothing new is written."""
+    inside = folder / _TABLE
+    return inside if inside.exists() else folder.parent / f"{folder.name}-{_TABLE}"

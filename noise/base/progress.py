@@ -41,6 +41,8 @@ _TICK = 0.5
 def set_verbosity(*, quiet: bool = False, verbose: bool = False) -> None:
     """Say less or more: with `quiet` errors alone, with `verbose` the time of each line.
 
+    Quiet leaves out progress, notes, summaries and the names of what was written.
+
     Examples
     --------
     >>> set_verbosity()
@@ -87,6 +89,21 @@ def say(text: str, *, error: bool = False) -> None:
         sys.stderr.flush()
     except OSError:  # nobody reads on; the work is worth going on with
         discard(sys.stderr)
+
+
+def report(*lines: object) -> None:
+    """Print what a call has written or found on standard output, a line each, unless quiet.
+
+    A result that standard output itself is to hold, as of a call without ``--out``, is printed.
+
+    Examples
+    --------
+    >>> report("labels.csv")
+    labels.csv
+    """
+    if not _verbosity.quiet:
+        for line in lines:
+            print(line)  # noqa: T201  # what a command prints
 
 
 def discard(stream: TextIO) -> None:

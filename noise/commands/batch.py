@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
 from noise.base.files import check_target, export_paths, locked
-from noise.base.progress import counted, note, say, track
+from noise.base.progress import counted, note, report, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_number
 
@@ -130,14 +130,14 @@ def run_batch(
         journal.note_table()
     read = f"{len(outcomes)} of " * bool(stopped) + counted(len(jobs), "recording")
     say(f"{'interrupted: ' * bool(stopped)}{read}, {len(refused)} refused")
-    if lines is not None and (to_read or out is not None):
-        for line in lines(rows):
-            print(line)
-    if to_read:
+    if lines is not None and out is not None:
+        report(*lines(rows))
+    if lines is not None and to_read:
+        print(*lines(rows), sep="\n")
         say("--out labels.csv, or a pipe, takes the whole table")
     for path in written:
         if out is not None:
-            print(path)
+            report(path)
         else:  # standard output is the table
             say(str(path))
     return stopped or int(bool(refused))

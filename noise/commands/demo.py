@@ -7,7 +7,7 @@ import sys
 from argparse import Namespace
 from pathlib import Path
 
-from noise.base.progress import say
+from noise.base.progress import report, say
 from noise.commands.options import Option, check_folder, seed
 
 _DEFAULT_OUT = "bushing-noise-demo"
@@ -37,9 +37,7 @@ def run(options: Namespace) -> int:
 
     rows = run_demo(options.out, seed=options.seed)
     page = options.out / "report.html"
-    for line in result_lines(rows):
-        print(line)
-    print(page)
+    report(*result_lines(rows), page)
     if not options.no_browser and has_display():
         import webbrowser
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from noise.base.progress import Steps, note, say, steps
+from noise.base.progress import Steps, note, report, say, steps
 from noise.commands.options import CHANGE, Option, changed, check_folder, seed
 
 if TYPE_CHECKING:
@@ -68,8 +68,7 @@ def run(options: Namespace) -> int:
 
         print(json.dumps(as_json(diagnosis), indent=2))
     else:
-        for path in written:
-            print(path)
+        report(*written)
     _tell(options, diagnosis, told)
     return 1 if case.refused else 0
 

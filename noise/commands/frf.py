@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError
 from noise.base.files import atomic, check_target
-from noise.base.progress import counted, note, say, track
+from noise.base.progress import counted, note, report, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.options import Option, band, number, one_of, refuse, seed
 
@@ -230,7 +230,7 @@ def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) 
         write_transfer_function_csv(sys.stdout, transfer)
     for path in (options.out, options.modes):
         if path is not None:
-            print(path)
+            report(path)
 
 
 def _trusted(modes: Modes, transfer: TransferFunction, hits: list[Hit], least: float) -> Modes:

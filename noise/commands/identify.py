@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.progress import Steps, note, say, steps
+from noise.base.progress import Steps, note, report, say, steps
 from noise.commands.options import CHANGE, Option, change_table, check_folder, seed
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def run(options: Namespace) -> int:
         print(found.rig_toml, end="")
     else:
         for name in ("report.html", "rig.toml", "identification.json"):
-            print(options.out / name)
+            report(options.out / name)
     return 1 if refused else 0
 
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from noise.base.files import check_target, export_paths, locked
 from noise.base.labels import SURROUNDINGS
-from noise.base.progress import counted, note
+from noise.base.progress import counted, note, report
 from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_recordings, run_batch
 from noise.commands.options import CALIBRATION, Option, full_scale_of, number, one_of, seed
@@ -199,9 +199,8 @@ def _from_tables(options: Namespace) -> int:
             if options.out.absolute() not in [path.absolute() for path in options.paths]:
                 rows = with_corrections(options.out, rows)
             write_table(options.out, (*COLUMNS, *own_columns(rows)), rows)
-        print(options.out)
-    for path in _export(options, rows):
-        print(path)
+        report(options.out)
+    report(*_export(options, rows))
     return 0
 
 

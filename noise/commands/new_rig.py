@@ -7,6 +7,7 @@ from pathlib import Path
 
 from models.errors import ParameterError
 from noise.base.files import atomic, check_target
+from noise.base.progress import report
 from noise.commands.materials import fit_text
 from noise.commands.options import Option, seed
 
@@ -72,7 +73,7 @@ def run(options: Namespace) -> int:
         raise ParameterError(f"{options.out} exists already; name a new file, or remove it first")
     with atomic(options.out) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
-    print(options.out)
+    report(options.out)
     return 0
 
 

@@ -26,7 +26,8 @@ OPTIONS = (
         ".jsonl, .parquet) with its recordings beside it; rig file (.toml)"
     ),
     Option("--out TABLE", Path).help(
-        "label table to write (default: the one that is named, or labels.csv in the folder)"
+        "label table to write (default: the one that is named, else labels.csv where it is in "
+        "the folder of recordings, else FOLDER-labels.csv beside it)"
     ),
     Option("--save-to FOLDER", Path).help(
         "where designs and votes are saved (default: beside the rig file, else beside the folder "

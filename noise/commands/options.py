@@ -281,7 +281,10 @@ def seed(use: str) -> Option:
 
 COMMON = (
     OneOf(
-        Option("--quiet").help("print errors only: no progress, no notes"),
+        Option("--quiet").help(
+            "print errors only: no progress, notes, summary or names of files. Results without a "
+            "file of their own go to standard output as always"
+        ),
         Option("--verbose").help("print how much time has passed before each line"),
     ),
 )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from noise.base.files import check_target
-from noise.base.progress import counted, note, say, track
+from noise.base.progress import counted, note, report, say, track
 from noise.commands.condition import CONDITION
 from noise.commands.options import (
     CALIBRATION,
@@ -231,11 +231,10 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
             lead = f"{name}: {part.about.name}" if several else name
             for line in part.assessment.words(scale.value):
                 say(f"{lead}: {line}")
-        print(target)
-        print(target.with_suffix(".json"))
+        report(target, target.with_suffix(".json"))
     if folder is not None:
         write_table(folder / "levels.csv", ("file", *COLUMNS, "filter", "note", "error"), rows)
-        print(folder / "levels.csv")
+        report(folder / "levels.csv")
     return 1 if refused else 0
 
 

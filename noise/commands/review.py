@@ -6,7 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from noise.base.files import check_target
-from noise.base.progress import counted, note, say
+from noise.base.progress import counted, note, report, say
 from noise.commands.options import (
     CALIBRATION,
     Option,
@@ -89,5 +89,5 @@ def run(options: Namespace) -> int:
         )
     size = made.path.stat().st_size / 1e6
     say(f"{counted(made.sounds, 'sound')}, {size:.1f} MB")
-    print(made.path)
+    report(made.path)
     return 1 if made.refused else 0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.rig import Rig
-from noise.base.progress import Steps, say, steps
+from noise.base.progress import Steps, report, say, steps
 from noise.commands.options import (
     CHANGE,
     MOST_WORKERS,
@@ -140,13 +140,13 @@ def run(options: Namespace) -> int:
 
         for name, reason in (*found.refused, *found.failed):
             say(f"{name}: {reason}")
-        for line in summary_lines(found):
-            print(line)
-        if options.out is not None:
+        if options.out is None:
+            print(*summary_lines(found), sep="\n")
+        else:
+            report(*summary_lines(found))
             with steps("writing", 2) as tell:
                 written = _write(options, found, tell)
-            for path in written:
-                print(path)
+            report(*written)
     return 1 if found.refused or found.failed else 0
 
 

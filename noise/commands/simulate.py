@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError, naming
 from noise.base.files import check_target
-from noise.base.progress import note, say
+from noise.base.progress import note, report, say
 from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.condition import CONDITION, is_long, run_arguments, with_notes
 from noise.commands.options import Option, seed, whole_number
@@ -107,10 +107,10 @@ def run(options: Namespace) -> int:
         from noise.pictures.run import plot_run
 
         write_picture(options.plot, plot_run(simulated))
-        print(options.plot)
+        report(options.plot)
     if options.sound_power is not None:
         _write_sound_power(options.sound_power, simulated, arguments)
-        print(options.sound_power)
+        report(options.sound_power)
     return 0
 
 
@@ -274,8 +274,7 @@ def _check_seconds(option: str, seconds: float | None) -> None:
 
 
 def _print_names(path: Path) -> None:
-    print(path)
-    print(path.with_suffix(".json"))
+    report(path, path.with_suffix(".json"))
 
 
 def _summary(recording: Recording) -> dict[str, object]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from models.errors import ParameterError
 from noise.base.files import atomic, check_target
-from noise.base.progress import say, track
+from noise.base.progress import report, say, track
 from noise.base.tables import TABLE_ENDINGS, check_table_path, table_endings, write_table
 from noise.commands.options import Option, check_folder, seed
 
@@ -68,7 +68,7 @@ def _write_table(out: Path | None) -> None:
     say(f"{len(rows)} rows: {counts}")
     say(constant_note())
     if out is not None:
-        print(out)
+        report(out)
 
 
 def _draw(folder: Path) -> None:
@@ -79,7 +79,7 @@ def _draw(folder: Path) -> None:
     for name, figure in track(thesis_pictures(), "drawing", total=N_PICTURES, unit="picture"):
         path = folder / f"{name}.png"
         write_picture(path, figure)
-        print(path)
+        report(path)
 
 
 def _check(out: Path | None, *, is_page: bool) -> None:

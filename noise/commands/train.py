@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from models.errors import ParameterError
 from noise.base.files import check_target
-from noise.base.progress import Steps, counted, say, steps, track
+from noise.base.progress import Steps, counted, report, say, steps, track
 from noise.base.tables import TABLE_ENDINGS
 from noise.commands.options import Option, refuse, seed, whole_number
 
@@ -88,9 +88,9 @@ def run(options: Namespace) -> int:
     say(f"trained: {_scores(classifier.card)}")
     if added:
         say(f"own recordings: {_own_scores(classifier.card.get('own'))}")
-    print(options.out)
+    report(options.out)
     if options.inference is not None:
-        print(options.inference)
+        report(options.inference)
     return int(refused)
 
 

@@ -118,5 +118,5 @@ def test_labels_arrive_while_they_are_computed_and_the_table_holds_them(browser,
         assert any(label in texts[0] for label in ("none", "unknown"))
         assert app.json("api/recordings")["state"]["done"] == 3
         page.close()
-    table = (tmp_path / "labels.csv").read_text().splitlines()
+    table = tmp_path.with_name(f"{tmp_path.name}-labels.csv").read_text().splitlines()
     assert len(table) == 4

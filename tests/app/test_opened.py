@@ -25,6 +25,12 @@ def test_a_folder_has_its_recordings_and_the_table_in_it(folder):
         opened.job(2)
 
 
+def test_nothing_new_is_written_among_the_recordings(tmp_path):
+    fresh = write_folder(tmp_path / "fresh", ("a.wav",))
+    assert open_paths([fresh]).table == tmp_path / "fresh-labels.csv"
+    assert open_paths([fresh / "a.wav"]).table == tmp_path / "fresh-labels.csv"
+
+
 def test_a_table_brings_the_recordings_beside_it_and_is_the_one_that_is_corrected(folder):
     (folder / "labels.csv").rename(folder / "checked.csv")
     opened = open_paths([folder / "checked.csv"])
