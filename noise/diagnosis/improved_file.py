@@ -9,14 +9,11 @@ from typing import TYPE_CHECKING
 
 from models.change import multiplied
 from models.errors import ParameterError
-from models.rig import support_name
 from models.rig_file import changed_rig_text, read_toml
 from noise.diagnosis.text.words import cause_of, joined, number, parameter_name
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from models.transfer_functions.measured import MeasuredResponse
-    from models.transfer_functions.transfer_function import TransferFunction
     from noise.diagnosis.outcome import Improvement
 
 
@@ -27,14 +24,13 @@ def improved_sentence(improvement: Improvement) -> str:
     --------
     >>> from models.rig_file import load_material_rig
     >>> from noise.diagnosis.outcome import Improvement
-    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), (),
+    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (),
     ...                     {"damping": 0.02}, (),
     ...                     ("run01.wav",), ("run02.wav",), 2.4, 1.1)
     >>> improved_sentence(found)
     'With damping 3.0 % higher the gap falls from 2.4 to 1.1 floors on held-out recordings.'
     """
     parts = [cause_of(spec.name).name for spec in improvement.effects]
-    parts += [f"{cause_of(name).name} in its responses" for name in improvement.in_responses]
     parts += [
         f"{parameter_name(name)} {abs(100.0 * (factor - 1.0)):.1f} % "
         f"{'higher' if factor > 1.0 else 'lower'}"
@@ -67,7 +63,7 @@ def improved_commands(
     >>> from pathlib import Path
     >>> from models.rig_file import load_material_rig
     >>> from noise.diagnosis.outcome import Improvement
-    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), (), {}, (), (), (),
+    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), {}, (), (), (),
     ...                     2.4, 1.1)
     >>> improved_commands(found, "out/improved.toml", [Path("recordings")], None)[0]
     'bushing-noise diagnose recordings --rig out/improved.toml'
@@ -84,9 +80,6 @@ def improved_commands(
 
 
 NAME = "improved.toml"
-RESPONSES = "improved_"
-"""What names of files of its responses begin with."""
-
 _WIDTH = 96
 
 
@@ -114,7 +107,7 @@ def improved_text(
     --------
     >>> from models.rig_file import load_material_rig
     >>> from noise.diagnosis.outcome import Improvement
-    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), (),
+    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (),
     ...                     {"damping": 0.02}, (),
     ...                     ("run01.wav",), ("run02.wav",), 2.4, 1.1)
     >>> print(improved_text(found, "PDMS").partition("base")[2])
@@ -134,36 +127,7 @@ def improved_text(
         improvement.rig.effects,
         {name: float(f"{spread:.2g}") for name, spread in improvement.spread.items()},
         _head(improvement),
-        [
-            {"support_stiffness_Nm_rad": support_name(entry.support_stiffness)}
-            | {key: name for name, (key, _) in _responses_of(entry).items()}
-            for entry in _responses(improvement)
-        ],
     )
-
-
-def response_files(improvement: Improvement) -> dict[str, TransferFunction]:
-    """Return the measured responses of an improved rig, by the names of their files."""
-    return {
-        name: transfer
-        for entry in _responses(improvement)
-        for name, (_, transfer) in _responses_of(entry).items()
-    }
-
-
-def _responses(improvement: Improvement) -> Sequence[MeasuredResponse]:
-    return improvement.rig.measured if improvement.in_responses else ()
-
-
-def _responses_of(entry: MeasuredResponse) -> dict[str, tuple[str, TransferFunction]]:
-    keys = ("torque_to_acceleration", "torque_to_pressure")
-    given = ((key, getattr(entry, key)) for key in keys)
-    support = support_name(entry.support_stiffness)
-    return {
-        f"{RESPONSES}{key}_{support}.npz": (key, transfer)
-        for key, transfer in given
-        if transfer is not None
-    }
 
 
 def own_effects(improvement: Improvement) -> tuple[str, ...]:
@@ -192,11 +156,6 @@ def _head(improvement: Improvement) -> list[str]:
     if improvement.undetermined:
         paragraphs.append(
             "The recordings say next to nothing of " + ", ".join(improvement.undetermined) + "."
-        )
-    if improvement.in_responses:
-        paragraphs.append(
-            f"Under [[measured_response]] the rig's own have {', '.join(improvement.in_responses)} "
-            "in them, as estimated from the recordings."
         )
     if own:
         paragraphs.append(

@@ -216,8 +216,6 @@ class Improvement:
         On parameters of the rig that was diagnosed [-].
     effects : tuple of LawSpec
         That it gets besides those it has.
-    in_responses : tuple of str
-        Effects that are in its measured responses.
     spread : mapping of str to float
         Relative standard deviation of each fitted number, by the names that ``[tolerances]`` has
         [-].
@@ -232,7 +230,6 @@ class Improvement:
     rig: Rig
     factors: Mapping[str, float]
     effects: tuple[LawSpec, ...]
-    in_responses: tuple[str, ...]
     spread: Mapping[str, float]
     undetermined: tuple[str, ...]
     fitted_to: tuple[str, ...]

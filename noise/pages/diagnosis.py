@@ -15,12 +15,11 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from models.transfer_functions.files import write_transfer_function
 from noise.base.files import atomic
 from noise.diagnosis.fit.closing import CLOSABLE
 from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.gap.signature import KINDS
-from noise.diagnosis.improved_file import NAME, RESPONSES, improved_sentence, response_files
+from noise.diagnosis.improved_file import NAME, improved_sentence
 from noise.diagnosis.outcome import (
     SURE,
     Agreement,
@@ -84,8 +83,6 @@ def write_diagnosis(
     """
     content = as_json(diagnosis, NAME if improved is not None else None)
     data = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
-    found = diagnosis.improvement if improved is not None else None
-    responses = {} if found is None else response_files(found)
     html = _html(diagnosis, commands if improved is not None else ())
     with atomic(folder / "diagnosis.json") as json_part, ExitStack() as files:
         # Names of files may hold what no UTF-8 can.
@@ -93,14 +90,9 @@ def write_diagnosis(
         if improved is not None:
             rig_part = files.enter_context(atomic(folder / NAME))
             rig_part.write_bytes(improved.encode("utf-8", "backslashreplace"))
-        for name, transfer in responses.items():
-            write_transfer_function(files.enter_context(atomic(folder / name)), transfer)
         write_page(folder / "report.html", html)
         if improved is None:
             (folder / NAME).unlink(missing_ok=True)
-        for older in folder.glob(f"{RESPONSES}torque_to_*.npz"):
-            if older.name not in responses:
-                older.unlink()
 
 
 def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:

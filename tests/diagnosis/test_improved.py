@@ -172,9 +172,7 @@ def test_an_improved_rig_file_reads_as_the_rig_it_was_written_of(
     effect = LawSpec("partial_slip", {"form": "mindlin", "share": float(f"{share:.6g}")})
     changed = changed_rig(rig, multiplied(rig, {}, factors), "rig")
     made = replace(changed, effects=(*rig.effects, effect))
-    found = Improvement(
-        made, factors, (effect,), (), {"damping": 0.1}, (), ("a",), ("b",), 3.0, 1.0
-    )
+    found = Improvement(made, factors, (effect,), {"damping": 0.1}, (), ("a",), ("b",), 3.0, 1.0)
     path = tmp_path_factory.mktemp("rig") / "improved.toml"
     path.write_text(improved_text(found, "fluorocarbon-thesis"))
     assert load_rig(path) == made
@@ -218,7 +216,7 @@ def test_a_base_is_named_from_where_the_file_lies(tmp_path):
 
 def test_effects_of_the_users_own_are_said_to_need_their_file():
     rig = replace(load_material_rig("PDMS"), effects=(LawSpec("rectifier", {"share": 0.8}),))
-    found = Improvement(rig, {}, rig.effects, (), {}, (), ("a",), ("b",), 3.0, 1.0)
+    found = Improvement(rig, {}, rig.effects, {}, (), ("a",), ("b",), 3.0, 1.0)
     assert "--effects FILE.py" in improved_text(found, "PDMS")
     calls = improved_commands(found, "improved.toml", [Path("data")], Path("mine.py"))
     assert calls == ["bushing-noise diagnose data --rig improved.toml --effects mine.py"]

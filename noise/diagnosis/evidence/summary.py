@@ -41,7 +41,11 @@ from noise.diagnosis.evidence.reconstruction import (
     shaft_speed,
 )
 from noise.diagnosis.simulated.repeats import condition_key, nominal_repeats
-from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict_outputs
+from noise.diagnosis.simulated.transfer_functions import (
+    TransferFunctionCache,
+    predict,
+    predict_outputs,
+)
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
 from sim.effects.effect import Effect
@@ -472,6 +476,34 @@ def summary(
         numbers |= _named(kind, more) | _named(kind, hum_summary(residuals[kind], rate))
     if len(residuals) == len(_OUTPUTS):
         numbers |= common_residual(residuals["acceleration"], residuals["pressure"], rate)
+    return numbers
+
+
+def path_numbers(
+    recording: Recording, transfer_functions: Mapping[str, TransferFunction]
+) -> Numbers:
+    """Compare acceleration and sound with what the torque should have made of them.
+
+    Parameters
+    ----------
+    recording : Recording
+    transfer_functions : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them.
+
+    Returns
+    -------
+    dict of str to float
+        Those numbers of `summary` that need nothing else [unit of the number].
+    """
+    numbers: Numbers = {}
+    row = recording.first("torque")
+    for kind in _OUTPUTS if row is not None else ():
+        if (output := recording.first(kind)) is not None:
+            expected = predict(recording.samples[row], recording.rate, transfer_functions[kind])
+            found, _ = path_summary(
+                expected, recording.samples[output], recording.rate, np.empty(0)
+            )
+            numbers |= _named(kind, found)
     return numbers
 
 

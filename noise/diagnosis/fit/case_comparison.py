@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import LawSpec, Rig
-from noise.diagnosis.evidence.summary import CaseTable, aligned, same_channels, summary
+from noise.diagnosis.evidence.summary import CaseTable, aligned, path_numbers, same_channels
 from noise.diagnosis.gap.distance import Gap, Reference, group_costs
 from noise.diagnosis.gap.floor import references_of, repeat_gap
 from noise.diagnosis.gap.signature import signature
@@ -266,12 +266,13 @@ class CaseComparison:
         return self._signed[key]
 
     def residuals(self, model: Model, chosen: Sequence[int]) -> NDArray[np.float64]:
-        """Differences of the numbers of each chosen recording from a model's, saturating.
+        """Differences of how each chosen recording follows from its torque from a model's.
 
         Returns
         -------
         ndarray, shape (n_chosen, n_names)
-            [-]; their mean square is 1 where all numbers are hopelessly off.
+            Saturating [-]; their mean square is 1 where all numbers are hopelessly off. None where
+            there is no torque, or nothing that follows from it.
         """
         measured, _, scatter = aligned(self.table, self.names)
         rows = []
@@ -279,16 +280,14 @@ class CaseComparison:
             template = self.recordings[i]
             key = (repr(model), condition_key(template))
             if key not in self._numbers:
-                run = same_channels(
-                    self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0, 0.0)), template
+                run = self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0, 0.0))
+                found = path_numbers(
+                    same_channels(run, template), self.runs.transfer_functions.whole(template)
                 )
-                found = summary(run, self.rig, self.runs.transfer_functions.whole(template))
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])
             scale = np.sqrt(np.nan_to_num(scatter[i]) ** 2 + self.scale**2)
             z = (measured[i] - self._numbers[key]) / scale
-            undefined = np.isfinite(measured[i]) != np.isfinite(self._numbers[key])
-            z = np.where(undefined, _SATURATION, np.nan_to_num(z))
-            rows.append(np.tanh(z / _SATURATION))
+            rows.append(np.tanh(np.nan_to_num(z)[np.isfinite(self._numbers[key])] / _SATURATION))
         return np.array(rows)
 
     def _repeats(self, model: Model, template: Recording, n: int) -> NDArray[np.float64]:

@@ -26,7 +26,7 @@ from models.errors import ParameterError
 from models.rig import LawSpec
 from noise.diagnosis.cases.strengths import drawn_effect
 from noise.diagnosis.fit.case_comparison import CaseComparison
-from noise.diagnosis.fit.estimated_forms import estimated_forms
+from noise.diagnosis.fit.estimated_forms import ESTIMATED, estimated_forms
 from noise.diagnosis.simulated.model_runs import OFFSETS, Model
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect
@@ -52,6 +52,10 @@ _DRAWN = 18
 
 _LOOKED, _PROMISING = 2, 6
 """Recordings that candidates are looked at with, and candidates looked at more closely."""
+
+_WORTH = 0.95
+"""Share of the cost that a further effect must come below at a look to be searched about; one that
+is to be named has to close about half of what is left (`noise.diagnosis.fit.decide`); assumed."""
 
 _SETTLING = (1.0, 0.7, 1.4)
 """Factors on the strength, tried last."""
@@ -343,14 +347,24 @@ def fit_effects(
     """
     few = different(comparison, chosen)
     best = begun or Model()
-    there = {spec.name for spec in best.effects}
+    there, worth = {spec.name for spec in best.effects}, True
     for name in (name for name in names if name not in there):
         candidates = stated_candidates(comparison.library[name], seed)
-        if not stated:
-            forms = estimated_forms(comparison, chosen, name)
+        if name == ESTIMATED and not stated:
+            forms = estimated_forms(comparison, chosen)
             comparison.forms.update({(name, form.forms[0]): form for form in forms})
             candidates += [LawSpec(name, {"form": form.forms[0], "amount": 1.0}) for form in forms]
-        best = _added(comparison, few, best, start.offsets, candidates)
+        looked = _looked(comparison, few, best, candidates)
+        now = cost_of(comparison, few[:_LOOKED], best, single_run=True)
+        worth = not best.effects or not _WORTH * now < looked[0][0] < math.inf
+        if not worth:
+            best = looked[0][1]
+            continue
+        before = _WORTH * cost_of(comparison, few, best) if best.effects else math.inf
+        best = _added(comparison, few, best, start.offsets, looked)
+        worth = cost_of(comparison, few, best) <= before
+    if not worth:  # there is nothing that a search could make close more
+        return Fitted(best, comparison, few)
     if len(names) > 1:  # what the first had to stand for is the others' now
         for place in range(len(names)):
             numbers = _numbers(comparison, best, place)
@@ -408,20 +422,23 @@ def stated_candidates(effect: Effect, seed: int) -> list[LawSpec]:
     ]
 
 
+def _looked(
+    comparison: CaseComparison, few: Sequence[int], model: Model, candidates: Sequence[LawSpec]
+) -> list[tuple[float, Model]]:
+    """Look at a model with each candidate of one effect more; cost and model, the least first."""
+    models = [replace(model, effects=(*model.effects, spec)) for spec in candidates]
+    looked = [(cost_of(comparison, few[:_LOOKED], m, single_run=True), m) for m in models]
+    return sorted(looked, key=lambda pair: pair[0])
+
+
 def _added(
     comparison: CaseComparison,
     few: Sequence[int],
     model: Model,
     offsets: tuple[float, ...],
-    candidates: Sequence[LawSpec],
+    looked: Sequence[tuple[float, Model]],
 ) -> Model:
-    """Add the candidates of one effect; return the best model that comes of it."""
-    looked = [
-        (cost_of(comparison, few[:_LOOKED], one, single_run=True), one)
-        for spec in candidates
-        for one in [replace(model, effects=(*model.effects, spec))]
-    ]
-    looked.sort(key=lambda pair: pair[0])
+    """Search about the best of models with one effect more, as `_looked` sorts them."""
     # The effect may be what the parameters had to stand for, or one beside them.
     starts = []
     for x in dict.fromkeys((model.offsets, offsets)):

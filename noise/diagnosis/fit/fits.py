@@ -147,8 +147,8 @@ def add_fits(
     tell("looking for an improved rig")
     improvement = improved_rig(
         case, comparison, fits.fitted_to, held,
-        [fits.alone.model, *([offered.fitted.model] if offered is not None else [])], posterior,
-        seed,
+        fits.alone.model if fit is None else None,
+        None if offered is None else offered.fitted.model, posterior, seed,
     )  # fmt: skip
     shown = simulated_by(comparison, best.model)
     if improvement is not None:  # the very rig that is offered
