@@ -205,7 +205,6 @@ def simulate_blocks(
         library=library,
         rng=rng,
         settling=settling,
-        lasting=seconds + plan.n_settling / plan.rate,
         ahead=_MARGIN if forced else 0.0,
         back=_MARGIN,
         watch=watch,
@@ -242,8 +241,6 @@ class BlockEngine:
         Channels that are asked for, of `KINDS`.
     library, rng, settling
         As for `sim.run.simulate`.
-    lasting : float
-        How long the shaft turns [s], for its top speed.
     ahead, back : float
         Of the motion after and before a block, that effects which make a force see [s].
     paths : callable, optional
@@ -280,7 +277,6 @@ class BlockEngine:
         library: Mapping[str, Effect] | None = None,
         rng: np.random.Generator | None = None,
         settling: float | None = None,
-        lasting: float = math.inf,
         ahead: float = LOOKAHEAD,
         back: float = _SEEN,
         paths: PathsOf | None = None,
@@ -289,7 +285,7 @@ class BlockEngine:
         self._acquisition = (acquisition or Acquisition(48e3)).over(setting.rig.sensors)
         factor = SIMULATION.decimation(self._acquisition.rate)
         self._rate, self._n, self._block = factor * self._acquisition.rate, n, factor * n
-        self._kinds, self._library, self._lasting, self._watch = kinds, library, lasting, watch
+        self._kinds, self._library, self._watch = kinds, library, watch
         noise_rng, self._effect_rng = (rng or np.random.default_rng(0)).spawn(2)
         self._noise = dict(zip(KINDS, noise_rng.spawn(len(KINDS)), strict=True))
         self._chain_rng, block_rng = self._effect_rng.spawn(2)
@@ -471,8 +467,7 @@ class BlockEngine:
         with blaming_the_unusual(plan.rig):
             return MotionSolver(
                 plan.rig, plan.interference, plan.support_stiffness, plan.rate, plan.effects,
-                deepcopy(self._effect_rng), start_speed=start_speed,
-                top_speed=plan.shaft.top_speed(self._lasting), tolerance=None,
+                deepcopy(self._effect_rng), start_speed=start_speed, tolerance=None,
             )  # fmt: skip
 
 

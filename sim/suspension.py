@@ -36,7 +36,7 @@ from sim.contact import CRITICAL, KINETIC
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, Effect, activated
 from sim.friction import friction_law
-from sim.motion import Motion, blaming_the_unusual, contact_hooks, refuse_fast
+from sim.motion import Motion, blaming_the_unusual, contact_hooks
 from sim.parameters import resolve
 from sim.run import plan_run, record_motions
 from sim.shaft import ShaftMotion
@@ -307,8 +307,6 @@ def solve_chain(
         )
     system, fit = lumped_bushing(rig, interference, support_stiffness), rig.fit(interference)
     values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
-    top = float(np.abs(speed).max())
-    refuse_fast(system, rig, fit.kinetic_torque, values, top)
     rest, torque_limits = law.state(), (fit.critical_torque, fit.kinetic_torque)
     places = range(chain.bushings.size)
     hooks = [contact_hooks(effects, stream) for stream in rng.spawn(len(places))]

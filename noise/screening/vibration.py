@@ -221,7 +221,7 @@ def running(
 
 def _continued(rig: Rig, at: Condition, growth: float, start: float, longest: float) -> Course:
     """Let a rig vibrate at a speed [rad/s], and bring it to that of a condition."""
-    solver = _solver(rig, replace(at, speed=start), top_speed=max(start, at.speed))
+    solver = _solver(rig, replace(at, speed=start))
     n, beyond = round(_STARTED * RATE), steps_beyond(RATE)
     ramp = np.linspace(start, at.speed, round(_RAMP * RATE))
     drive = np.concatenate([np.full(n, start), ramp, np.full(beyond, float(at.speed))])
@@ -240,12 +240,11 @@ def _unstable_speed(rig: Rig, at: Condition) -> float | None:
     return float(speed[growth.argmax()]) if growth.max() > 0.0 else None
 
 
-def _solver(rig: Rig, at: Condition, *, top_speed: float | None = None) -> MotionSolver:
+def _solver(rig: Rig, at: Condition) -> MotionSolver:
     rig = at_temperature(rig, at.temperature)
     return MotionSolver(
         rig, at.interference, at.support_stiffness, RATE, activated(rig.effects, EFFECTS),
-        np.random.default_rng(0), start_speed=at.speed, top_speed=top_speed or at.speed,
-        tolerance=_TOLERANCE,
+        np.random.default_rng(0), start_speed=at.speed, tolerance=_TOLERANCE,
     )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from joblib import Parallel, delayed
 from numpy.typing import ArrayLike, NDArray
 
-from models.condition import Condition
+from models.condition import KnownCondition
 from models.drawing import CURVES, axes_or_new
 from models.errors import ParameterError
 from models.rig import Rig
@@ -46,15 +46,15 @@ class Sweep:
 
     Parameters
     ----------
-    conditions : ndarray of Condition, shape (...)
-        In SI units, as `Condition` has them.
+    conditions : ndarray of KnownCondition, shape (...)
+        In SI units, as `KnownCondition` has them.
     features : dict of str to ndarray, shape (...)
         By the names of `FEATURES`, in their units.
 
     Examples
     --------
     >>> rates = np.array([66.0, 199.0])
-    >>> at = np.array([Condition(speed=1.0), Condition(speed=2.5)])
+    >>> at = np.array([KnownCondition(v, 2.79e-4, 2214.0) for v in (1.0, 2.5)])
     >>> Sweep(at, {"slip_frequency": rates})["slip_frequency"]
     array([ 66., 199.])
     """
@@ -164,38 +164,36 @@ def sweep(
     array([[153.,  nan],
            [150.,  nan]])
     """
-    rigs = np.empty(1 if isinstance(rig, Rig) else len(rig), dtype=object)
-    rigs[:] = [rig] if isinstance(rig, Rig) else rig
     numbers = [np.asarray(x, np.float64) for x in (speed, interference, support_stiffness)]
+    rigs = np.array(rig if isinstance(rig, Rig) else [*rig], dtype=object)
     try:
-        columns = np.broadcast_arrays(rigs[0] if rigs.size == 1 else rigs, *numbers)
+        columns = np.broadcast_arrays(rigs, *numbers)
     except ValueError as error:
         raise ParameterError(f"sweep: the conditions do not fit together: {error}") from None
-    if not np.isfinite(columns[1].astype(float)).all():
+    if not np.isfinite(numbers[0]).all():
         raise ParameterError("sweep: speeds must be finite numbers [rad/s]")
-    runs = list(zip(*(column.ravel() for column in columns), strict=True))
+    runs = [
+        (one, KnownCondition(speed, fit, support, one.material))
+        for one, speed, fit, support in zip(*(x.ravel().tolist() for x in columns), strict=True)
+    ]
 
-    def features(run: tuple[Any, ...], stream: np.random.SeedSequence) -> NDArray[np.float64]:
+    def features(
+        one: Rig, at: KnownCondition, stream: np.random.SeedSequence
+    ) -> NDArray[np.float64]:
         motion = simulate_motion(
-            run[0], ConstantSpeed(float(run[1])), interference=float(run[2]),
-            support_stiffness=float(run[3]), seconds=settling + seconds, rate=rate,
-            effects=activated(run[0].effects, library), rng=np.random.default_rng(stream),
+            one, ConstantSpeed(at.speed), interference=at.interference,
+            support_stiffness=at.support_stiffness, seconds=settling + seconds, rate=rate,
+            effects=activated(one.effects, library), rng=np.random.default_rng(stream),
         )  # fmt: skip
         return motion_features(motion.since(round(settling * rate)))
 
     streams = np.random.SeedSequence(seed).spawn(len(runs))
     rows = Parallel(n_jobs=workers, prefer="threads")(
-        delayed(features)(*each) for each in zip(runs, streams, strict=True)
+        delayed(features)(*run, stream) for run, stream in zip(runs, streams, strict=True)
     )
     found, shape = np.array(rows).reshape(len(runs), len(FEATURES)), columns[0].shape
-    conditions = np.empty(len(runs), dtype=object)
-    conditions[:] = [
-        Condition(speed=float(v), interference=float(fit), support_stiffness=float(support),
-                  material=one.material)
-        for one, v, fit, support in runs
-    ]  # fmt: skip
     return Sweep(
-        conditions.reshape(shape),
+        np.array([at for _, at in runs], dtype=object).reshape(shape),
         {name: found[:, i].reshape(shape) for i, name in enumerate(FEATURES)},
     )
 

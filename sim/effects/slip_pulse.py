@@ -10,64 +10,19 @@ part that has come loose does with its energy, through `amplitude` at the drop o
 makes none.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
 
 import numpy as np
-from numba import njit
+from numpy.typing import NDArray
 
-from models.compilation import COMPILED
 from sim.effects.effect import Effect, Stage
+from sim.motion import Motion
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from numpy.typing import NDArray
-
-    from sim.motion import Motion
 
 _REFERENCE_DROP = 6.94
 """T_crit - T_kin at 0.381 mm, from the peak sliding speed of Figure 6.7 [Nm]."""
-
-
-@njit(cache=True, **COMPILED)
-def _drops(torque, least, where, size):
-    """Fill in index of the steepest fall and size of each fall of more than `least`."""
-    n = torque.size
-    count = 0
-    falling = False
-    extreme = torque[0]
-    steepest, at = 0.0, 0
-    top = torque[0]
-    for i in range(1, n):
-        change = torque[i] - torque[i - 1]
-        if falling:
-            if change < steepest:
-                steepest, at = change, i
-            if torque[i] < extreme:
-                extreme = torque[i]
-            elif torque[i] > extreme + least:
-                where[count] = at
-                size[count] = top - extreme
-                count += 1
-                falling = False
-                extreme = torque[i]
-                steepest = 0.0
-        elif torque[i] >= extreme:
-            extreme = torque[i]
-            steepest, at = 0.0, i
-        else:
-            if change < steepest:
-                steepest, at = change, i
-            if torque[i] < extreme - least:
-                falling = True
-                top = extreme
-                extreme = torque[i]
-    return count
 
 
 def torque_drops(
@@ -94,10 +49,24 @@ def torque_drops(
     >>> torque_drops(np.array([0.0, 1.0, 2.0, 0.5, 0.4, 1.5, 2.0]), 1.0)
     (array([3]), array([1.6]))
     """
-    most = torque.size // 2 + 1
-    where, size = np.empty(most, dtype=np.int64), np.empty(most)
-    count = _drops(np.ascontiguousarray(torque), float(least), where, size)
-    return where[:count], size[:count]
+    change = np.diff(torque)
+    moves = np.flatnonzero(change)
+    rises = change[moves] > 0.0
+    points = np.append(moves[1:][rises[1:] != rises[:-1]], torque.size - 1)  # of turning, and last
+    falls, sizes = list[int](), list[float]()
+    falling, start, top, extreme = False, 0, 0.0, float(torque[0])
+    for i, value in zip(points.tolist(), torque[points].tolist(), strict=True):
+        if not falling and value >= extreme:
+            start, extreme = i, value
+        elif not falling and value < extreme - least:
+            falling, top, extreme = True, extreme, value
+        elif falling and value < extreme:
+            extreme = value
+        elif falling and value > extreme + least:
+            falls.append(start + 1 + int(np.argmin(change[start:i])))
+            sizes.append(top - extreme)
+            falling, start, extreme = False, i, value
+    return np.array(falls, dtype=np.int64), np.array(sizes)
 
 
 def _force(motion: Motion, form: str, values: Mapping[str, float]) -> NDArray[np.float64]:

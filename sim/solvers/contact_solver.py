@@ -227,8 +227,9 @@ class ContactRun:
         )  # fmt: skip
         if self._carried[at.DONE] < 0.0:
             raise ParameterError(
-                f"{self._name}: the torque changes so fast with speed, shear or time that steps "
-                f"of {SHORTEST_STEP:g} s cannot follow; make it less steep"
+                f"{self._name}: the motion changes so fast that steps of {SHORTEST_STEP:g} s "
+                "cannot follow; make the torque less steep with speed, shear and time, and parts "
+                "softer, heavier or less damped"
             )
         return states.T, direction
 
