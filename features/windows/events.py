@@ -76,30 +76,31 @@ def events_within(
     >>> which.tolist(), (begin / RATE).round(2).tolist(), (end / RATE).round(2).tolist()
     ([3, 4], [1.12, 1.12], [1.3, 1.3])
     """
+    first = np.round(start * FRAME_RATE).astype(np.int64)
     silence = np.full((_AFTER + _OF_WINDOW, bands.shape[1]), -200.0, dtype=np.float32)
-    around = np.concatenate([silence[:_BEFORE], bands, silence])
+    around = np.concatenate([silence[:_BEFORE], bands, silence]).T
+    size = _BEFORE + _AFTER
+    context = np.lib.stride_tricks.sliding_window_view(around, size, axis=1)[:, first]
+    inside = slice(_BEFORE, _BEFORE + _OF_WINDOW)
+    rank = int(_FLOOR * (size - 1))
+    floor = np.partition(context, rank, axis=2)[:, :, rank]
+    floor = np.maximum(floor, context[:, :, inside].max(axis=(0, 2)) - _RANGE_DB)
+    above = (context - floor[:, :, None]).max(axis=0)
+    highest = above[:, inside].max(axis=1)
     which, begin, end = [], [], []
-    for w, first in enumerate(np.round(start * FRAME_RATE).astype(int).tolist()):
-        inside = slice(_BEFORE, _BEFORE + min(_OF_WINDOW, len(bands) - first))
-        context = around[first : first + _BEFORE + _AFTER]
-        rank = int(_FLOOR * (len(context) - 1))
-        floor = np.partition(context, rank, axis=0)[rank]
-        floor = np.maximum(floor, context[inside].max(initial=-200.0) - _RANGE_DB)
-        above = (context - floor).max(axis=1)
-        highest = float(above[inside].max(initial=0.0))
-        if highest < _RISE_DB:
-            continue
-        at = np.flatnonzero(above >= max(_RISE_DB, highest - _DROP_DB))
+    for w in np.flatnonzero(highest >= _RISE_DB).tolist():
+        at = np.flatnonzero(above[w] >= max(_RISE_DB, highest[w] - _DROP_DB))
         gaps = np.flatnonzero(np.diff(at) > _GAP)
         ends = np.stack([at[np.append(0, gaps + 1)], at[np.append(gaps, at.size - 1)]], axis=1)
-        shared = np.clip(ends, inside.start, inside.stop - 1)
+        last = min(inside.stop, _BEFORE + len(bands) - int(first[w])) - 1
+        shared = np.clip(ends, inside.start, last)
         longest = int(np.ptp(shared, axis=1).argmax())
         if _LEAST <= np.ptp(shared[longest]) <= _MOST:
             # All of it that fills a window, with the part in this one.
             a = max(int(ends[longest, 0]), int(shared[longest, 1]) - _OF_WINDOW)
             which.append(w)
-            begin.append(first - _BEFORE + a)
-            end.append(first - _BEFORE + min(int(ends[longest, 1]), a + _OF_WINDOW))
+            begin.append(first[w] - _BEFORE + a)
+            end.append(first[w] - _BEFORE + min(int(ends[longest, 1]), a + _OF_WINDOW))
     hop = RATE // FRAME_RATE
     return (
         np.array(which, dtype=np.intp),
@@ -114,7 +115,7 @@ def prolonged(
     end: NDArray[np.int64],
     length: int,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-    """Mirror events at their ends until they are as long as a window, one after the other.
+    """Mirror events at their ends until they are as long as a window.
 
     Parameters
     ----------
@@ -127,16 +128,17 @@ def prolonged(
 
     Returns
     -------
-    tuple of three ndarrays of float32, shape (n_samples,), (n_samples,) and (n_frames, n_bands)
-        The same of `n_events` windows in a row, in the unit of the parts, such as [Pa].
+    sound, high, top : ndarray of float32
+        Of shape (n_events, length) twice and (n_events, n_frames, 2), in the unit of the parts,
+        such as [Pa].
 
     Examples
     --------
     >>> tone = np.cos(np.pi / 4 * np.arange(8000)).astype(np.float32)
     >>> top = np.zeros((50, 2), dtype=np.float32)
     >>> longer = prolonged((tone, tone, top), np.array([317]), np.array([1700]), 8000)
-    >>> np.allclose(longer[0], tone), longer[2].shape
-    (True, (50, 2))
+    >>> np.allclose(longer[0][0], tone), longer[2].shape
+    (True, (1, 50, 2))
     """
     hop = RATE // FRAME_RATE
     # A tone that is mirrored at a peak goes on without a jump of its phase.
@@ -146,18 +148,18 @@ def prolonged(
     ]
     begin, end = np.array(peaks, dtype=np.int64).reshape(-1, 2).T
     first = begin // hop
-    samples = begin, end, length
-    frames = first, np.maximum(end // hop, first + 2), length // hop
-    sound, high, top = (
-        np.concatenate(
-            [
-                part[np.pad(np.arange(a, min(b, len(part))), (0, n), mode="reflect")[:n]]
-                for a, b in zip(*edges, strict=True)
-            ]
-        )
-        for part, (*edges, n) in zip(parts, (samples, samples, frames), strict=True)
-    )
-    return sound, high, top
+    sound, high = (part[_mirrored(begin, end, length, len(part))] for part in parts[:2])
+    last = np.maximum(end // hop, first + 2)
+    return sound, high, parts[2][_mirrored(first, last, length // hop, len(parts[2]))]
+
+
+def _mirrored(
+    begin: NDArray[np.int64], end: NDArray[np.int64], length: int, n: int
+) -> NDArray[np.int64]:
+    """Return indices that run to and fro between `begin` and `end` or `n`, a row an event."""
+    period = np.maximum(2 * (np.minimum(end, n) - begin - 1), 1)[:, None]
+    step = np.arange(length) % period
+    return np.asarray(begin[:, None] + np.minimum(step, period - step))
 
 
 def _highest(samples: NDArray[np.float32]) -> int:

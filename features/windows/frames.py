@@ -94,7 +94,7 @@ def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
 
     Parameters
     ----------
-    sound : ndarray of float32, shape (n,)
+    sound : ndarray of float32, shape (n,) or (n_sounds, n)
         At `RATE`, in any [unit].
     limit : float
         Frequency up to which it is described [Hz].
@@ -102,6 +102,7 @@ def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
     Returns
     -------
     Frames
+        Of one sound after the other.
 
     Examples
     --------
@@ -112,7 +113,9 @@ def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
     """
     if sound.size < FRAME:
         sound = np.concatenate([sound, np.zeros(FRAME - sound.size, dtype=np.float32)])
-    frames = np.lib.stride_tricks.sliding_window_view(sound, FRAME)[::HOP]
+    frames = np.lib.stride_tricks.sliding_window_view(sound, FRAME, axis=-1)[..., ::HOP, :]
+    each = frames.shape[-2]
+    frames = frames.reshape(-1, FRAME)
     last = max(_FIRST_BIN + 1, min(_EDGES[-1], int(limit / _SPACING) + 1))
     values = np.empty((len(frames), len(FRAME_COLUMNS)), dtype=np.float32)
     bands = np.empty((len(frames), BANDS), dtype=np.float32)
@@ -122,6 +125,10 @@ def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
         part = slice(first, first + _AT_ONCE)
         found, of_bands = _described(frames[first - lead : first + _AT_ONCE], last)
         values[part], bands[part] = found[lead:], of_bands[lead:]
+    if each > 1:
+        # The first has none before it.
+        flux = values[:, FRAME_COLUMNS.index("flux")]
+        flux[::each] = flux[1::each]
     np.log10(bands, out=bands)
     bands *= 10.0
     return Frames(values, bands)
@@ -191,8 +198,6 @@ def _describe(power, magnitude, correlation, last, values) -> None:
         values[i, 6] = 1.0 - dot / np.sqrt(total * before) if before > 0.0 else 0.0
         values[i, 7] = OCTAVES * np.log(RATE / (100.0 * period)) if period > 0 else np.nan
         values[i, 8] = best / r[0]
-    if power.shape[0] > 1:
-        values[0, 6] = values[1, 6]
 
 
 @njit(fastmath={"reassoc", "contract", "nsz", "nnan"}, cache=True, **PART)

@@ -32,6 +32,9 @@ _LENGTH = 4096
 _LAGS = (6, 900)
 """Between them a period of blows is sought: 4.4 to 667 a second."""
 
+_LONGEST = 2000
+"""Samples of a whole window."""
+
 _LEAST_SAMPLES = 32
 """Shorter windows are not described."""
 
@@ -64,7 +67,7 @@ RHYTHM_NAMES = tuple(feature.name for feature in RHYTHM_FEATURES)
 
 
 def envelope(signal: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Power of a signal, averaged over a quarter of a millisecond.
+    """Power of a signal, averaged over a quarter of a millisecond; rows follow one another.
 
     Examples
     --------
@@ -72,7 +75,7 @@ def envelope(signal: NDArray[np.float32]) -> NDArray[np.float32]:
     [1.0, 1.0]
     """
     power = np.empty(signal.size // _STEP, dtype=np.float32)
-    _mean_squares(np.ascontiguousarray(signal), power)
+    _mean_squares(np.ravel(signal), power)
     return power
 
 
@@ -95,7 +98,7 @@ def rhythm_features(
     power : ndarray of float32, shape (n,)
         As `envelope` gives it.
     first, last : ndarray of int, shape (n_windows,)
-        Each window reaches from `first` up to `last`, no farther than 2048.
+        Each window reaches from `first` up to `last`, no farther than 2000.
 
     Returns
     -------
@@ -111,8 +114,7 @@ def rhythm_features(
     >>> round(10.0 * 2.0 ** named["period_rate"])
     50
     """
-    size = int((last - first).max(initial=0))
-    rows = np.zeros((len(first), max(size, 1)), dtype=np.float32)
+    rows = np.zeros((len(first), max(1, min(power.size, _LONGEST))), dtype=np.float32)
     varying = np.zeros((len(first), _LENGTH), dtype=np.float32)
     n, mean, spread = (last - first).astype(np.int64), np.empty(len(rows)), np.empty(len(rows))
     _gather(power, first, rows, n, varying, mean, spread)
@@ -183,8 +185,10 @@ def _smooth(rows, n, smooth, average, fourth) -> None:
 
 def _level(smooth: NDArray[np.float32], peak: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return levels re the peak, no lower than -80 dB."""
-    share = np.maximum((smooth / peak[:, None]).astype(np.float64), 1e-8)
-    return (10.0 * np.log10(share)).astype(np.float32)
+    share = np.maximum(smooth / peak[:, None], np.float32(1e-8))
+    np.log(share, out=share)
+    share *= np.float32(10.0 / np.log(10.0))
+    return share
 
 
 def _loudest_tenth(smooth: NDArray[np.float32], n: NDArray[np.int64]) -> NDArray[np.float32]:

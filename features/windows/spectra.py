@@ -78,49 +78,46 @@ class WindowSpectra:
     high: NDArray[np.int64]
 
 
-def long_spectra(sound: NDArray[np.float32], count: int) -> NDArray[np.float32]:
-    """Power spectra of `count` overlapping quarters of a second.
+def segments_of(sound: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Cut sounds into quarters of a second that overlap by half.
 
     Parameters
     ----------
-    sound : ndarray of float32, shape (n,)
+    sound : ndarray of float32, shape (n,) or (n_sounds, n)
         At `features.windows.blocks.RATE` [any unit]; zeros follow its end.
-    count : int
 
     Returns
     -------
-    ndarray of float32, shape (count, 2049)
-        [unit of the sound squared]
+    ndarray of float32, shape (n_segments, 4000)
+        Of one sound after the other [unit of the sound].
 
     Examples
     --------
-    >>> long_spectra(np.zeros(8000, dtype=np.float32), 3).shape
-    (3, 2049)
+    >>> segments_of(np.zeros(8000, dtype=np.float32)).shape
+    (3, 4000)
     """
-    needed = (count - 1) * SEGMENT_HOP + _SEGMENT
-    if sound.size < needed:
-        sound = np.concatenate([sound, np.zeros(needed - sound.size, dtype=np.float32)])
-    segments = np.lib.stride_tricks.sliding_window_view(sound, _SEGMENT)[::SEGMENT_HOP][:count]
-    spectrum = fft.rfft(segments * _WINDOW, n=_LENGTH, axis=1)
-    power = spectrum.real**2
-    power += spectrum.imag**2
-    return np.asarray(power)
+    n = sound.shape[-1]
+    count = max(1, -(-(n - SEGMENT_HOP) // SEGMENT_HOP))
+    if lacking := max(0, (count - 1) * SEGMENT_HOP + _SEGMENT - n):
+        sound = np.concatenate([sound, np.zeros((*sound.shape[:-1], lacking), np.float32)], axis=-1)
+    segments = np.lib.stride_tricks.sliding_window_view(sound, _SEGMENT, axis=-1)
+    return segments[..., ::SEGMENT_HOP, :][..., :count, :].reshape(-1, _SEGMENT)
 
 
 _WINDOW = np.hanning(_SEGMENT + 2)[1:-1].astype(np.float32)
 
 
 def window_spectra(
-    spectra: NDArray[np.float32], first: NDArray[np.int64], last: NDArray[np.int64], limit: float
+    segments: NDArray[np.float32], first: NDArray[np.int64], last: NDArray[np.int64], limit: float
 ) -> WindowSpectra:
-    """Add up the spectra of each window.
+    """Add up the power spectra of each window's segments.
 
     Parameters
     ----------
-    spectra : ndarray of float32, shape (n_spectra, n_bins)
-        As `long_spectra` gives them.
+    segments : ndarray of float32, shape (n_segments, 4000)
+        As `segments_of` gives them.
     first, last : ndarray of int, shape (n_windows,)
-        Each window adds up the spectra from `first` up to `last`.
+        Each window adds up the spectra of the segments from `first` up to `last`, three at most.
     limit : float
         Frequency up to which they are described [Hz]; at least to 273 Hz.
 
@@ -131,15 +128,21 @@ def window_spectra(
     Examples
     --------
     >>> tone = np.sin(2 * np.pi * 700.0 * np.arange(8000) / 16e3).astype(np.float32)
-    >>> found = window_spectra(long_spectra(tone, 3), np.array([0]), np.array([3]), 7000.0)
+    >>> found = window_spectra(segments_of(tone), np.array([0]), np.array([3]), 7000.0)
     >>> round(float(found.top[0] * SPACING))
     699
     """
+    needed = np.zeros(len(segments), dtype=np.bool_)
+    needed[np.minimum(first + np.arange(3)[:, None], last - 1)] = True
+    spectrum = fft.rfft(segments[needed] * _WINDOW, n=_LENGTH, axis=1)
+    spectra = spectrum.real**2
+    spectra += spectrum.imag**2
+    row = np.cumsum(needed) - 1
     end = max(FIRST + BLOCK, min(int(limit / SPACING) + 1, spectra.shape[1] - 2))
     power = np.full((len(first), max(end, _KILOHERTZ[0]) + 2), _LEAST, dtype=np.float32)
     for i in range(int((last - first).max(initial=0))):
         held = first + i < last
-        power[held, FIRST - 2 : end + 2] += spectra[first[held] + i, FIRST - 2 : end + 2]
+        power[held, FIRST - 2 : end + 2] += spectra[row[first[held]] + i, FIRST - 2 : end + 2]
     n, level = len(power), np.empty_like(power)
     described = slice(FIRST - 2, end + 2)
     np.log10(power[:, described], out=level[:, described])
@@ -232,7 +235,7 @@ def line_power(
     Examples
     --------
     >>> tone = np.sin(2 * np.pi * 700.0 * np.arange(8000) / 16e3).astype(np.float32)
-    >>> found = window_spectra(long_spectra(tone, 3), np.array([0]), np.array([3]), 7000.0)
+    >>> found = window_spectra(segments_of(tone), np.array([0]), np.array([3]), 7000.0)
     >>> power = line_power(found, np.array([0]), found.top)
     >>> round(float(power[0] / found.total[0]), 3)
     1.0

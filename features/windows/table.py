@@ -19,7 +19,7 @@ from features.windows.declared import TOP_FEATURES, WINDOW_FEATURES
 from features.windows.events import events_within, prolonged
 from features.windows.frames import FRAME_COLUMNS, Frames, describe_frames, trajectory_features
 from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythm_features
-from features.windows.spectra import SEGMENT_HOP, long_spectra
+from features.windows.spectra import segments_of
 from features.windows.tones import tone_features
 
 LENGTH = 0.5
@@ -32,8 +32,6 @@ _LEAST_FRAMES = 3
 
 _FRAMES_OF = round(LENGTH * FRAME_RATE) - 3
 """Frames that lie in a window as a whole."""
-
-_FLUX = FRAME_COLUMNS.index("flux")
 
 WINDOW_NAMES = tuple(feature.name for feature in WINDOW_FEATURES)
 """Of the columns of `WindowTable.features`, by `features.windows.declared.WINDOW_FEATURES`."""
@@ -105,19 +103,23 @@ def describe_windows(
     >>> describe_windows(hiss, hiss, nothing, scale=1.0, windows=3, limit=7e3).features.shape[0]
     3
     """
-    start = np.arange(windows) * HOP
     frames = describe_frames(sound, limit)
     power = envelope(sound)
-    features = _features(frames, power, (sound, high, top), start, limit)
-    which, begin, end = events_within(frames.bands, start)
+    features = np.empty((windows, len(WINDOW_NAMES)), dtype=np.float32)
+    which, *edges = events_within(frames.bands, np.arange(windows) * HOP)
     if which.size:
-        longer = prolonged((sound, high, top), begin, end, round(LENGTH * RATE))
-        apart = np.arange(which.size) * LENGTH
-        of_events = describe_frames(longer[0], limit)
-        # The first frame of an event has none before it.
-        at = np.round(apart * FRAME_RATE).astype(np.int64)
-        of_events.values[at, _FLUX] = of_events.values[at + 1, _FLUX]
-        features[which] = _features(of_events, envelope(longer[0]), longer, apart, limit)
+        # Neighbouring windows often hold the same event.
+        events, of_event = np.unique(edges, axis=1, return_inverse=True)
+        longer = prolonged((sound, high, top), *events, round(LENGTH * RATE))
+        numbers = np.arange(events.shape[1])
+        frames_inside = describe_frames(longer[0], limit)
+        power_inside = envelope(longer[0])
+        features[which] = _features(longer, frames_inside, power_inside, numbers, _APART, limit)[
+            of_event.reshape(-1)
+        ]
+    rest = np.setdiff1d(np.arange(windows), which)
+    if rest.size:
+        features[rest] = _features((sound, high, top), frames, power, rest, _OVERLAPPING, limit)
     unit = 20.0 * np.log10(max(scale, 1e-300))
     level = _means(power, windows, round(HOP * ENVELOPE_RATE))
     values = np.concatenate([frames.values, frames.bands], axis=1)
@@ -126,31 +128,38 @@ def describe_windows(
     return WindowTable(features, (10.0 * np.log10(level + 1e-20) + unit).astype(np.float32), values)
 
 
+_OVERLAPPING, _APART = (25, 2, 1000, 25), (_FRAMES_OF, 3, 2000, 50)
+"""Frames, long spectra, samples of the envelope and values of the top from one window to the next:
+by half a window in a sound, by a whole one where each window is a row of its own."""
+
+
 def _features(
+    parts: tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]],
     frames: Frames,
     power: NDArray[np.float32],
-    parts: tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]],
-    start: NDArray[np.floating],
+    windows: NDArray[np.int64],
+    hops: tuple[int, int, int, int],
     limit: float,
 ) -> NDArray[np.float32]:
-    """Return the features of windows that begin at `start` [s] in sound, its high part and top."""
+    """Return the features of windows by number in sound, its high part and top.
+
+    Its frames and envelope are those of the sound.
+    """
     sound, high, top = parts
-    count = len(frames.values)
-    first = np.minimum(np.round(start * FRAME_RATE).astype(np.int64), count - 1)
-    last = np.minimum(first + _FRAMES_OF, count)
-    spectra = max(1, -(-(sound.size - SEGMENT_HOP) // SEGMENT_HOP))
-    of_spectra = np.minimum((start * (RATE // SEGMENT_HOP)).astype(np.int64), spectra - 1)
-    until = np.minimum(of_spectra + 3, spectra)
-    blows = envelope(high)
-    begin = np.minimum((start * ENVELOPE_RATE).astype(np.int64), power.size)
-    end = np.minimum(begin + round(LENGTH * ENVELOPE_RATE), power.size)
+    segments, blows = segments_of(sound), envelope(high)
+    # What lies behind the end of the sound is not there.
+    at, segment, begin = (
+        np.minimum(windows * hop, max(count - 1, 0))
+        for hop, count in zip(hops, (len(frames.values), len(segments), power.size), strict=False)
+    )
+    last = np.minimum(begin + round(LENGTH * ENVELOPE_RATE), power.size)
     return np.concatenate(
         [
-            trajectory_features(frames, first, last),
-            tone_features(long_spectra(sound, spectra), of_spectra, until, limit),
-            rhythm_features(power, begin, end),
-            rhythm_features(blows, begin, end),
-            _tops(top, power, blows, np.round(start * FRAME_RATE).astype(np.int64)),
+            trajectory_features(frames, at, np.minimum(at + _FRAMES_OF, len(frames.values))),
+            tone_features(segments, segment, np.minimum(segment + 3, len(segments)), limit),
+            rhythm_features(power, begin, last),
+            rhythm_features(blows, begin, last),
+            _tops(top.reshape(-1, top.shape[-1]), power, blows, windows * hops[3]),
         ],
         axis=1,
     )
@@ -166,8 +175,9 @@ def _tops(
     n = min(len(top), power.size // per_frame)
     out = np.full((first.size, len(TOP_FEATURES)), np.nan, dtype=np.float32)
     length = round(LENGTH * FRAME_RATE)
-    below = power[: n * per_frame].reshape(n, per_frame).mean(axis=1)
-    high = blows[: n * per_frame].reshape(n, per_frame).mean(axis=1)
+    below, high = (
+        part[: n * per_frame].reshape(n, per_frame).mean(axis=1) for part in (power, blows)
+    )
     columns = np.stack([below, high, top[:n, 0], top[:n, 1]], axis=1)
     whole = first + length <= n
     if whole.any():

@@ -40,7 +40,7 @@ TONE_NAMES = tuple(feature.name for feature in TONE_FEATURES)
 
 
 def tone_features(
-    spectra: NDArray[np.float32],
+    segments: NDArray[np.float32],
     first: NDArray[np.int64],
     last: NDArray[np.int64],
     limit: float,
@@ -49,10 +49,10 @@ def tone_features(
 
     Parameters
     ----------
-    spectra : ndarray of float32, shape (n_spectra, n_bins)
-        As `long_spectra` gives them.
+    segments : ndarray of float32, shape (n_segments, 4000)
+        As `features.windows.spectra.segments_of` gives them.
     first, last : ndarray of int, shape (n_windows,)
-        Each window averages the spectra from `first` up to `last`.
+        Each window averages the spectra of the segments from `first` up to `last`.
     limit : float
         Frequency up to which lines are sought [Hz].
 
@@ -63,15 +63,15 @@ def tone_features(
 
     Examples
     --------
-    >>> from features.windows.spectra import long_spectra
+    >>> from features.windows.spectra import segments_of
     >>> time = np.arange(8000) / 16e3
     >>> sound = np.sin(2 * np.pi * 700 * time) + 0.5 * np.sin(2 * np.pi * 1400 * time)
-    >>> spectra = long_spectra(sound.astype(np.float32), 3)
-    >>> found = tone_features(spectra, np.array([0]), np.array([3]), 7000.0)[0]
+    >>> segments = segments_of(sound.astype(np.float32))
+    >>> found = tone_features(segments, np.array([0]), np.array([3]), 7000.0)[0]
     >>> dict(zip(TONE_NAMES, found.round(1).tolist()))["line_count"]
     2.0
     """
-    windows = window_spectra(spectra, first, last, limit)
+    windows = window_spectra(segments, first, last, limit)
     level, top = windows.level, windows.top
     rows = np.arange(len(level))
     left, middle, right = (level[rows, top + i] for i in (-1, 0, 1))

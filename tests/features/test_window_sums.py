@@ -5,7 +5,7 @@ import pytest
 
 from features.windows.arithmetic import ordered_sum
 from features.windows.rhythm import envelope, rhythm_features
-from features.windows.spectra import long_spectra
+from features.windows.spectra import segments_of
 from features.windows.table import describe_windows
 from features.windows.tones import tone_features
 
@@ -38,14 +38,14 @@ def test_a_window_alone_is_as_among_others():
     x = sound(3.0)
     power, first = envelope(x), np.arange(10) * 1000
     together = rhythm_features(power, first, first + 2000)
-    spectra = long_spectra(x, 23)
+    segments = segments_of(x)
     begin = np.arange(10) * 2
-    tones = tone_features(spectra, begin, begin + 3, 7000.0)
+    tones = tone_features(segments, begin, begin + 3, 7000.0)
     for i in range(10):
         one = slice(i, i + 1)
         alone = rhythm_features(power, first[one], first[one] + 2000)
         np.testing.assert_array_equal(alone[0], together[i])
-        alone = tone_features(spectra, begin[one], begin[one] + 3, 7000.0)
+        alone = tone_features(segments, begin[one], begin[one] + 3, 7000.0)
         np.testing.assert_array_equal(alone[0], tones[i])
 
 
