@@ -6,7 +6,6 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError
 from noise.base.progress import Steps, note, report, say, steps
 from noise.commands.options import CHANGE, Option, change_table, check_folder, seed
 
@@ -27,12 +26,7 @@ DESCRIPTION = (
 EPILOG = "example: bushing-noise identify recordings --rig known.toml --out mine"
 
 OPTIONS = (
-    Option("data DATA", Path, count="*").help("recordings, or folders of them"),
-    Option("--numbers TABLE.csv", Path).help(
-        "measured numbers beside or instead of recordings: item, value, unit, "
-        "interference_mm, support_stiffness_Nm_rad, speed_rad_s, error_percent; items as the "
-        "table of `bushing-noise thesis` names them, such as slip_frequency or effective_stiffness"
-    ),
+    Option("data DATA", Path, count="+").help("recordings, or folders of them"),
     Option("--rig RIG.toml", Path).help("what is known of the rig: the two inertias, if possible"),
     Option("--out FOLDER", Path).help(
         "folder for rig.toml, identification.json and report.html (default: the rig file on "
@@ -47,8 +41,6 @@ def run(options: Namespace) -> int:
     """Identify and write."""
     if options.out is not None:
         check_folder(options.out, file="report.html")
-    if not options.data and options.numbers is None:
-        raise ParameterError("identify: name recordings, or --numbers TABLE.csv")
     with steps("identifying", 1) as tell:
         found, refused = _identified(options, tell)
         if found is not None and options.out is not None:
@@ -73,25 +65,19 @@ def _identified(options: Namespace, tell: Steps) -> tuple[Identification | None,
     tell("preparing")
     from noise.identification.identify import NothingSlipsError, identify_rig
     from noise.identification.law_model import CANDIDATES
-    from noise.identification.measured import Measurements, known_beforehand, read_measurements
-    from noise.identification.table_fit import read_numbers
+    from noise.identification.measured import known_beforehand, read_measurements
 
     beforehand = known_beforehand(options.rig, change_table(options.change or ()))
-    table = () if options.numbers is None else read_numbers(options.numbers)
     calibrations = beforehand.rig.sensors.calibrations
-    measurements = (
-        read_measurements(options.data, calibrations) if options.data else Measurements((), ())
-    )
+    measurements = read_measurements(options.data, calibrations)
     for name, reason in measurements.refused:
         say(f"{name}: {reason}")
-    if not (measurements.used or measurements.static or table):
+    if not (measurements.used or measurements.static):
         say("no recording that a rig can be identified from; nothing is written")
         return None, True
     tell.expect(len(measurements.used) + 2 * len(CANDIDATES) + 2)
     try:
-        found = identify_rig(
-            measurements, beforehand, table=table, seed=options.seed or 0, progress=tell
-        )
+        found = identify_rig(measurements, beforehand, seed=options.seed or 0, progress=tell)
     except NothingSlipsError as error:
         say(f"{', '.join(one.name for one in measurements.used)}: {error}; nothing is written")
         return None, True

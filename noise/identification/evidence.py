@@ -1,4 +1,4 @@
-"""Numbers that come from elsewhere than stick-slip: a static test, a ring-down, a user's table.
+"""Numbers that come from elsewhere than stick-slip: a static test, a ring-down.
 
 They join what the recordings of stick-slip said, each weighted by how sure it is (inverse
 variances of logarithms).
@@ -18,7 +18,7 @@ from noise.base import SURE_90
 from noise.identification.outcome import Number
 
 if TYPE_CHECKING:
-    from noise.identification.table_fit import TableNumber
+    pass
 
 
 UNITS = {
@@ -56,7 +56,7 @@ class Evidence:
     support_stiffness : float, optional
         [Nm/rad]
     source : str
-        File, or row of a table.
+        File.
     """
 
     name: str
@@ -91,21 +91,6 @@ def elastomer_stiffness(effective: float, support_stiffness: float) -> tuple[flo
     if flexible <= 0.0:
         return math.inf, math.inf
     return 1.0 / flexible, 1.0 / (flexible * effective)
-
-
-def table_evidence(table: Iterable[TableNumber]) -> tuple[Evidence, ...]:
-    """Return what a table of measurements states of the rig itself; other rows are passed over."""
-    found = []
-    for one in table:
-        name, value, error = one.item, one.value, 1.0 / one.weight
-        if name == "effective_stiffness":
-            name = "elastomer_stiffness"
-            value, gain = elastomer_stiffness(value, one.support_stiffness)
-            error *= gain
-        if name in UNITS and math.isfinite(value):
-            support = one.support_stiffness if name == "damping" else None
-            found.append(Evidence(name, value, error, one.interference, support, str(one)))
-    return tuple(found)
 
 
 def with_evidence(numbers: Sequence[Number], evidence: Iterable[Evidence]) -> list[Number]:

@@ -30,14 +30,12 @@ from noise.diagnosis.bench.channels import unit_of
 from noise.diagnosis.bench.check import unit_findings
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers, read_again, torque_levels
-from noise.identification.evidence import table_evidence, with_evidence
+from noise.identification.evidence import with_evidence
 from noise.identification.law_choice import MARGIN, Choice, choose_law, overall
 from noise.identification.law_model import LOCAL, fitted_evidence
 from noise.identification.outcome import Identification, Number, Seen, values_of
 from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.subjects import subjects_of
-from noise.identification.table_fit import TableNumber, held_against
-from noise.identification.table_rig import identify_from_table
 from sim.effects import EFFECTS
 from sim.friction import friction_law
 from sim.run import simulate
@@ -174,7 +172,6 @@ def identify_rig(
     measurements: Measurements,
     beforehand: Beforehand,
     *,
-    table: Sequence[TableNumber] = (),
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> Identification:
@@ -185,9 +182,6 @@ def identify_rig(
     measurements : Measurements
     beforehand : Beforehand
         What is known of it.
-    table : sequence of TableNumber
-        Measured numbers: what they state of the rig itself joins what the recordings say, the
-        others are held against the rig that comes out.
     seed : int
         Of simulated repeats.
     progress : callable, optional
@@ -203,8 +197,8 @@ def identify_rig(
         No recording can be used, or nothing slips in any recording, so that no torque can be told.
     """
     started = time.perf_counter()
-    if not measurements.used and (measurements.static or table):
-        return identify_from_table(table, beforehand, measurements, progress)
+    if not measurements.used and measurements.static:
+        return _by_static_tests(measurements, beforehand)
     if not measurements.used:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in measurements.refused)
         raise ParameterError(f"no recording that a rig can be identified from: {reasons}")
@@ -217,8 +211,8 @@ def identify_rig(
         levels = torque_levels(fit)
         seen.append(Seen(one, fit, levels, values_of(fit, levels)))
         tell(_sentence(seen[-1]))
-    if not any(one.levels.slips for one in seen) and (measurements.static or table):
-        return identify_from_table(table, beforehand, measurements, progress)
+    if not any(one.levels.slips for one in seen) and measurements.static:
+        return _by_static_tests(measurements, beforehand)
     if not any(one.levels.slips for one in seen):
         raise NothingSlipsError(
             "no recording shows stick and slip, so that neither stiffness nor torques can be told; "
@@ -234,10 +228,7 @@ def identify_rig(
             "one steady speed"
         )
     # what truly sticks tells its stiffness itself; what yields looks softer than it is
-    evidence = {
-        sticks: (*table_evidence(table), *static_evidence(static, known, sticks=sticks))
-        for sticks in (True, False)
-    }
+    evidence = {sticks: static_evidence(static, known, sticks=sticks) for sticks in (True, False)}
     choice = choose_law(beforehand, subjects, material, tell, evidence=evidence, seed=seed)
     model = choice.fit.model
     seen = read_again(seen, choice.fit)
@@ -266,9 +257,35 @@ def identify_rig(
         held_out=choice.held_out,
         margin=MARGIN,
         static=static,
-        measured=held_against(rig, table),
         seconds=time.perf_counter() - started,
     )
+
+
+def _by_static_tests(measurements: Measurements, beforehand: Beforehand) -> Identification:
+    """Put into the known rig what static tests and ring-downs alone tell of it."""
+    rig, static = beforehand.rig, measurements.static
+    numbers = with_evidence([], static_evidence(static, beforehand.known))
+    fits = []
+    for place in sorted({one.interference for one in static}):
+        fit, here = rig.fit(place), [one for one in numbers if one.interference == place]
+        damping = {o.support_stiffness: o.value for o in here if o.name == "damping"}
+        stiffness = [one.value for one in here if one.name == "elastomer_stiffness"]
+        fits.append(
+            replace(
+                fit, damping={**fit.damping, **damping},
+                elastomer_stiffness=stiffness[0] if stiffness else fit.elastomer_stiffness,
+            )
+        )  # fmt: skip
+    inertia = [one.value for one in numbers if one.name == "clamp_inertia"]
+    rig = replace(rig, fits=tuple(fits), clamp_inertia=(*inertia, rig.clamp_inertia)[0])
+    steady = [one.name for one in measurements.used]
+    return Identification(
+        rig_toml=rig_text(rig, (_HEAD,), beforehand.structure), numbers=tuple(numbers), laws=(),
+        law=rig.friction.name, seen=(), refused=measurements.refused, static=static,
+        assumed=("torques and the law of friction are the known rig's",),
+        not_found=tuple(f"torques from {name}: nothing slips there" for name in steady),
+        notes=tuple(static_notes(static)),
+    )  # fmt: skip
 
 
 def _notes(choice: Choice) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from noise.identification.bushing_numbers import Levels
     from noise.identification.measured import Measured
     from noise.identification.static_test import StaticTest
-    from noise.identification.table_fit import TableNumber
 
 
 @dataclass(frozen=True)
@@ -157,8 +155,6 @@ class Identification:
         Recordings that the laws were compared on.
     margin : float
         Factor by which a simpler law may be worse and is still chosen.
-    measured : tuple of (TableNumber, float)
-        Numbers of a table, and what the rig gives for them [each in its item's unit].
     static : tuple of StaticTest
         Slow motion below any slip, and what rings when the shaft is held.
     seconds : float
@@ -182,7 +178,6 @@ class Identification:
     refused: tuple[tuple[str, str], ...] = ()
     held_out: tuple[str, ...] = ()
     margin: float = 0.0
-    measured: tuple[tuple[TableNumber, float], ...] = ()
     static: tuple[StaticTest, ...] = ()
     seconds: float = field(default=0.0, compare=False)
 
@@ -240,7 +235,6 @@ def as_json(found: Identification) -> dict[str, Any]:
         "held_out": list(found.held_out),
         "recordings": [_recording(one) for one in found.seen],
         "static": [_static(one) for one in found.static],
-        "measured": [_measured(*one) for one in found.measured],
         "assumed": list(found.assumed),
         "not_found": list(found.not_found),
         "notes": list(found.notes),
@@ -277,16 +271,6 @@ def _static(one: StaticTest) -> dict[str, Any]:
         row["ring_down_hz"] = _rounded(one.ring_down.frequency)
         row["ring_down_decay_1_s"] = _rounded(one.ring_down.decay)
     return row
-
-
-def _measured(number: TableNumber, found: float) -> dict[str, Any]:
-    return {
-        "item": number.item,
-        "interference_mm": _rounded(1e3 * number.interference),
-        "support_stiffness_Nm_rad": _support(number.support_stiffness),
-        "value": _rounded(number.value),
-        "found": None if math.isnan(found) else _rounded(found),
-    }
 
 
 def _recording(one: Seen) -> dict[str, Any]:

@@ -7,19 +7,17 @@ from pathlib import Path
 from typing import Any
 
 from noise.identification.identify import identify_rig
-from noise.identification.measured import Measurements, known_beforehand, read_measurements
+from noise.identification.measured import known_beforehand, read_measurements
 from noise.identification.outcome import Identification, as_json
-from noise.identification.table_fit import read_numbers
 
 
 def identify(
-    data: str | Path | Sequence[str | Path] = (),
+    data: str | Path | Sequence[str | Path],
     rig: str | Path | None = None,
     *,
-    numbers: str | Path | None = None,
     seed: int = 0,
 ) -> Identification:
-    """Identify a rig from recordings, a table of measured numbers, or both.
+    """Identify a rig from recordings.
 
     Parameters
     ----------
@@ -27,8 +25,6 @@ def identify(
         Recordings of torque and angle, or folders of them.
     rig : path, optional
         Rig file that states what is known, the two inertias above all.
-    numbers : path, optional
-        Table of measured numbers, as `noise.identification.table_fit` reads it.
     seed : int
         Of simulated repeats.
 
@@ -51,10 +47,8 @@ def identify(
     """
     paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
     beforehand = known_beforehand(None if rig is None else Path(rig))
-    table = () if numbers is None else read_numbers(Path(numbers))
     calibrations = beforehand.rig.sensors.calibrations
-    measurements = read_measurements(paths, calibrations) if paths else Measurements((), ())
-    return identify_rig(measurements, beforehand, table=table, seed=seed)
+    return identify_rig(read_measurements(paths, calibrations), beforehand, seed=seed)
 
 
 def identification_json(data: Path, rig: Path) -> dict[str, Any]:

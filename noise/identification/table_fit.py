@@ -3,8 +3,6 @@
 A number's misfit is mostly log(simulated / measured), times its weight. Groups of them, each by its
 root mean square, add up to the cost that the search lowers. A regime changes at a stroke, so the
 search follows no slope.
-
-A table of measured numbers comes beside recordings or instead of them.
 """
 
 from __future__ import annotations
@@ -12,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from joblib import Parallel, delayed
@@ -20,25 +17,10 @@ from numpy.typing import NDArray
 
 from models.condition import FIXED
 from models.errors import ParameterError
-from models.foreign_file import refusing
 from models.rig import Rig
 from models.show import short_repr
-from noise.base.tables import read_table
 from noise.diagnosis.fit.fit import pattern_search
 from noise.identification.quantities import QUANTITIES, SettledRun, settled_run
-
-COLUMNS = (
-    "item", "value", "unit", "interference_mm", "support_stiffness_Nm_rad", "speed_rad_s",
-    "error_percent",
-)  # fmt: skip
-"""Of a table; speed only where an item has one, the error if it is known."""
-
-_ERROR = 5.0
-"""Standard error of a number that states none [%]; assumed."""
-
-_AROUND = (0.4, 1.6)
-_N_SPEEDS = 16
-"""Speeds tried about a critical one, over it."""
 
 
 @short_repr
@@ -59,7 +41,7 @@ class TableNumber:
     speeds : tuple of float
         At which the rig is run for it [rad/s].
     weight : float
-        Of its misfit [-], one over its relative standard error in a table that was read.
+        Of its misfit [-].
     group : str
         Numbers of a group count by the root mean square of their misfits, one without by itself.
     """
@@ -80,78 +62,6 @@ class TableNumber:
         fixed = self.support_stiffness == FIXED
         support = "fixed" if fixed else f"{self.support_stiffness:.0f} Nm/rad"
         return f"{self.item} at {1e3 * self.interference:.3f} mm, {support}"
-
-
-def read_numbers(path: Path) -> tuple[TableNumber, ...]:
-    r"""Read a table of measured numbers.
-
-    Parameters
-    ----------
-    path : Path
-        CSV, JSON Lines or Parquet with the columns `COLUMNS`.
-
-    Raises
-    ------
-    ParameterError
-        A row cannot be used; the message names file, row and column.
-    RecordingError
-        It is no table.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = Path(folder) / "measured.csv"
-    ...     _ = path.write_text(
-    ...         "item,value,unit,interference_mm,support_stiffness_Nm_rad,speed_rad_s\n"
-    ...         "slip_frequency,155,Hz,0.279,fixed,1\n")
-    ...     [(str(number), number.value, number.speeds) for number in read_numbers(path)]
-    [('slip_frequency at 0.279 mm, fixed', 155.0, (1.0,))]
-    """
-    _, rows = read_table(path)
-    if not rows:
-        raise ParameterError(f"{path}: holds no row; columns are {', '.join(COLUMNS)}")
-    with refusing(str(path), "table of numbers"):
-        return tuple(_number(row, f"{path}: row {i}") for i, row in enumerate(rows, start=1))
-
-
-def _number(row: Mapping[str, object], where: str) -> TableNumber:
-    item = str(row.get("item") or "").strip()
-    quantity = QUANTITIES.get(item)
-    if quantity is None:
-        from models.schema import did_you_mean
-
-        raise ParameterError(
-            f"{where}: item {item!r} is unknown{did_you_mean(item, QUANTITIES)}; there are "
-            f"{', '.join(QUANTITIES)}"
-        )
-    unit = str(row.get("unit") or "").strip()
-    if unit != quantity.unit:
-        raise ParameterError(f"{where}: unit {unit!r} of {item} must be {quantity.unit!r}")
-    value = _positive(row, "value", where)
-    interference = 1e-3 * _positive(row, "interference_mm", where)
-    support = str(row.get("support_stiffness_Nm_rad") or "").strip()
-    stiffness = FIXED if support == "fixed" else _positive(row, "support_stiffness_Nm_rad", where)
-    speeds: tuple[float, ...] = ()
-    if quantity.at_a_speed:
-        speeds = (_positive(row, "speed_rad_s", where),)
-    elif quantity.needs_runs:
-        speeds = tuple(np.geomspace(_AROUND[0] * value, _AROUND[1] * value, _N_SPEEDS).tolist())
-    stated = str(row.get("error_percent") or "").strip()
-    error = 0.01 * (_positive(row, "error_percent", where) if stated else _ERROR)
-    return TableNumber(item, value, interference, stiffness, speeds, 1.0 / error, "table")
-
-
-def _positive(row: Mapping[str, object], column: str, where: str) -> float:
-    cell = str("" if row.get(column) is None else row[column]).strip()
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
-    if not 0.0 < value < math.inf:
-        raise ParameterError(f"{where}: {column} = {cell!r} must be a number above 0")
-    return value
 
 
 _UNUSABLE = 100.0
@@ -227,14 +137,6 @@ def score_table(
         weighted = number.weight * number.misfit(found[number])
         squares.setdefault(number.group or number, []).append(weighted * weighted)
     return TableScore(sum(math.sqrt(sum(s) / len(s)) for s in squares.values()), found)
-
-
-def held_against(rig: Rig, table: Sequence[TableNumber]) -> tuple[tuple[TableNumber, float], ...]:
-    """Return each number with what a rig gives [the item's unit], NaN at fits that it lacks."""
-    fits = {round(fit.interference, 9) for fit in rig.fits}
-    known = [number for number in table if round(number.interference, 9) in fits]
-    found = score_table(rig, known).found
-    return tuple((number, found.get(number, math.nan)) for number in table)
 
 
 def _tasks(number: TableNumber) -> list[Task]:

@@ -15,7 +15,6 @@ from models.drawing import BLUE, GREY, VERMILION, styled
 from noise.base.files import atomic
 from noise.identification.law_model import CANDIDATES
 from noise.identification.outcome import Forecast, Identification, Number, Seen, as_json
-from noise.identification.quantities import QUANTITIES
 from noise.pages import blocks as b
 from noise.pages.figures import Line, Panel, lines_panel
 from noise.pages.page import page_html, write_page
@@ -23,7 +22,6 @@ from noise.pages.page import page_html, write_page
 if TYPE_CHECKING:
     from noise.identification.ring_down import RingDown
     from noise.identification.static_test import StaticTest
-    from noise.identification.table_fit import TableNumber
 
 
 _SHOWN = 0.03
@@ -199,14 +197,13 @@ def _html(found: Identification) -> str:
         "than the best for each number that it has less, and is as near over a whole run; 1 floor "
         "is what repeats of one run differ by."
     )
-    numbers, measured = map(_row, found.numbers), [_measured(*one) for one in found.measured]
+    numbers = list(map(_row, found.numbers))
     lists = {
         "Assumed": found.assumed,
         "Not found": found.not_found,
         "To know": found.notes,
         "Left out": [f"{name}: {reason}" for name, reason in found.refused],
     }
-    beside = b.Table(("Number", "At", "Measured", "This rig"), measured)
     columns = ("Law", "Meaning", "Missed [%]", "Held out [floors]", "Fitted to [floors]")
     return page_html(
         "diagnosis",
@@ -215,10 +212,7 @@ def _html(found: Identification) -> str:
         [
             b.Section(
                 "Numbers, with 90 % intervals",
-                [
-                    b.Table(("Number", "At", "Value", "Interval", "Recordings"), list(numbers)),
-                    b.Group("Measured numbers beside what this rig gives", [beside]),
-                ],
+                [b.Table(("Number", "At", "Value", "Interval", "Recordings"), numbers)],
             ),
             b.Section(
                 "Static tests",
@@ -261,21 +255,11 @@ def _title(found: Identification) -> str:
         f"{n} {what}"
         for n, what in (
             (len(found.seen), "recordings"), (len(found.static), "static tests"),
-            (len(found.measured), "measured numbers"),
         )
         if n
     ]  # fmt: skip
     listed = " and ".join(filter(None, (", ".join(sources[:-1]), sources[-1])))
     return f"The rig, identified from {listed}"
-
-
-def _measured(number: TableNumber, found: float) -> list[str]:
-    unit = QUANTITIES[number.item].unit
-    at = f"{number}".partition(" at ")[2]
-    if QUANTITIES[number.item].at_a_speed:
-        at += f", {number.speeds[0]:g} rad/s"
-    told = "does not tell" if math.isnan(found) else f"{found:.4g} {unit}"
-    return [number.item.replace("_", " "), at, f"{number.value:.4g} {unit}", told]
 
 
 def _answer(found: Identification) -> list[str]:
