@@ -1,6 +1,6 @@
-"""Measures of a simulated bushing: its slip rate, and how irregular its creak is.
+"""Measures of how irregular the creak of a simulated bushing is.
 
-Measures of a creak are of two seconds of sound at the microphone without room and noise, the
+They are of two seconds of sound at the microphone without room and noise, the
 loudest second: *jitter*, the coefficient of variation of the intervals between pulses above 2 kHz;
 *harmonicity*, the highest autocorrelation at a lag of 1/1500 to 1/20 s; *flatness*, the geometric
 over the arithmetic mean of the autospectrum from 20 Hz to 14.25 kHz.
@@ -15,10 +15,6 @@ from scipy.signal import butter, find_peaks, hilbert, sosfiltfilt
 
 from features.kernels.harmonics import strongest_period
 from features.kernels.spectra import autospectrum, spectral_shape
-from sim.analysis.slips import motion_slips
-from sim.motion import simulate_motion
-from sim.rig_effects import constant_version
-from sim.shaft import ConstantSpeed
 
 LONG, TIGHT = 2214.0, 0.381e-3
 SPEEDS = (1.0, 2.5, 5.0, 7.5, 10.0)
@@ -28,18 +24,6 @@ _PULSES_FROM, _PULSES_TO = 2_000.0, 500.0
 
 _LEAST_PULSE = 0.25
 """How far a pulse stands out, re the 99th percentile of the envelope [-]."""
-
-
-def slip_rates(rig):
-    """Slips a second of the constant version at `SPEEDS`, 0.381 mm and 2214 Nm/rad [Hz]."""
-    rig, rates = constant_version(rig), []
-    for speed in SPEEDS:
-        motion = simulate_motion(
-            rig, ConstantSpeed(speed), interference=TIGHT, support_stiffness=LONG, seconds=2.5,
-            rate=30e3,
-        )  # fmt: skip
-        rates.append(motion_slips(motion.since(15_000)).rate)
-    return rates
 
 
 def creak_measures(pressure, rate):

@@ -48,15 +48,6 @@ def test_lines_with_noise_reproduce_it_within_the_noise():
     assert misfit < 0.04
 
 
-def test_a_line_without_weight_does_not_matter():
-    f = lines()
-    spoilt = np.arange(f.size) % 7 == 3
-    coherence = np.where(spoilt, 0.0, 1.0)
-    measured = TransferFunction(f, np.where(spoilt, 1e3, spectrum(f)), coherence)
-    h, _ = causal_impulse_response(measured, RATE, 20000)
-    assert difference(h) < 0.02
-
-
 @settings(max_examples=15)
 @given(delay=st.integers(40, 300), gain=st.floats(0.1, 10))
 def test_a_delay_stays_a_delay(delay, gain):

@@ -31,10 +31,3 @@ def test_a_part_is_what_the_whole_has_there(first, length, rate):
     first = min(first, n - 1)
     last = min(n, first + length)
     np.testing.assert_array_equal(read(first, last), read(0, n)[:, first:last])
-
-
-def test_rates_up_to_the_bound_are_left_as_they_are():
-    run = Recording(np.ones((1, 100)), 384e3, (Channel("pressure"),))
-    blocks = RecordingBlocks.of(run)
-    assert (blocks.rate, blocks.n_samples) == (384e3, 100)
-    assert blocks.read(0, 100).base is run.samples

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import re
 import socket
 import struct
 import zipfile
@@ -19,7 +18,6 @@ from models.foreign_file import (
     check_plain_file,
     parse_json,
     parse_toml,
-    read_array,
     read_arrays,
     reading,
     refusing,
@@ -107,13 +105,6 @@ def test_a_file_that_inflates_beyond_measure_is_refused_before_it_does(tmp_path)
                     member.write(bytes(1 << 20))
     assert path.stat().st_size < 200_000
     assert refusal(path).startswith("would inflate from 0.102 MB to 105 MB")
-
-
-def test_a_header_that_announces_more_than_there_is_is_refused(tmp_path):
-    content = npy(np.zeros(10)).replace(b"(10,), }", b"(10000000000,), }")
-    assert re.search("memory|EOF", refusal(npz(tmp_path / "a.npz", {"x.npy": content})))
-    (tmp_path / "a.npy").write_bytes(content)
-    assert re.search("memory|reshape", refusal(tmp_path / "a.npy", read_array))
 
 
 @pytest.mark.parametrize("members", [

@@ -154,17 +154,6 @@ def test_the_converter_of_the_thesis_has_its_steps_and_a_file_changes_of_it_what
     assert RIG.sensors == Sensors()
 
 
-def test_noise_is_stated_or_estimated_as_the_last_file_has_it(tmp_path):
-    loaded(tmp_path, CONVERTER, "stated.toml")
-    estimated = 'base = "stated.toml"\n[sensors]\nnoise = "from recordings"'
-    over = loaded(tmp_path, estimated, "estimated.toml").sensors
-    assert over.noise_from_recordings
-    assert over.of("torque") == Sensor(None, 102.5, 12, 14000.0)
-    back = loaded(tmp_path, 'base = "estimated.toml"\n[sensors]\nnoise = { torque = 0.1 }').sensors
-    assert not back.noise_from_recordings
-    assert back.of("torque").noise == 0.1
-
-
 # Refusals
 
 

@@ -26,22 +26,6 @@ def rng():
     return np.random.default_rng(0)
 
 
-@pytest.mark.parametrize(
-    ("kind", "bit"), [("torque", 0.05), ("acceleration", 0.477), ("angle", 6.04e-3)]
-)
-def test_one_bit_of_the_converter_is_what_the_thesis_says(kind, bit):
-    ramp = np.linspace(0.0, 20 * bit, 5000)
-    taken = sample({kind: ramp}, 1, THESIS, rng())[kind]
-    assert np.diff(np.unique(taken)) == pytest.approx(np.full(20, bit), rel=0.01)
-
-
-def test_what_lies_above_half_the_sampling_rate_is_filtered_out():
-    time = np.arange(96_000) / 96e3
-    tone = np.sin(2 * np.pi * 20e3 * time)
-    taken = sample({"pressure": tone}, 4, QUIET, rng())["pressure"]
-    assert np.sqrt(np.mean(taken[100:-100] ** 2)) < 1e-2
-
-
 @given(
     full_scale=st.floats(1e-3, 1e3),
     bits=st.integers(2, 24),

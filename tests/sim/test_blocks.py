@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import resample_poly
 
 from features.kernels.levels import sound_levels
 from models.condition import FIXED
@@ -15,14 +14,12 @@ from models.errors import ParameterError
 from models.recording import Channel, Recording
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
-from models.transfer_functions.filtering import convolve
 from noise.commands.simulate import write_run
 from noise.recordings import read_recording
 from noise.recordings.wav import write_blocks
-from sim.acquisition import Acquisition, Decimation
+from sim.acquisition import Acquisition
 from sim.blocks import BlockEngine, Setting, simulate_blocks
 from sim.effects import EFFECTS
-from sim.filters import Convolution
 from sim.run import simulate
 from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
 
@@ -82,21 +79,6 @@ def test_recordings_joined_are_one_recording(rig, shaft, support, block_seconds)
         assert np.abs(row - expected)[inner].max() < 1e-9 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize(
-    "of", [setting(MEMORY), setting(MEMORY, 10.0, 3745.0), setting(THESIS, -1.0, math.inf)]
-)
-def test_a_rig_that_may_be_changed_but_is_not_gives_that_recording_too(of):
-    run = BlockEngine(of)
-    blocks = [run.block().samples for _ in range(30)]
-    whole = simulate_blocks(
-        of.rig, of.shaft, support_stiffness=of.support_stiffness, seconds=0.5,
-        acquisition=Acquisition(RATE),
-    )  # fmt: skip
-    for row, channel in zip(joined(whole), whole.channels, strict=True):
-        live = np.concatenate([block[channel.name] for block in blocks])[: row.size]
-        np.testing.assert_allclose(live, row, atol=1e-6 * np.abs(row).max())
-
-
 def test_effects_of_drive_and_sensors_act_alike_whatever_the_blocks():
     specs = LawSpec("speed_fluctuation", {"frequency": 20.0}), LawSpec("mains_hum", {})
     rig, quiet = replace(PDMS, effects=specs), {"seconds": 0.5, "acquisition": QUIET}
@@ -114,32 +96,6 @@ def test_effects_that_need_the_whole_run_are_refused_by_name():
     clipped = replace(THESIS, effects=(LawSpec("clipping", {}),))
     with pytest.raises(ParameterError, match="clipping: acts on a run as a whole"):
         simulate_blocks(clipped, 2.0, seconds=0.4)
-
-
-@pytest.mark.parametrize("block", [7, 100, 1000])
-def test_convolution_in_blocks_is_convolution(block):
-    rng = np.random.default_rng(0)
-    signals = rng.standard_normal((2, 1000))
-    responses = [[rng.standard_normal(n) for n in lengths] for lengths in ((1, 300), (250, 4))]
-    stream = Convolution(responses, block, 300)
-    filled = np.pad(signals, ((0, 0), (0, -1000 % block)))
-    parts = [stream(filled[:, i : i + block]) for i in range(0, 1000, block)]
-    got = np.hstack(parts)[:, :1000]
-    for row, own in zip(got, responses, strict=True):
-        expected = sum(convolve(signal, one) for signal, one in zip(signals, own, strict=True))
-        assert row == pytest.approx(expected, abs=1e-10)
-
-
-@pytest.mark.parametrize("factor", [1, 2, 3, 8])
-@pytest.mark.parametrize("block", [7, 6000])
-def test_decimation_in_blocks_is_that_of_the_whole_signal(factor, block):
-    signal = np.random.default_rng(0).standard_normal(6000).cumsum()
-    stream = Decimation(factor, skip=600)
-    got = np.concatenate([stream(signal[i : i + block]) for i in range(0, 6000, block)])
-    expected = resample_poly(signal, 1, factor, padtype="line") if factor > 1 else signal
-    expected = expected[600 // factor :]
-    assert got.size > expected.size - 15
-    assert got == pytest.approx(expected[: got.size], abs=1e-10)
 
 
 def test_a_long_run_is_written_as_any_recording(tmp_path):

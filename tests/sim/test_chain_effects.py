@@ -7,18 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.radiation.impulse_responses import radiate
+from models.condition import FIXED
 from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.acquisition import Acquisition
 from sim.blocks import simulate_blocks
-from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 from sim.run import simulate
-from tests.helpers.chain_paths import RATE, changed
+from tests.helpers.chain_paths import RATE, changed, spectra
+from tests.helpers.spectra import path_spectra
 
 RIG = load_material_rig("fluorocarbon")
 CHAIN = ("beam_modes", "plate_modes", "room_reflections")
@@ -31,40 +31,6 @@ QUIET = Acquisition(noise={})
 @pytest.fixture(scope="module")
 def plain():
     return impulse_responses(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
-
-
-def padded(signal, size):
-    return np.pad(signal, (0, max(0, size - signal.size)))
-
-
-def difference(one, other, path):
-    """Largest difference of a path, relative to the path in `other`."""
-    first, second = getattr(one, path), getattr(other, path)
-    size = max(first.size, second.size)
-    return np.abs(padded(first, size) - padded(second, size)).max() / np.abs(second).max()
-
-
-@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
-def test_what_is_added_is_proportional_to_the_strength(plain, name, form):
-    single, double = (
-        changed(plain, name, form=form, **{EFFECTS[name].strength: strength})
-        for strength in (0.5, 1.0)
-    )
-    for path in PATHS:
-        base = padded(getattr(plain, path), getattr(single, path).size)
-        first, second = getattr(single, path) - base, getattr(double, path) - base
-        assert np.abs(second - 2.0 * first).max() <= 1e-12 * np.abs(base).max()
-
-
-@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
-def test_pressure_is_linear_in_the_torque(plain, name, form):
-    paths = changed(plain, name, form=form)
-    rng = np.random.default_rng(0)
-    one, two = rng.standard_normal((2, 2000))
-    parts = [radiate(paths, signal) for signal in (one, two)]
-    for i, both in enumerate(radiate(paths, 2.0 * one - 3.0 * two)):
-        expected = 2.0 * parts[0][i] - 3.0 * parts[1][i]
-        assert np.abs(both - expected).max() <= 1e-9 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("name", ["plate_modes", "room_reflections"])
@@ -98,14 +64,6 @@ def test_runs_in_blocks_have_the_effects_as_well(names):
         assert np.abs(row - expected)[inner].max() < 1e-9 * np.abs(expected).max()
 
 
-def test_the_order_in_which_they_are_named_does_not_matter(plain):
-    steady = [EFFECTS[name].active({}) for name in CHAIN]
-    rng = np.random.default_rng(0)
-    one, other = changed_chain(plain, steady, rng), changed_chain(plain, steady[::-1], rng)
-    for path in PATHS:
-        assert difference(one, other, path) < 1e-12
-
-
 def test_an_effect_of_the_users_own_can_change_the_chain():
     def half(paths, form, values, rng):
         return replace(paths, torque_to_pressure=(1.0 - values["loss"]) * paths.torque_to_pressure)
@@ -120,3 +78,59 @@ def test_an_effect_of_the_users_own_can_change_the_chain():
     damped = simulate(rig, 5.0, library={"foam": mine}, **how).recording["pressure"]
     loud = simulate(replace(RIG, effects=()), 5.0, **how).recording["pressure"]
     assert damped == pytest.approx(0.5 * loud, abs=1e-12)
+
+
+# Further modes of clamp and beams
+
+
+def test_a_further_mode_stands_out_in_acceleration_and_sound(plain):
+    louder = changed(plain, "beam_modes", constant=20.0)
+    frequency = np.array([4500.0])
+    before, after = (path_spectra(each, frequency) for each in (plain, louder))
+    added = after.torque_to_acceleration - before.torque_to_acceleration
+    assert np.abs(added) == pytest.approx(20.0 / (2 * 0.01), rel=1e-4)
+    heard = after.torque_to_pressure - before.torque_to_pressure
+    expected = 0.04 * np.abs(added) * np.abs(before.pulse_to_pressure)
+    assert np.abs(heard) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("form", "expected"),
+    [("single", [900]), ("pair", [900, 1200]), ("ladder", [900, 2500, 4900, 8100, 12100, 16900])],
+)
+def test_forms_of_beam_modes_have_their_frequencies(plain, form, expected):
+    louder = changed(plain, "beam_modes", form=form, frequency=900.0, damping_ratio=0.002)
+    frequency, after, before = spectra(louder.torque_to_acceleration, plain.torque_to_acceleration)
+    added = np.abs(after - before)
+    peaks = np.flatnonzero((added[1:-1] > added[:-2]) & (added[1:-1] > added[2:])) + 1
+    strong = peaks[added[peaks] > 10.0 * np.median(added)]
+    assert frequency[strong] == pytest.approx(expected, abs=6.0)
+
+
+def test_with_the_clamp_bolted_down_there_are_no_beams_to_have_modes():
+    bolted = impulse_responses(RIG, 0.381e-3, FIXED, RATE, seconds=0.1)
+    assert changed(bolted, "beam_modes", amount=50.0) is bolted
+
+
+# Further resonances of what radiates
+
+
+def test_a_lonely_resonance_adds_6_db_where_it_is_and_nothing_far_away(plain):
+    louder = changed(plain, "plate_modes", frequency=2000.0)
+    frequency = np.array([200.0, 2000.0, 15e3])
+    before, after = (path_spectra(each, frequency) for each in (plain, louder))
+    for path in ("torque_to_pressure", "pulse_to_pressure"):
+        gain = 20 * np.log10(np.abs(getattr(after, path) / getattr(before, path)))
+        assert gain == pytest.approx([0.0, 6.02, 0.0], abs=0.02)
+
+
+@pytest.mark.parametrize("form", ["even", "scattered"])
+def test_many_resonances_lie_as_dense_as_they_are_told(plain, form):
+    flat = replace(plain, torque_to_pressure=np.ones(1), pulse_to_pressure=np.ones(1))
+    given = {"form": form, "frequency": 1000.0, "spacing": 500.0, "damping_ratio": 1e-3}
+    rung = changed(flat, "plate_modes", **given).torque_to_pressure
+    frequency, rung = spectra(rung)
+    size = np.abs(rung - 1.0)
+    peaks = np.count_nonzero((size[1:-1] > size[:-2]) & (size[1:-1] > size[2:]))
+    assert 22 <= peaks <= 34
+    assert frequency[size > 0.5].min() == pytest.approx(1000.0, abs=5.0) or form == "scattered"

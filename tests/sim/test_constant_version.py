@@ -11,11 +11,8 @@ from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from noise.noise_definition import label_by_physics
 from sim.analysis.critical_speeds import motion_from_rest
-from sim.analysis.slips import motion_slips
-from sim.motion import simulate_motion
 from sim.rig_effects import constant_version
 from sim.run import simulate
-from sim.shaft import ConstantSpeed
 from tests.helpers.rig_measures import creak_measures
 
 TIGHT = {"interference": 0.381e-3, "support_stiffness": 2214.0}
@@ -57,19 +54,3 @@ def test_critical_speeds_do_not_hang_on_what_scatters():
         for s in (0.0, 0.9)
     )
     assert np.array_equal(even, scattered)
-
-
-def _settled(rig, speed, interference):
-    run = simulate_motion(
-        rig, ConstantSpeed(speed), interference=interference, support_stiffness=2214.0,
-        seconds=0.6, rate=15e3,
-    )  # fmt: skip
-    return run.since(4500)
-
-
-def test_slips_scatter_with_a_law_that_counts_none():
-    even, scattered = (
-        np.diff(motion_slips(_settled(_scattered("fluorocarbon", scatter), 1.0, 0.381e-3)).times)
-        for scatter in (0.0, 0.3)
-    )
-    assert scattered.std() / scattered.mean() > 2.0 * even.std() / even.mean()

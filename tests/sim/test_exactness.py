@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import Phase, assume, given, settings, strategies as st
 from scipy.integrate import solve_ivp
-from scipy.linalg import expm
 
 from sim.bushing import LumpedBushing
 from sim.solvers.stick_slip import advance_stick_slip, rest_state
@@ -115,7 +114,7 @@ systems = st.builds(
     way=st.sampled_from([-1.0, 1.0]),
     change=st.sampled_from([0.0, 0.0, -5.0, 30.0]),
 )
-@settings(max_examples=6, phases=PHASES)
+@settings(max_examples=4, phases=PHASES)
 def test_events_and_states_agree_with_a_general_solver(system, kinetic, drop, speed, way, change):
     n = 9001
     shaft = way * (speed + change * STEP * np.arange(n))
@@ -147,61 +146,6 @@ def test_a_shaft_that_reverses_is_followed_through_zero():
     assert np.abs(events - expected).max() < 1e-10
     assert states[-1, 2:] == pytest.approx(end, rel=1e-7, abs=1e-7)
     assert {1, -1} <= set(direction.tolist())
-
-
-def generator(system, way, kinetic, speed):
-    """Matrix of the linear motion of (theta1, theta1', theta2, theta2', 1)."""
-    j_e, j_c, k_e, k_b, c_e, c_b = system
-    a = np.zeros((5, 5))
-    elastomer = np.array([k_e, c_e, -k_e, -c_e, 0.0])
-    a[0, 4 if way == 0 else 1] = speed if way == 0 else 1.0
-    if way != 0:
-        a[1] = -elastomer / j_e
-        a[1, 4] += way * kinetic / j_e
-    if k_b > 0:
-        a[2, 3] = 1.0
-        a[3] = (elastomer - np.array([0.0, 0.0, k_b, c_b, 0.0])) / j_c
-    return a
-
-
-def energy_flows(system, way, kinetic, speed, x, length):
-    """Work of the shaft, dissipation of the dampers, heat of friction; `x` of shape (n, 5)."""
-    _, _, k_e, _, c_e, c_b = system
-    nodes, weights = np.polynomial.legendre.leggauss(6)
-    flows = np.zeros(3)
-    for node, weight in zip(nodes, weights, strict=True):
-        here = x @ expm(generator(system, way, kinetic, speed) * length * 0.5 * (1 + node)).T
-        a, va, b, vb, _ = here.T
-        friction = k_e * (a - b) + c_e * (va - vb) if way == 0 else way * kinetic
-        powers = (friction * speed, c_e * (va - vb) ** 2 + c_b * vb**2, friction * (speed - va))
-        flows += 0.5 * length * weight * np.array([np.sum(p * np.ones(len(x))) for p in powers])
-    return flows
-
-
-@pytest.mark.parametrize(("speed", "support"), [(1.0, 3745.0), (-5.0, 2214.0), (2.0, np.inf)])
-def test_energy_is_conserved(speed, support):
-    lumped = LumpedBushing(1 / 65000, 1 / 1200, 665.0, support, 0.04, 0.05)
-    system, n = lumped.packed(), 1501
-    states, direction, events = solve_stick_slip(system, 10.7, 8.0, np.full(n, speed), STEP)
-    x = np.column_stack([states[:, 2:], np.ones(n)])
-    cut = np.zeros(n - 1, dtype=bool)
-    cut[np.floor(events / STEP).astype(int)] = True
-    flows = np.zeros(3)
-    for way in (-1, 0, 1):
-        flows += energy_flows(system, way, 8.0, speed, x[:-1][~cut & (direction[:-1] == way)], STEP)
-    for i in np.flatnonzero(cut):
-        way, t, here = direction[i], i * STEP, x[i : i + 1]
-        inside = events[(events >= t) & (events < t + STEP)]
-        for end in (*inside, t + STEP):
-            flows += energy_flows(system, way, 8.0, speed, here, end - t)
-            here = here @ expm(generator(system, way, 8.0, speed) * (end - t)).T
-            t, way = end, (int(np.sign(speed)) if way == 0 else 0)
-    a, va, b, vb = states[[0, -1], 2:].T
-    spring = 0.0 if np.isinf(support) else support
-    stored = 0.5 * (va**2 / 65000 + vb**2 / 1200 + 665.0 * (a - b) ** 2 + spring * b**2)
-    work, damped, heat = flows
-    assert heat > 0.0
-    assert stored[1] - stored[0] + damped + heat == pytest.approx(work, rel=1e-9)
 
 
 def free(system, x, speed, n, step, kinetic=0.0, critical=1.0, way=1.0):

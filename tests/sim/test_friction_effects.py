@@ -8,7 +8,6 @@ from hypothesis import given, settings, strategies as st
 
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
-from sim.analysis.regime import Regime, friction_regime
 from sim.contact import (
     CREEP,
     CRITICAL,
@@ -85,14 +84,6 @@ def test_creep_grows_with_torque_and_ends_with_unloading(form):
     assert touch(effect, torque=8.0, shaft_speed=-2.0)[0][CREEP] == 0.0
 
 
-@pytest.mark.parametrize("form", EFFECTS["velocity_weakening"].forms)
-def test_weakening_sustains_oscillation_where_constant_torque_slides_steadily(form):
-    plain = motion(speed=9.0)
-    weak = motion(("velocity_weakening", {"form": form, "share": 0.25}), speed=9.0)
-    assert friction_regime(plain) is Regime.STEADY_SLIDING
-    assert friction_regime(weak) is not Regime.STEADY_SLIDING
-
-
 @pytest.mark.parametrize("name", ["velocity_weakening", "velocity_strengthening"])
 def test_steady_sliding_gives_the_torque_of_the_curve(name):
     sign = -1.0 if name == "velocity_weakening" else 1.0
@@ -104,17 +95,6 @@ def test_steady_sliding_gives_the_torque_of_the_curve(name):
         assert at_rest == 1.0
         assert 0.04 < sign * (at_ten - 1.0) <= 0.1 * (1.0 + 1e-12)
         assert sign * fast > sign * at_ten
-
-
-@pytest.mark.parametrize("form", EFFECTS["static_ageing"].forms)
-def test_ageing_ends_stick_slip_at_a_lower_speed(form):
-    def stick_slips(speed, *specs):
-        return friction_regime(motion(*specs, speed=speed)) is Regime.STICK_SLIP
-
-    aged = ("static_ageing", {"form": form, "ageing_time": 3e-3})
-    assert stick_slips(5.0)
-    assert stick_slips(0.5, aged)
-    assert not stick_slips(5.0, aged)
 
 
 @settings(max_examples=50)
@@ -134,12 +114,6 @@ def test_strength_grows_with_age_between_kinetic_and_critical(form, share, early
     assert touch(effect, sticks=3.0, time=5.0)[0][CRITICAL] == pytest.approx(10.7 - 2.7 * share)
 
 
-def test_ageing_reaches_laws_that_know_no_sticks():
-    plain, _ = solve(rig=MEMORY, samples=9000)
-    aged, _ = solve(hook("static_ageing", ageing_time=5e-3), rig=MEMORY, samples=9000)
-    assert aged[4500:].std() < 0.9 * plain[4500:].std()
-
-
 @pytest.mark.parametrize("form", EFFECTS["critical_torque_scatter"].forms)
 def test_scatter_has_the_spread_and_the_correlation_asked_for(form):
     effect = hook("critical_torque_scatter", form=form, scatter=0.2, correlation=0.8)
@@ -150,34 +124,6 @@ def test_scatter_has_the_spread_and_the_correlation_asked_for(form):
     assert torque.mean() == pytest.approx(10.7, abs=0.1)
     lag = np.corrcoef(torque[1:], torque[:-1])[0, 1]
     assert lag == pytest.approx(0.8 if form == "correlated" else 0.0, abs=0.06)
-
-
-def test_scatter_never_lets_the_contact_break_below_what_it_slides_at():
-    effect = hook("critical_torque_scatter", scatter=1.0)
-    least = min(touch(effect, sticks=i, time=99.0)[0][CRITICAL] for i in np.arange(1.0, 4000.0))
-    assert least == 8.0
-
-
-@pytest.mark.parametrize("form", EFFECTS["transfer_film"].forms)
-def test_a_film_raises_the_torque_three_to_four_times(form):
-    run = motion(("transfer_film", {"form": form, "growth_angle": 0.4}), speed=7.0)
-    late = run.torque[-9000:]
-    assert 3.0 < late.mean() / 8.0 < 4.0
-    assert 0.0 < late.std() < 0.05 * late.mean()
-    spectrum = np.abs(np.fft.rfft(late - late.mean())) ** 2
-    frequency = np.fft.rfftfreq(late.size, 1.0 / RATE)
-    inside = (frequency > 200.0) & (frequency < 1600.0)
-    assert spectrum[inside].sum() > 0.95 * spectrum.sum()
-
-
-def test_a_film_grows_with_the_angle_slid():
-    for form in EFFECTS["transfer_film"].forms:
-        effect = hook("transfer_film", form=form, roughness=0.0)
-        torque = [touch(effect, [angle])[0][KINETIC] for angle in (0.0, 0.5, 1.0, 50.0)]
-        assert torque == sorted(torque)
-        assert torque[0] == 8.0
-        assert torque[-1] == pytest.approx(28.0)
-        assert touch(effect, speed=-3.0)[1][0] == 3.0
 
 
 def test_the_surface_warms_as_appendix_g_has_it():
@@ -196,13 +142,6 @@ def warmed(effect, seconds, steps=4000):
     for _ in range(steps):
         state = (state + seconds / steps * source) / (1.0 - seconds / steps * unit)
     return state.sum()
-
-
-def test_softening_stops_at_the_floor():
-    effect = hook("frictional_heating", form="linear_with_floor", floor=0.4)
-    hot = np.full(effect.n_states, 100.0)
-    assert touch(effect, hot)[0][KINETIC] == pytest.approx(3.2)
-    assert touch(hook("frictional_heating", floor=0.4), hot)[0][KINETIC] < 3.2
 
 
 @pytest.mark.parametrize("form", EFFECTS["viscoelastic_stiffness"].forms)

@@ -5,33 +5,11 @@ import pytest
 from scipy.signal import welch
 
 from sim.effects import EFFECTS
-from sim.effects.effect import Stage
 from tests.helpers.sensor_signals import RATE, read, rms, tone
 
 MEASUREMENT = (
     "background_noise", "mains_hum", "mount_resonance", "clipping", "gain_error", "channel_delay",
 )  # fmt: skip
-STAGES = {
-    "speed_fluctuation": "drive", "shaft_compliance": "drive",
-    "partial_slip": "friction", "velocity_weakening": "friction",
-    "velocity_strengthening": "friction", "static_ageing": "friction",
-    "critical_torque_scatter": "friction", "transfer_film": "friction",
-    "frictional_heating": "friction", "viscoelastic_stiffness": "friction",
-    "amplitude_softening": "friction",
-    "beam_modes": "structure", "slip_pulse": "structure",
-    "plate_modes": "radiation", "room_reflections": "radiation",
-    **dict.fromkeys(MEASUREMENT, "measurement"),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", sorted(EFFECTS))
-def test_every_effect_acts_in_the_stage_that_the_diagnosis_knows_it_by(name):
-    effect = EFFECTS[name]
-    assert effect.name == name
-    assert effect.stage == STAGES[name]
-    if effect.stage is Stage.MEASUREMENT:
-        assert effect.sensors is not None
-        assert effect.drive is effect.contact is effect.force is None
 
 
 @pytest.mark.parametrize("name", MEASUREMENT)

@@ -3,10 +3,9 @@
 import math
 
 import pytest
-from hypothesis import given, settings, strategies as st
 
 from models.rig_file import load_material_rig, material_names
-from sim.analysis.regime import SlidingWatch, never_slips
+from sim.analysis.regime import never_slips
 from sim.run import simulate
 from sim.shaft import Oscillation
 
@@ -31,19 +30,3 @@ def test_one_that_lets_go_is_seen(material):
     rig = load_material_rig(material)
     assert not never_slips(motion(rig, 5.0))
     assert not never_slips(motion(rig, Oscillation(math.radians(15.0), 2.0)))
-
-
-@settings(max_examples=20)
-@given(cut=st.integers(1, 26999))
-def test_parts_are_seen_as_the_whole(cut):
-    watch = SlidingWatch()
-    for part in (RUN.part(0, cut), RUN.part(cut)):
-        watch.see(part)
-    whole = SlidingWatch()
-    whole.see(RUN)
-    assert watch.shaft_speed == whole.shaft_speed
-    assert watch.sliding_speed == whole.sliding_speed
-    assert watch.never_slips == whole.never_slips == never_slips(RUN)
-
-
-RUN = motion(load_material_rig("fluorocarbon-thesis"), 2.5)

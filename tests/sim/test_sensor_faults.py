@@ -41,11 +41,6 @@ def test_the_reading_of_a_mounted_sensor_is_that_of_the_equation(form, frequency
     assert reading(frequency, form, **given) == pytest.approx(expected, rel=0.04)
 
 
-def test_a_full_mount_amplifies_its_resonance_by_one_over_twice_its_damping():
-    found = reading(6e3, "single", damping_ratio=0.02)
-    assert found == pytest.approx(1.0 / (2.0 * 0.02), rel=0.01)
-
-
 # Clipping.
 
 

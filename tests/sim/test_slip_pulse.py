@@ -52,13 +52,3 @@ def test_turning_back_is_no_slip():
     )  # fmt: skip
     assert np.ptp(swing.torque) > 15.0
     assert not force(swing).any()
-
-
-@pytest.mark.parametrize("form", EFFECTS["slip_pulse"].forms)
-@pytest.mark.parametrize("duration", [1e-5, 2e-5, 1e-4])
-def test_impulse_of_a_blow_goes_with_its_duration(form, duration):
-    motion = run()
-    long = force(motion, form=form, duration=1e-3).sum()
-    assert force(motion, form=form, duration=duration).sum() == pytest.approx(
-        long * duration / 1e-3, rel=0.05
-    )

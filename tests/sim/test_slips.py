@@ -92,14 +92,6 @@ def test_slips_of_alternate_size_are_counted_each_and_their_doubled_period_is_st
     assert found.pattern == (1 if lesser == 1.0 else 2)
 
 
-def test_slips_without_a_period_are_counted_as_well():
-    drops = np.random.default_rng(0).normal(0.02, 0.005, 400).clip(0.008, 0.03)
-    twist, slips = sawtooth(drops)
-    found = find_slips(twist, 5.0, RATE, own_period=OWN)
-    assert found.rate == pytest.approx((slips.size - 1) / (slips[-1] - slips[0]), rel=0.02)
-    assert found.pattern == 0
-
-
 @pytest.mark.parametrize(("fit", "support"), PLACES)
 def test_with_true_stick_slips_are_those_of_the_solver(fit, support):
     for speed in (0.5, 1.0, 1.5):
@@ -113,31 +105,7 @@ def test_with_true_stick_slips_are_those_of_the_solver(fit, support):
         assert motion_slips(run).rate == pytest.approx(by_solver, rel=0.02)
 
 
-@pytest.mark.parametrize(
-    ("support", "speed", "rate"), [(2214.0, 9.0, 250.0), (3745.0, 10.0, 317.0)]
-)
-def test_slips_of_the_tight_fit_are_no_subharmonics(support, speed, rate):
-    run = motion(FLUOROCARBON, speed, 0.381e-3, support).since(round(0.5 * RATE))
-    assert motion_slips(run).rate == pytest.approx(rate, rel=0.01)
-
-
-def test_a_swing_after_a_slip_is_no_slip():
-    lobes, slips = sawtooth([0.02])
-    for slip in slips:
-        after = TIME - slip - 0.5e-3
-        lobes += np.where(
-            (after > 0) & (after < 1.1e-3), 4e-3 * np.sin(np.pi * after / 1.1e-3), 0.0
-        )
-    found = find_slips(lobes, 5.0, RATE, own_period=OWN)
-    assert found.rate == pytest.approx(1.0 / float(np.diff(slips).mean()), rel=5e-3)
-
-
 # Regimes
-
-
-@pytest.mark.parametrize("speed", [0.25, 0.5, 1.0])
-def test_a_contact_that_creeps_sticks_and_slips_on_a_fixed_clamp_at_the_lowest_speeds(speed):
-    assert friction_regime(motion(FLUOROCARBON, speed)) is Regime.STICK_SLIP
 
 
 def test_grazing_the_shafts_speed_is_no_stick_slip():

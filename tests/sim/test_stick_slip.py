@@ -7,8 +7,6 @@ from hypothesis import given, settings, strategies as st
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
 from sim.bushing import LumpedBushing
-from sim.motion import simulate_motion
-from sim.shaft import Oscillation
 from tests.helpers.contacts import solve_stick_slip
 
 THESIS = load_material_rig("fluorocarbon-thesis")
@@ -58,18 +56,6 @@ def test_the_fixed_clamp_is_the_limit_of_a_stiff_support():
         errors.append(np.abs(stiff[:8] - bolted[:8]).max())
     assert errors[1] < 2e-6
     assert errors[1] < 0.2 * errors[0]
-
-
-def test_the_contact_sticks_around_each_reversal_of_an_oscillating_shaft():
-    shaft = Oscillation(np.deg2rad(15.0), 2.0)
-    run = simulate_motion(
-        THESIS, shaft, interference=0.279e-3, support_stiffness=2214.0, seconds=0.5, rate=30e3
-    )
-    turning_points = [np.argmax(run.shaft_angle), np.argmin(run.shaft_angle)]
-    for turn in turning_points:
-        assert np.abs(run.sliding_speed[turn - 30 : turn + 30]).max() < 0.05
-    assert run.torque.max() > 8.0
-    assert run.torque.min() < -8.0
 
 
 def test_a_step_beyond_any_cutting_up_is_refused():

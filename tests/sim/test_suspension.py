@@ -6,9 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, strategies as st
 from scipy.integrate import quad, solve_ivp
-from scipy.linalg import eigh
 
 from models.errors import ParameterError
 from models.rig import LawSpec
@@ -44,8 +43,7 @@ def solved(chain, rig, speed, rate, tolerance=None, **given):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("material", ["fluorocarbon", "PDMS", "natural-rubber"])
-@pytest.mark.parametrize("support", [2214.0, math.inf])
+@pytest.mark.parametrize(("material", "support"), [("fluorocarbon", math.inf), ("PDMS", 2214.0)])
 def test_a_bushing_on_a_rigid_bar_is_the_rig(material, support):
     rig, n = load_material_rig(material), 3000
     chain = solved(rigid(), rig, np.full(n, 2.5), 30e3, 1e-11, support_stiffness=support)
@@ -59,31 +57,9 @@ def test_a_bushing_on_a_rigid_bar_is_the_rig(material, support):
         assert getattr(own, name) == pytest.approx(getattr(known, name), abs=1e-5 * scale), name
 
 
-def test_wheels_that_go_opposite_ways_move_the_bushings_as_mirror_images():
-    run = simulate_suspension(CAR, ROAD, **AT, seconds=0.1, rate=30e3, effects=())
-    left, right = run.bushings
-    assert left.torque == pytest.approx(-right.torque, abs=1e-2 * np.abs(left.torque).max())
-    assert run.load[0] == pytest.approx(-run.load[1], abs=1e-3 * np.abs(run.load).max())
-    # The bar's middle stands, and its parts turn as far as they are from it.
-    share = CAR.spacing / CAR.bar.length
-    turned = np.abs(left.shaft_angle).max() / np.abs(run.angle[0]).max()
-    assert turned == pytest.approx(share, rel=0.05)
-
-
-def test_links_carry_the_twist_of_the_bar_and_load_the_bushings_by_the_lever():
-    slow = Oscillation(math.radians(6.0), 0.5)
-    run = simulate_suspension(CAR, slow, **AT, seconds=0.5, rate=20e3, effects=())
-    twist = np.abs(run.angle[0] - run.angle[-1]).max()
-    bar = CAR.bar
-    torque = bar.shear_modulus * bar.polar_moment / bar.length * twist
-    load = torque / bar.arm_length * bar.length / CAR.spacing
-    friction = np.abs(run.bushings[0].friction_torque).max() / bar.arm_length
-    assert np.abs(run.load).max() == pytest.approx(load, abs=3 * friction)
-
-
 def test_an_integrator_of_its_own_finds_the_same_motion():
     """The whole chain written down again as one state, at a load that lifts the bar off."""
-    n, rate, pressed, turns = 300, 30e3, 150.0, 8.0
+    n, rate, pressed, turns = 200, 30e3, 150.0, 8.0
     chain = torsion_chain(CAR.bar, CAR.spacing, 1.5e6, 150.0, "left")
     speed = np.full(n, turns)
     made = solve_chain(
@@ -134,53 +110,6 @@ def test_an_integrator_of_its_own_finds_the_same_motion():
         for name, row in (("interface_angle", 0), ("interface_speed", 1), ("clamp_angle", 2)):
             values = known[first + row]
             assert getattr(own, name) == pytest.approx(values, abs=1e-5 * np.abs(values).max())
-
-
-@settings(max_examples=8)
-@given(
-    st.sampled_from(["opposite", "together", "left"]), st.floats(0.5, 6.0), st.floats(1.0, 4.0),
-    st.sampled_from([2214.0, 3745.0, math.inf]), st.floats(2e5, 3e6), st.floats(0.0, 500.0),
-)  # fmt: skip
-def test_what_the_wheels_do_is_stored_or_lost(wheels, degrees, hertz, support, stiffness, damping):
-    car = replace(CAR, wheels=wheels, link_stiffness=stiffness, link_damping=damping)
-    travel, rate = Oscillation(math.radians(degrees), hertz), 120e3
-    at = AT | {"support_stiffness": support}
-    run = simulate_suspension(car, travel, **at, seconds=0.15, rate=rate, effects=())
-    chain = torsion_chain(car.bar, car.spacing, stiffness, damping, wheels)
-    bushing = lumped_bushing(car.rig, 0.279e-3, support)
-    stored = 0.5 * chain.inertia @ run.speed**2
-    stored += 0.5 * chain.stiffness @ np.diff(run.angle, axis=0) ** 2
-    lost = chain.damping @ np.diff(run.speed, axis=0) ** 2
-    asked = chain.travel[:, None] * run.travel
-    wanted = chain.travel[:, None] * travel.speed(np.arange(run.travel.size) / rate)
-    link = chain.link_stiffness[:, None] * (asked - run.angle)
-    link += chain.link_damping[:, None] * (wanted - run.speed)
-    given = (link * run.speed).sum(axis=0)
-    for each in run.bushings:
-        twist = each.interface_angle - each.clamp_angle
-        stored += 0.5 * bushing.elastomer_inertia * each.interface_speed**2
-        stored += 0.5 * bushing.clamp_inertia * each.clamp_speed**2
-        stored += 0.5 * bushing.elastomer_stiffness * twist**2
-        if math.isfinite(support):
-            stored += 0.5 * support * each.clamp_angle**2
-        twisting = each.interface_speed - each.clamp_speed
-        lost = lost + bushing.elastomer_damping * twisting**2
-        lost = lost + bushing.support_damping * each.clamp_speed**2
-        lost = lost + each.friction_torque * each.sliding_speed
-    power = given - lost
-    work = np.concatenate([[0.0], np.cumsum(0.5 * (power[1:] + power[:-1]) / rate)])
-    assert stored - stored[0] == pytest.approx(work, abs=2e-3 * max(stored.max(), work.max()))
-
-
-def test_a_bar_held_by_its_arms_rings_as_a_rod():
-    bar = replace(CAR.bar, arm_inertia=1e6)
-    chain = torsion_chain(bar, CAR.spacing, 0.0, 0.0, "opposite")
-    rod = math.sqrt(bar.shear_modulus / bar.density) / (2 * bar.length)
-    matrix = np.zeros((chain.inertia.size, chain.inertia.size))
-    for i, stiffness in enumerate(chain.stiffness):
-        matrix[i : i + 2, i : i + 2] += stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    squares = eigh(matrix, np.diag(chain.inertia), eigvals_only=True)
-    assert math.sqrt(squares[2]) / (2 * math.pi) == pytest.approx(rod, rel=0.02)
 
 
 @given(st.floats(0.2, 1.5), st.floats(0.1, 0.9), st.floats(-1e3, 1e3), st.floats(-1e3, 1e3))
@@ -234,16 +163,6 @@ def test_a_recording_has_the_channels_of_both_bushings_and_one_microphone():
     assert pressure == pytest.approx(1e-6 * sleeve.pressure(0.279e-3), rel=5e-3)
     torque = sleeve.friction_torque(0.279e-3, coefficient)
     assert torque == pytest.approx(fit.kinetic_torque, rel=5e-3)
-
-
-def test_effects_on_the_contact_scatter_each_bushing_for_itself():
-    scatter = LawSpec("critical_torque_scatter", {"scatter": 0.3})
-    scattered = replace(CAR.rig, effects=(scatter,))
-    run = simulate_suspension(
-        replace(CAR, rig=scattered, wheels="together"), ROAD, **AT, seconds=0.2, rate=30e3
-    )
-    left, right = run.bushings
-    assert not np.array_equal(left.torque, right.torque)
 
 
 def test_what_cannot_be_simulated_is_named():

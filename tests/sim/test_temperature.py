@@ -8,8 +8,7 @@ import pytest
 from models.bushing import TemperatureDependence
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
-from sim.analysis.critical_speeds import critical_speeds, motion_from_rest
-from sim.analysis.stability import steady_sliding
+from sim.analysis.critical_speeds import motion_from_rest
 from sim.friction import LAWS
 from sim.run import simulate
 from sim.temperature import at_temperature
@@ -32,29 +31,6 @@ def test_at_the_reference_temperature_a_run_is_to_the_bit_as_without():
     plain = simulate(replace(RIG, temperature=None), 5.0, seconds=0.1)
     run = simulate(RIG, 5.0, temperature=23.0, seconds=0.1)
     assert np.array_equal(run.recording.samples, plain.recording.samples)
-
-
-def test_the_elastomers_damping_follows_and_that_of_the_beams_stays():
-    cold, share = at_temperature(RIG, 5.0), RIG.elastomer_damping_share
-    before, after = (rig.fit(AT[0]).damping[2214.0] for rig in (RIG, cold))
-    assert (1.0 - cold.elastomer_damping_share) * after == pytest.approx((1.0 - share) * before)
-    assert cold.elastomer_damping_share * after > 2.0 * share * before
-
-
-def test_the_cold_is_noisier_than_the_heat():
-    cold, warm = (critical_speeds(at_temperature(RIG, t), *AT, (1.0, 5.0, 13.0)) for t in (15, 80))
-    assert cold.v_crit2 >= 5.0
-    assert warm.v_crit2 == 0.0
-
-
-def test_silicone_is_silent_from_5_to_80_degrees_and_rubs_less_when_warm():
-    silicone = load_material_rig("PDMS")
-    torques = []
-    for t in (5.0, 23.0, 80.0):
-        rig = at_temperature(silicone, t)
-        assert steady_sliding(rig, np.arange(0.25, 17.0, 1.0), *AT).stable.all()
-        torques.append(mean_torque(rig))
-    assert torques == sorted(torques, reverse=True)
 
 
 def test_a_master_curve_is_moved_by_its_own_speed_and_not_twice():

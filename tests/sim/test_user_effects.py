@@ -106,18 +106,6 @@ def test_a_rig_file_may_name_the_users_effect(effects_file, tmp_path, capsys):
     assert "effect 'zero_offset' is unknown" in capsys.readouterr().err
 
 
-def test_render_simulates_with_the_users_effect_and_refuses_it_for_a_recording(
-    effects_file, tmp_path, capsys
-):
-    path = effects_file(OFFSET)
-    own = ("--effects", path, "--effect", "zero_offset")
-    out = str(tmp_path / "heard.wav")
-    assert main(["render", *CONDITION, *own, "--out", out]) == 0
-    capsys.readouterr()
-    assert main(["render", out, "--effects", path, "--out", str(tmp_path / "again.wav")]) == 2
-    assert "--effects describes a run to simulate" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -182,17 +170,3 @@ def test_a_drive_that_gives_no_speed_is_refused(effects_file, capsys, result):
     text = text.replace('signals | {"torque": signals["torque"] + values["offset"]}', result)
     line = refusal(capsys, "--effects", effects_file(text), "--effect", "zero_offset")
     assert "effect 'zero_offset': drive must return" in line
-
-
-def test_the_help_names_the_effects_and_loads_nothing_that_computes():
-    import subprocess
-    import sys
-
-    code = (
-        "import sys; from noise.cli import main; main(['simulate', '--help']); "
-        "print(sorted({'numpy', 'numba', 'scipy'} & set(sys.modules)))"
-    )
-    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert said.stdout.splitlines()[-1] == "[]"
-    assert "speed_fluctuation" in said.stdout
-    assert "clipping" in said.stdout

