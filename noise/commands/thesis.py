@@ -56,9 +56,9 @@ def _write_table(out: Path | None) -> None:
     from noise.thesis.page import thesis_page, verdict_counts
     from noise.thesis.row import COLUMNS
     from noise.thesis.runs import constant_note
-    from noise.thesis.table import GROUPS, thesis_rows
+    from noise.thesis.table import group_names, thesis_rows
 
-    rows = thesis_rows(track(GROUPS, "computing", unit="row group"))
+    rows = thesis_rows(track(group_names(), "computing", unit="row group"))
     if out is not None and is_page:
         with atomic(out) as temporary:
             temporary.write_text(thesis_page(rows), encoding="utf-8", newline="\n")

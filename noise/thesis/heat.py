@@ -12,7 +12,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from models.errors import ParameterError
 from noise.thesis.row import Values
 
 
@@ -36,40 +35,11 @@ class HalfSpace:
         return 2.0 / self.conductivity * math.sqrt(self.diffusivity * seconds / math.pi)
 
 
-@dataclass(frozen=True)
-class Layer:
-    """A thin layer without heat capacity.
-
-    Parameters
-    ----------
-    thickness : float
-        [m]
-    conductivity : float
-        [W/m/K]
-    """
-
-    thickness: float
-    conductivity: float
-
-
 STEEL = HalfSpace(3.95e-6, 14.9)
 """304 stainless (Table G1)."""
 
 RUBBER = HalfSpace(6.69e-8, 0.16)
 """(Table G1)"""
-
-
-def heat_shares(first: HalfSpace, second: HalfSpace) -> tuple[float, float]:
-    """Shares of the heat that two bodies in contact take, equation (G5).
-
-    Examples
-    --------
-    >>> steel, rubber = heat_shares(STEEL, RUBBER)
-    >>> round(steel, 3), round(rubber, 3)
-    (0.924, 0.076)
-    """
-    a, b = first.resistance(1.0), second.resistance(1.0)
-    return b / (a + b), a / (a + b)
 
 
 def temperature_rise(body: HalfSpace, flux: float, seconds: float, depth: float = 0.0) -> float:
@@ -90,11 +60,6 @@ def temperature_rise(body: HalfSpace, flux: float, seconds: float, depth: float 
     float
         [K]
 
-    Raises
-    ------
-    ParameterError
-        If the time is not positive, or the depth negative.
-
     Notes
     -----
     The print of (G3) has alpha t / pi without its power 1/2.
@@ -105,23 +70,12 @@ def temperature_rise(body: HalfSpace, flux: float, seconds: float, depth: float 
     >>> round(temperature_rise(RUBBER, rubber_flux, 0.23), 1)
     25.9
     """
-    if not (seconds > 0.0 and depth >= 0.0):
-        raise ParameterError(
-            f"heating: seconds = {seconds:g} must be positive, depth = {depth:g} m not negative"
-        )
     reach = 2.0 * math.sqrt(body.diffusivity * seconds)
     surface = body.resistance(seconds) * math.exp(-((depth / reach) ** 2))
     return flux * (surface - depth / body.conductivity * math.erfc(depth / reach))
 
 
-def interface_rise(
-    power: float,
-    area: float,
-    seconds: float,
-    shaft: HalfSpace = STEEL,
-    bushing: HalfSpace = RUBBER,
-    layer: Layer | None = None,
-) -> float:
+def interface_rise(power: float, area: float, seconds: float, layer: float = 0.0) -> float:
     """Rise of the temperature where a bushing rubs on a shaft.
 
     Parameters
@@ -132,46 +86,23 @@ def interface_rise(
         Of contact [m2].
     seconds : float
         Since sliding began [s].
-    shaft, bushing : HalfSpace
-    layer : Layer, optional
-        On the shaft, such as paint.
+    layer : float, optional
+        Resistance of a thin layer on the shaft, such as paint [K m2/W].
 
     Returns
     -------
     float
         [K]
 
-    Raises
-    ------
-    ParameterError
-        If area or time is not positive.
-
     Examples
     --------
     >>> round(interface_rise(300.0, 7.69e-4, 0.23))
     26
-    >>> round(interface_rise(300.0, 7.69e-4, 0.23, layer=Layer(50e-6, 0.2)))
+    >>> round(interface_rise(300.0, 7.69e-4, 0.23, layer=50e-6 / 0.2))
     92
     """
-    if not (area > 0.0 and seconds > 0.0):
-        raise ParameterError(
-            f"heating: area = {area:g} m2 and seconds = {seconds:g} must be positive"
-        )
-    a, b = shaft.resistance(seconds), bushing.resistance(seconds)
-    if layer is not None:
-        a += layer.thickness / layer.conductivity
+    a, b = STEEL.resistance(seconds) + layer, RUBBER.resistance(seconds)
     return power / area * a * b / (a + b)
-
-
-def contact_area(power: float, rise: float, seconds: float) -> float:
-    """Area of contact [m2] at which steel without paint and rubber warm by `rise` [K].
-
-    Examples
-    --------
-    >>> round(1e4 * contact_area(300.0, 26.0, 0.23), 2)
-    7.69
-    """
-    return interface_rise(power, 1.0, seconds) / rise
 
 
 _POWER = 30.0 * 10.0
@@ -181,14 +112,15 @@ _SECONDS = 0.23
 _RISE = 26.0
 """Published [K]."""
 
-_PAINT = Layer(50e-6, 0.2)
-"""Of the shaft, assumed."""
+_PAINT = 50e-6 / 0.2
+"""Resistance of the shaft's, assumed [K m2/W]."""
 
 
 def heating() -> Iterator[Values]:
     """Shares of the heat, temperatures at the surface, below it and under paint."""
-    into_steel, into_rubber = heat_shares(STEEL, RUBBER)
-    area = contact_area(_POWER, _RISE, _SECONDS)
+    a, b = STEEL.resistance(1.0), RUBBER.resistance(1.0)
+    into_steel, into_rubber = b / (a + b), a / (a + b)  # (G5)
+    area = interface_rise(_POWER, 1.0, _SECONDS) / _RISE
     reach = STEEL.diffusivity * _SECONDS
     flux, steel_flux = into_rubber * _POWER / area, into_steel * _POWER / area
     yield {"exact": 100.0 * into_steel}

@@ -24,9 +24,8 @@ def verdict_counts(rows: Sequence[Row]) -> dict[str, int]:
 
     Examples
     --------
-    >>> from noise.thesis.calibrations import misprints
     >>> from noise.thesis.table import thesis_rows
-    >>> verdict_counts(thesis_rows([misprints]))
+    >>> verdict_counts(thesis_rows(["misprints"]))
     {'misprint': 5}
     """
     words = Counter(
@@ -71,9 +70,8 @@ def thesis_page(rows: Sequence[Row]) -> str:
 
     Examples
     --------
-    >>> from noise.thesis.calibrations import misprints
     >>> from noise.thesis.table import thesis_rows
-    >>> print(thesis_page(thesis_rows([misprints])[:1]))
+    >>> print(thesis_page(thesis_rows(["misprints"])[:1]))
     # The thesis's numbers, checked
     ...
     | wlf_constant | (2.1), first | 1 | 8.88 |  | 8.860 |  | misprint |

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import Enum
 
 COLUMNS = (
     "item", "condition", "unit", "published", "listing", "exact", "calibrated", "verdict",
@@ -19,14 +18,6 @@ COLUMNS = (
 
 _OFF_AT_MOST = 0.25
 """A value that is further off fails."""
-
-
-class Column(Enum):
-    """What computes a value: the listing, the equations solved exactly, the calibrated rig."""
-
-    LISTING = "listing"
-    EXACT = "exact"
-    CALIBRATED = "calibrated"
 
 
 @dataclass(frozen=True)
@@ -78,7 +69,7 @@ class Row:
     published : Published
     listing, exact, calibrated : float
         Computed values, in the unit `unit` [-]; infinite is beyond `limit`, NaN is none.
-    judged : Column
+    judged : str
         Which of them the verdict is on.
     tolerance : float
         Relative, within which a value holds.
@@ -112,7 +103,7 @@ class Row:
     listing: float = math.nan
     exact: float = math.nan
     calibrated: float = math.nan
-    judged: Column = Column.EXACT
+    judged: str = "exact"
     tolerance: float = 0.01
     measured: bool = False
     meant: Published | None = None
@@ -133,10 +124,10 @@ class Row:
         Examples
         --------
         >>> Row("v_crit2", "0.279 mm", "rad/s", number(12.5), calibrated=9.75,
-        ...     judged=Column.CALIBRATED, measured=True).verdict
+        ...     judged="calibrated", measured=True).verdict
         'off by 22 %'
         >>> Row("critical_damping", "7.5 rad/s", "Nm s/rad", number(0.7599), listing=0.07598,
-        ...     judged=Column.LISTING, meant=number(0.07599)).verdict
+        ...     judged="listing", meant=number(0.07599)).verdict
         'misprint'
         >>> Row("mean_torque", "0.279 mm", "Nm", number(8.0), exact=8.01, in_sample=True).verdict
         'holds (in sample)'
@@ -156,7 +147,7 @@ class Row:
         return checkable and self._word(self.best, self.meant or self.published) == "fails"
 
     def _words(self) -> str:
-        value = getattr(self, self.judged.value)
+        value = getattr(self, self.judged)
         if math.isnan(value):
             return "not checkable"
         word = self._word(value, self.published)
@@ -165,13 +156,9 @@ class Row:
                 word = "misprint"
         elif self.meant is not None and self._word(value, self.meant) == "holds":
             word = "misprint"
-        elif word == "fails" and self.measured and self.judged is not Column.CALIBRATED:
+        elif word == "fails" and self.measured and self.judged != "calibrated":
             word = "refuted"
-        if (
-            self.measured
-            and self.judged is not Column.CALIBRATED
-            and not math.isnan(self.calibrated)
-        ):
+        if self.measured and self.judged != "calibrated" and not math.isnan(self.calibrated):
             calibrated = self._word(self.calibrated, self.meant or self.published)
             if calibrated != "holds":
                 word += f"; calibrated {calibrated}"

@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 
 import numpy as np
+from numpy.typing import NDArray
 
-from features.kernels.lines import find_lines
+from features.kernels.lines import Lines, find_lines
 from features.kernels.spectra import autospectrum
 from models.condition import FIXED
 from models.rig import Rig
@@ -21,12 +22,14 @@ from models.rig_file import load_material_rig, material_names
 from noise.base.remarks import constant_remark
 from noise.thesis.listing import STEP, ListingRun, run_listing
 from noise.thesis.repetition import repetition_rate
-from sim.analysis.critical_damping import with_damping
+from sim.analysis.critical_damping import critical_damping, largest_sticking, with_damping
+from sim.analysis.critical_speeds import SPEEDS, CriticalSpeeds, critical_speeds
 from sim.analysis.regime import LEAST_OSCILLATION
-from sim.analysis.slips import Slips, find_slips, motion_slips
+from sim.analysis.slips import LEAST_SUDDEN, Slips, find_slips, motion_slips
+from sim.bushing import lumped_bushing
 from sim.motion import Motion, simulate_motion
 from sim.rig_effects import constant_version
-from sim.run import simulate
+from sim.run import Run, simulate
 from sim.shaft import ConstantSpeed
 
 THESIS, CALIBRATED = "fluorocarbon-thesis", "fluorocarbon"
@@ -48,6 +51,12 @@ _SECONDS = {THESIS: 4.0}
 _OTHER_SECONDS = 1.5
 """Length of a run, of which the last three quarters are looked at [s]. Slips of the thesis's model
 can be chaotic, so that their mean rate needs many; it is cheap to run."""
+
+_HIGHEST_DAMPING, _DAMPING_TOLERANCE = 0.3, 1e-5
+"""Where searches for the damping that ends stick-slip start, and how well they end [Nm s/rad]."""
+
+_SEARCHED = 1.0
+"""Length of a run of a search [s]."""
 
 
 @dataclass(frozen=True)
@@ -81,35 +90,10 @@ class Case:
         """Whether the clamp is bolted down."""
         return self.support_stiffness == FIXED
 
-    def at(self, speed: float) -> Case:
-        """Return the case at another speed [rad/s]."""
-        return replace(self, speed=speed)
-
-    def place(self) -> str:
-        """Interference and support as the table names them.
-
-        Examples
-        --------
-        >>> Case(1.0, 0.381, FIXED).place()
-        '0.381 mm, fixed clamp'
-        """
+    def __str__(self) -> str:
         support = "fixed clamp" if self.fixed else f"{self.support_stiffness:g} Nm/rad"
         damped = "" if self.damping is None else f", c_E {self.damping:g}"
-        return f"{self.interference_mm:g} mm, {support}{damped}"
-
-    def __str__(self) -> str:
-        return f"{self.place()}, {self.speed:g} rad/s"
-
-
-def both(found: Callable[[str, Case], float], case: Case) -> dict[str, float]:
-    """Compute a number of a case with the thesis's equations and with the calibrated material.
-
-    Examples
-    --------
-    >>> both(lambda material, case: float(len(material)), Case(1.0))
-    {'exact': 19.0, 'calibrated': 12.0}
-    """
-    return {"exact": found(THESIS, case), "calibrated": found(CALIBRATED, case)}
+        return f"{self.interference_mm:g} mm, {support}{damped}, {self.speed:g} rad/s"
 
 
 @cache
@@ -143,17 +127,20 @@ def motion(material: str, case: Case, seconds: float | None = None, rate: float 
     rate : float
         Of the output [Hz].
     """
-    rig = rig_of(material)
-    if case.damping is not None and material == THESIS:
-        rig = with_damping(rig, case.damping)
     return simulate_motion(
-        rig,
+        _damped(material, case),
         ConstantSpeed(case.speed),
         interference=case.interference,
         support_stiffness=case.support_stiffness,
         seconds=seconds or _SECONDS.get(material, _OTHER_SECONDS),
         rate=rate,
     )
+
+
+def _damped(material: str, case: Case) -> Rig:
+    rig = rig_of(material)
+    own = case.damping is not None and material == THESIS
+    return with_damping(rig, case.damping) if own else rig
 
 
 def _settled(run: Motion) -> Motion:
@@ -166,12 +153,12 @@ def oscillation(material: str, case: Case) -> float:
     return float(torque.std() / abs(torque.mean()))
 
 
-def mean_torque(material: str, case: Case) -> float:
+def _mean_torque(material: str, case: Case) -> float:
     """Mean torque [Nm]."""
     return float(_settled(motion(material, case)).torque.mean())
 
 
-def torque_swing(material: str, case: Case) -> float:
+def _torque_swing(material: str, case: Case) -> float:
     """Largest less smallest torque [Nm], once the run has settled.
 
     The thesis compares amplitudes by "analyses of the torque time traces" (5.2.1). A root mean
@@ -181,7 +168,7 @@ def torque_swing(material: str, case: Case) -> float:
     return float(np.ptp(_settled(motion(material, case)).torque))
 
 
-def sudden_share(material: str, case: Case) -> float:
+def _sudden_share(material: str, case: Case) -> float:
     """Share of the torque's falls that is sudden, once it has settled; 0 where it is steady."""
     if oscillation(material, case) <= LEAST_OSCILLATION:
         return 0.0
@@ -192,58 +179,51 @@ def _slips(material: str, case: Case) -> Slips:
     return motion_slips(_settled(motion(material, case)))
 
 
-def peak_speed(material: str, case: Case) -> float:
-    """Largest sliding speed of a run from rest [rad/s]."""
-    return float(motion(material, case).sliding_speed.max())
-
-
-def strongest_line(material: str, case: Case) -> float:
-    """Frequency of the strongest line of the torque [Hz]; NaN where there is none."""
+def _lines(material: str, case: Case) -> Lines | None:
+    """Lines of the torque, where it oscillates."""
     if oscillation(material, case) <= LEAST_OSCILLATION:
-        return math.nan
+        return None
     torque = _settled(motion(material, case)).torque
-    lines = find_lines(autospectrum(torque, RATE), low=_LINES[0], high=_LINES[1])
-    return float(lines.frequency[0]) if lines.frequency.size else math.nan
+    return find_lines(autospectrum(torque, RATE), low=_LINES[0], high=_LINES[1])
 
 
-def strongest_share(material: str, case: Case) -> float:
-    """Share of the torque's power that lies in its strongest line."""
-    torque = _settled(motion(material, case)).torque
-    lines = find_lines(autospectrum(torque, RATE), low=_LINES[0], high=_LINES[1])
-    return lines.strongest_share
+def _strongest_line(material: str, case: Case) -> float:
+    """Frequency of the strongest line of the torque [Hz]; NaN where there is none."""
+    lines = _lines(material, case)
+    return math.nan if lines is None or not lines.frequency.size else float(lines.frequency[0])
 
 
-def acceleration(material: str, case: Case) -> float:
+def _strongest_share(material: str, case: Case) -> float:
+    """Share of the torque's power that lies in its strongest line; NaN where it is steady."""
+    lines = _lines(material, case)
+    return math.nan if lines is None else lines.strongest_share
+
+
+def _recorded(material: str, case: Case) -> Run:
+    return simulate(
+        rig_of(material), case.speed,
+        interference=case.interference, support_stiffness=case.support_stiffness,
+    )  # fmt: skip
+
+
+def _acceleration(material: str, case: Case) -> float:
     """Root mean square of the beam's acceleration [m/s^2]."""
-    run = simulate(
-        rig_of(material), case.speed,
-        interference=case.interference, support_stiffness=case.support_stiffness,
-    )  # fmt: skip
-    return float(np.std(run.recording["acceleration"]))
+    return float(np.std(_recorded(material, case).recording["acceleration"]))
 
 
-def peak_pressure(material: str, case: Case) -> float:
+def _peak_pressure(material: str, case: Case) -> float:
     """Largest sound pressure [Pa]."""
-    run = simulate(
-        rig_of(material), case.speed,
-        interference=case.interference, support_stiffness=case.support_stiffness,
-    )  # fmt: skip
-    return float(np.abs(run.pressure).max())
+    return float(np.abs(_recorded(material, case).pressure).max())
 
 
-def slip_frequency(material: str, case: Case) -> float:
+def _slip_frequency(material: str, case: Case) -> float:
     """Slips a second [Hz]; NaN where nothing slips."""
     if oscillation(material, case) <= LEAST_OSCILLATION:
         return math.nan
     return _slips(material, case).rate
 
 
-def slip_pattern(material: str, case: Case) -> float:
-    """After how many slips they repeat [-], 2 for a doubled period; NaN where they do not."""
-    return float(_slips(material, case).pattern) or math.nan
-
-
-def cycle_frequency(material: str, case: Case) -> float:
+def _cycle_frequency(material: str, case: Case) -> float:
     """Slips a second, or periods of the torque where nothing slips [Hz]; NaN where it is steady."""
     if oscillation(material, case) <= LEAST_OSCILLATION:
         return math.nan
@@ -251,9 +231,9 @@ def cycle_frequency(material: str, case: Case) -> float:
     return repetition_rate(motion_slips(run), run.torque, run.rate)
 
 
-def third_over_second(material: str, case: Case) -> float:
+def _third_over_second(material: str, case: Case) -> float:
     """Amplitude of the third harmonic of the slip frequency over that of the second [-]."""
-    slips = slip_frequency(material, case)
+    slips = _slip_frequency(material, case)
     if math.isnan(slips):
         return math.nan
     found = autospectrum(_settled(motion(material, case)).torque, RATE)
@@ -263,15 +243,80 @@ def third_over_second(material: str, case: Case) -> float:
     return math.sqrt(third / second)
 
 
-def listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
-    """Run the thesis's listing; the clamp must not be fixed, which it cannot compute.
+def _first_peak_speed(material: str, case: Case) -> float:
+    """Largest sliding speed of the first slip (Figure 6.7) [rad/s]."""
+    run = motion(material, case)
+    return _first_peak(run.stuck, run.sliding_speed)
 
-    Parameters
-    ----------
-    case : Case
-    seconds : float
-        Length of the run [s].
-    """
+
+def _first_peak(stuck: NDArray[np.bool_], sliding: NDArray[np.float64]) -> float:
+    start = int(stuck.argmin())
+    length = int(stuck[start:].argmax()) or sliding.size
+    return float(sliding[start : start + length].max())
+
+
+@cache
+def _speeds(material: str, case: Case) -> CriticalSpeeds:
+    return critical_speeds(_damped(material, case), case.interference, case.support_stiffness)
+
+
+def _quasi_harmonic_range(material: str, case: Case) -> float:
+    """Range of speeds at which the torque oscillates and nothing slips [rad/s]."""
+    found = _speeds(material, case)
+    return found.v_crit2 - found.v_crit1
+
+
+@cache
+def _critical_damping(material: str, case: Case) -> float:
+    """Damping that ends stick-slip [Nm s/rad]."""
+    return critical_damping(
+        rig_of(material), case.speed,
+        interference=case.interference, support_stiffness=case.support_stiffness,
+        highest=_HIGHEST_DAMPING, tolerance=_DAMPING_TOLERANCE, seconds=_SEARCHED,
+    )  # fmt: skip
+
+
+def _torsional_mode(material: str, case: Case, *, stuck: bool) -> float:
+    """First torsional mode of the lumped model (5.2.2) [Hz]."""
+    lumped = lumped_bushing(rig_of(material), case.interference, case.support_stiffness)
+    return float(lumped.natural_frequencies(stuck=stuck)[0])
+
+
+def _strongest_harmonic(material: str, case: Case) -> float:
+    return _strongest_line(material, case) / _cycle_frequency(material, case)
+
+
+QUANTITIES: dict[str, Callable[[str, Case], float]] = {
+    "acceleration": _acceleration,
+    "critical_damping": _critical_damping,
+    "cycle_frequency": _cycle_frequency,
+    "first_peak_speed": _first_peak_speed,
+    "mean_torque": _mean_torque,
+    "oscillation": oscillation,
+    "peak_pressure": _peak_pressure,
+    "peak_speed": lambda material, case: float(motion(material, case).sliding_speed.max()),
+    "quasi_harmonic_range": _quasi_harmonic_range,
+    "slip_frequency": _slip_frequency,
+    "slip_pattern": lambda material, case: float(_slips(material, case).pattern) or math.nan,
+    "strongest_harmonic": _strongest_harmonic,
+    "strongest_line": _strongest_line,
+    "strongest_share": _strongest_share,
+    "sudden_share": _sudden_share,
+    "third_over_second": _third_over_second,
+    "torque_swing": _torque_swing,
+    "torsional_mode_sliding": partial(_torsional_mode, stuck=False),
+    "torsional_mode_stuck": partial(_torsional_mode, stuck=True),
+    "v_crit1": lambda material, case: _speeds(material, case).v_crit1,
+    "v_crit2": lambda material, case: _speeds(material, case).v_crit2,
+}
+"""Numbers of a material at a case, by the name that ``rows.csv`` gives them."""
+
+
+# --- the same of the thesis's listing ------------------------------------------------------------
+
+
+def _listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
+    """Run the thesis's listing; the clamp must not be fixed, which it cannot compute."""
     fit = rig_of(THESIS).fit(case.interference)
     damping = fit.damping[case.support_stiffness] if case.damping is None else case.damping
     return run_listing(
@@ -285,16 +330,14 @@ def listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
     )
 
 
-def listing_slip_frequency(case: Case) -> float:
-    """Slips a second of the listing [Hz]; NaN where nothing slips, and for a fixed clamp."""
-    if case.fixed:
-        return math.nan
-    return _listing_slips(case, listing_run(case).torque, 0.25).rate
+def _listing_slip_frequency(case: Case) -> float:
+    """Slips a second of the listing [Hz]; NaN where nothing slips."""
+    return _listing_slips(case, _listing_run(case).torque, 0.25).rate
 
 
-def listing_sudden_share(case: Case, seconds: float = _SECONDS[THESIS]) -> float:
+def _listing_sudden_share(case: Case, seconds: float = _SECONDS[THESIS]) -> float:
     """Share of the falls of the listing's torque that is sudden, in the last half of a run."""
-    torque = listing_run(case, seconds).torque
+    torque = _listing_run(case, seconds).torque
     last = torque[torque.size // 2 :]
     if last.std() <= LEAST_OSCILLATION * abs(last.mean()):
         return 0.0
@@ -312,6 +355,40 @@ def _listing_slips(
     )  # fmt: skip
 
 
-def listing_peak_speed(case: Case) -> float:
-    """Largest sliding speed of a run of the listing [rad/s]."""
-    return float(-listing_run(case).relative_speed.min())
+def _listing_first_peak(case: Case) -> float:
+    run = _listing_run(case)
+    return _first_peak(run.stuck, -run.relative_speed)
+
+
+@cache
+def _listing_damping(case: Case) -> float:
+    def sticks(damping: float) -> bool:
+        # Below any damping that matters; the listing takes none of zero.
+        at = replace(case, damping=max(damping, 1e-9))
+        return _listing_sudden_share(at, _SEARCHED) > LEAST_SUDDEN
+
+    return largest_sticking(sticks, _HIGHEST_DAMPING, _DAMPING_TOLERANCE)
+
+
+@cache
+def _listing_v_crit1(case: Case) -> float:
+    """Last speed at which the listing sticks and slips [rad/s]."""
+    at_speeds = {speed: replace(case, speed=speed) for speed in SPEEDS}
+    sticking = [
+        speed
+        for speed, at in at_speeds.items()
+        if _listing_sudden_share(at, _SEARCHED) > LEAST_SUDDEN
+    ]
+    last = max(sticking, default=0.0)
+    return math.inf if last == SPEEDS[-1] else last
+
+
+LISTED: dict[str, Callable[[Case], float]] = {
+    "critical_damping": _listing_damping,
+    "first_peak_speed": _listing_first_peak,
+    "peak_speed": lambda case: float(-_listing_run(case).relative_speed.min()),
+    "slip_frequency": _listing_slip_frequency,
+    "sudden_share": _listing_sudden_share,
+    "v_crit1": _listing_v_crit1,
+}
+"""Numbers of `QUANTITIES` that the listing gives; it knows no fixed clamp."""

@@ -16,9 +16,9 @@ import pytest
 from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.thesis import page, row, table
+from noise.thesis.formulas import fixed_free_frequencies, free_free_frequencies
 from noise.thesis.heat import RUBBER, temperature_rise
 from noise.thesis.repetition import repetition_rate
-from noise.thesis.stiffness import fixed_free_frequencies, free_free_frequencies
 from noise.thesis.table import reasons
 from sim.analysis.critical_damping import critical_damping
 from sim.analysis.critical_speeds import regime_at
@@ -39,7 +39,7 @@ def published_rows():
 
 @pytest.fixture(scope="module")
 def computed_rows():
-    return table.thesis_rows(table.GROUPS)
+    return table.thesis_rows(table.group_names())
 
 
 # The page
@@ -236,7 +236,7 @@ def test_a_torque_repeats_at_its_slips_or_its_period_or_not_at_all():
 
 @pytest.fixture
 def short(monkeypatch):
-    monkeypatch.setattr(table, "GROUPS", table.GROUPS[:2])
+    monkeypatch.setattr(table, "group_names", lambda: ["potentiometer", "torque_cell"])
 
 
 def test_the_command_writes_the_contracts_columns(short, tmp_path, capsys):

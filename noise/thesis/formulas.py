@@ -1,4 +1,9 @@
-"""Stiffness of beams, bushing and both in series (4.3, 5.3), and the modes of the shaft (3.1).
+"""Numbers of the thesis that follow from a formula: calibrations, stiffness in series, the shaft.
+
+Calibrations of Appendices B to E are fitted again from their tables. Table B1 is misprinted: eight
+angles from pi/6 to pi stand beside eight voltages, of which the first is that of 0 rad. With the
+angles from 0 on, the voltage at 5 pi / 6 missing, the regression is the printed one; as printed it
+is not. The second regression of Table C1 repeats the slope of the first.
 
 Torsional modes of a uniform shaft (Appendix A) bound the rig's own resonances from two ends: a
 shaft held at one end that carries an inertia at the other, and a free one. Both depend on the time
@@ -9,18 +14,89 @@ that a wave of shear takes along the shaft, and the first on one ratio of inerti
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from models.bushing import Sleeve
-from models.errors import ParameterError
-from models.structure.beams import torsional_stiffness
-from noise.thesis.modes import rigidly_anchored
+from models.recording import REFERENCE_PRESSURE
 from noise.thesis.row import Values
-from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, rig_of
+from noise.thesis.runs import CALIBRATED, LONG, QUANTITIES, SHORT, THESIS, Case, rig_of
+
+POTENTIOMETER = (0.0020, 0.0511, 0.0777, 0.1035, 0.1581, 0.2140, 0.2410, 0.3161)
+"""Voltages of Table B1 [V]."""
+
+_ANGLES_PRINTED = (1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 5 / 6, 1.0)
+_ANGLES_MEANT = (0.0, 1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1.0)
+"""Over pi."""
+
+TORQUE_CELL = (
+    -483.0, -426.0, -361.0, -302.0, -240.0, -183.0, -120.0, -63.0, 0.0,
+    63.0, 121.0, 184.0, 243.0, 306.0, 365.0, 428.0, 488.0,
+)  # fmt: skip
+"""Voltages of Table C1 [mV]."""
+
+TORQUE_CELL_TORQUES = tuple(5.0 * step for step in range(-8, 9))
+"""At which they were read [Nm]."""
+
+_GRAVITY = 9.80665
+_INCH = 0.0254
+_CALIBRATOR_LEVEL = 93.8
+"""Of the sound calibrator (Appendix E) [dB]."""
+
+_CALIBRATOR_VOLTAGE = 0.06
+"""Amplitude that it gives [V]."""
+
+_ACCELEROMETER = 12.55e-3
+"""Sensitivity (Figure D1) [V/g]."""
+
+
+def regression(x: Sequence[float], y: Sequence[float]) -> tuple[float, float, float]:
+    """Fit a line: offset, slope and correlation coefficient, (B1) and (B2).
+
+    Examples
+    --------
+    >>> [round(number, 3) for number in regression([0.0, 1.0, 2.0], [1.0, 3.0, 5.0])]
+    [1.0, 2.0, 1.0]
+    """
+    slope, offset = np.polyfit(x, y, 1)
+    return float(offset), float(slope), float(np.corrcoef(x, y)[0, 1])
+
+
+def potentiometer() -> Iterator[Values]:
+    """Offset, slope and correlation of Appendix B, as meant and as printed, and the gain."""
+    printed, meant = (
+        regression([math.pi * angle for angle in angles], POTENTIOMETER)
+        for angles in (_ANGLES_PRINTED, _ANGLES_MEANT)
+    )
+    for right, wrong in zip(meant, printed, strict=True):
+        yield {"exact": right, "as_printed": wrong}
+    yield {"exact": 1.0 / meant[1]}
+
+
+def torque_cell() -> Iterator[Values]:
+    """Regressions of Appendix C for positive and negative torque, and the gain."""
+    torque, voltage = np.array(TORQUE_CELL_TORQUES), np.array(TORQUE_CELL)
+    slopes = []
+    for side in (torque >= 0.0, torque <= 0.0):
+        offset, slope, correlation = regression(torque[side].tolist(), voltage[side].tolist())
+        slopes.append(slope)
+        yield {"exact": offset, "scale": abs(offset)}
+        yield {"exact": slope}
+        yield {"exact": correlation}
+    yield {"exact": 1e3 / slopes[0]}
+
+
+def transducers() -> Iterator[Values]:
+    """Accelerometer in two units, calibrator rms and amplitude, microphone, Talysurf."""
+    rms = REFERENCE_PRESSURE * 10 ** (_CALIBRATOR_LEVEL / 20)
+    amplitude = math.sqrt(2.0) * rms
+    gain = _GRAVITY / _ACCELEROMETER
+    pressures = rms, amplitude, amplitude / _CALIBRATOR_VOLTAGE
+    for exact in (gain, gain / _INCH, *pressures, 55.5e-6 / 5.55e-3):
+        yield {"exact": exact}
 
 
 def free_free_frequencies(transit_time: float, n_modes: int = 3) -> NDArray[np.float64]:
@@ -37,17 +113,11 @@ def free_free_frequencies(transit_time: float, n_modes: int = 3) -> NDArray[np.f
     ndarray, shape (n_modes,)
         [Hz]
 
-    Raises
-    ------
-    ParameterError
-        If the transit time is not positive.
-
     Examples
     --------
     >>> free_free_frequencies(1 / 16262).round()
     array([ 8131., 16262., 24393.])
     """
-    _check(transit_time)
     return np.arange(1, n_modes + 1) / (2.0 * transit_time)
 
 
@@ -69,19 +139,11 @@ def fixed_free_frequencies(
     ndarray, shape (n_modes,)
         [Hz]
 
-    Raises
-    ------
-    ParameterError
-        If the transit time or the ratio is not positive.
-
     Examples
     --------
     >>> fixed_free_frequencies(1 / 16262, 0.4201).round()
     array([ 1569.,  8462., 16433.])
     """
-    _check(transit_time)
-    if not 0.0 < ratio < math.inf:
-        raise ParameterError(f"shaft: ratio of inertias = {ratio:g} must be positive and finite")
 
     def unbalance(beta: float) -> float:
         return beta * math.sin(beta) - ratio * math.cos(beta)
@@ -89,11 +151,6 @@ def fixed_free_frequencies(
     # Each branch of beta tan(beta) rises from zero to infinity, so it meets the ratio once.
     roots = [brentq(unbalance, n * math.pi, (n + 0.5) * math.pi) for n in range(n_modes)]
     return np.array(roots) / (2.0 * math.pi * transit_time)
-
-
-def _check(transit_time: float) -> None:
-    if not 0.0 < transit_time < math.inf:
-        raise ParameterError(f"shaft: transit time = {transit_time:g} s must be positive")
 
 
 LENGTHS = {LONG: 0.123, SHORT: 0.092}
@@ -107,14 +164,6 @@ _MEASURED = (464.0, 576.0, 587.0, 764.0)
 
 _TRANSIT_TIME, _INERTIA_RATIO = 1 / 16262, 0.4201
 """Of the shaft: the two numbers that give the six of Table 3.1."""
-
-
-def beams() -> Iterator[Values]:
-    """Equations (4.11) and (4.12)."""
-    beam = rigidly_anchored()
-    yield {"exact": beam.width * beam.thickness**3 / 12}
-    for length in LENGTHS.values():
-        yield {"exact": torsional_stiffness(beam, length)}
 
 
 def in_series(material: str, interference_mm: float, support: float) -> float:
@@ -165,3 +214,11 @@ def sleeves() -> Iterator[Values]:
     """Torsional stiffness of the sleeve that the pressure is of."""
     for _ in INTERFERENCES:
         yield {"exact": _sleeve().torsional_stiffness}
+
+
+def squeal() -> Iterator[Values]:
+    """6570 Hz of the squeal: most likely rad/s read as Hz."""
+    fit = rig_of(THESIS).fit(0.279e-3)
+    mode = math.sqrt(fit.elastomer_stiffness / rig_of(THESIS).elastomer_inertia) / (2.0 * math.pi)
+    line = QUANTITIES["strongest_line"](CALIBRATED, Case(10.0, 0.279, SHORT))
+    yield {"exact": mode, "calibrated": line}
