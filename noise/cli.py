@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, NoReturn
 from models.errors import BushingNoiseError, RecordingError
 from noise.base.progress import discard, note, say, set_verbosity
 from noise.commands import COMMANDS, load_command
-from noise.commands.options import COMMON, add_options, option_names
+from noise.commands.options import COMMON, add_options, help_of, option_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -206,10 +206,9 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     for name, line in COMMANDS.items():
         command = commands.add_parser(name, help=line, allow_abbrev=False)
         if name in arguments:
-            module = load_command(name)
-            command.description = module.DESCRIPTION
-            command.epilog = getattr(module, "EPILOG", None)
-            add_options(command, [*module.OPTIONS, *COMMON])
+            texts = help_of(name)
+            command.description, command.epilog = texts.description, texts.epilog or None
+            add_options(command, [*load_command(name).OPTIONS, *COMMON], texts.options)
     return parser
 
 

@@ -1,9 +1,9 @@
 """The commands of ``bushing-noise``, one file each.
 
-A command is a module with its ``DESCRIPTION``, its ``OPTIONS``, an ``EPILOG`` where examples help,
-and ``run(options) -> int``, which does the work and returns the exit code. What a module imports at
-its top is what ``--help`` costs: the libraries that compute are imported in ``run``. A new command
-is a file and one line here.
+A command is a module with its ``OPTIONS`` and ``run(options) -> int``, which does the work and
+returns the exit code; its description and the texts of its options are in ``help.toml``. What a
+module imports at its top is what ``--help`` costs: the libraries that compute are imported in
+``run``. A new command is a file, its texts and one line here.
 """
 
 from __future__ import annotations
@@ -23,8 +23,6 @@ __all__ = ["COMMANDS", "Command", "load_command"]
 class Command(Protocol):
     """What the module of a command offers."""
 
-    DESCRIPTION: str
-    EPILOG: str
     OPTIONS: Sequence[Row]
 
     def run(self, options: Namespace) -> int:

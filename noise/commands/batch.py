@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from models.errors import BushingNoiseError, ParameterError
 from noise.base.files import check_target, export_paths, locked
 from noise.base.progress import counted, note, report, say, track
-from noise.base.tables import check_table_path, table_endings, write_table
+from noise.base.tables import check_table_path, write_table
 from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_number
 
 if TYPE_CHECKING:
@@ -33,25 +33,12 @@ _TERMINATED = 143  # 128 + SIGTERM
 
 
 BATCH = (
-    Option("paths PATH", Path, count="+").help(
-        "recording, or folder that is searched for recordings at any depth"
-    ),
-    Option("--out TABLE", Path).help(
-        f"file for the table: {table_endings()} (default: CSV on standard output). The "
-        "same call again goes on where the last one ended, and later does only what is new, "
-        "changed or was refused"
-    ),
-    Option("--fresh").help(
-        "do all recordings again, whatever earlier calls with the same --out did"
-    ),
+    Option("paths PATH", Path, count="+"),
+    Option("--out TABLE", Path),
+    Option("--fresh"),
     OneOf(
-        Option("--workers N", whole_number(1, most=MOST_WORKERS), 1).help(
-            "processes that share the work (default: 1); the table is the same"
-        ),
-        Option("--scheduler ADDRESS", str).help(
-            "Dask cluster that does the work, such as tcp://10.0.0.1:8786; its machines read the "
-            "recordings under the same paths and have the same bushing-noise installed"
-        ),
+        Option("--workers N", whole_number(1, most=MOST_WORKERS), 1),
+        Option("--scheduler ADDRESS", str),
     ),
 )
 
@@ -222,12 +209,7 @@ _LONGEST = 600.0
 """Of a picture [s]; a longer recording is drawn as far as that."""
 
 
-PLOT = Option("--plot FOLDER|PICTURE", Path).help(
-    "draw each recording: spectrogram, A-weighted level over time (F) and speed of the shaft. "
-    "A slow run-up also gets an order map. The folder gets one .png per recording; for a single "
-    "recording name the picture itself (.png, .svg or .pdf). The first "
-    f"{_LONGEST / 60.0:g} minutes are drawn"
-)
+PLOT = Option("--plot FOLDER|PICTURE", Path)
 
 
 def check_plots(target: Path, jobs: Sequence[Job]) -> None:

@@ -17,7 +17,6 @@ from models.condition import CONDITION as QUANTITIES, FIXED
 from models.errors import ParameterError, naming
 from models.foreign_file import LARGEST_TEXT, reading
 from models.rig import LawSpec, Rig, parse_spec
-from models.rig_file import material_names
 from noise.base.progress import note, say
 from noise.base.remarks import (
     NEVER_SLIPS,
@@ -95,47 +94,18 @@ CONDITION = Group(
     "operating condition",
     "Exactly one of --speed and --oscillate is needed.",
     (
-        Option("--speed V", speed).help(
-            "speed of the shaft in rad/s, of either sign; A..B is a ramp from A to B over the "
-            "run; the name of a CSV file is a log with the columns time_s, speed_rad_s"
-        ),
-        Option("--oscillate DEG,HZ", swing).help(
-            "the shaft swings by +-DEG degrees, HZ times a second, instead of turning"
-        ),
-        Option("--interference MM", number(above=0.0, most=_FIT.high)).help(
-            f"interference fit in mm (default: {_FIT.default:g}, or the nearest that --rig gives)"
-        ),
-        Option("--support-stiffness K", _support_stiffness).help(
-            "torsional stiffness of the beams in Nm/rad, or fixed for the clamp bolted to the "
-            f"baseplate (default: {_SUPPORT.default:g})"
-        ),
-        Option("--material NAME", str).help(
-            f"elastomer, one of {', '.join(material_names())}; case does not matter "
-            f"(default: that of --rig, else {DEFAULT_MATERIAL})"
-        ),
-        Option("--temperature C", number(least=_TEMPERATURE.low)).help(
-            "ambient temperature in degree Celsius; friction, stiffness and damping follow "
-            "it where the material's file says how, under [temperature]; else it is only recorded "
-            f"(default: {_TEMPERATURE.default:g})"
-        ),
-        Option("--seconds S", number(above=0.0, most=20000.0)).help(
-            f"length of the recording in s (default: {DEFAULT_SECONDS:g})"
-        ),
-        Option("--effect NAME[:KEY=VALUE,...]", _effect, repeated=True).help(
-            "what the model includes beyond its friction law, such as slip_pulse:amplitude=20 "
-            "(in N); replaces the rig's effect of the same name; may be given several times "
-            "(default: the effects of rig and material)"
-        ),
-        Option("--effects FILE.py", Path).help(
-            "Python file that defines effects of your own, for --effect and the rig file to "
-            "name; the file is run"
-        ),
-        Option("--rig RIG.toml", Path).help("rig file to use instead of the rig that is shipped"),
+        Option("--speed V", speed),
+        Option("--oscillate DEG,HZ", swing),
+        Option("--interference MM", number(above=0.0, most=_FIT.high)),
+        Option("--support-stiffness K", _support_stiffness),
+        Option("--material NAME", str),
+        Option("--temperature C", number(least=_TEMPERATURE.low)),
+        Option("--seconds S", number(above=0.0, most=20000.0)),
+        Option("--effect NAME[:KEY=VALUE,...]", _effect, repeated=True),
+        Option("--effects FILE.py", Path),
+        Option("--rig RIG.toml", Path),
         CHANGE,
-        Option("--converter").help(
-            "pass the samples through the thesis's 12-bit converter, which hides quiet sounds and "
-            "clips loud ones (default: the range and bits that [sensors] of the rig file states)"
-        ),
+        Option("--converter"),
     ),
 )
 

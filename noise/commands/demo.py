@@ -8,23 +8,15 @@ from argparse import Namespace
 from pathlib import Path
 
 from noise.base.progress import report, say
-from noise.commands.options import Option, check_folder, seed
+from noise.commands.options import SEED, Option, check_folder
 
 _DEFAULT_OUT = "bushing-noise-demo"
 
 
-DESCRIPTION = (
-    "Run the whole chain: simulate a creak, a squawk, a squeal and a silent run, make them "
-    "audible, compute their features, label them, and write a report. The folder then holds "
-    "recordings/, audio/, features.csv, labels.csv, report.html, and hits/, blows of a hammer "
-    "on the modelled clamp for `bushing-noise frf`. It prints the label and the level of each "
-    "recording and where the report is, and opens the report where there is a display."
-)
-
 OPTIONS = (
-    Option("--out FOLDER", Path, Path(_DEFAULT_OUT)).help("folder for the results"),
-    Option("--no-browser").help("do not open the report"),
-    seed("seed of the sensors' noise"),
+    Option("--out FOLDER", Path, Path(_DEFAULT_OUT)),
+    Option("--no-browser"),
+    SEED,
 )
 
 

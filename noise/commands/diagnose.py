@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.progress import Steps, note, report, say, steps
-from noise.commands.options import CHANGE, Option, changed, check_folder, seed
+from noise.commands.options import CHANGE, SEED, Option, changed, check_folder
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
@@ -20,30 +20,14 @@ _QUICK_STEPS, _STEPS = 5, 12
 """That a diagnosis takes, without fits and with those of some five hypotheses."""
 
 
-DESCRIPTION = (
-    "Compare recordings of a rig with the simulator. The answer says where they differ, which "
-    "missing effect is the cause, how sure that is, and how much of the deviation the effect "
-    "explains. It ends with what to measure next. Recordings need a sidecar with speed, "
-    "interference and support stiffness. The answer is surest with torque, acceleration, sound "
-    "and angle; with fewer channels it says what is missing. Conditions recorded twice show how "
-    "much repeat measurements differ."
-)
-
-EPILOG = "example: bushing-noise diagnose recordings --rig rig.toml --out diagnosis"
-
 OPTIONS = (
-    Option("data DATA", Path, count="+").help("recordings, or folders of them"),
-    Option("--rig RIG.toml", Path, required=True).help(
-        "what is known of the rig, or the name of a material"
-    ),
+    Option("data DATA", Path, count="+"),
+    Option("--rig RIG.toml", Path, required=True),
     CHANGE,
-    Option("--out FOLDER", Path).help(
-        "folder for report.html, diagnosis.json and, where the gap closes, improved.toml, the "
-        "rig file with what closes it (default: JSON on standard output)"
-    ),
-    Option("--effects FILE.py", Path).help("effects of your own, fitted beside the probable ones"),
-    Option("--quick").help("the first answer alone, without fits"),
-    seed("of simulated repeats and bootstraps"),
+    Option("--out FOLDER", Path),
+    Option("--effects FILE.py", Path),
+    Option("--quick"),
+    SEED,
 )
 
 

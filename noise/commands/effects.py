@@ -6,22 +6,15 @@ from argparse import Namespace
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from noise.commands.options import Option, seed
+from noise.commands.options import SEED, Option
 
 if TYPE_CHECKING:
     from sim.effects import Effect
 
-DESCRIPTION = (
-    "List the effects that the plain model lacks: what each one is, in which stage it acts, its "
-    "forms, and its parameters with default, range and meaning. A rig file lists them as effects = "
-    '["NAME:PARAMETER=VALUE"]; on the command line use --effect NAME:PARAMETER=VALUE.'
-)
-
-EPILOG = "example: bushing-noise effects slip_pulse"
 
 OPTIONS = (
-    Option("names NAME", str, count="*").help("effects to list; all by default"),
-    seed("accepted as by every command; nothing here is random"),
+    Option("names NAME", str, count="*"),
+    SEED,
 )
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from noise.base.progress import note
 from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_recordings, run_batch
-from noise.commands.options import CALIBRATION, OneOf, Option, full_scale_of, seed
+from noise.commands.options import CALIBRATION, SEED, OneOf, Option, full_scale_of
 
 if TYPE_CHECKING:
     from models.blocks import RecordingBlocks
@@ -25,29 +25,15 @@ _PITCH_PIECE = 1 << 19
 _PITCH_COLUMNS = ("pressure_pitch", "pressure_pitch_range", "pressure_voiced_share")
 
 
-DESCRIPTION = (
-    "Compute the features of recordings: one row per recording, in SI units, levels in dB. "
-    "Cells without a value are empty; a file that cannot be read has the reason in the "
-    "column error. A recording of 2^21 samples or more (44 s at 48 kHz) is described in pieces, "
-    "and a note says so."
-)
-
 OPTIONS = (
     *BATCH,
     OneOf(
-        Option("--pitch").help(
-            "add the pitch over time: median [Hz], range [octaves] and share of the time that has "
-            "one, of the first pressure channel (about one second a second of sound)"
-        ),
-        Option("--windows").help(
-            "one row per window of 0.5 s, every 0.25 s, with start and end in seconds. The "
-            "columns are the input of the classifier of `bushing-noise label`. Their units are in "
-            "features.WINDOW_FEATURES and, for the torque, in features.FEATURES"
-        ),
+        Option("--pitch"),
+        Option("--windows"),
     ),
     PLOT,
     *CALIBRATION,
-    seed("taken by all commands; features use no random numbers"),
+    SEED,
 )
 
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError, RecordingError
 from noise.base.files import atomic, check_target
 from noise.base.progress import counted, note, report, say, track
-from noise.base.tables import check_table_path, table_endings, write_table
-from noise.commands.options import Option, band, number, one_of, refuse, seed
+from noise.base.tables import check_table_path, write_table
+from noise.commands.options import SEED, Option, band, number, one_of, refuse
 
 if TYPE_CHECKING:
     import numpy as np
@@ -47,51 +47,17 @@ def _channel(text: str) -> str:
         raise ArgumentTypeError(f"is {text!r}: {error}") from None
 
 
-DESCRIPTION = (
-    "Estimate the frequency response function and the coherence from hammer hits, each one "
-    "boxcar segment, and fit modes to it. Hits that are double or clipped are refused, and it "
-    "is told where the coherence is low. A response to a torque, with --arm, can stand in for "
-    "the modelled one in a rig file."
-)
-
-EPILOG = (
-    "example: bushing-noise frf hits --arm 0.05 --out torque_to_acceleration_2214.uff "
-    "--modes modes.csv; columns of the modes: natural frequency, fraction of critical damping, "
-    "residue (in the response's unit times rad/s), its peak, the coherence there, and through "
-    "how many orders of the fit the pole stayed"
-)
-
 OPTIONS = (
-    Option("hits HIT", Path, count="+").help(
-        "one hit a file, or a folder of them: a recording with a force channel, or .npy or "
-        ".csv whose rows or columns are time in s, force in N, response"
-    ),
-    Option("--out FILE", Path).help(
-        "file for the response function: .uff, .unv, .npz or .csv (default: CSV on standard "
-        "output, unless only --modes is given)"
-    ),
-    Option("--modes TABLE", Path).help(f"fit modes and write them: {table_endings()}"),
-    Option("--arm M", number(above=0.0, most=100.0)).help(
-        "lever in m at which the hammer hits; makes a torque in N m of the force"
-    ),
-    Option("--estimator H1|H2|Hv", one_of("H1", "H2", "Hv"), "H1").help(
-        "H1 for noise in the response, H2 for noise in the force, Hv for both"
-    ),
-    Option("--response NAME", _channel).help(
-        "channel to take for the response, or for a table what its response is, such as "
-        "pressure (default: acceleration, else pressure)"
-    ),
-    Option("--band LOW..HIGH", band).help(
-        "band in Hz in which modes are fitted (default: where the coherence can be trusted)"
-    ),
-    Option("--coherence C", number(least=0.0, most=1.0), _DEFAULT_COHERENCE).help(
-        "tell the bands in which the coherence is lower than this, and list no modes there"
-    ),
-    Option("--window").help(
-        "end responses that have not died away by an exponential window, and set the force to "
-        "zero after the blow; the damping of modes is corrected for it"
-    ),
-    seed("accepted as by every command; nothing here is random"),
+    Option("hits HIT", Path, count="+"),
+    Option("--out FILE", Path),
+    Option("--modes TABLE", Path),
+    Option("--arm M", number(above=0.0, most=100.0)),
+    Option("--estimator H1|H2|Hv", one_of("H1", "H2", "Hv"), "H1"),
+    Option("--response NAME", _channel),
+    Option("--band LOW..HIGH", band),
+    Option("--coherence C", number(least=0.0, most=1.0), _DEFAULT_COHERENCE),
+    Option("--window"),
+    SEED,
 )
 
 

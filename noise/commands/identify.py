@@ -7,33 +7,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.progress import Steps, note, report, say, steps
-from noise.commands.options import CHANGE, Option, change_table, check_folder, seed
+from noise.commands.options import CHANGE, SEED, Option, change_table, check_folder
 
 if TYPE_CHECKING:
     from noise.identification.outcome import Identification
 
 
-DESCRIPTION = (
-    "Identify a rig from recordings: stiffness and damping of the bushing, critical and "
-    "kinetic torque by interference, and the law of friction, each with its 90 % interval. "
-    "Recordings need torque and shaft angle, and a sidecar with interference and support "
-    "stiffness. Slow rotation with clear stick and slip is most informative; several speeds "
-    "determine the law. A condition recorded twice shows how much repeat measurements differ. A "
-    "static test, slow motion to and fro without slip, gives the best stiffness. A shaft held "
-    "still after that gives the best damping."
-)
-
-EPILOG = "example: bushing-noise identify recordings --rig known.toml --out mine"
-
 OPTIONS = (
-    Option("data DATA", Path, count="+").help("recordings, or folders of them"),
-    Option("--rig RIG.toml", Path).help("what is known of the rig: the two inertias, if possible"),
-    Option("--out FOLDER", Path).help(
-        "folder for rig.toml, identification.json and report.html (default: the rig file on "
-        "standard output)"
-    ),
+    Option("data DATA", Path, count="+"),
+    Option("--rig RIG.toml", Path),
+    Option("--out FOLDER", Path),
     CHANGE,
-    seed("of simulated repeats"),
+    SEED,
 )
 
 

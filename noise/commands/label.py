@@ -18,61 +18,25 @@ from noise.base.labels import SURROUNDINGS
 from noise.base.progress import counted, note, report
 from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_recordings, run_batch
-from noise.commands.options import CALIBRATION, Option, full_scale_of, number, one_of, seed
+from noise.commands.options import CALIBRATION, SEED, Option, full_scale_of, number, one_of
 
 if TYPE_CHECKING:
     from noise.batch import BatchRows
     from noise.labels.labelling import Labelling
 
 
-DESCRIPTION = (
-    "Label recordings. The table has one row per segment with its label, probability, "
-    "frequency in Hz and level in dB re 20 uPa (dBFS where not calibrated). The label is creak, "
-    "squawk, squeal, none or unknown. none: no creak, squawk or squeal is heard. unknown: a "
-    "noise is heard, and it may be none of the three. Each segment is linked to its operating "
-    "condition, which is logged, inferred or missing. Conditions are inferred from a creak, "
-    "squawk or squeal with 90 % bounds, assuming a fluorocarbon bushing like the shipped one. "
-    "A file that cannot be read has the reason in the column error. On a terminal, and with "
-    "--out, one line per recording is printed. Label tables in place of recordings are joined, "
-    "for --map and --audacity."
-)
-
 OPTIONS = (
     *BATCH,
-    Option("--map PICTURE", Path).help(
-        "picture of which label is where in speed, interference and support stiffness, as "
-        "far as they were logged (.png, .svg or .pdf); the numbers go into a .csv of the same name"
-    ),
-    Option("--audacity FOLDER", Path).help(
-        "folder for label tracks, one .txt a recording, for Audacity to import; or the .txt "
-        "itself where there is one recording"
-    ),
-    Option("--classifier FILE.npz", Path).help(
-        "classifier that `bushing-noise train` made (default: the one that is shipped)"
-    ),
-    Option("--surroundings rig|car|any", one_of(*SURROUNDINGS)).help(
-        "where the recording was made. A car or a rig has no animals, alarms or music, so a name "
-        "need not be as sure (default: rig where an operating condition is logged, which gets the "
-        "likeliest label; else any). A note says how many false names to expect"
-    ),
-    Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0).help(
-        "how readily a noise is named, a ratio of odds from 0.1 to 10 (default: 1): 2 names a "
-        "noise at half the odds, so fainter ones and more that are none. A note says how many "
-        "false names to expect at any but 1. Nothing changes where an operating condition is "
-        "logged: there the likeliest label is said"
-    ),
-    Option("--loudness").help(
-        "add the loudness N5 (ISO 532-1) of calibrated segments, in the column "
-        "loudness_n5_sone, for segments from 0.5 s to 10 min. It takes one second per second of "
-        'sound, and needs pip install "bushing-noise[sound-quality]"'
-    ),
-    Option("--inference FILE.npz", Path).help(
-        "model that infers conditions which were not logged, made by `bushing-noise train` "
-        "(default: the one that is shipped)"
-    ),
+    Option("--map PICTURE", Path),
+    Option("--audacity FOLDER", Path),
+    Option("--classifier FILE.npz", Path),
+    Option("--surroundings rig|car|any", one_of(*SURROUNDINGS)),
+    Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0),
+    Option("--loudness"),
+    Option("--inference FILE.npz", Path),
     PLOT,
     *CALIBRATION,
-    seed("taken by all commands; labelling uses no random numbers"),
+    SEED,
 )
 
 

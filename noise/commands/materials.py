@@ -5,22 +5,15 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from noise.commands.options import Option, seed
+from noise.commands.options import SEED, Option
 
 if TYPE_CHECKING:
     from models.rig import Fit
 
-DESCRIPTION = (
-    "List the materials that are shipped: friction law, effects, for each interference fit the "
-    "stiffness and the torques, and what of it was assumed or fitted. Use one as --material NAME, "
-    "as a design of screen, or as base of a rig file."
-)
-
-EPILOG = "example: bushing-noise materials PDMS"
 
 OPTIONS = (
-    Option("names NAME", str, count="*").help("materials to list; all by default"),
-    seed("accepted as by every command; nothing here is random"),
+    Option("names NAME", str, count="*"),
+    SEED,
 )
 
 

@@ -9,21 +9,12 @@ from models.errors import ParameterError
 from noise.base.files import atomic, check_target
 from noise.base.progress import report
 from noise.commands.materials import fit_text
-from noise.commands.options import Option, seed
-
-DESCRIPTION = (
-    "Write a rig file to start from: a shipped material with comments on what can be changed, each "
-    "with its unit. The file can be used as it is; remove the # of the lines that you change."
-)
-
-EPILOG = "example: bushing-noise new-rig fluorocarbon --out my_rig.toml"
+from noise.commands.options import SEED, Option
 
 OPTIONS = (
-    Option("material MATERIAL", str, "fluorocarbon", count="?").help(
-        "material to start from; `bushing-noise materials` lists them"
-    ),
-    Option("--out FILE.toml", Path).help("file to write, which must not exist (default: print it)"),
-    seed("accepted as by every command; nothing here is random"),
+    Option("material MATERIAL", str, "fluorocarbon", count="?"),
+    Option("--out FILE.toml", Path),
+    SEED,
 )
 
 _TEXT = """\

@@ -1,7 +1,8 @@
 """Options: the rows of a command's table, the values that they take, and those that many share.
 
-A command states its options as rows, `add_options` makes a parser of them. A text that cannot be
-used is refused while the call is read, by a message that names the option.
+A command states its options as rows, `add_options` makes a parser of them; what the help says of
+each is in ``help.toml``. A text that cannot be used is refused while the call is read, by a message
+that names the option.
 """
 
 from __future__ import annotations
@@ -9,8 +10,8 @@ from __future__ import annotations
 import argparse
 import math
 from argparse import ArgumentTypeError
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -18,6 +19,7 @@ from models.errors import ParameterError, naming
 from models.schema import Quantity
 from noise.base.files import check_target
 from noise.base.progress import note, say
+from noise.base.tables import table_endings
 
 if TYPE_CHECKING:
     from models.rig import Rig
@@ -148,7 +150,7 @@ def change(text: str) -> tuple[str, str | float]:
 
 @dataclass(frozen=True)
 class Option:
-    """One row of a table of options; `help` ends it.
+    """One row of a table of options.
 
     Parameters
     ----------
@@ -164,13 +166,11 @@ class Option:
     repeated : bool
         Whether it may be given several times, which makes a list.
     required : bool
-    text : str
-        For the help, without the default.
 
     Examples
     --------
-    >>> Option("--gap S", number(least=0.0), 0.5).help("silence between two sounds in s").text
-    'silence between two sounds in s'
+    >>> Option("--support-stiffness K", number(above=0.0)).attribute
+    'support_stiffness'
     """
 
     name: str
@@ -179,11 +179,6 @@ class Option:
     count: str | None = None
     repeated: bool = False
     required: bool = False
-    text: str = ""
-
-    def help(self, text: str) -> Option:
-        """Return the row with its text."""
-        return replace(self, text=text)
 
     @property
     def attribute(self) -> str:
@@ -212,7 +207,60 @@ class Group(NamedTuple):
 Row = Option | OneOf | Group
 
 
-def add_options(parser: argparse._ActionsContainer, rows: Iterable[Row]) -> None:
+class Help(NamedTuple):
+    """What the help of a command says: what it does, examples, and each option by its name."""
+
+    description: str
+    epilog: str
+    options: Mapping[str, str]
+
+
+def help_of(command: str) -> Help:
+    """Read what the help of a command says.
+
+    Examples
+    --------
+    >>> help_of("render").options["--gap"]
+    'silence between two of them in s'
+    """
+    import tomllib
+    from importlib import resources
+
+    text = (resources.files("noise.commands") / "help.toml").read_text(encoding="utf-8")
+    texts = tomllib.loads(text)
+    own = texts[command]
+    return Help(
+        _filled(own["description"]),
+        _filled(own.get("epilog", "")),
+        {
+            name: _filled(line)
+            for name, line in (texts["shared"]["options"] | own.get("options", {})).items()
+        },
+    )
+
+
+def _filled(text: str) -> str:
+    """Return a text with the lists that it names in braces."""
+    if "{tables}" in text:
+        text = text.replace("{tables}", table_endings())
+    if "{materials}" in text:
+        from models.rig_file import material_names
+
+        text = text.replace("{materials}", ", ".join(material_names()))
+    if "{environments}" in text:
+        from noise.screening.environments import environment_names
+
+        text = text.replace("{environments}", ", ".join(environment_names()))
+    if "{effects}" in text:
+        from sim.effects import EFFECTS
+
+        text = text.replace("{effects}", ", ".join(EFFECTS))
+    return text
+
+
+def add_options(
+    parser: argparse._ActionsContainer, rows: Iterable[Row], texts: Mapping[str, str] | None = None
+) -> None:
     """Add the rows of a table to a parser.
 
     Parameters
@@ -220,21 +268,23 @@ def add_options(parser: argparse._ActionsContainer, rows: Iterable[Row]) -> None
     parser : argparse.ArgumentParser
         Or a group of one.
     rows : iterable of Option, OneOf or Group
+    texts : mapping of str to str, optional
+        For the help, by the name of the option.
 
     Examples
     --------
     >>> parser = argparse.ArgumentParser()
-    >>> add_options(parser, [Option("--gap S", number(least=0.0), 0.5).help("silence in s")])
+    >>> add_options(parser, [Option("--gap S", number(least=0.0), 0.5)])
     >>> parser.parse_args(["--gap", "2"]).gap
     2.0
     """
     for row in rows:
         if isinstance(row, Group):
-            add_options(parser.add_argument_group(row.title, row.text), row.rows)
+            add_options(parser.add_argument_group(row.title, row.text), row.rows, texts)
         elif isinstance(row, OneOf):
-            add_options(parser.add_mutually_exclusive_group(), row)
+            add_options(parser.add_mutually_exclusive_group(), row, texts)
         else:
-            _add(parser, row)
+            _add(parser, row, texts or {})
 
 
 def option_names(rows: Iterable[Row]) -> Iterator[str]:
@@ -252,9 +302,9 @@ def option_names(rows: Iterable[Row]) -> Iterator[str]:
             yield from option_names(row.rows if isinstance(row, Group) else row)
 
 
-def _add(parser: argparse._ActionsContainer, row: Option) -> None:
+def _add(parser: argparse._ActionsContainer, row: Option, texts: Mapping[str, str]) -> None:
     name, _, metavar = row.name.partition(" ")
-    text = row.text.replace("%", "%%") + " (required)" * row.required
+    text = texts.get(name, "").replace("%", "%%") + " (required)" * row.required
     if not metavar:
         parser.add_argument(name, action="store_true", default=row.default or False, help=text)
         return
@@ -274,44 +324,26 @@ def _add(parser: argparse._ActionsContainer, row: Option) -> None:
     )
 
 
-def seed(use: str) -> Option:
-    """Return the row of ``--seed``, which all commands take; `use` says what it is for."""
-    return Option("--seed N", whole_number(0), 0).help(f"{use} (a whole number; default: 0)")
-
+SEED = Option("--seed N", whole_number(0), 0)
+"""``--seed``, which all commands take."""
 
 COMMON = (
     OneOf(
-        Option("--quiet").help(
-            "print errors only: no progress, notes, summary or names of files. Results without a "
-            "file of their own go to standard output as always"
-        ),
-        Option("--verbose").help("print how much time has passed before each line"),
+        Option("--quiet"),
+        Option("--verbose"),
     ),
 )
 """Options of all commands."""
 
-CHANGE = Option("--change NAME=AMOUNT", change, repeated=True).help(
-    "change the rig as [change] in its file does. Examples: damping=x2, critical_torque=-20%, "
-    "damping_Nms_rad=0.09, ageing_time=x2, slip_pulse.amplitude=x0.5, wall_mm=6. Torques and "
-    "stiffness follow wall_mm, length_mm, youngs_modulus_MPa and hardness_shore_A of the rubber. "
-    "May be given several times (default: none)"
-)
+CHANGE = Option("--change NAME=AMOUNT", change, repeated=True)
 """``--change``, of every command that takes a rig."""
 
 CALIBRATION = (
     OneOf(
-        Option("--full-scale PA", number(above=0.0)).help(
-            "sound pressure in Pa that a full-scale sample of the input stands for; wins over what "
-            "sidecar and file say (default: what they say, else levels in dBFS only)"
-        ),
-        Option("--calibrator TONE", Path).help(
-            "recording of a sound calibrator at 250 Hz or 1 kHz, made with the gain of the inputs, "
-            "in place of --full-scale: one track for all of theirs, or as many as they have"
-        ),
+        Option("--full-scale PA", number(above=0.0)),
+        Option("--calibrator TONE", Path),
     ),
-    Option("--level DB", number(least=40.0, most=170.0)).help(
-        "of the calibrator in dB re 20 uPa, such as 94 or 114; needed with --calibrator"
-    ),
+    Option("--level DB", number(least=40.0, most=170.0)),
 )
 """Calibration of plain sound files, of which `full_scale_of` makes a number."""
 

@@ -14,6 +14,7 @@ from noise.base.progress import counted, note, report, say, track
 from noise.commands.condition import CONDITION
 from noise.commands.options import (
     CALIBRATION,
+    SEED,
     OneOf,
     Option,
     band,
@@ -21,7 +22,6 @@ from noise.commands.options import (
     number,
     one_of,
     refuse,
-    seed,
 )
 
 if TYPE_CHECKING:
@@ -44,65 +44,23 @@ def _band(text: str) -> tuple[float, float]:
     return low, high
 
 
-DESCRIPTION = (
-    "Make the sound pressure of recordings, or of runs simulated for the purpose, audible: "
-    "WAV files for headphones or a listening room, without offset, faded in and out, never "
-    "clipped, not even between two samples. Several inputs make a set in a folder, at one "
-    "gain, so that the louder one stays louder. A sidecar beside each keeps its calibration "
-    "and its levels: overall, A-weighted, largest fast level, one-third octaves. Repeated "
-    "strokes and run-ups are simulated for as long as --seconds says, never looped."
-)
-
-EPILOG = (
-    "examples: bushing-noise render run07.wav --out run07-audio.wav; "
-    "bushing-noise render --speed 0..10 --seconds 8 --out run-up.wav; "
-    "bushing-noise render old.toml new.toml --speed 5 --seconds 4 --ab --out old-new.wav; "
-    'bushing-noise render "--interference 0.279" "--interference 0.381" --speed 5 --out set'
-)
-
 OPTIONS = (
-    Option("inputs INPUT", str, count="*").help(
-        "recording, folder of recordings, or rig file (RIG.toml) to simulate. Options of a "
-        'condition in quotes are simulated as well: "--speed 5 --interference 0.381". What '
-        "a condition leaves out is taken from the other options"
-    ),
-    Option("--out AUDIO.wav|FOLDER", Path, required=True).help(
-        "WAV file to write; for several sounds a folder, which gets a table levels.csv as well"
-    ),
-    Option("--ab").help("put the inputs behind one another into one file, at the same gain"),
-    Option("--gap S", number(least=0.0, most=60.0), 0.5).help("silence between two of them in s"),
-    Option("--rate 44100|48000", one_of(44100, 48000), 48000).help(
-        "sampling rate of the sound in Hz"
-    ),
-    Option("--bits 16|24|32", one_of(16, 24, 32), 24).help(
-        "size of a sample in bit; 16 is dithered, 32 is floating point"
-    ),
-    Option("--fade S", number(least=0.0, most=60.0), 0.010).help(
-        "length of the fades in and out in s"
-    ),
+    Option("inputs INPUT", str, count="*"),
+    Option("--out AUDIO.wav|FOLDER", Path, required=True),
+    Option("--ab"),
+    Option("--gap S", number(least=0.0, most=60.0), 0.5),
+    Option("--rate 44100|48000", one_of(44100, 48000), 48000),
+    Option("--bits 16|24|32", one_of(16, 24, 32), 24),
+    Option("--fade S", number(least=0.0, most=60.0), 0.010),
     OneOf(
-        Option("--pascal-per-full-scale PA", number(above=0.0, most=1e9)).help(
-            "sound pressure in Pa of a full-scale sample of the output, for a listening room "
-            "that is calibrated to it (default: what puts the largest peak of all 3 dB below full "
-            "scale)"
-        ),
-        Option("--match-loudness").help(
-            "give each sound the same loudness instead (ITU-R BS.1770): -23 LUFS, or what its "
-            "peaks allow below -1 dB true peak (EBU R 128)"
-        ),
+        Option("--pascal-per-full-scale PA", number(above=0.0, most=1e9)),
+        Option("--match-loudness"),
     ),
-    Option("--band LOW..HIGH", _band).help(
-        "keep only these frequencies in Hz, such as 200..2000. The filter is zero-phase, 6 dB "
-        "down at the ends and 48 dB per octave beyond. Levels are those of the band; the table "
-        "also has how far they are below the whole sound (default: all)"
-    ),
-    Option("--sound-quality").help(
-        "add loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality. It needs the "
-        "extra sound-quality, and some seconds per second of sound; 10 minutes at most"
-    ),
+    Option("--band LOW..HIGH", _band),
+    Option("--sound-quality"),
     *CALIBRATION,
     CONDITION,
-    seed("seed of the sensors' noise in a simulated run, and of the dither"),
+    SEED,
 )
 
 

@@ -14,13 +14,13 @@ from noise.base.progress import Steps, report, say, steps
 from noise.commands.options import (
     CHANGE,
     MOST_WORKERS,
+    SEED,
     Group,
     OneOf,
     Option,
     changed,
     check_folder,
     number,
-    seed,
     whole_number,
 )
 
@@ -30,90 +30,42 @@ if TYPE_CHECKING:
     from noise.screening.screen import Screening
 
 
-from noise.screening.environments import environment_names
-
-
 def _simulations(text: str) -> float:
     if text.strip().lower() == "all":
         return math.inf
     return whole_number(1, more=", or all")(text)
 
 
-DESCRIPTION = (
-    "Screen bushing designs before tooling. The maps show which noise occurs over speed, "
-    "interference, support and temperature, with its level, and where a vibration persists once "
-    "it has started. The tables hold critical speeds with their margins to the use, and the "
-    "change that ends the loudest noise. Each such change is verified by long runs, from rest "
-    "and from the running noise. Tolerances give the probability that a part is noisy. Only "
-    "boundaries are simulated finely; map.csv says how each point is known. A design is a rig "
-    "file with the tables [design] and [tolerances], or the name of a material. The ranking, by "
-    "mean loudness, is printed."
-)
-
-EPILOG = (
-    "example: bushing-noise screen design-a.toml design-b.toml --environment dry,hot --out screen"
-)
-
 OPTIONS = (
-    Option("designs DESIGN", str, count="+").help("design file, or name of a material"),
-    Option("--out FOLDER", Path).help(
-        "folder for report.html, a page to read and to listen to. It also gets map.csv, "
-        "critical_speeds.csv, designs.csv, a picture of each map, and copies of the design files. "
-        "advice.csv is there if a design is noisy, sensitivities.csv if tolerances are evaluated"
-    ),
-    Option("--sounds N", whole_number(0), 24).help(
-        "simulated for report.html, at the same conditions of each design; 0 for none, which "
-        "saves a sixth of a second each"
-    ),
-    Option("--megabytes MB", number(above=0.0), 10.0).help(
-        "size of report.html; sounds are shortened and left out to keep to it"
-    ),
+    Option("designs DESIGN", str, count="+"),
+    Option("--out FOLDER", Path),
+    Option("--sounds N", whole_number(0), 24),
+    Option("--megabytes MB", number(above=0.0), 10.0),
     CHANGE,
     Group(
         "conditions",
         "In place of the designs' own. Each is a number, a list 1,2.5,5 or a range LOW..HIGH, "
         "with LOW..HIGH/N of N points.",
         (
-            Option("--speed V", str).help("in rad/s (default: the designs', or 0.25..13)"),
-            Option("--oscillate DEG,HZ", str).help(
-                "the shaft swings by +-DEG degrees, HZ times a second, which may be a range such "
-                "as 15,0.5..4; without --speed instead of turning"
-            ),
-            Option("--interference MM", str).help("in mm (default: the designs' fits)"),
-            Option("--support-stiffness K", str).help(
-                "in Nm/rad, or fixed (default: those that the damping is given for)"
-            ),
-            Option("--temperature C", str).help("in degree Celsius (default: the designs', or 23)"),
-            Option("--environment NAME", str, "dry").help(
-                f"one or several of {', '.join(environment_names())}; all but dry are assumed sets "
-                "of friction parameters, with a temperature of their own (default: dry)"
-            ),
+            Option("--speed V", str),
+            Option("--oscillate DEG,HZ", str),
+            Option("--interference MM", str),
+            Option("--support-stiffness K", str),
+            Option("--temperature C", str),
+            Option("--environment NAME", str, "dry"),
         ),
     ),
-    Option("--loudness").help(
-        "tell loudness N5 as well (ISO 532-1): heard at the loudest point of each region, "
-        'carried on by level; needs pip install "bushing-noise[sound-quality]"'
-    ),
+    Option("--loudness"),
     OneOf(
-        Option("--tolerances").help(
-            "for all designs, estimate the probability that a part is noisy in use, and which "
-            "tolerance matters most. Designs without [tolerances] get assumed ones. It takes about "
-            "10 s per design and environment (default: designs that state [tolerances])"
-        ),
-        Option("--no-tolerances").help("for no design"),
+        Option("--tolerances"),
+        Option("--no-tolerances"),
     ),
-    Option("--simulations N", _simulations).help(
-        "of each map, more or less, or all for every boundary to the end (default: 500)"
-    ),
+    Option("--simulations N", _simulations),
     OneOf(
-        Option("--workers N", whole_number(1, most=MOST_WORKERS), -1).help(
-            "threads (default: one a core)"
-        ),
-        Option("--scheduler ADDRESS", str).help(
-            "of a Dask cluster that simulates the maps instead"
-        ),
+        Option("--workers N", whole_number(1, most=MOST_WORKERS), -1),
+        Option("--scheduler ADDRESS", str),
     ),
-    seed("of the parts within tolerances"),
+    SEED,
 )
 
 

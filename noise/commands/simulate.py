@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any
 from models.errors import ParameterError, naming
 from noise.base.files import check_target
 from noise.base.progress import note, report, say
-from noise.base.tables import check_table_path, table_endings, write_table
+from noise.base.tables import check_table_path, write_table
 from noise.commands.condition import CONDITION, is_long, run_arguments, with_notes
-from noise.commands.options import Option, seed, whole_number
-from sim.effects import EFFECTS
+from noise.commands.options import SEED, Option, whole_number
 
 if TYPE_CHECKING:
     import os
@@ -34,40 +33,14 @@ _LEAST_OF_POWER = 0.25
 """Shortest run of which the sound power is told: `sim.analysis.sound_power` [s]."""
 
 
-DESCRIPTION = (
-    "Simulate one run of the rig and record torque [N m], acceleration [m/s^2], pressure [Pa] "
-    "and angle [rad], or draw it. The names of the files are printed. Without --out, --plot "
-    "and --sound-power the command prints a summary as one line of JSON. It holds conditions, "
-    "mean and rms of the torque, peak and level (dB re 20 uPa) of the sound pressure. "
-    "--rig suspension simulates a car's stabilizer bar in two bushings, each with its own "
-    "channels; so does a file of your own with a [suspension] table. There --oscillate and "
-    "--speed are the angle of an arm that follows the wheels."
-)
-
-EPILOG = (
-    "example: bushing-noise simulate --speed 5 --interference 0.279 --out run07; effects: "
-    f"{', '.join(EFFECTS)}"
-)
-
 OPTIONS = (
     CONDITION,
-    Option("--rate HZ", whole_number(1000, most=400_000), _DEFAULT_RATE).help(
-        "sampling rate in Hz, a whole number from 1000 to 400000"
-    ),
-    Option("--out RUN", Path).help("write RUN.wav (32-bit float, in the units above) and RUN.json"),
-    Option("--force").help("replace RUN.wav even if this program did not write it"),
-    Option("--plot FILE", Path).help(
-        "draw the run into FILE, .png, .svg or .pdf: torque, displacement and sliding speed "
-        "over time, phase plane, torque against sliding speed, autospectra; of runs up to 60 s"
-    ),
-    Option("--sound-power TABLE", Path).help(
-        f"write the sound power of the plate's upper side as {table_endings()}. It is in dB and "
-        "dB(A) re 1 pW: one-third octaves from 50 Hz to 10 kHz and their sum. The plate is in a "
-        "rigid baffle, as for the sound pressure. A free plate is 2 to 17 dB quieter below its "
-        "critical frequency (shipped plate: 1.2 kHz). Runs last from "
-        f"{_LEAST_OF_POWER:g} to {_MOST_AT_ONCE:g} s"
-    ),
-    seed("seed of the sensors' noise"),
+    Option("--rate HZ", whole_number(1000, most=400_000), _DEFAULT_RATE),
+    Option("--out RUN", Path),
+    Option("--force"),
+    Option("--plot FILE", Path),
+    Option("--sound-power TABLE", Path),
+    SEED,
 )
 
 

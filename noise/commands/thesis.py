@@ -9,31 +9,15 @@ from models.errors import ParameterError
 from noise.base.files import atomic, check_target
 from noise.base.progress import report, say, track
 from noise.base.tables import TABLE_ENDINGS, check_table_path, table_endings, write_table
-from noise.commands.options import Option, check_folder, seed
+from noise.commands.options import SEED, Option, check_folder
 
 _PAGE_ENDING = ".md"
 
 
-DESCRIPTION = (
-    "Compute every checkable number of the thesis: from its program as it is listed, from its "
-    "equations exactly, and with the calibrated material; with a verdict each. With --plots, "
-    "draw its figures instead, with --out as well. The table takes less than a minute, the figures "
-    "a few."
-)
-
-EPILOG = "example: bushing-noise thesis --out thesis.csv"
-
 OPTIONS = (
-    Option("--out TABLE", Path).help(
-        f"file for the table, {table_endings()}, or .md for a page to read (default: CSV "
-        "on standard output)"
-    ),
-    Option("--plots FOLDER", Path).help(
-        "folder for the thesis's figures of runs and sweeps, as computed here: figure-5.3.png and "
-        "so on (5.1 to 5.9, 5.13 to 5.26, 6.1 to 6.10, H1). It also gets torque and slip "
-        "frequency against speed for each fit, as speeds-0.279mm.png. The names are printed"
-    ),
-    seed("accepted as by every command; nothing here is random"),
+    Option("--out TABLE", Path),
+    Option("--plots FOLDER", Path),
+    SEED,
 )
 
 

@@ -12,7 +12,7 @@ from models.errors import ParameterError
 from noise.base.files import check_target
 from noise.base.progress import Steps, counted, report, say, steps, track
 from noise.base.tables import TABLE_ENDINGS
-from noise.commands.options import Option, refuse, seed, whole_number
+from noise.commands.options import SEED, Option, refuse, whole_number
 
 if TYPE_CHECKING:
     from noise.classifier import Classifier
@@ -28,36 +28,13 @@ _TOLD = ("n", "accuracy", "macro_f1", "expected_calibration_error", "strangers_n
 """Scores that are told."""
 
 
-DESCRIPTION = (
-    "Train the classifier again. It learns from simulated runs, synthetic sounds that are none "
-    "of the three noises, features of some real sounds, and your own recordings (--add). The "
-    "same call gives the same classifier. It takes about 20 minutes, of which --keep saves most "
-    "the next time. Use it with `bushing-noise label "
-    "--classifier FILE.npz`."
-)
-
 OPTIONS = (
-    Option("--out FILE.npz", Path, required=True).help("file for the classifier"),
-    Option("--add DIR|TABLE", Path, repeated=True).help(
-        "folder of labelled recordings to learn from, or a label table (may be given several "
-        "times). Recordings are labelled by the folder they are in (creak, squawk, squeal, none, "
-        "unknown), by a label table, or by Audacity's label tracks (run07.txt beside run07.wav). "
-        "If a table has corrections (label_source is human), only these count. Probabilities, "
-        "thresholds and the printed score come from trees that were grown without the file itself"
-    ),
-    Option("--samples N", whole_number(1)).help(
-        "simulated bushings and other bodies to learn from (default: 4300), beside which 0.6 "
-        "as many made-up sounds are drawn; fewer are quicker and know less"
-    ),
-    Option("--keep FILE.npz", Path).help(
-        "keep what was simulated in this file; where it holds the same of an earlier call, "
-        "nothing is simulated again"
-    ),
-    Option("--inference FILE.npz", Path).help(
-        "also train the model that infers conditions which were not logged, into this file; "
-        "use it with `bushing-noise label --inference FILE.npz`"
-    ),
-    seed("seed of the training samples and of the trees"),
+    Option("--out FILE.npz", Path, required=True),
+    Option("--add DIR|TABLE", Path, repeated=True),
+    Option("--samples N", whole_number(1)),
+    Option("--keep FILE.npz", Path),
+    Option("--inference FILE.npz", Path),
+    SEED,
 )
 
 

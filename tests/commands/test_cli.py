@@ -4,6 +4,7 @@ import argparse
 import os
 import subprocess
 import sys
+import tomllib
 import warnings
 from importlib.metadata import version
 from pathlib import Path
@@ -13,8 +14,9 @@ import pytest
 from models.errors import RecordingError
 from noise.cli import main
 from noise.commands import COMMANDS, load_command
-from noise.commands.options import add_options
+from noise.commands.options import add_options, help_of, option_names
 
+HELP = Path(__file__).parents[2] / "noise" / "commands" / "help.toml"
 HEAVY = ("numpy", "scipy", "sklearn", "librosa", "matplotlib", "numba", "soundfile")
 
 
@@ -53,9 +55,11 @@ def test_a_reader_that_goes_away_is_no_error():
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_option_is_explained_and_every_command_takes_a_seed(name):
     parser = argparse.ArgumentParser(prog=name)
-    module = load_command(name)
-    add_options(parser, module.OPTIONS)
-    assert module.DESCRIPTION
+    texts, rows = help_of(name), load_command(name).OPTIONS
+    add_options(parser, rows, texts.options)
+    assert texts.description
+    own = tomllib.loads(HELP.read_text(encoding="utf-8"))[name].get("options", {})
+    assert set(own) <= set(option_names(rows))
     assert parser.get_default("seed") == 0
     for action in parser._actions:
         assert action.help
