@@ -63,7 +63,6 @@ from .table import (
 from .transformer import (
     RecordingFeatures as RecordingFeatures,
 )
-from .windows.declared import (
+from .window_table import (
     WINDOW_FEATURES as WINDOW_FEATURES,
-    WindowFeature as WindowFeature,
 )

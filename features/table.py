@@ -1,6 +1,8 @@
 """Features of a signal or a recording: one table of all, and their values.
 
-The table is the only list there is: a further feature is an entry. Creak is broadband, squawk has
+The table is the only list there is, its second half for half-second windows
+(`features.window_table`): a further feature is an entry with name, unit, computation and kinds of
+channel. Creak is broadband, squawk has
 several discrete frequencies, squeal one that predominates, and a creak is impulsive at each slip
 (thesis, 5.2.3); the entries follow these words. Of sound and acceleration all but levels refer to
 the part from 150 Hz to 7 kHz, of a torque to its oscillation about the mean from 5 Hz to 7 kHz, so
@@ -14,6 +16,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,7 +94,7 @@ class Feature:
     source : str
         Where the definition comes from.
     compute : callable
-        Of a `Prepared` signal.
+        Of a `Prepared` signal; in `features.window_table` of the parts of windows.
     silent : float, optional
         Value for a signal without content [unit]; None where `compute` knows itself.
     calibrated : bool
@@ -118,7 +121,7 @@ class Feature:
     unit: str
     definition: str
     source: str
-    compute: Callable[[Prepared], float]
+    compute: Callable[[Any], Any]
     silent: float | None = math.nan
     calibrated: bool = False
     kinds: tuple[str, ...] = ACOUSTIC_KINDS
@@ -132,6 +135,27 @@ class Feature:
         if self.silent is not None and signal.silent:
             return self.silent
         return float(self.compute(signal))
+
+    def hertz(self, octaves: float) -> float:
+        """Frequency of a value that counts in octaves.
+
+        Parameters
+        ----------
+        octaves : float
+            In the unit of the feature, such as ``"octave re 100 Hz"`` [octave].
+
+        Returns
+        -------
+        float
+            [Hz]
+
+        Examples
+        --------
+        >>> Feature("pitch", "octave re 1 kHz", "Pitch.", "-", lambda p: 0.0).hertz(1.0)
+        2000.0
+        """
+        number, unit = self.unit.removeprefix("octave re ").split()
+        return float(number) * (1e3 if unit == "kHz" else 1.0) * float(2.0**octaves)
 
 
 _RE_ALL = "re that from 150 Hz to 7 kHz"

@@ -97,7 +97,7 @@ def padded_medians(rows: NDArray[Any], counts: NDArray[np.int64]) -> NDArray[Any
 def prominent_maxima(
     level: NDArray[np.float32],
     first: int,
-    last: NDArray[np.int64],
+    last: int,
     prominence: float,
     *,
     pointed: bool = False,
@@ -108,10 +108,8 @@ def prominent_maxima(
     ----------
     level : ndarray of float32, shape (n_rows, n)
         [dB]
-    first : int
-        Where each row begins.
-    last : ndarray of int, shape (n_rows,)
-        Where each ends.
+    first, last : int
+        Where each row begins and ends.
     prominence : float
         Least fall on either side [dB].
     pointed : bool
@@ -126,7 +124,7 @@ def prominent_maxima(
     Examples
     --------
     >>> level = np.array([[0.0, 1.0, 9.0, 2.0, 8.0, 0.0]], dtype=np.float32)
-    >>> row, at = prominent_maxima(level, 0, np.array([6]), 5.0)
+    >>> row, at = prominent_maxima(level, 0, 6, 5.0)
     >>> row.tolist(), at.tolist()
     ([0, 0], [2, 4])
     """
@@ -141,7 +139,7 @@ def _find(level, first, last, prominence, pointed, found) -> int:
     for row in range(level.shape[0]):
         lowest = level[row, first]
         candidate = -1
-        for k in range(first, last[row]):
+        for k in range(first, last):
             v = level[row, k]
             if candidate < 0:
                 # On the way up from the lowest level since the last maximum.

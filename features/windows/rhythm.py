@@ -8,6 +8,8 @@ rain's intervals are random, a clock's and an engine's are all the same.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -21,7 +23,6 @@ from features.windows.arithmetic import (
     prominent_maxima,
 )
 from features.windows.blocks import RATE
-from features.windows.declared import RHYTHM_FEATURES
 from models.compilation import COMPILED
 
 _STEP = 4
@@ -31,9 +32,6 @@ ENVELOPE_RATE = RATE // _STEP
 _LENGTH = 4096
 _LAGS = (6, 900)
 """Between them a period of blows is sought: 4.4 to 667 a second."""
-
-_LONGEST = 2000
-"""Samples of a whole window."""
 
 _LEAST_SAMPLES = 32
 """Shorter windows are not described."""
@@ -62,9 +60,6 @@ _BETTER = 1.1
 _MODULATION = (4, 12, 31, 82, 205, 410, 820, 1640)
 """Edges of the bands of modulation, in bins of about 1 Hz."""
 
-RHYTHM_NAMES = tuple(feature.name for feature in RHYTHM_FEATURES)
-"""Of a window, in the order of `rhythm_features`."""
-
 
 def envelope(signal: NDArray[np.float32]) -> NDArray[np.float32]:
     """Power of a signal, averaged over a quarter of a millisecond; rows follow one another.
@@ -74,113 +69,115 @@ def envelope(signal: NDArray[np.float32]) -> NDArray[np.float32]:
     >>> envelope(np.ones(8, dtype=np.float32)).tolist()
     [1.0, 1.0]
     """
-    power = np.empty(signal.size // _STEP, dtype=np.float32)
+    power = np.zeros(max(1, signal.size // _STEP), dtype=np.float32)
     _mean_squares(np.ravel(signal), power)
     return power
 
 
 @njit(fastmath={"contract"}, cache=True, **COMPILED)
 def _mean_squares(signal, power) -> None:
-    for i in range(power.size):
+    for i in range(signal.size // _STEP):
         total = np.float32(0.0)
         for k in range(_STEP):
             total += signal[_STEP * i + k] * signal[_STEP * i + k]
         power[i] = total / np.float32(_STEP)
 
 
-def rhythm_features(
-    power: NDArray[np.float32], first: NDArray[np.int64], last: NDArray[np.int64]
-) -> NDArray[np.float32]:
-    """Describe the rhythm of windows.
+def rhythm_of(power: NDArray[np.float32], size: int) -> dict[str, NDArray[np.floating]]:
+    """Describe the rhythm of windows of one length.
 
     Parameters
     ----------
-    power : ndarray of float32, shape (n,)
-        As `envelope` gives it.
-    first, last : ndarray of int, shape (n_windows,)
-        Each window reaches from `first` up to `last`, no farther than 2000.
+    power : ndarray of float32, shape (n_windows, n)
+        As `envelope` gives it; 2000 samples at most, which is changed.
+    size : int
+        Samples that the deviation is shared by: those of a whole window, where there is one.
 
     Returns
     -------
-    ndarray of float32, shape (n_windows, n_names)
-        By `RHYTHM_NAMES`, each in its declared [unit].
+    dict of str to ndarray, shape (n_windows,)
+        By name, as `features.window_table` has them, in their units [dB, octave, 1/s or -]; what
+        needs 32 samples and sound in them is NaN without.
 
     Examples
     --------
-    >>> blows = np.zeros(2000, dtype=np.float32)
-    >>> blows[::80] = 1.0
-    >>> found = rhythm_features(blows, np.array([0]), np.array([2000]))[0]
-    >>> named = dict(zip(RHYTHM_NAMES, found.tolist()))
-    >>> round(10.0 * 2.0 ** named["period_rate"])
+    >>> blows = np.zeros((1, 2000), dtype=np.float32)
+    >>> blows[0, ::80] = 1.0
+    >>> round(10.0 * 2.0 ** float(rhythm_of(blows, 2000)["period_rate"][0]))
     50
     """
-    rows = np.zeros((len(first), max(1, min(power.size, _LONGEST))), dtype=np.float32)
-    varying = np.zeros((len(first), _LENGTH), dtype=np.float32)
-    n, mean, spread = (last - first).astype(np.int64), np.empty(len(rows)), np.empty(len(rows))
-    _gather(power, first, rows, n, varying, mean, spread)
+    windows, n = power.shape
+    varying = np.zeros((windows, _LENGTH), dtype=np.float32)
+    mean, spread = np.empty(windows), np.empty(windows)
+    _amplitudes(power, size, varying, mean, spread)
     spectrum = fft.rfft(varying, axis=1)
     modulation = spectrum.real**2 + spectrum.imag**2
     correlation = fft.irfft(modulation, axis=1)[:, : 2 * _LAGS[1] + 2]
     shares = np.add.reduceat(modulation, _MODULATION, axis=1)[:, :-1]
-    whole = np.maximum(shares.sum(axis=1, keepdims=True), 1e-30)
-    smooth, average, fourth = np.zeros_like(rows), np.empty(len(rows)), np.empty(len(rows))
-    _smooth(rows, n, smooth, average, fourth)
-    described = (n >= _LEAST_SAMPLES) & (average > _SILENCE)
-    smooth, n = smooth[described], n[described]
-    average, fourth = average[described], fourth[described]
+    shares /= np.maximum(shares.sum(axis=1, keepdims=True), 1e-30)
+    smooth, average, fourth = np.zeros_like(power), np.empty(windows), np.empty(windows)
+    _smooth(power, smooth, average, fourth)
+    described = (average > _SILENCE) & (n >= _LEAST_SAMPLES)
+    smooth, average = smooth[described], average[described]
     peak = smooth.max(axis=1, initial=0.0)
-    level = _level(smooth, peak)
     found = {
         "crest": 10.0 * np.log10(peak / average),
-        "kurtosis": 10.0 * np.log10(fourth / n),
-        "concentration": _loudest_tenth(smooth, n) / (average * n),
-        **_blows(level, n),
+        "kurtosis": 10.0 * np.log10(fourth[described] / n),
+        "concentration": _loudest_tenth(smooth) / (average * n),
+        **_blows(_level(smooth, peak)),
         **_period(correlation[described], n),
     }
-    out = np.full((len(first), len(RHYTHM_NAMES)), np.nan, dtype=np.float32)
-    for name, values in found.items():
-        out[described, RHYTHM_NAMES.index(name)] = values
-    out[:, -len(_MODULATION) : -1] = shares / whole
-    out[:, -1] = spread / np.maximum(mean, 1e-20)
-    return out
+    return {
+        **{name: _spread(values, described) for name, values in found.items()},
+        **{f"modulation_{i}": share for i, share in enumerate(shares.T, start=1)},
+        "modulation_depth": spread / np.maximum(mean, 1e-20),
+    }
 
 
 @njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
-def _gather(power, first, rows, n, varying, mean, spread) -> None:
-    """Fill in each window's power, its amplitude about the mean, that mean, and the deviation."""
-    for w in range(rows.shape[0]):
-        part, amplitude = power[first[w] : first[w] + n[w]], varying[w]
+def _amplitudes(power, size, varying, mean, spread) -> None:
+    """Fill in each window's amplitude about the mean, that mean, and the deviation."""
+    for w in range(power.shape[0]):
+        amplitude = varying[w]
+        n = power.shape[1]
         total = np.float32(0.0)
-        for i in range(part.size):
-            rows[w, i] = part[i]
-            amplitude[i] = np.sqrt(part[i])
+        for i in range(n):
+            amplitude[i] = np.sqrt(power[w, i])
             total += amplitude[i]
-        middle = np.float32(total / n[w])
+        middle = np.float32(total / n)
         squares = np.float32(0.0)
-        for i in range(part.size):
+        for i in range(n):
             amplitude[i] -= middle
             squares += amplitude[i] * amplitude[i]
-        mean[w], spread[w] = middle, np.sqrt(squares / rows.shape[1])
+        mean[w], spread[w] = middle, np.sqrt(squares / size)
 
 
 @njit(cache=True, **COMPILED)
-def _smooth(rows, n, smooth, average, fourth) -> None:
+def _smooth(rows, smooth, average, fourth) -> None:
     """Fill in the power of the last millisecond, its mean, and the sum of its squares re that."""
+    n = rows.shape[1]
     for w in range(rows.shape[0]):
         power = 0.0  # in double precision, so that rounding does not creep
         whole = np.float32(0.0)
-        for i in range(n[w]):
+        for i in range(n):
             power += rows[w, i]
             if i >= _STEP:
                 power -= rows[w, i - _STEP]
             smooth[w, i] = power if power > 0.0 else 0.0
             whole += smooth[w, i]
-        mean = whole / n[w]
+        mean = whole / n
         squares = 0.0
-        for i in range(n[w]):
+        for i in range(n):
             share = smooth[w, i] / mean
             squares += share * share
         average[w], fourth[w] = mean, squares
+
+
+def _spread(values: NDArray[Any], chosen: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Return values where they are chosen, NaN elsewhere."""
+    out = np.full(chosen.size, np.nan)
+    out[chosen] = values
+    return out
 
 
 def _level(smooth: NDArray[np.float32], peak: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -191,28 +188,21 @@ def _level(smooth: NDArray[np.float32], peak: NDArray[np.float32]) -> NDArray[np
     return share
 
 
-def _loudest_tenth(smooth: NDArray[np.float32], n: NDArray[np.int64]) -> NDArray[np.float32]:
+def _loudest_tenth(smooth: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the sum over the loudest tenth, from the least of it to the most."""
-    tenth = np.maximum(1, n // 10)
-    most = int(tenth.max(initial=1))
-    kept = smooth.shape[1] - most
-    loud = np.sort(np.partition(smooth, kept, axis=1)[:, kept:], axis=1)
-    return ordered_sum(np.where(np.arange(most) >= (most - tenth)[:, None], loud, 0), axis=1)
+    rest = smooth.shape[1] - max(1, smooth.shape[1] // 10)
+    return ordered_sum(np.sort(np.partition(smooth, rest, axis=1)[:, rest:], axis=1), axis=1)
 
 
-def _period(
-    correlation: NDArray[np.float32], n: NDArray[np.int64]
-) -> dict[str, NDArray[np.float64]]:
+def _period(correlation: NDArray[np.float32], n: int) -> dict[str, NDArray[np.float64]]:
     """Find the period of the envelope: the shortest lag nearly as good as any."""
-    power = correlation[:, 0]
-    best, second = np.zeros(n.size), np.full(n.size, np.nan)
-    period = np.zeros(n.size, dtype=np.int64)
-    _strongest_lags(correlation, n, best, period, second)
-    found, rate = period > 0, np.full(n.size, np.nan)
-    rate[found] = OCTAVES * np.log(ENVELOPE_RATE / (10.0 * period[found]))
+    strength, second = np.zeros(len(correlation)), np.full(len(correlation), np.nan)
+    period = np.zeros(len(correlation), dtype=np.int64)
+    _strongest_lags(correlation, n, strength, period, second)
+    rate = OCTAVES * np.log(ENVELOPE_RATE / (10.0 * period[period > 0]))
     return {
-        "period_strength": np.where(power > 0.0, best, np.nan),
-        "period_rate": rate,
+        "period_strength": np.where(correlation[:, 0] > 0.0, strength, np.nan),
+        "period_rate": _spread(rate, period > 0),
         "second_period": second,
     }
 
@@ -221,7 +211,7 @@ def _period(
 def _strongest_lags(correlation, n, best, period, second) -> None:
     """Fill in the best lag of each row, how strong it is, and how strong twice the lag is."""
     least, most = _LAGS
-    for w in range(n.size):
+    for w in range(correlation.shape[0]):
         c, power = correlation[w], correlation[w, 0]
         if not power > 0.0:
             continue
@@ -230,29 +220,30 @@ def _strongest_lags(correlation, n, best, period, second) -> None:
         while begin < most and c[begin] > 0.1 * np.float64(power):
             begin += 1
         highest = 0.0
-        for lag in range(max(least, begin), min(most, n[w] // 2)):
+        for lag in range(max(least, begin), min(most, n // 2)):
             if c[lag] > c[lag - 1] and c[lag] >= c[lag + 1]:
                 # Fewer samples overlap at a longer lag.
-                strength = (c[lag] / power) * (n[w] / (n[w] - lag))
+                strength = (c[lag] / power) * (n / (n - lag))
                 if strength > highest:
                     highest = strength
                     if highest > _BETTER * best[w]:
                         best[w], period[w] = highest, lag
         twice = 2 * period[w]
-        if period[w] > 0 and twice + 1 < min(n[w], c.size):
+        if period[w] > 0 and twice + 1 < min(n, c.size):
             far = max(c[twice - 1], c[twice], c[twice + 1])
-            second[w] = (far / power) * (n[w] / (n[w] - twice))
+            second[w] = (far / power) * (n / (n - twice))
 
 
-def _blows(level: NDArray[np.float32], n: NDArray[np.int64]) -> dict[str, NDArray[np.floating]]:
+def _blows(level: NDArray[np.float32]) -> dict[str, NDArray[np.floating]]:
     """Describe times and heights of the maxima that stand out of what surrounds them."""
+    windows, n = level.shape
     row, at = prominent_maxima(level, 0, n, _PROMINENCE_DB)
-    kept = level[row, at] >= -_PULSE_RANGE_DB
-    row, at = row[kept], at[kept]
-    count = np.bincount(row, minlength=n.size)
+    high = level[row, at] >= -_PULSE_RANGE_DB
+    row, at = row[high], at[high]
+    count = np.bincount(row, minlength=windows)
     some = np.where(count > 0, count, np.nan)
     height = level[row, at]
-    fall = height - level[row, np.minimum(at + _DECAY, n[row] - 1)]
+    fall = height - level[row, np.minimum(at + _DECAY, n - 1)]
     mean, square = (
         ordered_sum(padded_rows(values.astype(np.float64), row, count, 0.0), axis=1) / some
         for values in (height, height * height)
@@ -291,7 +282,4 @@ def _intervals(at: NDArray[np.int64], count: NDArray[np.int64]) -> dict[str, NDA
         "blow_glide": -slope,
         "blow_spread": np.sqrt(np.maximum(sum_yy / n - (sum_y / n) ** 2, 0.0)),
     }
-    out = {name: np.full(count.size, np.nan) for name in found}
-    for name, values in found.items():
-        out[name][several] = values
-    return out
+    return {name: _spread(values, several) for name, values in found.items()}

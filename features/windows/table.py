@@ -10,17 +10,17 @@ An event that fills a part of a window only is described as if it went on
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from features.window_table import WINDOW_FEATURES
 from features.windows.blocks import FRAME_RATE, RATE
-from features.windows.declared import TOP_FEATURES, WINDOW_FEATURES
 from features.windows.events import events_within, prolonged
-from features.windows.frames import FRAME_COLUMNS, Frames, describe_frames, trajectory_features
-from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythm_features
-from features.windows.spectra import segments_of
-from features.windows.tones import tone_features
+from features.windows.frames import FRAME_COLUMNS, Course, Frames, describe_frames
+from features.windows.lines import Lines, segments_of
+from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythm_of
 
 LENGTH = 0.5
 """Of a window [s]."""
@@ -30,11 +30,8 @@ HOP = 0.25
 
 _LEAST_FRAMES = 3
 
-_FRAMES_OF = round(LENGTH * FRAME_RATE) - 3
-"""Frames that lie in a window as a whole."""
-
 WINDOW_NAMES = tuple(feature.name for feature in WINDOW_FEATURES)
-"""Of the columns of `WindowTable.features`, by `features.windows.declared.WINDOW_FEATURES`."""
+"""Of the columns of `WindowTable.features`, by `features.window_table.WINDOW_FEATURES`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,23 +100,22 @@ def describe_windows(
     >>> describe_windows(hiss, hiss, nothing, scale=1.0, windows=3, limit=7e3).features.shape[0]
     3
     """
-    frames = describe_frames(sound, limit)
-    power = envelope(sound)
+    frames, power, half = describe_frames(sound, limit), envelope(sound), round(HOP * RATE)
     features = np.empty((windows, len(WINDOW_NAMES)), dtype=np.float32)
     which, *edges = events_within(frames.bands, np.arange(windows) * HOP)
     if which.size:
         # Neighbouring windows often hold the same event.
         events, of_event = np.unique(edges, axis=1, return_inverse=True)
-        longer = prolonged((sound, high, top), *events, round(LENGTH * RATE))
-        numbers = np.arange(events.shape[1])
-        frames_inside = describe_frames(longer[0], limit)
-        power_inside = envelope(longer[0])
-        features[which] = _features(longer, frames_inside, power_inside, numbers, _APART, limit)[
-            of_event.reshape(-1)
-        ]
+        longer = prolonged((sound, high, top), *events, 2 * half)
+        inside, numbers = describe_frames(longer[0], limit), np.arange(events.shape[1])
+        parts = _parts(longer, inside, envelope(longer[0]), numbers, _APART, limit)
+        features[which] = _columns(parts, numbers.size)[of_event.reshape(-1)]
     rest = np.setdiff1d(np.arange(windows), which)
-    if rest.size:
-        features[rest] = _features((sound, high, top), frames, power, rest, _OVERLAPPING, limit)
+    whole = (rest + 2) * half <= sound.size
+    # Only the last window may hold less than the others.
+    for numbers in filter(len, (rest[whole], rest[~whole])):
+        parts = _parts((sound, high, top), frames, power, numbers, _OVERLAPPING, limit)
+        features[numbers] = _columns(parts, numbers.size)
     unit = 20.0 * np.log10(max(scale, 1e-300))
     level = _means(power, windows, round(HOP * ENVELOPE_RATE))
     values = np.concatenate([frames.values, frames.bands], axis=1)
@@ -128,80 +124,91 @@ def describe_windows(
     return WindowTable(features, (10.0 * np.log10(level + 1e-20) + unit).astype(np.float32), values)
 
 
-_OVERLAPPING, _APART = (25, 2, 1000, 25), (_FRAMES_OF, 3, 2000, 50)
-"""Frames, long spectra, samples of the envelope and values of the top from one window to the next:
-by half a window in a sound, by a whole one where each window is a row of its own."""
+_FRAMES, _SEGMENTS, _POWERS, _TOPS = 47, 3, 2000, 50
+"""Frames, long spectra, samples of the envelope and values above 7 kHz in a window."""
+
+_OVERLAPPING, _APART = (25, 2, 1000, 25), (_FRAMES, _SEGMENTS, _POWERS, _TOPS)
+"""As many from one window to the next: in a sound, and where each window is a row of its own."""
 
 
-def _features(
-    parts: tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]],
+def _parts(
+    sounds: tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]],
     frames: Frames,
     power: NDArray[np.float32],
-    windows: NDArray[np.int64],
+    numbers: NDArray[np.int64],
     hops: tuple[int, int, int, int],
     limit: float,
-) -> NDArray[np.float32]:
-    """Return the features of windows by number in sound, its high part and top.
+) -> dict[str, Any]:
+    """Return what is computed of windows of one length, by the names in `features.window_table`.
 
-    Its frames and envelope are those of the sound.
+    Frames and power are those of the sound; the windows are counted by `numbers`.
     """
-    sound, high, top = parts
+    sound, high, top = sounds
     segments, blows = segments_of(sound), envelope(high)
-    # What lies behind the end of the sound is not there.
-    at, segment, begin = (
-        np.minimum(windows * hop, max(count - 1, 0))
-        for hop, count in zip(hops, (len(frames.values), len(segments), power.size), strict=False)
-    )
-    last = np.minimum(begin + round(LENGTH * ENVELOPE_RATE), power.size)
-    return np.concatenate(
-        [
-            trajectory_features(frames, at, np.minimum(at + _FRAMES_OF, len(frames.values))),
-            tone_features(segments, segment, np.minimum(segment + 3, len(segments)), limit),
-            rhythm_features(power, begin, last),
-            rhythm_features(blows, begin, last),
-            _tops(top.reshape(-1, top.shape[-1]), power, blows, windows * hops[3]),
-        ],
-        axis=1,
-    )
+    above = _above(top.reshape(-1, top.shape[-1]), power, blows)
+
+    def rows(kind: int, length: int, count: int) -> NDArray[np.int64]:
+        first = numbers * hops[kind]
+        return np.asarray(first[:, None] + np.arange(min(length, count - int(first[-1]))))
+
+    of_frames = rows(0, _FRAMES, len(frames.values))
+    of_power, size = rows(2, _POWERS, power.size), min(power.size, _POWERS)
+    of_above = rows(3, _TOPS, len(above))
+    return {
+        "course": Course(
+            *(np.take(x.T, of_frames.T, axis=1) for x in (frames.values, frames.bands))
+        )
+        if of_frames.shape[1] >= _LEAST_FRAMES
+        else None,
+        "lines": Lines(segments, rows(1, _SEGMENTS, len(segments)), limit),
+        "rhythm": rhythm_of(power[of_power], size),
+        "high": rhythm_of(blows[of_power], size),
+        "top": Top(above[of_above]) if of_above.shape[1] >= _LEAST_FRAMES else None,
+    }
 
 
-def _tops(
-    top: NDArray[np.float32],
-    power: NDArray[np.float32],
-    blows: NDArray[np.float32],
-    first: NDArray[np.int64],
-) -> NDArray[np.float32]:
-    per_frame = ENVELOPE_RATE // FRAME_RATE
-    n = min(len(top), power.size // per_frame)
-    out = np.full((first.size, len(TOP_FEATURES)), np.nan, dtype=np.float32)
-    length = round(LENGTH * FRAME_RATE)
-    below, high = (
-        part[: n * per_frame].reshape(n, per_frame).mean(axis=1) for part in (power, blows)
-    )
-    columns = np.stack([below, high, top[:n, 0], top[:n, 1]], axis=1)
-    whole = first + length <= n
-    if whole.any():
-        rows = np.lib.stride_tricks.sliding_window_view(columns, length, axis=0)[first[whole]]
-        out[whole] = _top_features(rows)
-    for w in np.flatnonzero(~whole & (n - first >= _LEAST_FRAMES)).tolist():
-        out[w] = _top_features(columns[first[w] :].T[None])[0]
+def _columns(parts: dict[str, Any], count: int) -> NDArray[np.float32]:
+    """Return the features of `count` windows side by side."""
+    out = np.empty((count, len(WINDOW_FEATURES)), dtype=np.float32)
+    for column, feature in enumerate(WINDOW_FEATURES):
+        out[:, column] = feature.compute(parts)
     return out
 
 
-def _top_features(rows: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return `TOP_FEATURES` from power below 7 kHz, above 2 kHz and in the two bands.
+def _above(
+    top: NDArray[np.float32], power: NDArray[np.float32], blows: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """Return power below 7 kHz, above 2 kHz and in the two bands, a hundredth of a second each."""
+    each = ENVELOPE_RATE // FRAME_RATE
+    n = min(len(top), power.size // each)
+    means = [part[: n * each].reshape(n, each).mean(axis=1) for part in (power, blows)]
+    return np.stack([*means, *top[:n].T], axis=1)
 
-    Rows are of shape (n_windows, 4, n_frames).
+
+class Top:
+    """Power above 7 kHz in windows, which `features.window_table` describes.
+
+    Parameters
+    ----------
+    above : ndarray of float32, shape (n_windows, n, 4)
+        Power below 7 kHz, above 2 kHz and in two bands above 7 kHz [unit^2].
+
+    Examples
+    --------
+    >>> Top(np.ones((1, 50, 4), dtype=np.float32)).shares.tolist()
+    [[0.0], [0.0], [0.0]]
     """
-    sums = rows.sum(axis=2)
-    total = np.where(sums[:, 0] > 0.0, sums[:, 0], np.float32(np.nan))
-    shares = 10.0 * np.log10(np.maximum(sums[:, 1:] / total[:, None], np.float32(1e-6)))
-    a, b = np.sqrt(rows[:, 2]), np.sqrt(rows[:, 1])
-    a = a - a.mean(axis=1, keepdims=True)
-    b = b - b.mean(axis=1, keepdims=True)
-    spread = np.sqrt((a * a).sum(axis=1) * (b * b).sum(axis=1))
-    together = (a * b).sum(axis=1) / np.where(spread > 0.0, spread, np.float32(np.nan))
-    return np.stack([shares[:, 1], shares[:, 2], together, shares[:, 0]], axis=1)
+
+    def __init__(self, above: NDArray[np.float32]) -> None:
+        rows = np.ascontiguousarray(above.transpose(0, 2, 1))
+        sums = rows.sum(axis=2)
+        total = np.where(sums[:, 0] > 0.0, sums[:, 0], np.float32(np.nan))
+        self.shares = 10.0 * np.log10(np.maximum(sums[:, 1:] / total[:, None], np.float32(1e-6))).T
+        a, b = np.sqrt(rows[:, 2]), np.sqrt(rows[:, 1])
+        a = a - a.mean(axis=1, keepdims=True)
+        b = b - b.mean(axis=1, keepdims=True)
+        spread = np.sqrt((a * a).sum(axis=1) * (b * b).sum(axis=1))
+        self.together = (a * b).sum(axis=1) / np.where(spread > 0.0, spread, np.float32(np.nan))
 
 
 def _means(power: NDArray[np.float32], windows: int, hop: int) -> NDArray[np.float32]:

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from features.windows.arithmetic import ordered_sum
-from features.windows.rhythm import envelope, rhythm_features
-from features.windows.spectra import segments_of
+from features.windows.lines import Lines, segments_of
+from features.windows.rhythm import envelope, rhythm_of
 from features.windows.table import describe_windows
-from features.windows.tones import tone_features
 
 RATE = 16_000
 
@@ -35,18 +34,15 @@ def test_sums_run_in_order_whatever_is_summed_beside(shape, axis, dtype):
 
 
 def test_a_window_alone_is_as_among_others():
-    x = sound(3.0)
-    power, first = envelope(x), np.arange(10) * 1000
-    together = rhythm_features(power, first, first + 2000)
-    segments = segments_of(x)
-    begin = np.arange(10) * 2
-    tones = tone_features(segments, begin, begin + 3, 7000.0)
+    segments, at = segments_of(sound(3.0)), np.arange(10)[:, None] * 2 + np.arange(3)
+    power = envelope(sound(3.0))[np.arange(10)[:, None] * 1000 + np.arange(2000)]
+    rhythm, lines = rhythm_of(power, 2000), vars(Lines(segments, at, 7000.0))
     for i in range(10):
-        one = slice(i, i + 1)
-        alone = rhythm_features(power, first[one], first[one] + 2000)
-        np.testing.assert_array_equal(alone[0], together[i])
-        alone = tone_features(segments, begin[one], begin[one] + 3, 7000.0)
-        np.testing.assert_array_equal(alone[0], tones[i])
+        for name, value in rhythm_of(power[i : i + 1], 2000).items():
+            np.testing.assert_array_equal(value[0], rhythm[name][i])
+        for name, value in vars(Lines(segments, at[i : i + 1], 7000.0)).items():
+            if np.shape(value) == (1,):
+                np.testing.assert_array_equal(value[0], lines[name][i])
 
 
 @pytest.mark.parametrize("limit", [25.0, 90.0, 180.0, 300.0, 1000.0, 7000.0])
