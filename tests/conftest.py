@@ -13,7 +13,25 @@ settings.register_profile("desk", deadline=None)
 settings.load_profile("server" if os.environ.get("CI") else "desk")
 
 
-MAINTENANCE = [Path(__file__).parent / folder for folder in ("exam", "training")]
+HERE = Path(__file__).parent
+MAINTENANCE = [HERE / folder for folder in ("exam", "training")]
+
+
+def pytest_ignore_collect(collection_path, config):
+    """Load no file all of whose tests the marks leave out, unless it is named."""
+    left_out = config.option.markexpr
+    unwanted = any(collection_path.is_relative_to(folder) for folder in MAINTENANCE)
+    if "not maintenance" in left_out and unwanted:
+        return True
+    if "not browser" in left_out and collection_path.match("*_in_browser.py"):
+        return True
+    return None
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collect_file():
+    """Look for tests alone: there are no examples here, and what helps tests is loaded by them."""
+    return [found for found in (yield) if type(found) is pytest.Module]
 
 
 @pytest.hookimpl(tryfirst=True)  # before those are left out that were not asked for
