@@ -6,6 +6,11 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+# Before NumPy is loaded: each core has a test of its own, and threads of BLAS that wait for one
+# another by counting would cost several times what they compute.
+for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ.setdefault(_variable, "1")
+
 # On a server the same examples every time; at a desk new ones in each run. No example has a time
 # limit: how long one takes says how busy the machine is.
 settings.register_profile("server", derandomize=True, deadline=None)
