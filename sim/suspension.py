@@ -16,7 +16,7 @@ other through the bar alone.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -27,18 +27,16 @@ from numpy.typing import NDArray
 from models.compilation import PART
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from models.rig import Rig
 from models.suspension import Suspension, TorsionChain, torsion_chain
 from sim.acquisition import Acquisition
 from sim.analysis.regime import never_slips
 from sim.bushing import lumped_bushing
 from sim.contact import CRITICAL, KINETIC
-from sim.effects import EFFECTS
-from sim.effects.effect import ActiveEffect, Effect, activated
+from sim.effects.effect import Effect
 from sim.friction import friction_law
 from sim.motion import Motion, blaming_the_unusual, contact_hooks
 from sim.parameters import resolve
-from sim.run import plan_run, record_motions
+from sim.run import Plan, plan_run, record_motions
 from sim.shaft import ShaftMotion
 from sim.solvers import contact_rates as at
 from sim.solvers.contact_rates import contact_rates
@@ -76,17 +74,13 @@ class SuspensionMotion:
         Left and right; the shaft of each is the bar at its place.
     load : ndarray, shape (n_bushings, n)
         Normal force on each by the links [N].
-    travel : ndarray, shape (n,)
-        Of the wheels, as the angle asked of an arm [rad].
-    angle, speed : ndarray, shape (n_inertias, n)
-        Of the bar along its length [rad], [rad/s].
+    angle : ndarray, shape (n_inertias, n)
+        Of the bar along its length [rad].
     """
 
     bushings: tuple[Motion, ...]
     load: NDArray[np.float64]
-    travel: NDArray[np.float64]
     angle: NDArray[np.float64]
-    speed: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,90 +156,31 @@ def run_suspension(
         temperature=temperature, seconds=seconds, rate=acquisition.rate, settling=None,
         library=library,
     )  # fmt: skip
-    rig = plan.rig  # at the temperature
-    suspension = replace(suspension, rig=rig)
-    motion = simulate_suspension(
-        suspension, plan.shaft, interference=interference,
-        support_stiffness=support_stiffness, seconds=(plan.n_settling + plan.n_kept) / plan.rate,
-        rate=plan.rate, effects=plan.effects, rng=effect_rng,
-    )  # fmt: skip
-    rigs = [_placed(rig, place) for place in suspension.positions]
-    signals, _ = record_motions(plan, motion.bushings, rigs, acquisition, noise_rng, effect_rng)
-    channels = [
-        Channel(name, position=rig.microphone.position if name == "pressure" else None)
-        for name in signals
+    suspension = replace(suspension, rig=plan.rig)  # at the temperature
+    motion = _simulated(suspension, plan, effect_rng)
+    plate, (across, _) = plan.rig.plate, plan.rig.plate.clamp_position
+    rigs = [
+        replace(plan.rig, plate=replace(plate, clamp_position=(across, along)))
+        for along in suspension.positions
     ]
-    return SuspensionRun(
-        Recording(
-            samples=np.stack(list(signals.values())),
-            rate=acquisition.rate,
-            channels=tuple(channels),
-            condition=replace(plan.condition, speed=None),
+    signals, _ = record_motions(plan, motion.bushings, rigs, acquisition, noise_rng, effect_rng)
+    microphone = plan.rig.microphone.position
+    recording = Recording(
+        samples=np.stack(list(signals.values())),
+        rate=acquisition.rate,
+        channels=tuple(
+            Channel(name, position=microphone if name == "pressure" else None) for name in signals
         ),
-        motion,
-        _remarks(suspension, motion, interference),
-    )  # fmt: skip
-
-
-def _placed(rig: Rig, along: float) -> Rig:
-    """Return the rig with its clamp so far along the plate's y [m]."""
-    return replace(
-        rig, plate=replace(rig.plate, clamp_position=(rig.plate.clamp_position[0], along))
+        condition=replace(plan.condition, speed=None),
     )
+    return SuspensionRun(recording, motion, _remarks(suspension, motion, interference))
 
 
-def simulate_suspension(
-    suspension: Suspension,
-    travel: ShaftMotion,
-    *,
-    interference: float,
-    support_stiffness: float,
-    seconds: float,
-    rate: float,
-    effects: Sequence[ActiveEffect] | None = None,
-    rng: np.random.Generator | None = None,
-    tolerance: float | None = None,
-) -> SuspensionMotion:
-    """Simulate bar and bushings from rest.
-
-    Parameters
-    ----------
-    suspension : Suspension
-    travel : ShaftMotion
-        Of the wheels: the speed that it asks of an arm [rad/s].
-    interference, support_stiffness, seconds, rate, effects, rng, tolerance
-        As for `sim.motion.simulate_motion`.
-
-    Returns
-    -------
-    SuspensionMotion
-
-    Raises
-    ------
-    ParameterError
-        The friction law is one of constant torques, the rig does not say its sleeve, or the bar
-        would be twisted beyond what it bears.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> from models.suspension import Bar, Suspension
-    >>> from sim.shaft import Oscillation
-    >>> car = Suspension(load_material_rig("PDMS"), Bar(0.03, 0.004, 0.9, 0.2, 0.02), 0.4, 2e6,
-    ...                  100.0, "opposite")
-    >>> run = simulate_suspension(car, Oscillation(0.2, 2.0), interference=0.279e-3,
-    ...                           support_stiffness=2214.0, seconds=0.05, rate=30e3)
-    >>> len(run.bushings), run.load.shape
-    (2, (2, 1500))
-    """
-    rig, bar = suspension.rig, suspension.bar
-    rng = rng or np.random.default_rng(0)
-    effects = activated(rig.effects, EFFECTS) if effects is None else effects
-    n = round(seconds * rate)
-    if not n >= 2:
-        raise ParameterError(f"seconds = {seconds:g} at rate = {rate:g} Hz gives no samples")
-    speed = travel.speed(np.arange(n) / rate)
-    for active in effects:
+def _simulated(suspension: Suspension, plan: Plan, rng: np.random.Generator) -> SuspensionMotion:
+    """Simulate bar and bushings from rest; refuse a bar that would be twisted beyond its stress."""
+    bar, rate = suspension.bar, plan.rate
+    speed = plan.shaft.speed(np.arange(plan.n_settling + plan.n_kept) / rate)
+    for active in plan.effects:
         speed = active.driven(speed, rate, {"rng": rng, "whole": True})
     chain = torsion_chain(
         bar, suspension.spacing, suspension.link_stiffness, suspension.link_damping,
@@ -259,57 +194,52 @@ def simulate_suspension(
             f"a shear stress of {stress / 1e6:.0f} MPa where steel bears {_STRONGEST / 1e6:.0f}; "
             'let it swing less (--oscillate), or the wheels go together (wheels = "together")'
         )
-    with blaming_the_unusual(rig):
-        return solve_chain(
-            chain, rig, speed, interference=interference, support_stiffness=support_stiffness,
-            preload=suspension.preload(interference), rate=rate, effects=effects, rng=rng,
-            tolerance=tolerance,
-        )  # fmt: skip
+    with blaming_the_unusual(plan.rig):
+        return solve_chain(chain, plan, speed, suspension.preload(plan.interference), rng)
 
 
 def solve_chain(
     chain: TorsionChain,
-    rig: Rig,
+    plan: Plan,
     speed: NDArray[np.float64],
-    *,
-    interference: float,
-    support_stiffness: float,
     preload: float,
-    rate: float,
-    effects: Sequence[ActiveEffect],
     rng: np.random.Generator,
-    tolerance: float | None,
+    tolerance: float | None = None,
 ) -> SuspensionMotion:
     """Solve a bar in any number of bushings.
 
     Parameters
     ----------
     chain : TorsionChain
-    rig : Rig
-        Of every bushing.
+    plan : Plan
+        Its rig is that of every bushing.
     speed : ndarray, shape (n,)
         Of the travel, linear between the samples [rad/s].
-    interference, support_stiffness, rate, effects, rng, tolerance
-        As of `simulate_suspension`.
     preload : float
         Contact pressure times radius and length of a bushing [N].
+    rng : numpy.random.Generator
+        Of effects that scatter, for each bushing by itself.
+    tolerance : float, optional
+        Error of a step [-]; by default a share of that of the friction law.
 
     Raises
     ------
     ParameterError
         The friction law is one of constant torques, or no steps follow the motion.
     """
+    rig, rate = plan.rig, plan.rate
     law = friction_law(rig.friction.name)
     if law.torque is None:
         raise ParameterError(
             f"suspension: friction law {law.name!r} holds by constant torques, which are solved on "
             "the rig alone; take one with an inner state, such as lugre or contact_with_memory"
         )
-    system, fit = lumped_bushing(rig, interference, support_stiffness), rig.fit(interference)
+    system = lumped_bushing(rig, plan.interference, plan.support_stiffness)
+    fit = rig.fit(plan.interference)
     values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
     rest, torque_limits = law.state(), (fit.critical_torque, fit.kinetic_torque)
     places = range(chain.bushings.size)
-    hooks = [contact_hooks(effects, stream) for stream in rng.spawn(len(places))]
+    hooks = [contact_hooks(plan.effects, stream) for stream in rng.spawn(len(places))]
     first, block = 2 * chain.inertia.size, n_variables(rest, hooks[0])
     rows = tuple(at.empty_rows(block) for _ in places)
     bushings = tuple(
@@ -358,9 +288,7 @@ def solve_chain(
             for b, node in enumerate(chain.bushings)
         ),
         load=torques[:, :, 2].T,
-        travel=_integral(speed, rate),
         angle=angle,
-        speed=turning,
     )  # fmt: skip
 
 

@@ -174,11 +174,11 @@ def _contacts(
         follows = hook.function is FRICTION_SHIFT.contact  # its state is that of the speed
         if hook.n_states and not follows:
             before = contacts[0, :, :SHAFT_INERTIA].copy()
-            average_contacts(hook, _MOMENTS, speed, contacts[0])
+            _averaged(hook, _MOMENTS, speed, contacts[0])
             contacts[1:, :, :SHAFT_INERTIA] += contacts[0, :, :SHAFT_INERTIA] - before
             continue
         for i, factor in enumerate((1.0, 1.0 + _STEP, 1.0 - _STEP)):
-            average_contacts(hook, _MOMENTS if follows else 1, factor * speed, contacts[i])
+            _averaged(hook, _MOMENTS if follows else 1, factor * speed, contacts[i])
     contacts[:, :, CRITICAL] = np.maximum(contacts[:, :, CRITICAL], contacts[:, :, KINETIC])
     return contacts
 
@@ -207,20 +207,21 @@ def _solve(a, x) -> None:
 
 
 @njit(**PART)
-def _rates_and_slopes(law, c, v, contact, state, rates, low, slopes) -> None:
-    """Fill the state's rates and their slopes over it."""
+def _rates_and_slopes(law, c, v, contact, state, rates, high, low, slopes) -> None:
+    """Fill the state's rates and, over it, their slopes and in the last row the torque's."""
     n = state.size
     call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
     for j in range(n):
         kept = state[j]
         change = _STEP * abs(kept) + 1e-12
         state[j] = kept + change
-        call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, slopes[n].ctypes)
+        above = call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, high.ctypes)
         state[j] = kept - change
-        call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, low.ctypes)
+        below = call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, low.ctypes)
         state[j] = kept
         for i in range(n):
-            slopes[i, j] = (slopes[n, i] - low[i]) / (2.0 * change)
+            slopes[i, j] = (high[i] - low[i]) / (2.0 * change)
+        slopes[n, j] = (above - below) / (2.0 * change)
 
 
 @njit(
@@ -248,7 +249,7 @@ def _linearised(law, c, rest, systems, speeds, contacts, matrices) -> None:
                 state[i] = rest[i]
             pause = 1e-7
             for _ in range(80):
-                _rates_and_slopes(law, c, v, contact, state, rates, below, slopes)
+                _rates_and_slopes(law, c, v, contact, state, rates, above, below, slopes)
                 for i in range(n):
                     for j in range(n):
                         system[i, j] = -slopes[i, j]
@@ -261,7 +262,7 @@ def _linearised(law, c, rest, systems, speeds, contacts, matrices) -> None:
                     settled &= abs(rates[i]) / (abs(state[i]) + 1e-15) < 1e-10
                 if settled:
                     break
-            _rates_and_slopes(law, c, v, contact, state, rates, below, slopes)
+            _rates_and_slopes(law, c, v, contact, state, rates, above, below, slopes)
             dv = _STEP * v
             high = call_law_at(
                 law, v + dv, c.ctypes, contacts[1, run].ctypes, state.ctypes, above.ctypes
@@ -272,16 +273,9 @@ def _linearised(law, c, rest, systems, speeds, contacts, matrices) -> None:
             slope = (high - low) / (2.0 * dv)
             for j in range(n):
                 a[4 + j, 1] = -(above[j] - below[j]) / (2.0 * dv)
+                a[1, 4 + j] = slopes[n, j] / j_e
                 for i in range(n):
                     a[4 + i, 4 + j] = slopes[i, j]
-                kept = state[j]
-                change_of = _STEP * abs(kept) + 1e-12
-                state[j] = kept + change_of
-                high = call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
-                state[j] = kept - change_of
-                low = call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
-                state[j] = kept
-                a[1, 4 + j] = (high - low) / (2.0 * change_of) / j_e
         a[0, 1] = 1.0
         a[1, 0], a[1, 1] = -k_e / j_e, -(c_e + slope) / j_e
         if k_b < 0.0:
@@ -296,36 +290,13 @@ def _linearised(law, c, rest, systems, speeds, contacts, matrices) -> None:
 _LONG = 1.0
 """Steady sliding over which effects with a state are averaged [s]."""
 
-_VECTOR = float64[::1]
-_MATRIX = float64[:, ::1]
 
-
-def average_contacts(
+def _averaged(
     hook: Hook, moments: int, speed: NDArray[np.float64], contacts: NDArray[np.float64]
 ) -> None:
-    """Replace each contact by the mean over the last half of steady sliding.
+    """Replace the contact at each speed by the mean over the last half of steady sliding.
 
-    Parameters
-    ----------
-    hook : Hook
-        The effect.
-    moments : int
-        At which it acts.
-    speed : ndarray, shape (n,)
-        Of the shaft [rad/s].
-    contacts : ndarray, shape (n, N_CONTACT)
-        By `sim.contact` [units of `sim.contact`]; changed in place.
-
-    Examples
-    --------
-    >>> from sim.contact import KINETIC
-    >>> from sim.effects import EFFECTS
-    >>> from sim.solvers.contact_solver import Hook
-    >>> weaker = Hook(EFFECTS["velocity_weakening"].contact, np.array([0.5, 1.0, 0.0]), 0)
-    >>> contacts = np.array([[10.7, 8.0, 665.0, 0.0, 0.0, np.inf, 0.0]])
-    >>> average_contacts(weaker, 1, np.array([2.0]), contacts)
-    >>> bool(contacts[0, KINETIC] < 8.0)
-    True
+    The effect acts at so many moments; `contacts`, shape (n, N_CONTACT), are changed in place.
     """
     compiled: Any = _average
     compiled(

@@ -40,11 +40,7 @@ DIRECTION = 4
 """Of the sliding: +1 or -1, 0 in stick."""
 SAMPLE = 5
 """The next one."""
-STICK_START, STICK_TIME = 6, 7
-"""When the last stick began, and how long those before it lasted [s]."""
-SLIPS, FIRST_SLIP, LAST_SLIP = 8, 9, 10
-"""How many slips there were, when the first and the last began [s]."""
-N_STATE = 11
+N_STATE = 6
 
 
 def rest_state(shaft_speed: float) -> NDArray[np.float64]:
@@ -176,15 +172,6 @@ def _through_events(
                 next_way = 1.0 if holding > 0.0 else -1.0
         x[DIRECTION] = next_way
         fresh = next_way != 0.0
-        if fresh:
-            if way == 0.0:
-                x[STICK_TIME] += time + done - x[STICK_START]
-            if x[SLIPS] == 0.0:
-                x[FIRST_SLIP] = time + done
-            x[LAST_SLIP] = time + done
-            x[SLIPS] += 1.0
-        else:
-            x[STICK_START] = time + done
         if events < event_times.size:
             event_times[events] = time + done
         events += 1

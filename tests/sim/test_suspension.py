@@ -19,8 +19,9 @@ from sim.contact import CRITICAL, KINETIC, N_CONTACT, call_law
 from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.parameters import resolve
+from sim.run import Plan
 from sim.shaft import ConstantSpeed, Oscillation
-from sim.suspension import run_suspension, simulate_suspension, solve_chain, torque_gain
+from sim.suspension import run_suspension, solve_chain, torque_gain
 
 CAR = load_suspension(suspension_file())
 AT = {"interference": 0.279e-3, "support_stiffness": 2214.0}
@@ -36,17 +37,15 @@ def rigid(n=2):
     )  # fmt: skip
 
 
-def solved(chain, rig, speed, rate, tolerance=None, **given):
-    return solve_chain(
-        chain, rig, speed, **AT | given, preload=1000.0, rate=rate, effects=(),
-        rng=np.random.default_rng(0), tolerance=tolerance,
-    )  # fmt: skip
+def solved(chain, rig, speed, preload=1000.0, support=2214.0):
+    plan = Plan(rig, ROAD, 0.279e-3, support, (), 30e3, 0, speed.size)
+    return solve_chain(chain, plan, speed, preload, np.random.default_rng(0), tolerance=1e-11)
 
 
 @pytest.mark.parametrize(("material", "support"), [("fluorocarbon", math.inf), ("PDMS", 2214.0)])
 def test_a_bushing_on_a_rigid_bar_is_the_rig(material, support):
     rig, n = load_material_rig(material), 3000
-    chain = solved(rigid(), rig, np.full(n, 2.5), 30e3, 1e-11, support_stiffness=support)
+    chain = solved(rigid(), rig, np.full(n, 2.5), support=support)
     known = simulate_motion(
         rig, ConstantSpeed(2.5), interference=0.279e-3, support_stiffness=support, seconds=0.1,
         rate=30e3, effects=(), tolerance=1e-11,
@@ -62,10 +61,7 @@ def test_an_integrator_of_its_own_finds_the_same_motion():
     n, rate, pressed, turns = 200, 30e3, 150.0, 8.0
     chain = torsion_chain(CAR.bar, CAR.spacing, 1.5e6, 150.0, "left")
     speed = np.full(n, turns)
-    made = solve_chain(
-        chain, CAR.rig, speed, **AT, preload=pressed, rate=rate, effects=(),
-        rng=np.random.default_rng(0), tolerance=1e-11,
-    )  # fmt: skip
+    made = solved(chain, CAR.rig, speed, pressed)
     law = friction_law(CAR.rig.friction.name)
     values = resolve("law", law.parameters, CAR.rig.friction.parameters)
     coefficients, fit = law.coefficients(values), CAR.rig.fit(0.279e-3)
@@ -146,10 +142,13 @@ def test_a_load_beyond_presses_what_touches_with_the_load_itself(load):
     assert gain > 1.0
 
 
+def run_of(car=CAR, shaft=ROAD, seconds=0.1):
+    quiet = Acquisition(30e3, noise={})
+    return run_suspension(car, shaft, **AT, temperature=23.0, seconds=seconds, acquisition=quiet)
+
+
 def test_a_recording_has_the_channels_of_both_bushings_and_one_microphone():
-    run = run_suspension(
-        CAR, ROAD, **AT, temperature=23.0, seconds=0.1, acquisition=Acquisition(30e3, noise={})
-    )
+    run = run_of()
     recording = run.recording
     assert recording.samples.shape == (7, 3000)
     assert np.isfinite(recording.samples).all()
@@ -168,10 +167,10 @@ def test_a_recording_has_the_channels_of_both_bushings_and_one_microphone():
 def test_what_cannot_be_simulated_is_named():
     coulomb = replace(CAR, rig=replace(CAR.rig, friction=LawSpec("coulomb")))
     with pytest.raises(ParameterError, match="constant torques"):
-        simulate_suspension(coulomb, ROAD, **AT, seconds=0.1, rate=30e3)
+        run_of(coulomb)
     with pytest.raises(ParameterError, match=r"needs the contact pressure, hence a \[sleeve\]"):
         replace(CAR, rig=replace(CAR.rig, sleeve=None))
     with pytest.raises(ParameterError, match=r"twists the bar by .* degrees"):
-        simulate_suspension(CAR, ConstantSpeed(5.0), **AT, seconds=0.5, rate=30e3)
+        run_of(CAR, ConstantSpeed(5.0), 0.5)
     with pytest.raises(ParameterError, match="spacing = 1 m must be above 0 and below"):
         replace(CAR, spacing=1.0)
