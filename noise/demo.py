@@ -146,9 +146,7 @@ def _entry(case: Case, recording: Recording, segments: list[Segment], audio: Pat
         title=case.name.capitalize() if case.name != "none" else "Silence",
         recording=recording,
         segment=file_label(segments),
-        audio=audio,
         note=f"Simulated: {case.source} of De Togni's thesis.",
-        full_scale=full_scale,
     )
 
 

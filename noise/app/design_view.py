@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 from typing import TYPE_CHECKING, Any
 
 from starlette.responses import JSONResponse, Response, StreamingResponse
@@ -33,7 +32,6 @@ _NICE = 15
 def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
     bases = bases_of(opened)
-    session = secrets.token_hex(8)  # what a page keeps is of these bases
     sounds = LiveSounds(bases)
     charts: WorkerProcess[ChartRequest, dict[str, object]] = WorkerProcess(
         f"{_CHARTS}:chart_of", _NICE
@@ -48,7 +46,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         sounds.get_ready()
         named = [{"id": key, "name": base.name, "heard": base.heard} for key, base in bases.items()]
         steps = {"rate": RATE, "block": BLOCK, "torque_step": TORQUE_STEP}
-        about = {"bases": named, "session": session, "lookahead_s": LOOKAHEAD}
+        about = {"bases": named, "lookahead_s": LOOKAHEAD}
         return JSONResponse(about | steps)
 
     def controls(request: Request) -> Response:

@@ -1,32 +1,33 @@
-"""Routes of the view of recordings: list, labels, corrections, labelling, learning."""
+"""Routes of the view of recordings: list, labels, corrections, labelling."""
 
 from __future__ import annotations
 
 import json
 import math
+import os
+import subprocess
+import sys
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from hashlib import blake2b
-from pathlib import Path
-from tempfile import TemporaryDirectory
+from threading import Thread
 from typing import Any
 
-from platformdirs import user_cache_path
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
 from models.errors import ParameterError
-from noise.app.commands import Command
 from noise.app.gate import body
 from noise.app.labels import Labels, read_corrections
 from noise.app.opened import Opened
 from noise.app.requests import choice, number
 from noise.base.labels import LABELS
-from noise.base.tables import plain_cell, write_table
+from noise.base.progress import LINES
+from noise.base.tables import plain_cell
 from noise.labels.corrections import version
 from noise.labels.labelling import Labelling
-from noise.labels.table import COLUMNS, HUMAN
 
 Row = dict[str, object]
 
@@ -46,6 +47,12 @@ UNLABELLED, PARTLY, CORRECTED, REFUSED = "unlabelled", "partly", "corrected", "r
 _LONGEST_NAME = 80
 """Characters by which pages are told from each other."""
 
+_NICE = 10
+"""Whoever listens goes before what is labelled meanwhile."""
+
+_PATIENCE = 10.0
+"""A command that is told to end writes what it has, which takes no longer [s]."""
+
 _CONDITIONS = ("speed", "interference", "stiffness", "material")
 
 
@@ -53,9 +60,15 @@ def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
     if opened.table is None:
         return [Route("/api/recordings", _nothing)]
-    run = LabellingRun(opened, opened.table)
-    labels = run.labels
-    opened.leaving.callback(run.stop)
+    labels = Labels(opened.jobs, opened.table, Labelling())
+    labelling = Command(lambda _: labels.ended())
+    opened.leaving.callback(labelling.stop)
+
+    def state() -> dict[str, object]:
+        """Return how many recordings there are [-], whether some are labelled now, what failed."""
+        failed = labelling.code not in (None, 0, 1)
+        message = labelling.message if failed or labelling.running else ""
+        return {"total": len(opened.jobs), "running": labelling.running, "message": message}
 
     def recordings(request: Request) -> Response:
         query, shown = request.query_params, labels.summaries()
@@ -68,7 +81,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
             seen = int(number(query, "open", 0, len(opened.jobs) - 1, whole=True))
             answer["open"] = {"id": seen, "version": version(labels.rows(seen))}
         done = sum(bool(one["labels"] or one["error"]) for one in shown)
-        return JSONResponse({**answer, "state": {"done": done, **run.state()}})
+        return JSONResponse({**answer, "state": {"done": done, **state()}})
 
     def segments(request: Request) -> Response:
         job = opened.job(request.path_params["id"])
@@ -88,12 +101,11 @@ def routes(opened: Opened) -> list[BaseRoute]:
         )
 
     def labelled(_: Request, __: dict[str, Any]) -> Response:
-        run.start()
-        return JSONResponse(run.state())
-
-    def learned(_: Request, __: dict[str, Any]) -> Response:
-        run.learn()
-        return JSONResponse(run.state())
+        if not labelling.running:
+            labels.follow(Labelling())
+            paths = [str(path.absolute()) for path in opened.sources]
+            labelling.start(["label", "--out", str(labels.path), "--", *paths])
+        return JSONResponse(state())
 
     def _segments(index: int, rows: Sequence[Row]) -> dict[str, object]:
         return {
@@ -112,93 +124,67 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/recordings/{id:int}/segments", segments, methods=["GET"]),
         Route("/api/recordings/{id:int}/segments", body(corrected), methods=["POST"]),
         Route("/api/undo", body(undone), methods=["POST"]),
-        Route("/api/train", body(learned), methods=["POST"]),
         Route("/api/label", body(labelled), methods=["POST"]),
     ]
 
 
-class LabellingRun:
-    """``bushing-noise label`` on all recordings, and ``train --add`` on what was corrected.
-
-    A classifier that was trained stands beside the table, and labels whatever is opened there.
+class Command:
+    """A command of the program that runs beside the server, one at a time.
 
     Parameters
     ----------
-    opened : Opened
-    table : Path
-        Of labels.
+    ended : callable
+        Called with the exit code when it has ended.
     """
 
-    def __init__(self, opened: Opened, table: Path) -> None:
-        self._opened = opened
-        self._own = table.with_name(f"{table.stem}.classifier.npz")
-        self.labels = Labels(opened.jobs, table, Labelling(self._classifier))
-        self._labelling = Command(lambda _: self.labels.ended())
-        self._learning = Command(self._learned)
+    def __init__(self, ended: Callable[[int], None]) -> None:
+        self._ended = ended
+        self._process: subprocess.Popen[str] | None = None
+        self._watcher: Thread | None = None
+        self.message = ""
+        self.code: int | None = None
 
     @property
-    def _classifier(self) -> Path | None:
-        return self._own if self._own.is_file() else None
+    def running(self) -> bool:
+        """Whether it is at work, or what it did is being taken up."""
+        return self._watcher is not None and self._watcher.is_alive()
 
-    def start(self) -> None:
-        """Label, or go on; nothing happens while it runs."""
-        if self._labelling.running:
-            return
-        classifier = self._classifier
-        self.labels.follow(Labelling(classifier))
-        chosen = [] if classifier is None else ["--classifier", str(classifier)]
-        paths = [str(path.absolute()) for path in self._opened.sources]
-        self._labelling.start(["label", "--out", str(self.labels.path), *chosen, "--", *paths])
-
-    def learn(self) -> None:
-        """Train with the corrections, then label all else anew; nothing happens while it runs.
-
-        Raises
-        ------
-        ParameterError
-            Nothing is corrected yet.
-        """
-        rows = [
-            row | {"file": str(job.path.absolute())}
-            for job in self._opened.jobs
-            for row in self.labels.rows(job.index)
-            if row.get("label_source") == HUMAN
-        ]
-        if not rows:
-            raise ParameterError("nothing is corrected yet, so there is nothing to learn from")
-        if self._learning.running:
-            return
-        folder = self._opened.leaving.enter_context(TemporaryDirectory(prefix="bushing-noise-"))
-        table = Path(folder) / "corrections.csv"
-        write_table(table, COLUMNS, rows)
-        samples = [] if self._opened.samples is None else ["--samples", str(self._opened.samples)]
-        simulated = user_cache_path("bushing-noise") / f"samples{'-'.join(('', *samples[1:]))}.npz"
-        files = ["--add", str(table), "--out", str(self._own), "--keep", str(simulated)]
-        self._learning.start(["train", *files, *samples])
+    def start(self, arguments: Sequence[str]) -> None:
+        """Begin."""
+        self.message, self.code = "", None
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "noise", *arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            encoding="utf-8",
+            errors="replace",
+            env={**os.environ, LINES: "1"},
+        )
+        with suppress(OSError, AttributeError):  # it has ended already; this is Windows
+            os.setpriority(os.PRIO_PROCESS, self._process.pid, _NICE)
+        self._watcher = Thread(target=self._watch, args=(self._process,), daemon=True)
+        self._watcher.start()
 
     def stop(self) -> None:
-        """End both; what is labelled is kept."""
-        self._learning.stop()
-        self._labelling.stop()
+        """Tell it to end, and wait until it has."""
+        if self._process is None or self._watcher is None:
+            return
+        self._process.terminate()
+        try:
+            self._process.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+        self._watcher.join(_PATIENCE)
 
-    def state(self) -> dict[str, object]:
-        """Return how many recordings there are [-], what runs, and what it said last."""
-        running = [one for one in (self._learning, self._labelling) if one.running]
-        failed = [
-            one.message for one in (self._learning, self._labelling) if one.code not in (None, 0, 1)
-        ]
-        return {
-            "total": len(self._opened.jobs),
-            "running": bool(running),
-            "learning": self._learning.running,
-            "classifier": self._classifier.name if self._classifier else None,
-            "message": running[0].message if running else "; ".join(failed),
-        }
-
-    def _learned(self, code: int) -> None:
-        if code in (0, 1):  # 1: some of what was corrected could not be learned from
-            self._labelling.stop()
-            self.start()
+    def _watch(self, process: subprocess.Popen[str]) -> None:
+        assert process.stderr is not None
+        with process.stderr as lines:
+            for line in lines:
+                self.message = line.strip()
+        self.code = process.wait()
+        self._ended(self.code)
 
 
 def list_answer(query: Mapping[str, str], shown: Sequence[Row]) -> dict[str, object]:
@@ -293,5 +279,5 @@ def _page(content: dict[str, Any]) -> str:
 
 
 def _nothing(request: Request) -> Response:
-    state = {"done": 0, "total": 0, "running": False, "message": "", "classifier": None}
+    state = {"done": 0, "total": 0, "running": False, "message": ""}
     return JSONResponse({**list_answer(request.query_params, []), "state": state})

@@ -37,8 +37,6 @@ class Opened:
         recordings, never in it.
     sources : tuple of Path
         Recordings and folders that the recordings were found in.
-    samples : int, optional
-        Simulated samples to learn from beside corrections [-]; by default as many as `train` takes.
     seed : int
         Of random orders.
     leaving : ExitStack
@@ -50,7 +48,6 @@ class Opened:
     rigs: tuple[Path, ...]
     folder: Path
     sources: tuple[Path, ...] = ()
-    samples: int | None = None
     seed: int = 0
     leaving: ExitStack = field(default_factory=ExitStack)
 
@@ -70,7 +67,6 @@ class Opened:
 def open_paths(
     paths: Sequence[Path],
     table: Path | None = None,
-    samples: int | None = None,
     seed: int = 0,
     save: Path | None = None,
 ) -> Opened:
@@ -83,8 +79,6 @@ def open_paths(
     table : Path, optional
         Label table to write, which may be there; by default the one that was named, ``labels.csv``
         where it is already in the folder of recordings, or else ``FOLDER-labels.csv`` beside it.
-    samples : int, optional
-        Simulated samples to learn from beside corrections [-].
     seed : int
         Of random orders.
     save : Path, optional
@@ -129,7 +123,7 @@ def open_paths(
         save = rigs[0].absolute().parent
     elif save is None and sounds:
         save = folder.parent
-    return Opened(tuple(jobs), table, tuple(rigs), save or folder, tuple(sounds), samples, seed)
+    return Opened(tuple(jobs), table, tuple(rigs), save or folder, tuple(sounds), seed)
 
 
 def _table_of(folder: Path) -> Path:

@@ -34,7 +34,6 @@ from noise.audio.spectrogram import (
     LOWEST,
     Grid,
     spectrogram as levels_of,
-    strongest_line,
 )
 from noise.recordings.files import open_blocks
 from noise.recordings.wav import wav_bytes
@@ -310,16 +309,10 @@ _ROUND = 5.0
 """The level of the highest byte is a multiple of it [dB]."""
 
 _WINDOW = (0.01, 0.04)
-"""Shortest and longest frame, where none is asked for [s]."""
+"""Shortest and longest frame [s]."""
 
 _COLUMNS = 8.0
 """That a frame covers in between [-]."""
-
-_SHORTEST_FRAME, _LONGEST_FRAME = 64, 1 << 15
-"""Of frames [samples]."""
-
-_NEAR = 0.03
-"""How far from the cursor a line is looked for, at least [ratio of frequencies]."""
 
 
 def outline(track: Track, query: Query) -> tuple[Facts, NDArray[np.float32]]:
@@ -344,7 +337,9 @@ def spectrogram(track: Track, query: Query) -> tuple[Facts, NDArray[np.uint8]]:
     lowest, highest = _frequencies(track, query)
     width = int(number(query, "width", 16, 4000, 1000))
     height = int(number(query, "height", 16, 1024, 256))
-    length = _frame(track, query, (end - begin) / width)
+    shortest, longest = (seconds * track.rate for seconds in _WINDOW)
+    length = min(max(_COLUMNS * (end - begin) / width, shortest), longest)
+    length = 1 << round(math.log2(max(length, 64.0)))
     grid = Grid(begin, end, width, height, lowest, highest, length, padding=2)
     levels = levels_of(track.read, track.n, track.rate, track.reference, grid)
     top = _ROUND * math.ceil(float(levels.max()) / _ROUND)
@@ -364,28 +359,6 @@ def spectrogram(track: Track, query: Query) -> tuple[Facts, NDArray[np.uint8]]:
     return facts, np.clip(np.rint((levels - floor) / _STEP), 0, 255).astype(np.uint8)
 
 
-def line(track: Track, query: Query) -> Facts:
-    """Return the strongest line near a moment and a frequency, measured in one frame."""
-    lowest, highest = _frequencies(track, query)
-    time = number(query, "time", 0.0, track.duration, 0.0)
-    frequency = number(query, "frequency", lowest, highest, 1000.0)
-    length = _frame(track, query, number(query, "column", 0.0, 1e6, 0.01) * track.rate)
-    near = max(_NEAR * frequency, 2.0 * track.rate / length)
-    found = strongest_line(
-        track.read,
-        track.n,
-        track.rate,
-        track.reference,
-        middle=round(time * track.rate),
-        length=length,
-        low=frequency - near,
-        high=frequency + near,
-    )
-    if found is None:
-        return {"frequency_hz": None, "level_db": None}
-    return {"frequency_hz": found.frequency, "level_db": found.level}
-
-
 def _frequencies(track: Track, query: Query) -> tuple[float, float]:
     nyquist = 0.5 * track.rate
     highest = number(query, "high", 0.0, nyquist, min(HIGHEST, nyquist))
@@ -393,14 +366,6 @@ def _frequencies(track: Track, query: Query) -> tuple[float, float]:
     if not 0.0 < lowest < highest:
         raise ParameterError(f"low {lowest:g} Hz: must be above zero and below high {highest:g} Hz")
     return lowest, highest
-
-
-def _frame(track: Track, query: Query, column: float) -> int:
-    """Return the power of two that is nearest to what is asked for [samples]."""
-    shortest, longest = (seconds * track.rate for seconds in _WINDOW)
-    found = min(max(_COLUMNS * column, shortest), longest)
-    wanted = number(query, "window", 1e-6, 1e3, found / track.rate) * track.rate
-    return 1 << round(math.log2(min(max(wanted, _SHORTEST_FRAME), _LONGEST_FRAME)))
 
 
 def routes(opened: Opened) -> list[BaseRoute]:
@@ -467,7 +432,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route(f"{at}/audio", of_track(lambda *of: Response(wav(*of), media_type="audio/wav"))),
         Route(f"{at}/outline", numbers(outline)),
         Route(f"{at}/spectrogram", numbers(spectrogram)),
-        Route(f"{at}/line", told(line)),
         Route(f"{at}/levels", measured(lambda track, _: level_course(track))),
         Route(f"{at}/bands", measured(bands)),
         Route(f"{at}/loudness", measured(equal)),

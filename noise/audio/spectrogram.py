@@ -28,13 +28,6 @@ _FRAMES_AT_ONCE = 128
 _MOST_FRAMES = 16
 """Of one column: where a column is longer than they are, moments of it are looked at."""
 
-_FINEST = 8
-"""Zero padding of the one frame in which a line is looked for [ratio]."""
-
-_LOBE = 5 * _FINEST // 2
-"""Within which nothing is stronger than a line: 2.5 lines of the frame, a side lobe of a Hann
-window being nearer to a stronger one [lines of the padded frame]."""
-
 
 @dataclass(frozen=True)
 class Grid:
@@ -146,79 +139,6 @@ def spectrogram(
         power[column : column + columns] = np.where(between, strength[:, nearest], largest)
     power[:, grid.edges[:-1] > 0.5 * rate] = 0.0
     return _levels(power, reference).T[::-1]
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of a spectrum.
-
-    Parameters
-    ----------
-    frequency : float
-        [Hz]
-    level : float
-        As a steady tone would have it [dB].
-    """
-
-    frequency: float
-    level: float
-
-
-def strongest_line(
-    read: Callable[[int, int], NDArray[np.floating]],
-    n: int,
-    rate: float,
-    reference: float,
-    *,
-    middle: int,
-    length: int,
-    low: float,
-    high: float,
-) -> Line | None:
-    """Return the strongest line of one frame between two frequencies.
-
-    Parameters
-    ----------
-    read, n, rate, reference
-        As for `spectrogram`.
-    middle, length : int
-        Of the frame [samples].
-    low, high : float
-        Where to look [Hz].
-
-    Returns
-    -------
-    Line or None
-        None where no line stands between them, but a slope or the side lobe of one.
-
-    Examples
-    --------
-    >>> tone = np.sin(2 * np.pi * 1003.0 * np.arange(48000) / 48e3)
-    >>> line = strongest_line(lambda first, last: tone[first:last], 48000, 48e3, 1.0, middle=24000,
-    ...     length=2048, low=950.0, high=1100.0)
-    >>> round(line.frequency, 1), round(line.level, 1)
-    (1003.0, -3.0)
-    """
-    from scipy import fft
-
-    padded = _FINEST * length
-    start = middle - length // 2
-    frame = _part(read, n, start, start + length)
-    levels = _levels(
-        np.abs(fft.rfft(_without_offset(frame, _window(length)), padded)).astype(np.float64) ** 2,
-        reference,
-    )
-    first = max(1, math.ceil(low * padded / rate))
-    last = min(levels.size - 1, math.floor(high * padded / rate) + 1)
-    if last - first < 1:
-        return None
-    at = first + int(levels[first:last].argmax())
-    before, top, after = levels[at - 1 : at + 2].tolist()
-    if top <= _SILENCE or levels[max(0, at - _LOBE) : at + _LOBE + 1].max() > top:
-        return None
-    bend = before - 2.0 * top + after
-    shift = 0.5 * (before - after) / bend if bend < 0.0 else 0.0
-    return Line((at + shift) * rate / padded, top - 0.25 * (before - after) * shift)
 
 
 def _window(length: int) -> NDArray[np.float32]:

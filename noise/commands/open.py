@@ -14,7 +14,6 @@ OPTIONS = (
     Option("--save-to FOLDER", Path),
     Option("--port PORT", whole_number(0, most=65535), 0),
     Option("--no-browser"),
-    Option("--samples N", whole_number(1)),
     SEED,
 )
 
@@ -26,7 +25,7 @@ def run(options: Namespace) -> int:
 
     if options.save_to is not None:
         check_folder(options.save_to, "--save-to")
-    opened = open_paths(options.paths, options.out, options.samples, options.seed, options.save_to)
+    opened = open_paths(options.paths, options.out, options.seed, options.save_to)
 
     def ready(address: str) -> None:
         print(address, flush=True)

@@ -475,10 +475,8 @@ def facts_of(entry: Entry) -> dict[str, Fact]:
 def _condition_fact(row: Row, column: str, logged: float | None, unit: str) -> Fact | None:
     low, high = row.get(f"{column}_low"), row.get(f"{column}_high")
     source = row.get(f"{column}_source")
-    if source in ("inferred", "varied") and isinstance(low, float) and isinstance(high, float):
-        digits = ".2g" if source == "inferred" else ".3g"
-        words = f"{_plain(low, digits)} to {_plain(high, digits)}"
-        return Fact(words, f"{unit} (inferred)" if source == "inferred" else unit)
+    if source == "inferred" and isinstance(low, float) and isinstance(high, float):
+        return Fact(f"{_plain(low, '.2g')} to {_plain(high, '.2g')}", f"{unit} (inferred)")
     value = row.get(column)
     return _number(value if isinstance(value, int | float) else logged, ".5g", unit)
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,9 +23,9 @@ from numpy.typing import NDArray
 
 from features.kernels.spectra import Spectrum, autospectrum
 from models.drawing import frequency_axis, levels, styled, thinned
-from models.errors import ParameterError
 from models.recording import Recording
-from noise.pictures.figure import KINDS, Kind
+from noise.pages.blocks import Panels
+from noise.pictures.figure import KINDS
 
 if TYPE_CHECKING:
     from noise.labels.segments import Segment
@@ -171,33 +171,21 @@ def lines_panel(
 LOWEST, HIGHEST = 20.0, 15e3
 """Ends of the frequency axis [Hz]: of hearing, and of creak (thesis, section 5.3)."""
 
+WINDOW = 0.05
+"""Length of the time histories [s]: two slips of a creak at 40 Hz, and no more than some fifty
+cycles of a squeal, which is as many as a panel keeps apart."""
+
 _LEAST_SHARE = 1 / 20
 _HEADROOM = 3.0  # above the highest level [dB]
 _LEAST_SAMPLES = 16  # that have an autospectrum
 _FULL_SCALE_QUIET = -60.0
+_DYNAMIC_RANGE = 120.0  # of a spectrum's axis [dB]
+_PREFIXES = ((5e-4, 1e6, "µ", "ppm "), (0.5, 1e3, "m", "‰ "))  # of values below
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
-    """One channel of a recording, as it is shown.
-
-    Parameters
-    ----------
-    kind : str
-        A key of `KINDS`.
-    calibrated : bool
-        Whether `samples` are in the channel's unit rather than in fractions of full scale.
-    start : float
-        When `samples` begin [s].
-    rate : float
-        Sampling rate [Hz].
-    samples : ndarray, shape (n_shown,)
-        The time history, in the unit of the channel or in fractions of full scale [-].
-    spectrum : Spectrum
-        Of the labelled segment, in the square of the samples' unit by Hz.
-    analysed : tuple of 2 floats
-        Start and end of that segment [s].
-    """
+class _Trace:
+    """A channel: samples from `start` [s] on, levels [dB] of the segment's density by frequency."""
 
     kind: str
     calibrated: bool
@@ -205,209 +193,27 @@ class Trace:
     rate: float
     samples: NDArray[np.float64]
     spectrum: Spectrum
-    analysed: tuple[float, float]
-
-    @property
-    def levels(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Frequencies [Hz] and density levels [dB] between `LOWEST` and `HIGHEST`.
-
-        Returns
-        -------
-        frequency, level : ndarray, shape (n_lines,)
-            [Hz] and [dB]
-        """
-        frequency = self.spectrum.frequency
-        shown = (frequency >= LOWEST) & (frequency <= HIGHEST)
-        reference = KINDS[self.kind].reference if self.calibrated else 1.0
-        return frequency[shown], levels(self.spectrum.density[shown], reference)
+    frequency: NDArray[np.float64]
+    level: NDArray[np.float64]
 
     @property
     def swing(self) -> tuple[float, float]:
-        """Middle of the time history and how far it swings to either side of it.
-
-        A torque swings about where it is, everything else about zero.
-        """
+        """Middle, and how far it swings to either side; all but torque swings about zero."""
         low, high = float(self.samples.min()), float(self.samples.max())
+        least = KINDS[self.kind].least_swing
         if self.kind == "torque":
-            return (low + high) / 2.0, (high - low) / 2.0
-        return 0.0, max(-low, high, 0.0)
-
-
-@dataclass(frozen=True)
-class Scale:
-    """What the axes of one kind of channel have in common.
-
-    Parameters
-    ----------
-    swing : float
-        How far the largest time history swings to either side of its middle, in the samples' unit.
-    reach : float
-        The largest value of all, in the samples' unit.
-    top : float
-        Upper end of the spectra's axis [dB].
-    """
-
-    swing: float
-    reach: float
-    top: float
+            return (low + high) / 2.0, max((high - low) / 2.0, least)
+        return 0.0, max(-low, high, least)
 
     @property
-    def least_swing(self) -> float:
-        """Half of what a time axis spans at least, in the samples' unit."""
-        return _LEAST_SHARE * self.swing
+    def top(self) -> float:
+        """Upper end of the axis of its spectrum [dB]."""
+        quiet = KINDS[self.kind].quiet if self.calibrated else _FULL_SCALE_QUIET
+        highest = float(self.level.max(initial=-math.inf)) + _HEADROOM
+        return 10.0 * math.ceil(max(highest, quiet) / 10.0)
 
 
-def traces(recording: Recording, segment: Segment, window: float) -> tuple[Trace, ...]:
-    """Take from a recording what is shown of it.
-
-    Parameters
-    ----------
-    recording : Recording
-    segment : Segment
-        The time history is taken from its middle. Of several channels of a kind the segment's own
-        is shown, else the first.
-    window : float
-        Length of the time history [s].
-
-    Returns
-    -------
-    tuple of Trace
-        One for each of `KINDS` that the recording has, in their order.
-
-    Raises
-    ------
-    ParameterError
-        A channel that cannot be analysed.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from models.recording import Channel, Recording
-    >>> from noise.labels.segments import Segment
-    >>> silence = Recording(np.zeros((1, 9600)), 48e3, (Channel("pressure"),))
-    >>> segment = Segment(channel="all", start=0.0, end=0.1, label="none",
-    ...     probabilities={"none": 1.0}, frequency=None, level=None, level_dbfs=None)
-    >>> [(trace.kind, trace.start, trace.samples.size) for trace in traces(silence, segment, 0.05)]
-    [('pressure', 0.025, 2400)]
-    """
-    rate, n_samples = recording.rate, recording.samples.shape[1]
-    first = max(0, round(segment.start * rate))
-    last = min(n_samples, round(segment.end * rate))
-    if last - first < _LEAST_SAMPLES:
-        first, last = 0, n_samples
-    n_shown = min(n_samples, max(2, round(window * rate)))
-    begin = min(max(0, (first + last - n_shown) // 2), n_samples - n_shown)
-    own = _own_channel(recording, segment.channel)
-    found = []
-    for kind in KINDS:
-        names = [channel.name for channel in recording.channels if channel.kind == kind]
-        if not names:
-            continue
-        signal = recording[own if own in names else names[0]]
-        found.append(
-            Trace(
-                kind=kind,
-                calibrated=recording.calibrated,
-                start=begin / rate,
-                rate=rate,
-                samples=signal[begin : begin + n_shown],
-                spectrum=autospectrum(signal[first:last], rate),
-                analysed=(first / rate, last / rate),
-            )
-        )
-    return tuple(found)
-
-
-def _own_channel(recording: Recording, channel: str) -> str:
-    if channel.isdecimal() and 1 <= int(channel) <= len(recording.channels):
-        return recording.channel_names[int(channel) - 1]
-    return channel
-
-
-def common_scales(drawn: Iterable[Trace]) -> dict[tuple[str, bool], Scale]:
-    """Find the scales that traces of one kind share.
-
-    Parameters
-    ----------
-    drawn : iterable of Trace
-        All traces of a page.
-
-    Returns
-    -------
-    dict
-        Keys are (kind, calibrated).
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from models.recording import Channel, Recording
-    >>> from noise.labels.segments import Segment
-    >>> t = np.arange(9600) / 48e3
-    >>> tone = Recording(np.sin(2e3 * np.pi * t)[None], 48e3, (Channel("pressure"),))
-    >>> segment = Segment(channel="all", start=0.0, end=0.2, label="squeal",
-    ...     probabilities={"squeal": 1.0}, frequency=1e3, level=91.0, level_dbfs=None)
-    >>> common_scales(traces(tone, segment, 0.05))
-    {('pressure', True): Scale(swing=1.0, reach=1.0, top=90.0)}
-    """
-    scales: dict[tuple[str, bool], Scale] = {}
-    for trace in drawn:
-        kind, key = KINDS[trace.kind], (trace.kind, trace.calibrated)
-        middle, swing = trace.swing
-        swing = max(swing, kind.least_swing)
-        quiet = kind.quiet if trace.calibrated else _FULL_SCALE_QUIET
-        _, levels = trace.levels
-        highest = float(levels.max(initial=-math.inf)) + _HEADROOM
-        top = 10.0 * math.ceil(max(highest, quiet) / 10.0)
-        known = scales.get(key, Scale(swing, abs(middle) + swing, top))
-        scales[key] = Scale(
-            swing=max(known.swing, swing),
-            reach=max(known.reach, abs(middle) + swing),
-            top=max(known.top, top),
-        )
-    return scales
-
-
-WINDOW = 0.05
-"""Length of the time histories [s]: two slips of a creak at 40 Hz, and no more than some fifty
-cycles of a squeal, which is as many as a panel keeps apart."""
-
-_DYNAMIC_RANGE = 120.0  # of a spectrum's axis [dB]
-_PREFIXES = ((5e-4, 1e6, "µ", "ppm "), (0.5, 1e3, "m", "‰ "))  # of values below
-
-
-@dataclass(frozen=True)
-class ChannelPanels:
-    """The two pictures of one channel; `kind` as in `models.recording.CHANNEL_UNITS`."""
-
-    kind: str
-    time: Panel
-    spectrum: Panel
-
-
-@dataclass(frozen=True)
-class EntryFigure:
-    """Pictures of all channels of one recording that are shown, which may be none.
-
-    Parameters
-    ----------
-    rows : tuple of ChannelPanels
-        In the order torque, acceleration, pressure.
-    caption : str
-        What was computed from which part of the recording.
-    """
-
-    rows: tuple[ChannelPanels, ...]
-    caption: str
-
-    @property
-    def panels(self) -> tuple[Panel, ...]:
-        """All pictures, row by row."""
-        return tuple(panel for row in self.rows for panel in (row.time, row.spectrum))
-
-
-def entry_figures(
-    entries: Sequence[tuple[Recording, Segment]], *, window: float = WINDOW
-) -> tuple[EntryFigure, ...]:
+def recording_panels(entries: Sequence[tuple[Recording, Segment]]) -> list[Panels]:
     """Draw torque, acceleration and sound pressure of recordings, comparable with one another.
 
     Parameters
@@ -415,18 +221,16 @@ def entry_figures(
     entries : sequence of (Recording, Segment)
         The time history is taken from the middle of the segment, the autospectrum is the
         segment's. Of several channels of a kind the segment's own is drawn, else the first.
-    window : float
-        Length of the time histories [s].
 
     Returns
     -------
-    tuple of EntryFigure
-        One an entry.
+    list of Panels
+        Of each recording, two pictures a channel.
 
     Raises
     ------
     ParameterError
-        A window that is not positive, or a channel that cannot be analysed.
+        A channel cannot be analysed.
 
     Notes
     -----
@@ -440,31 +244,66 @@ def entry_figures(
     ...                  (Channel("pressure"),))
     >>> segment = Segment(channel="all", start=0.0, end=0.2, label="unknown",
     ...     probabilities={"unknown": 1.0}, frequency=None, level=94.0, level_dbfs=None)
-    >>> (figure,) = entry_figures([(hiss, segment)])
-    >>> [row.kind for row in figure.rows], figure.rows[0].time.alt[:39]
-    (['pressure'], 'Sound pressure over 50 ms from 0.075 s:')
+    >>> (found,) = recording_panels([(hiss, segment)])
+    >>> found.pictures[0].alt[:39]
+    'Sound pressure over 50 ms from 0.075 s:'
     """
-    if not (math.isfinite(window) and window > 0):
-        raise ParameterError(f"window is {window}; it is a positive number of seconds")
-    drawn = [traces(recording, segment, window) for recording, segment in entries]
-    scales = common_scales(trace for entry in drawn for trace in entry)
-    figures = []
+    drawn = [_traces(*entry) for entry in entries]
+    alike: dict[tuple[str, bool], list[_Trace]] = {}
+    for trace in (trace for traces in drawn for trace in traces):
+        alike.setdefault((trace.kind, trace.calibrated), []).append(trace)
+    found = []
     with styled():
-        for (_, segment), entry in zip(entries, drawn, strict=True):
-            rows = []
-            for trace in entry:
-                scale = scales[trace.kind, trace.calibrated]
-                spectrum = _spectrum_panel(trace, scale, segment.frequency)
-                rows.append(ChannelPanels(trace.kind, _time_panel(trace, scale), spectrum))
-            figures.append(EntryFigure(tuple(rows), _caption(entry)))
-    return tuple(figures)
+        for (_, segment), traces in zip(entries, drawn, strict=True):
+            pictures: list[Panel] = []
+            for trace in traces:
+                others = alike[trace.kind, trace.calibrated]
+                pictures += [
+                    _time_panel(trace, others),
+                    _spectrum_panel(trace, max(of.top for of in others), segment.frequency),
+                ]
+            found.append(Panels(pictures, _caption(traces, segment)))
+    return found
 
 
-def _time_panel(trace: Trace, scale: Scale) -> Panel:
-    kind = KINDS[trace.kind]
-    middle, swing = trace.swing
-    swing = 1.08 * max(swing, scale.least_swing, kind.least_swing)
-    factor, unit = _display_unit(kind, scale.reach, calibrated=trace.calibrated)
+def _traces(recording: Recording, segment: Segment) -> list[_Trace]:
+    rate, n_samples = recording.rate, recording.samples.shape[1]
+    first = max(0, round(segment.start * rate))
+    last = min(n_samples, round(segment.end * rate))
+    if last - first < _LEAST_SAMPLES:
+        first, last = 0, n_samples
+    n_shown = min(n_samples, max(2, round(WINDOW * rate)))
+    begin = min(max(0, (first + last - n_shown) // 2), n_samples - n_shown)
+    own = segment.channel
+    if own.isdecimal() and 1 <= int(own) <= len(recording.channels):
+        own = recording.channel_names[int(own) - 1]
+    found = []
+    for kind in KINDS:
+        names = [channel.name for channel in recording.channels if channel.kind == kind]
+        if not names:
+            continue
+        signal = recording[own if own in names else names[0]]
+        spectrum = autospectrum(signal[first:last], rate)
+        shown = (spectrum.frequency >= LOWEST) & (spectrum.frequency <= HIGHEST)
+        reference = KINDS[kind].reference if recording.calibrated else 1.0
+        found.append(
+            _Trace(
+                kind, recording.calibrated, begin / rate, rate, signal[begin : begin + n_shown],
+                spectrum, spectrum.frequency[shown], levels(spectrum.density[shown], reference),
+            )
+        )  # fmt: skip
+    return found
+
+
+def _time_panel(trace: _Trace, alike: Sequence[_Trace]) -> Panel:
+    kind, (middle, swing) = KINDS[trace.kind], trace.swing
+    largest = max(of.swing[1] for of in alike)
+    reach = max(abs(of.swing[0]) + of.swing[1] for of in alike)
+    swing = 1.08 * max(swing, _LEAST_SHARE * largest)
+    factor, unit = 1.0, kind.unit if trace.calibrated else "FS"
+    for below, larger, prefix, share in reversed(_PREFIXES):
+        if reach < below:
+            factor, unit = larger, f"{prefix}{kind.unit}" if trace.calibrated else f"{share}FS"
     t = np.arange(trace.samples.size, dtype=np.float64) * (1e3 / trace.rate)
     length = 1e3 * trace.samples.size / trace.rate
     low, high = factor * float(trace.samples.min()), factor * float(trace.samples.max())
@@ -479,44 +318,36 @@ def _time_panel(trace: Trace, scale: Scale) -> Panel:
     )  # fmt: skip
 
 
-def _spectrum_panel(trace: Trace, scale: Scale, frequency: float | None) -> Panel:
-    kind = KINDS[trace.kind]
+def _spectrum_panel(trace: _Trace, top: float, frequency: float | None) -> Panel:
+    kind, f = KINDS[trace.kind], trace.frequency
     density = kind.density if trace.calibrated else "FS²/Hz"
-    inside, bottom = "", scale.top - _DYNAMIC_RANGE
-    f, levels = trace.levels
-    drawn = np.maximum(levels, bottom - 5.0)
+    inside, bottom = "", top - _DYNAMIC_RANGE
+    drawn = np.maximum(trace.level, bottom - 5.0)
     lines = [Line(*thinned(f, drawn, position=np.log(f), columns=COLUMNS), kind.colour, width=1.0)]
     if frequency is not None and LOWEST <= frequency <= HIGHEST:
-        at, ends = np.full(2, frequency), np.array([bottom, scale.top])
+        at, ends = np.full(2, frequency), np.array([bottom, top])
         lines.insert(0, Line(at, ends, "#777777", width=1.0, style="dashes"))
     alt = f"Autospectrum of the {kind.name.lower()} from 20 Hz to 15 kHz: "
-    if levels.max(initial=-math.inf) >= bottom:
-        peak = int(levels.argmax())
-        alt += f"highest at {f[peak]:.0f} Hz with {levels[peak]:.0f} dB re {density}."
+    if trace.level.max(initial=-math.inf) >= bottom:
+        peak = int(trace.level.argmax())
+        alt += f"highest at {f[peak]:.0f} Hz with {trace.level[peak]:.0f} dB re {density}."
     else:
         inside = "below this axis"
         alt += f"all below {bottom:.0f} dB re {density}."
     return lines_panel(
         f"{kind.name}, autospectrum", "Frequency [Hz]", f"dB re {density}", lines, alt,
-        up_ends=(bottom, scale.top), frequencies=(LOWEST, HIGHEST), steps=6, inside=inside,
+        up_ends=(bottom, top), frequencies=(LOWEST, HIGHEST), steps=6, inside=inside,
     )  # fmt: skip
 
 
-def _caption(entry: Sequence[Trace]) -> str:
-    if not entry:
+def _caption(traces: Sequence[_Trace], segment: Segment) -> str:
+    if not traces:
         return "The recording has no channel of torque, acceleration or sound pressure."
-    start, end = entry[0].analysed
-    spectrum = entry[0].spectrum
+    spectrum = traces[0].spectrum
     return (
-        f"Time histories: {1e3 * entry[0].samples.size / entry[0].rate:.3g} ms from the middle of "
-        f"the labelled segment. Autospectra: the segment from {start:.2f} to {end:.2f} s, "
-        f"one-sided power spectral density, Hann window, bins of {spectrum.spacing:.3g} Hz, mean "
-        f"of {spectrum.n_segments}; the dashed line marks the dominant frequency."
+        f"Time histories: {1e3 * traces[0].samples.size / traces[0].rate:.3g} ms from the middle "
+        f"of the labelled segment. Autospectra: the segment from {segment.start:.2f} to "
+        f"{segment.end:.2f} s, one-sided power spectral density, Hann window, bins of "
+        f"{spectrum.spacing:.3g} Hz, mean of {spectrum.n_segments}; the dashed line marks the "
+        "dominant frequency."
     )
-
-
-def _display_unit(kind: Kind, reach: float, *, calibrated: bool) -> tuple[float, str]:
-    for below, factor, prefix, share in _PREFIXES:
-        if reach < below:
-            return factor, f"{prefix}{kind.unit}" if calibrated else f"{share}FS"
-    return 1.0, kind.unit if calibrated else "FS"

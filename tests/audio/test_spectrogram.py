@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from noise.audio.spectrogram import Grid, spectrogram, strongest_line
+from noise.audio.spectrogram import Grid, spectrogram
 
 RATE = 48000.0
 
@@ -34,27 +34,6 @@ def test_a_steady_tone_has_its_own_level_in_its_own_row(frequency):
     wide = RATE / 2 / 2048 / frequency  # half a line of the padded frame, as a ratio
     per_row = np.log(400.0) / 200
     assert abs(strongest - row) <= 1 + wide / per_row
-
-
-@settings(max_examples=25)
-@given(st.floats(200.0, 15e3), st.floats(-0.02, 0.02))
-def test_the_line_near_the_cursor_is_found_to_a_thousandth(frequency, off):
-    samples = tone(frequency)
-    low, high = frequency * (1 + off - 0.03) - 50.0, frequency * (1 + off + 0.03) + 50.0
-    line = strongest_line(
-        reader(samples), samples.size, RATE, 1.0, middle=12000, length=2048, low=low, high=high
-    )
-    assert line.frequency == pytest.approx(frequency, rel=1e-3)
-    assert line.level == pytest.approx(0.0, abs=0.1)
-
-
-@pytest.mark.parametrize(("low", "high"), [(1010.0, 1020.0), (1050.0, 1080.0), (1100.0, 1500.0)])
-def test_no_line_stands_on_a_slope_or_in_a_side_lobe(low, high):
-    samples = tone(1000.0)
-    found = strongest_line(
-        reader(samples), samples.size, RATE, 1.0, middle=12000, length=2048, low=low, high=high
-    )
-    assert found is None
 
 
 def test_no_click_falls_between_two_columns():

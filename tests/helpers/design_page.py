@@ -29,10 +29,6 @@ class DesignPage:
         self.until(f"Boolean({DESIGN}?.ready)")
         styled(self.page)
 
-    def reload(self):
-        self.page.reload()
-        self.ready()
-
     def value(self, key):
         return self.page.locator(f"#design-{key}").input_value()
 

@@ -12,7 +12,7 @@ from models.drawing import styled, thinned
 from models.recording import Channel, Recording
 from noise.labels.segments import Segment
 from noise.pages import figures
-from noise.pages.figures import COLUMNS, entry_figures
+from noise.pages.figures import COLUMNS, recording_panels
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE
@@ -30,28 +30,31 @@ SOUND = recording(pressure=TONE)
 
 
 def test_panels_are_svg_files_and_say_what_they_show():
-    (figure,) = entry_figures([(SOUND, SEGMENT)])
-    (row,) = figure.rows
-    for panel in (row.time, row.spectrum):
+    (found,) = recording_panels([(SOUND, SEGMENT)])
+    time, spectrum = found.pictures
+    for panel in (time, spectrum):
         assert ET.fromstring(panel.svg).tag == "{http://www.w3.org/2000/svg}svg"
     # 30 samples a cycle miss the peak
     over = "Sound pressure over 50 ms from 0.475 s: between -0.995 and 0.995 Pa."
-    assert row.time.alt == over
+    assert time.alt == over
     # 1 Pa at a bin of 4 Hz: 91 dB spread over 1.5 bins
-    assert "highest at 1000 Hz with 83 dB re (20 µPa)²/Hz" in row.spectrum.alt
+    assert "highest at 1000 Hz with 83 dB re (20 µPa)²/Hz" in spectrum.alt
+    plain = recording(pressure=TONE, calibrated=False)
+    (found,) = recording_panels([(plain, SEGMENT)])
+    assert "highest at 1000 Hz with -11 dB re FS²/Hz" in found.pictures[1].alt
 
 
 def test_constant_and_silent_recordings_are_drawn_without_a_warning():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        silent, constant = entry_figures(
+        silent, constant = recording_panels(
             [
                 (recording(pressure=0.0), SEGMENT),
                 (recording(torque=8.1, acceleration=-3.0), SEGMENT),
             ]
         )
-    assert "all below" in silent.rows[0].spectrum.alt
-    assert all("all below" in row.spectrum.alt for row in constant.rows)
+    for found in (silent, constant):
+        assert all("all below" in picture.alt for picture in found.pictures[1::2])
 
 
 @pytest.mark.parametrize(("amplitude", "calibrated"), [(1e-7, True), (30_000.0, False)])
@@ -62,7 +65,7 @@ def test_no_writing_on_a_panel_overlaps_or_is_cut_off(monkeypatch, amplitude, ca
         torque=amplitude * TONE - 36.9, acceleration=amplitude * TONE, calibrated=calibrated
     )
     quiet = recording(torque=8.0, acceleration=0.0, calibrated=calibrated)
-    entry_figures([(loud, SEGMENT), (quiet, SEGMENT)])
+    recording_panels([(loud, SEGMENT), (quiet, SEGMENT)])
     assert len(drawn) == 8
     with styled():
         for figure in drawn:
@@ -95,6 +98,6 @@ def test_thinning_keeps_ends_order_and_extremes(size, seed):
 def test_drawing_leaves_the_callers_settings_alone_and_does_not_depend_on_them():
     with mpl.rc_context({"font.size": 31.0, "axes.grid": False, "svg.hashsalt": "theirs"}):
         before = dict(mpl.rcParams)
-        theirs = entry_figures([(SOUND, SEGMENT)])
+        theirs = recording_panels([(SOUND, SEGMENT)])
         assert dict(mpl.rcParams) == before
-    assert entry_figures([(SOUND, SEGMENT)]) == theirs
+    assert recording_panels([(SOUND, SEGMENT)]) == theirs

@@ -79,7 +79,8 @@ def test_it_fits_and_everybody_can_use_it(browser, app, width):
     opened.choose_base("PDMS")
     opened.type("support", 20)
     opened.page.locator(".refusal").get_by_text("off the plate").wait_for()
-    opened.page.get_by_role("button", name="Undo").wait_for()
+    opened.page.get_by_text("Dropped with mine.toml: Damping 1.5 x.").wait_for()
+    assert opened.value("support") == "20"  # the condition stays
     panel = "document.querySelector('#view-design').scrollWidth"
     assert max(opened.page.evaluate(f"[document.documentElement.scrollWidth, {panel}]")) <= width
     columns = opened.page.evaluate(

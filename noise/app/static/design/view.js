@@ -6,9 +6,7 @@ import { Controls } from "./controls.js";
 import { Drawings } from "./drawings.js";
 import { listen } from "../labels/keys.js";
 import { Saving } from "./saving.js";
-import { keep, kept } from "./session.js";
 import { Sound } from "./sound.js";
-import { Undo } from "./undo.js";
 
 const LEVELS_EVERY = 500, FACTS_AFTER = 200; // ms
 
@@ -33,7 +31,7 @@ export async function mount(panel) {
   const torque = made("canvas", { className: "torque", role: "img", ariaLabel: "Torque of the last fifth of a second" });
   const spectrum = made("canvas", { className: "spectrum", role: "img", ariaLabel: "Spectrum of the sound pressure" });
   const remarks = made("ul", { className: "remarks", ariaLabel: "Remarks" });
-  const notice = made("div");
+  const notice = made("p", { role: "status" });
   const refusal = made("p", { className: "refusal", role: "status" });
   left.append(start, notice, rows);
   right.append(tools, refusal, made("section", { className: "shown heard", ariaLabel: "What is heard" }, name, level, remarks),
@@ -45,20 +43,16 @@ export async function mount(panel) {
   const design = { sound, controls, drawings, about };
   panel.design = design;
   const baseOf = (id) => about.bases.find((one) => one.id === id);
-  let states = {}; // by slot: { base, values }
+  const states = {}; // by slot: { base, values }
   let slot = "A", asked = 0, shown = null; // the base whose controls are shown
 
   design.stated = () => ({ base: shown, values: controls.changed });
-  design.both = () => ({ ...states, [slot]: design.stated() });
   design.hidden = () => panel.hidden;
   const chart = new Chart(right, design);
   right.append(
     made("section", { className: "shown" }, made("h2", { textContent: "Torque" }), torque),
     made("section", {}, made("h2", { textContent: "Playback level" }), made("div", { className: "tools" }, made("label", { htmlFor: "design-full-scale", textContent: "Full scale, Pa" }), scale, gain, fit)));
   new Saving(right, design);
-
-  const state = () => ({ slot, states: { ...states } });
-  const undo = new Undo(notice, state, restore);
 
   // Show the controls of a base; false where another one was chosen meanwhile, or there is no answer.
   async function take(id) {
@@ -81,7 +75,6 @@ export async function mount(panel) {
     reset.disabled = !Object.keys(controls.changed).length;
     reset.title = reset.disabled ? "Nothing differs from the base" : "Drop all changes of this design";
     states[slot] = design.stated();
-    keep(about.session, state());
     sound.change(states[slot]);
     facts();
     chart.changed();
@@ -109,11 +102,9 @@ export async function mount(panel) {
   }
 
   async function choose(name) {
-    if (name !== slot) await restore({ slot: name, states: { ...states, [name]: states[name] ?? states[slot] } });
-  }
-
-  async function restore(before) {
-    ({ slot, states } = before);
+    if (name === slot && states[name]) return;
+    states[name] ??= states[slot];
+    slot = name;
     for (const one of slots) one.setAttribute("aria-pressed", one.textContent === slot);
     await put(states[slot]);
   }
@@ -126,14 +117,14 @@ export async function mount(panel) {
 
   // Another base keeps the condition, and drops what was changed of the one before.
   async function rebase() {
-    const before = state(), { condition } = controls, left = baseOf(shown), dropped = controls.words(({ condition: stays }) => !stays);
+    const { condition } = controls, left = baseOf(shown), dropped = controls.words(({ condition: stays }) => !stays);
     if (!await take(base.value)) return;
     controls.put(condition);
     changed();
     const { name, heard } = baseOf(shown), texts = [];
     if (dropped) texts.push(`Dropped with ${left.name}: ${dropped}.`);
     if (heard && controls.words((one) => one.condition)) texts.push(`Motion and condition stay as they are; “Reset to base” takes those that ${name} was saved with.`);
-    if (texts.length) undo.offer(texts.join(" "), before);
+    notice.textContent = texts.join(" ");
   }
   design.put = put;
   design.choose = choose;
@@ -142,16 +133,14 @@ export async function mount(panel) {
   base.addEventListener("change", rebase);
   for (const one of slots) one.addEventListener("click", () => choose(one.textContent));
   copy.addEventListener("click", () => {
-    const before = state();
     states[other()] = states[slot];
-    keep(about.session, state());
-    undo.offer(`${other()} is now a copy of ${slot}.`, before);
+    notice.textContent = `${other()} is now a copy of ${slot}.`;
   });
   reset.addEventListener("click", () => {
-    const before = state(), dropped = controls.words();
+    const dropped = controls.words();
     controls.put({});
     changed();
-    if (dropped) undo.offer(`Dropped: ${dropped}.`, before);
+    notice.textContent = dropped ? `Dropped: ${dropped}.` : "";
   });
   fit.addEventListener("click", () => sound.fit());
   scale.addEventListener("change", () => {
@@ -200,7 +189,7 @@ export async function mount(panel) {
     level.textContent = "Press Play to hear the design and to see its name and level.";
   }
   silent();
-  await restore(kept(about.session) ?? { slot, states: { [slot]: { base: about.bases[0].id, values: {} } } });
+  await put({ base: about.bases[0].id, values: {} });
   play.disabled = false;
   design.ready = true;
   return design;

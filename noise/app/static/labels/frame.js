@@ -3,7 +3,6 @@ import { helpDialog } from "./keys.js";
 import { made } from "../dom.js";
 
 export const LABELS = ["creak", "squawk", "squeal", "none", "unknown"];
-const WINDOWS = { "": "by zoom", 0.01: "10 ms", 0.02: "20 ms", 0.04: "40 ms", 0.08: "80 ms", 0.16: "160 ms", 0.32: "320 ms" };
 
 function button(textContent, title, more = {}) {
   return made("button", { type: "button", textContent, title, ...more });
@@ -13,16 +12,6 @@ function toggle(textContent, title, pressed = false) {
   const one = button(textContent, title);
   one.setAttribute("aria-pressed", pressed);
   return one;
-}
-
-function select(text, options) {
-  const box = made("select", {}, ...Object.entries(options).sort(([one], [two]) => one - two).map(([value, words]) => made("option", { value, textContent: words })));
-  return { box, label: made("label", {}, `${text} `, box) };
-}
-
-function field(text, ariaLabel) {
-  const box = made("input", { type: "number", min: 1, step: "any", placeholder: text, ariaLabel });
-  return box;
 }
 
 function canvas(className, ariaLabel) {
@@ -42,20 +31,15 @@ function group(name, ...children) {
 }
 
 export function build(element) {
-  const range = select("Range", { 50: "50 dB", 70: "70 dB", 90: "90 dB" });
-  range.box.value = "70";
-  const frames = select("Window", WINDOWS);
-  frames.box.value = "";
-  const channel = select("Channel", {});
+  const box = made("select");
   const parts = {
     title: made("h2"), facts: made("p", { className: "facts" }), saved: made("p", { className: "saved" }),
     play: button("Play", "Space", { className: "play" }), loop: toggle("Loop", "L", true), clock: made("output", { className: "clock" }),
     a: toggle("A", "X changes over", true), b: toggle("B", "X changes over"), keep: button("Keep as B", "B"), equal: toggle("Equal loudness", "E"),
-    low: field("from Hz", "Hear from [Hz]"), high: field("to Hz", "Hear up to [Hz]"), unfiltered: button("All frequencies", "Hear all frequencies"),
     out: button("−", "zoom out", { ariaLabel: "Zoom out" }), in: button("+", "zoom in", { ariaLabel: "Zoom in" }),
     left: button("‹", "earlier", { ariaLabel: "Earlier" }), right: button("›", "later", { ariaLabel: "Later" }),
     whole: button("All", "0"), fit: button("Segment", "F", { ariaLabel: "Zoom to the segment" }), harmonic: toggle("Harmonics", "H"),
-    help: button("?", "keys", { ariaLabel: "Help: keys" }), range, frames, channel, others: group("Channels"),
+    help: button("?", "keys", { ariaLabel: "Help: keys" }), channel: { box, label: made("label", {}, "Channel ", box) }, others: group("Channels"),
     gains: made("p", { className: "gains" }), readout: made("output", { className: "readout" }), levelRead: made("output", { className: "readout level" }),
     strip: made("div", { className: "strip" }), overlay: made("div", { className: "overlay" }), position: made("div", { className: "position" }), selection: made("div", { className: "selection" }),
     wave: canvas("wave", "Samples over time"), waveAxis: canvas("axis wave"),
@@ -64,7 +48,7 @@ export function build(element) {
     chosen: made("div", { className: "chosen" }), labels: group("Label of the segment"), shares: made("dl", { className: "shares" }), source: made("p"), conditions: made("p", { className: "conditions" }),
     split: button("Split", "S: at the cursor, or where it is played"), join: button("Join", "Delete: to the segment before it"), undo: button("Undo", "Ctrl+Z"), redo: button("Redo", "Ctrl+Shift+Z"), agree: button("Confirm all", "C: all labels of this recording are right"),
     stack: made("div", { className: "stack" }), stackAxes: made("div", { className: "stack" }),
-    bands: canvas("bands", "Third octaves"), bandsText: made("p", { className: "facts" }), dialog: helpDialog(),
+    levels: made("p", { className: "facts levels" }), dialog: helpDialog(),
   };
   for (const [at, label] of LABELS.entries()) {
     const one = made("button", { type: "button", className: `label ${label}`, title: `${at + 1}`, data: { label } }, made("i"), label);
@@ -92,12 +76,9 @@ export function build(element) {
     parts.lanes,
     made("p", { className: "shortcuts", textContent: `Drag: select · 1–5: ${LABELS.join(", ")} · C: confirm all · Ctrl+Z: undo · Space: play · ?: keys` }),
     made("div", { className: "under" }, parts.readout, parts.levelRead, parts.legend),
-    made("div", { className: "below" },
-      made("section", { ariaLabel: "Segment" }, parts.chosen, parts.labels, parts.source, parts.conditions, parts.shares),
-      made("section", { ariaLabel: "Third octaves" }, parts.bands, parts.bandsText)),
+    made("section", { className: "below", ariaLabel: "Segment" }, parts.chosen, parts.levels, parts.labels, parts.source, parts.conditions, parts.shares),
     parts.gains,
-    made("div", { className: "tools" }, parts.channel.label, parts.others, frames.label, range.label,
-      group("Band that is heard", "Hear ", parts.low, "–", parts.high, " Hz", parts.unfiltered)),
+    made("div", { className: "tools" }, parts.channel.label, parts.others),
     parts.dialog);
   return parts;
 }

@@ -1,7 +1,7 @@
-// Level over time, and third octaves of a stretch.
+// Level over time, and the levels of a stretch.
 import { facts } from "./sounds.js";
 import { ticks } from "../shared/player.js";
-import { caption, DEEP, INK, LINE, SOFT, sheet } from "./timeline.js";
+import { caption, DEEP, LINE, SOFT, sheet } from "./timeline.js";
 
 const LEAST_RANGE = 30; // of the level axis [dB]
 
@@ -68,55 +68,10 @@ export class LevelCourse {
   }
 }
 
-export class Bands {
-  constructor({ plot, text }) {
-    Object.assign(this, { plot, text });
-    this.turn = 0;
-  }
-
-  async load(id, channel, start, end) {
-    const turn = ++this.turn;
-    const found = await facts(id, "bands", { channel, start, end });
-    if (turn !== this.turn) return;
-    this.found = found;
-    this.draw();
-  }
-
-  clear() {
-    this.turn += 1; // what is asked for is not awaited any more
-    this.found = null;
-    this.text.textContent = "";
-    this.draw();
-  }
-
-  draw() {
-    const { pen, width, height } = sheet(this.plot);
-    if (!this.found) return;
-    const { third_octaves: octaves, unit } = this.found;
-    const entries = Object.entries(octaves).filter(([, level]) => level !== null).sort(([one], [two]) => one - two);
-    if (!entries.length) return;
-    const high = 10 * Math.ceil((Math.max(...entries.map(([, level]) => level)) + 1) / 10), low = high - 60;
-    const left = 34, bottom = height - 16, each = (width - left) / entries.length;
-    const y = (level) => Math.min(1, (high - level) / (high - low)) * (bottom - 6) + 6;
-    pen.textBaseline = "middle";
-    for (const level of ticks(low, high, 3).found) {
-      pen.fillStyle = LINE;
-      pen.fillRect(left, Math.round(y(level)), width - left, 1);
-      pen.fillStyle = SOFT;
-      pen.textAlign = "right";
-      pen.fillText(`${level}`.replace("-", "−"), left - 4, y(level));
-    }
-    pen.textAlign = "center";
-    for (const [place, [band, level]] of entries.entries()) {
-      pen.fillStyle = DEEP;
-      pen.fillRect(left + place * each + 1, y(level), Math.max(1, each - 2), bottom - y(level));
-      if (!["31.5", "63", "125", "250", "500", "1000", "2000", "4000", "8000", "16000"].includes(band)) continue;
-      pen.fillStyle = INK;
-      pen.fillText(band.replace(/000$/, "k"), left + (place + 0.5) * each, height - 7);
-    }
-    const strongest = entries.reduce((best, one) => (one[1] > best[1] ? one : best));
-    const { start, end, level, level_a: weighted, level_af_max: most } = this.found;
-    const said = (value, what) => (value === null ? [] : [`${value.toFixed(1)} ${what}`]);
-    this.text.textContent = `${start.toFixed(2)}–${end.toFixed(2)} s: ${[...said(level, unit), ...said(weighted, unit === "dBFS" ? "dBFS(A)" : "dB(A)"), ...said(most, "Fast at most")].join(", ")}; strongest third octave ${strongest[0]} Hz, ${strongest[1].toFixed(1)}`;
-  }
+export async function levelsOf(id, channel, from, to) {
+  const { start, end, unit, level, level_a: weighted, level_af_max: most, third_octaves: octaves } = await facts(id, "bands", { channel, start: from, end: to });
+  const said = (value, what) => (value === null ? [] : [`${value.toFixed(1)} ${what}`]);
+  const strongest = Object.entries(octaves).filter(([, value]) => value !== null).sort(([, one], [, two]) => two - one)[0];
+  const words = [...said(level, unit), ...said(weighted, unit === "dBFS" ? "dBFS(A)" : "dB(A)"), ...said(most, "Fast at most")].join(", ");
+  return `${start.toFixed(2)}–${end.toFixed(2)} s: ${words}${strongest ? `; strongest third octave ${strongest[0]} Hz, ${strongest[1].toFixed(1)}` : ""}`;
 }

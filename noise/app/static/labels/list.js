@@ -47,15 +47,16 @@ export class RecordingList {
     this.progress = made("progress", { ariaLabel: "Labelled", hidden: true });
     this.stateLine = made("span");
     this.labelButton = made("button", { type: "button", hidden: true });
-    this.learnButton = made("button", { type: "button", hidden: true, textContent: "Learn from corrections", title: "Train the classifier again with all corrections, then label the other recordings by it. The first time takes about 20 minutes." });
-    for (const [button, path] of [[this.labelButton, "label"], [this.learnButton, "train"]]) {
-      button.addEventListener("click", async () => { button.disabled = true; await api(path, {}).finally(() => { button.disabled = false; }); this.load(); });
-    }
+    this.labelButton.addEventListener("click", async () => {
+      this.labelButton.disabled = true;
+      await api("label", {}).finally(() => { this.labelButton.disabled = false; });
+      this.load();
+    });
     this.box = made("div", { className: "rows", tabIndex: 0, id: "recordings", role: "listbox", ariaLabel: "Recordings" });
     this.empty = made("p", { className: "empty", hidden: true });
     element.replaceChildren(made("div", { className: "recording-list" },
       made("div", { className: "line" }, this.find, this.order), this.kinds,
-      made("div", { className: "line" }, this.labelButton, this.learnButton, this.stateLine, this.progress),
+      made("div", { className: "line" }, this.labelButton, this.stateLine, this.progress),
       this.empty, this.box));
     let wait;
     this.find.addEventListener("input", () => { clearTimeout(wait); wait = setTimeout(() => this.#ask(this.label), 120); });
@@ -113,12 +114,10 @@ export class RecordingList {
     this.running = state.running;
     this.progress.hidden = !state.running;
     this.progress.max = Math.max(1, state.total);
-    if (state.learning) this.progress.removeAttribute("value");
-    else this.progress.value = state.done;
+    this.progress.value = state.done;
     this.labelButton.hidden = state.running || !left;
     this.labelButton.textContent = state.done ? `Label ${count(left)} more` : `Label ${count(left)}`;
-    this.stateLine.textContent = state.learning ? state.message : state.running ? `${count(state.done)} of ${count(state.total)} labelled` : state.message || (state.classifier ? `by ${state.classifier}` : "");
-    this.learnButton.hidden = state.running || !(counts.corrected || counts.partly);
+    this.stateLine.textContent = state.running ? `${count(state.done)} of ${count(state.total)} labelled` : state.message;
     this.empty.hidden = this.rows.length > 0;
     this.empty.textContent = state.total ? "No recording matches. Choose “all” and clear the search." : "No recordings are open. Start the program with a folder of recordings: bushing-noise open FOLDER";
     this.box.hidden = !this.rows.length;

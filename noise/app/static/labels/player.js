@@ -8,11 +8,9 @@ const HEADROOM = 1.12; // peaks between two samples are higher
 const KEPT = 4; // sounds in memory
 const LONGEST = 600; // of one answer of the server [s]
 const TARGET = -23, CEILING = -3, MOST_RAISED = 36; // LUFS, dB re full scale, dB
-const SLOPES = [0.541, 1.307]; // quality of two second-order filters: Butterworth, 24 dB an octave
 
 export class RecordingPlayer extends Player {
   fullScale = null; // of calibrated sounds [Pa]
-  band = null; // { low, high } [Hz]
   kept = new Map();
 
   // `read` gives the samples of a sound from a moment on, as many as there are in one answer.
@@ -90,32 +88,6 @@ export class RecordingPlayer extends Player {
 
   hear(slot) { if (this.slots[slot]) super.hear(slot); }
 
-  setBand(band) {
-    this.band = band;
-    if (this.running) this.#filter();
-    this.tell();
-  }
-
-  target() {
-    this.bus = this.context.createGain();
-    this.#filter();
-    return this.bus;
-  }
-
-  #filter() {
-    this.bus.disconnect();
-    let last = this.bus;
-    for (const [type, frequency] of this.band ? [["highpass", this.band.low], ["lowpass", this.band.high]] : []) {
-      for (const quality of SLOPES) {
-        const filter = Object.assign(this.context.createBiquadFilter(), { type });
-        filter.frequency.value = Math.min(frequency, 0.499 * RATE);
-        filter.Q.value = 20 * Math.log10(quality); // of these types in dB
-        last = last.connect(filter);
-      }
-    }
-    last.connect(this.context.destination);
-  }
-
   // What a listener has to know before comparing.
   get words() {
     const { a, b } = this.slots, said = [], heard = [a, b].filter(Boolean);
@@ -129,7 +101,6 @@ export class RecordingPlayer extends Player {
     }
     if (heard.some((sound) => sound.kind === "pressure" && !sound.calibrated && !equal(sound))) said.push("not calibrated: played as in the file");
     if (heard.some((sound) => sound.kind !== "pressure" && !equal(sound))) said.push("no sound pressure: scaled to be audible");
-    if (this.band) said.push(`heard from ${this.band.low.toFixed(0)} to ${this.band.high.toFixed(0)} Hz`);
     return said.join("; ");
   }
 }

@@ -1,4 +1,4 @@
-// The pointer over the lanes: reads, goes there, selects a stretch, zooms; on the frequency axis it chooses a band.
+// The pointer over the lanes: reads, goes there, selects a stretch, zooms.
 
 const STILL = 4; // a press that moves less is a click [px]
 const WHEEL = 0.0015; // of zoom for a pixel of the wheel
@@ -67,20 +67,4 @@ export function follow(page) {
     spectrogram.read(time, spectrogram.frequency(share));
   });
   parts.screen.addEventListener("blur", () => { page.pointed = null; spectrogram.read(null); });
-
-  const axis = parts.frequencies;
-  axis.title = "drag: hear this band; double click: all";
-  axis.addEventListener("pointerdown", (event) => {
-    if (event.button || !spectrogram.whole) return;
-    axis.setPointerCapture(event.pointerId);
-    const first = height(event, axis);
-    const end = (last) => {
-      axis.removeEventListener("pointerup", end);
-      const second = height(last, axis);
-      if (Math.abs(second - first) * axis.clientHeight < STILL) return;
-      page.filter(spectrogram.frequency(Math.max(first, second)), spectrogram.frequency(Math.min(first, second)));
-    };
-    axis.addEventListener("pointerup", end);
-  });
-  axis.addEventListener("dblclick", () => page.filter(0, 0));
 }

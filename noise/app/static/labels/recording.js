@@ -4,7 +4,7 @@ import { Corrections } from "./corrections.js";
 import { agree, joinHere, label, splitHere, undo } from "./editing.js";
 import { build, LABELS } from "./frame.js";
 import { listen } from "./keys.js";
-import { Bands, LevelCourse } from "./levels.js";
+import { LevelCourse, levelsOf } from "./levels.js";
 import { made, onceShown } from "../dom.js";
 import { refresh } from "./list.js";
 import { Outline } from "./outline.js";
@@ -30,7 +30,6 @@ export class RecordingPage {
     this.spectrogram = new Spectrogram(timeline, { plot: parts.plot, marks: parts.marks, axis: parts.frequencies, legend: parts.legend, readout: parts.readout });
     this.outline = new Outline(timeline, { plot: parts.wave, axis: parts.waveAxis });
     this.levels = new LevelCourse(timeline, { plot: parts.course, axis: parts.courseAxis, readout: parts.levelRead });
-    this.bands = new Bands({ plot: parts.bands, text: parts.bandsText });
     this.segments = new Segments(timeline, this.corrections, parts, () => this.#chosen());
     this.beside = new Set(); // names of the channels that are shown under the one that is heard
     this.stacked = [];
@@ -40,7 +39,7 @@ export class RecordingPage {
     this.corrections.addEventListener("change", () => this.#rows());
     this.corrections.addEventListener("saved", () => refresh());
     this.player.addEventListener("change", () => this.#playing());
-    new ResizeObserver(() => { this.#view(); this.bands.draw(); }).observe(parts.area);
+    new ResizeObserver(() => this.#view()).observe(parts.area);
     follow(this);
     this.#buttons();
     this.#keys();
@@ -53,9 +52,9 @@ export class RecordingPage {
     this.sound = this.pointed = null; // nothing is done to one that is not there, nor where the pointer was on another
     this.corrections.leave(id);
     clearTimeout(this.timer);
-    for (const said of [parts.saved, parts.readout, parts.levelRead]) said.textContent = ""; // it was of another recording
+    this.turn = null; // levels of another recording are not awaited any more
+    for (const said of [parts.saved, parts.readout, parts.levelRead, parts.levels]) said.textContent = ""; // it was of another recording
     clearTimeout(this.measuring);
-    this.bands.clear();
     // All at once: what each needs of the others comes with it.
     const seen = this.spectrogram.load(id, null);
     seen.catch(() => {}); // the same error comes of what is asked for next
@@ -154,8 +153,6 @@ export class RecordingPage {
       parts[slot].title = player.slots[slot]?.name ?? "empty";
     }
     parts.gains.textContent = player.words + (player.slots.b ? `. B is ${player.slots.b.name}.` : "");
-    this.spectrogram.band = player.band;
-    this.spectrogram.draw();
     cancelAnimationFrame(this.frame);
     const step = () => {
       if (!player.playing) return;
@@ -200,14 +197,17 @@ export class RecordingPage {
     this.#stretch();
   }
 
-  // Third octaves of the stretch, and what is played of it.
+  // Levels of the stretch, and what is played of it.
   #stretch() {
     clearTimeout(this.measuring);
-    this.measuring = setTimeout(() => {
+    this.measuring = setTimeout(async () => {
       const { selection } = this.timeline, { chosen } = this.segments;
       const { start, end } = selection ?? (chosen ? { start: chosen.start_s, end: chosen.end_s } : this.stretch);
-      if (this.sound && end - start > 0.001) this.bands.load(this.id, this.channel, start, end);
       if (this.player.playing) this.play();
+      const turn = (this.turn = {});
+      if (!this.sound || end - start <= 0.001) return;
+      const words = await levelsOf(this.id, this.channel, start, end);
+      if (turn === this.turn) this.parts.levels.textContent = words;
     }, 60);
   }
 
@@ -216,16 +216,6 @@ export class RecordingPage {
     const from = selection?.start ?? (this.player.looping && this.segments.chosen ? this.segments.chosen.start_s : null);
     this.player.put("b", { ...this.#slot(), anchor: from });
     told(`B is ${this.sound.name}${from === null ? "" : ` from ${from.toFixed(2)} s on`}. Open another recording as A; X switches between them.`);
-  }
-
-  filter(low, high) {
-    if (!this.sound) return;
-    const { parts } = this, top = 0.5 * this.sound.rate;
-    const band = low || high ? { low: low || 10, high: high || top } : null;
-    if (band && band.low >= band.high) return told("The lower frequency must be below the upper one.");
-    parts.low.value = low ? Math.round(low) : "";
-    parts.high.value = high ? Math.round(high) : "";
-    this.player.setBand(band);
   }
 
   toggle(what) {
@@ -250,13 +240,10 @@ export class RecordingPage {
       a: () => this.changeOver("a"), b: () => this.changeOver("b"), keep: () => this.keepAsB(),
       in: () => timeline.zoom(ZOOM), out: () => timeline.zoom(1 / ZOOM), left: () => timeline.pan(-PAN), right: () => timeline.pan(PAN),
       whole: () => timeline.whole(), fit: () => this.fit(), help: () => parts.dialog.showModal(),
-      split: () => splitHere(this), join: () => joinHere(this), undo: () => undo(this), redo: () => undo(this, true), agree: () => agree(this), unfiltered: () => this.filter(0, 0),
+      split: () => splitHere(this), join: () => joinHere(this), undo: () => undo(this), redo: () => undo(this, true), agree: () => agree(this),
     };
     for (const [name, action] of Object.entries(actions)) parts[name].addEventListener("click", (event) => { if (this.sound) action(event); });
     for (const button of parts.labels.children) button.addEventListener("click", () => label(this, button.dataset.label));
-    for (const box of [parts.low, parts.high]) box.addEventListener("change", () => this.filter(Number(parts.low.value), Number(parts.high.value)));
-    parts.range.box.addEventListener("change", ({ target }) => this.spectrogram.setRange(Number(target.value)));
-    parts.frames.box.addEventListener("change", ({ target }) => this.spectrogram.setWindow(target.value || null));
     parts.channel.box.addEventListener("change", ({ target }) => this.hearChannel(target.value));
   }
 

@@ -1,18 +1,16 @@
 // Spectrogram: levels as colours, its axes, a cursor that reads them, harmonics of a frequency.
 import { colour, palette } from "./colours.js";
-import { facts, numbers } from "./sounds.js";
+import { numbers } from "./sounds.js";
 import { DEEP, INK, SOFT, sheet } from "./timeline.js";
 
 const FINER = 90; // after the view has come to rest [ms]
-const REST = 60; // after the cursor has [ms]
+const RANGE = 70; // from the darkest colour to white [dB]
 const HARMONICS = 20;
 const FREQUENCIES = [20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000];
 
 export class Spectrogram {
   constructor(timeline, { plot, marks, axis, legend, readout }) {
     Object.assign(this, { timeline, plot, marks, axis, legend, readout });
-    this.range = 70; // from the darkest colour to white [dB]
-    this.window = null; // of the frames [s]; null: by what is in view
     this.harmonic = false;
     this.cursor = null; // { time, frequency }
     this.whole = this.fine = null;
@@ -22,7 +20,7 @@ export class Spectrogram {
   async load(id, channel) {
     Object.assign(this, { id, channel, whole: null, fine: null, top: null, cursor: null });
     const turn = ++this.turn;
-    for (const timer of [this.timer, this.rest]) clearTimeout(timer);
+    clearTimeout(this.timer);
     const found = await this.#part(0, null);
     if (turn !== this.turn) return;
     this.whole = this.#picture(found);
@@ -35,7 +33,7 @@ export class Spectrogram {
     const fine = window.devicePixelRatio || 1;
     const width = Math.min(2400, Math.max(16, Math.round(this.plot.clientWidth * fine)));
     const height = Math.min(600, Math.max(16, Math.round(this.plot.clientHeight * fine)));
-    const said = { channel: this.channel, start, end, width, height, window: this.window };
+    const said = { channel: this.channel, start, end, width, height };
     const found = await numbers(this.id, "spectrogram", said, Uint8Array);
     let most = 0;
     for (const byte of found.values) if (byte > most) most = byte;
@@ -44,18 +42,12 @@ export class Spectrogram {
 
   #picture(found) {
     const canvas = Object.assign(document.createElement("canvas"), { width: found.width, height: found.height });
-    const picture = { ...found, canvas, window: this.window };
-    this.#colour(picture);
-    return picture;
-  }
-
-  #colour(picture) {
-    const pen = picture.canvas.getContext("2d");
-    const image = pen.createImageData(picture.width, picture.height);
+    const pen = canvas.getContext("2d"), image = pen.createImageData(found.width, found.height);
     const words = new Uint32Array(image.data.buffer);
-    const of = palette(picture.floor, picture.step, this.top ?? picture.top, this.range);
-    for (let i = 0; i < words.length; i++) words[i] = of[picture.values[i]];
+    const of = palette(found.floor, found.step, this.top ?? found.top, RANGE);
+    for (let i = 0; i < words.length; i++) words[i] = of[found.values[i]];
     pen.putImageData(image, 0, 0);
+    return { ...found, canvas };
   }
 
   // Ask for what is in view, once it rests.
@@ -79,19 +71,8 @@ export class Spectrogram {
   // Whether the picture of the whole is what is asked for.
   #has(start, end) {
     const { whole } = this, fine = window.devicePixelRatio || 1;
-    return start === whole.start && end === whole.end && this.window === whole.window
+    return start === whole.start && end === whole.end
       && whole.width >= Math.min(2400, Math.round(this.plot.clientWidth * fine));
-  }
-
-  setRange(range) {
-    this.range = range;
-    for (const picture of [this.whole, this.fine]) if (picture) this.#colour(picture);
-    this.draw();
-  }
-
-  setWindow(window) {
-    this.window = window;
-    this.refine();
   }
 
   draw() {
@@ -117,11 +98,6 @@ export class Spectrogram {
     if (!this.whole) return;
     pen.textAlign = "right";
     pen.textBaseline = "middle";
-    if (this.band) {
-      const [top, bottom] = [this.band.high, this.band.low].map((one) => Math.min(1, Math.max(0, this.share(one))) * height);
-      pen.fillStyle = "#bcd6f2";
-      pen.fillRect(width - 8, top, 8, Math.max(1, bottom - top));
-    }
     pen.fillStyle = pen.strokeStyle = SOFT;
     for (const one of FREQUENCIES) {
       if (one < this.whole.low || one > this.whole.high) continue;
@@ -136,7 +112,7 @@ export class Spectrogram {
   #drawLegend() {
     const { pen, width, height } = sheet(this.legend);
     if (!this.whole) return;
-    const top = this.top, low = top - this.range;
+    const top = this.top, low = top - RANGE;
     const bar = { from: 2, to: Math.max(60, width - 110) };
     for (let x = bar.from; x < bar.to; x++) {
       pen.fillStyle = `rgb(${colour((x - bar.from) / (bar.to - bar.from)).join(" ")})`;
@@ -147,7 +123,7 @@ export class Spectrogram {
     pen.fillStyle = INK;
     pen.textBaseline = "alphabetic";
     for (let level = low; level <= top; level += 10) {
-      const share = (level - low) / this.range;
+      const share = (level - low) / RANGE;
       pen.textAlign = share === 0 ? "left" : "center";
       pen.fillText(`${level}`, bar.from + share * (bar.to - bar.from), height - 2);
     }
@@ -169,27 +145,12 @@ export class Spectrogram {
 
   // Put the cursor somewhere and read it; null takes it away.
   read(time, frequency) {
-    clearTimeout(this.rest);
     this.cursor = time === null || !this.whole ? null : { time, frequency };
     this.drawMarks();
     if (!this.cursor) return;
-    this.#say("");
-    this.rest = setTimeout(async () => {
-      const at = this.cursor;
-      const column = this.timeline.span / Math.max(1, this.plot.clientWidth);
-      const said = { channel: this.channel, time: at.time, frequency: at.frequency, column, window: this.window };
-      const found = await facts(this.id, "line", said);
-      if (at !== this.cursor || found.level_db === null) return;
-      this.#say(`; line at ${found.frequency_hz.toFixed(1)} Hz, ${found.level_db.toFixed(1)}`);
-      Object.assign(this.readout.dataset, { lineHz: found.frequency_hz, lineDb: found.level_db });
-    }, REST);
-  }
-
-  #say(line) {
-    const { time, frequency } = this.cursor;
     const level = this.level(time, frequency);
     const rough = frequency < 1000 ? frequency.toFixed(1) : frequency.toFixed(0);
-    this.readout.textContent = `${time.toFixed(3)} s, ${rough} Hz: ${level === null ? "–" : level.toFixed(1)}${line} ${this.whole.unit}`;
+    this.readout.textContent = `${time.toFixed(3)} s, ${rough} Hz: ${level === null ? "–" : level.toFixed(1)} ${this.whole.unit}`;
     Object.assign(this.readout.dataset, { time, frequency, level: level ?? "" });
   }
 

@@ -71,9 +71,6 @@ export class Player extends EventTarget {
     return this.context;
   }
 
-  // What all goes through on its way to the loudspeaker.
-  target() { return this.context.destination; }
-
   // From a moment on; a sound that runs is taken over at the moment at which the new one begins.
   async play(from, ...what) {
     this.open();
@@ -85,7 +82,7 @@ export class Player extends EventTarget {
     this.silence();
     this.start = start;
     this.running = new Voices(this.context, buffers, {
-      offset, loop: this.looping, level: (slot) => this.level(slot), target: this.target(),
+      offset, loop: this.looping, level: (slot) => this.level(slot), target: this.context.destination,
       ended: () => { this.stop(); this.position = this.start; },
     });
     this.tell();
