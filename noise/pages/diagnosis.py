@@ -12,7 +12,6 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 
 from noise.base.files import atomic
@@ -21,7 +20,6 @@ from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.improved_file import NAME, improved_sentence
 from noise.diagnosis.outcome import (
-    SURE,
     Agreement,
     Diagnosis,
     EffectFinding,
@@ -109,7 +107,7 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
     answers = [sentence for sentence in answer(diagnosis) if sentence != agreement]
     chain = b.Section(
         "Where it lies" if judged else "Each stage of the chain",
-        [b.Other("chain", () if bench else stage_boxes(diagnosis))],
+        [b.Other("chain", () if bench else stages_chain(diagnosis))],
     )
     far = b.Section("How far it closes" if judged else "", waterfall(diagnosis))
     causes = b.Section("Which cause" if judged else "What else it could be", _likely(diagnosis))
@@ -165,75 +163,35 @@ def _improved(diagnosis: Diagnosis, commands: Sequence[str]) -> list[b.Block]:
     ]
 
 
-@dataclass(frozen=True)
-class StageBox:
-    """A stage of the chain as it is drawn: its gap in words, and whether the gap begins there.
-
-    Parameters
-    ----------
-    name, what : str
-    gap, p_value, words : str
-        `words` says what the p-value means; empty where it was not determined.
-    share : str
-        Of the whole gap.
-    guilty : bool
-        Whether the gap begins here, as far as that is sure.
-    differs : bool
-        Whether the p-value is 0.05 or below.
-    causes : tuple of str
-        Effects of the verdict that act here.
-    """
-
-    name: str
-    what: str
-    gap: str
-    p_value: str
-    words: str
-    share: str
-    guilty: bool
-    differs: bool
-    causes: tuple[str, ...]
-
-    @property
-    def gap_words(self) -> str:
-        """Its gap with the unit."""
-        return self.gap if self.gap == NOT_DETERMINED else f"gap {self.gap} floors"
-
-
-def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
-    """Return the chain from drive to measurement.
+def stages_chain(diagnosis: Diagnosis) -> list[dict[str, object]]:
+    """Return the stages from drive to measurement as the page draws them, each as words.
 
     Examples
     --------
     >>> from noise.diagnosis.outcome import StageFinding
     >>> from noise.diagnosis.outcome import Diagnosis
     >>> found = {"drive": StageFinding(1.04, 0.02, 0.4)}
-    >>> boxes = stage_boxes(Diagnosis((), (), None, found, (), {}, {}, "", (), 1.0, 1.0, 0.6, 1.0))
-    >>> [(box.name, box.gap) for box in boxes][:2]
-    [('drive', '1.04'), ('friction', 'not determined')]
+    >>> chain = stages_chain(Diagnosis((), (), None, found, (), {}, {}, "", (), 1.0, 1.0, 0.6, 1.0))
+    >>> [(stage["name"], stage["gap"]) for stage in chain][:2]
+    [('drive', 'gap 1.04 floors, 2 % of it all'), ('friction', 'not determined')]
     """
-    boxes, place = [], diagnosis.location
+    chain, place = [], diagnosis.location
     named = diagnosis.verdict if is_named(diagnosis) else ()
-    acting = {name: stage_of_effect(diagnosis, name) for name in named}
     for name, what in STAGES.items():
-        finding = diagnosis.stages.get(name)
-        if finding is not None and finding.gap == 0.0:  # nothing of it was recorded
-            finding = None
-        p_value = math.nan if finding is None else finding.p_value
-        boxes.append(
-            StageBox(
-                name=name,
-                what=what,
-                gap=floors(None if finding is None else finding.gap, ".2f"),
-                p_value=p_number(p_value) if math.isfinite(p_value) else "",
-                words=evidence(p_value) if math.isfinite(p_value) else "",
-                share=percent(None if finding is None else finding.share),
-                guilty=begins(diagnosis) and place is not None and place.stage == name,
-                differs=p_value <= SURE,
-                causes=tuple(cause_of(c).name for c, stage in acting.items() if stage == name),
-            )
-        )
-    return tuple(boxes)
+        found = diagnosis.stages.get(name)
+        gap, p_value = NOT_DETERMINED, math.nan
+        if found is not None and found.gap != 0.0:  # else nothing of it was recorded
+            p_value = found.p_value
+            if math.isfinite(found.gap):
+                gap = f"gap {floors(found.gap, '.2f')} floors, {percent(found.share)} of it all"
+        known = f"{p_number(p_value)}: {evidence(p_value)}" if math.isfinite(p_value) else ""
+        causes = [cause_of(c).name for c in named if stage_of_effect(diagnosis, c) == name]
+        guilty = begins(diagnosis) and place is not None and place.stage == name
+        chain.append(
+            {"name": name, "what": what, "gap": gap, "p_value": known, "guilty": guilty,
+             "causes": causes}
+        )  # fmt: skip
+    return chain
 
 
 _LIKELY_ENOUGH = 0.05
@@ -380,13 +338,6 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
         ]
         for place in found
     ]  # fmt: skip
-    hypotheses = [
-        [
-            joined([cause_of(name).name for name in one.causes or ("none",)]),
-            percent(one.probability), "not fitted" if one.gap is None else floors(one.gap),
-        ]
-        for one in diagnosis.hypotheses
-    ]  # fmt: skip
     held_out = ", ".join(diagnosis.held_out) or "none, since nothing was fitted"
     facts = [
         ("Gap before any fit", f"{number(diagnosis.gap)} (floor {number(diagnosis.floor)}; "
@@ -394,26 +345,18 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
         ("Held out", held_out),
         ("Time taken", f"{number(diagnosis.seconds, '.1f')} s"),
     ]  # fmt: skip
-    stages = [
-        [box.name, box.gap, box.share, box.p_value or NOT_DETERMINED, box.words]
-        for box in stage_boxes(diagnosis)
-    ]
     tables: dict[str, tuple[Sequence[str], Sequence[Sequence[b.Cell | str]]]] = {
         "How far each recording is from the rig file": (
             ["Recording", "Speed [rad/s]", "Interference [mm]", "Gap [floors]",
              *(kind.capitalize() for kind in KINDS)],
             [_agreement_row(one) for one in diagnosis.agreement],
         ),
-        "Stages": (("Stage", "Gap [floors]", "Share of the gap", "p-value", "Meaning"), stages),
         "Where it differs most surely": (
             ("Stage", "Channel", "Band or phase", "Conditions", "p-value, corrected for all looks"),
             places,
         ),
         "Parameters, relative to the rig file, 90 % intervals": (
             ("Parameter", "Interval", "About 1.0"), parameter_rows(diagnosis.parameters),
-        ),
-        "The likeliest sets of causes": (
-            ("At work together", "Probability", "Gap left, held out [floors]"), hypotheses,
         ),
         "All causes": (
             ("Cause", "Stage", "Probability", "Gap nominal", "recalibrated", "with effect", "floor",
@@ -442,9 +385,6 @@ def _agreement_row(one: Agreement) -> list[str]:
     return [one.recording, f"{one.speed:g}", fit, floors(one.gap), *channels]
 
 
-_SAME = 1e-9
-
-
 def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
     """Return bars from the nominal gap to what is left of it, and how much is closed in words.
 
@@ -463,97 +403,79 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
     if not verdict:
         return []
     fitted = _shown_fit(diagnosis)
-    before = diagnosis.gap if fitted is None else _known(fitted.gap_before, diagnosis.gap)
-    floor = diagnosis.floor if fitted is None else _known(fitted.gap_floor, diagnosis.floor)
+    before, floor = diagnosis.gap, diagnosis.floor
+    steps: dict[str, float] = {}
+    words = ""
+    if fitted is not None:
+        before = before if fitted.gap_before is None else fitted.gap_before
+        floor = floor if fitted.gap_floor is None else fitted.gap_floor
+        if fitted.gap_recalibrated is not None:
+            steps["refitted parameters"] = fitted.gap_recalibrated
+        if fitted.gap_after is not None and verdict != ("parameters",):
+            steps[_effect_label(diagnosis, fitted)] = fitted.gap_after
+            words = closed_sentence(fitted)
+            if verdict == ("unknown",):
+                tried = joined([cause_of(name).name for name in (fitted.name, *fitted.fitted_with)])
+                best = f"The best fit that was tried, with {tried}, "
+                words = words.replace("The fit ", best, 1)
     if not (math.isfinite(before) and math.isfinite(floor)):
         return [b.Text(f"How large the gap is was {NOT_DETERMINED}.")]
-    steps: dict[str, float] = {}
-    closed = None
-    if fitted is not None and fitted.gap_recalibrated is not None:
-        steps["refitted parameters"] = fitted.gap_recalibrated
-    if fitted is not None and fitted.gap_after is not None and verdict != ("parameters",):
-        steps[_effect_label(diagnosis, fitted)] = fitted.gap_after
-        closed = closed_sentence(fitted)
-        if verdict == ("unknown",):
-            tried = joined([cause_of(name).name for name in (fitted.name, *fitted.fitted_with)])
-            best = f"The best fit that was tried, with {tried}, closes"
-            closed = closed.replace("The fit closes", best, 1)
     top = 1.04 * max(floor, before, *steps.values())
-    rows = [("nominal model", _gap_cell(0.0, before, "", f"{before:.2f}", floor, top))]
-    gap = before
+
+    def cell(low: float, high: float, look: str, words: str) -> b.Cell:
+        bar = b.Bar(100.0 * low / top, 100.0 * (high - low) / top, look)
+        return b.Cell(words, bars=[bar, b.Bar(100.0 * floor / top, 0.0, "mark")])
+
+    rows, gap = [("nominal model", cell(0.0, before, "", f"{before:.2f}"))], before
     for label, after in steps.items():
         change = f"{after - gap:+.2f}".replace("-", "\N{MINUS SIGN}")
         kind = "cause" if after <= gap else "opened"
-        cell = _gap_cell(min(gap, after), max(gap, after), kind, f"{change}, to {after:.2f}",
-                         floor, top)  # fmt: skip
-        rows.append((label, cell))
+        rows.append((label, cell(*sorted((gap, after)), kind, f"{change}, to {after:.2f}")))
         gap = after
     if steps:
-        rows.append(("what is left", _gap_cell(0.0, gap, "", f"{gap:.2f}", floor, top)))
-    words = closed if closed is not None else _closed_so_far(before, gap, floor, bool(steps))
-    if not words and before - floor < CLOSABLE:
-        words = "On these recordings the gap is hardly larger than the floor."
-    unseen = "recordings that no fit has seen"
-    among = ", ".join(diagnosis.held_out)
-    of = (
-        f"{len(diagnosis.held_out)} {unseen}"
-        if len(diagnosis.held_out) > 6
-        else f"{unseen}: {among}"
-    )
+        rows.append(("what is left", cell(0.0, gap, "", f"{gap:.2f}")))
+    if before <= floor:
+        words = words or "The gap is no larger than the floor; there is nothing to explain."
+    elif steps and not words:
+        share = percent(min(closed_fraction(before, gap, floor), 1.0))
+        words = f"Refitted parameters explain {share} of the deviation."
+    elif before - floor < CLOSABLE:
+        words = words or "On these recordings the gap is hardly larger than the floor."
+    names = diagnosis.held_out
+    of, unseen = "all recordings", "recordings that no fit has seen"
+    if names:
+        of = f"{len(names)} {unseen}" if len(names) > 6 else f"{unseen}: {', '.join(names)}"
     return [
         b.Table(("Model", f"Gap; the line is the floor, {floor:.2f}"), rows, style="waterfall"),
         b.Text(words or "How much of the gap can be closed was not determined."),
         b.Text(
-            f"The gap is in units of what repeats of a run differ by, on {of}." if among else "",
-            "soft small",
+            f"The gap here is that of {of}; 1 is what repeats of a run differ by.", "soft small"
         ),
     ]
 
 
-def _gap_cell(low: float, high: float, look: str, words: str, floor: float, top: float) -> b.Cell:
-    bar = b.Bar(100.0 * low / top, 100.0 * (high - low) / top, look)
-    return b.Cell(words, bars=[bar, b.Bar(100.0 * floor / top, 0.0, "mark")])
-
-
 def _shown_fit(diagnosis: Diagnosis) -> EffectFinding | None:
     """Return the fit to show: of the verdict's effects, else of any, the one that closes most."""
-    named = [finding_of(diagnosis, name) for name in diagnosis.verdict]
-    among = [finding for finding in named if finding is not None]
+    among = [one for one in diagnosis.effects if one.name in diagnosis.verdict]
     if diagnosis.verdict in {("parameters",), ("unknown",)}:
         among = list(diagnosis.effects)
-    known = [finding for finding in among if finding.gap_recalibrated is not None]
-    after = [finding for finding in among if finding.gap_after is not None]
+    after = [(one.gap_after, n) for n, one in enumerate(among) if one.gap_after is not None]
     if after:
-        return min(after, key=lambda finding: finding.gap_after or 0.0)
-    return known[0] if known else None
+        return among[min(after)[1]]
+    return next((one for one in among if one.gap_recalibrated is not None), None)
 
 
 def _effect_label(diagnosis: Diagnosis, fitted: EffectFinding) -> str:
     if diagnosis.verdict == ("unknown",):
         return "best fit tried"
     together = [
-        name
+        one.name
         for name in diagnosis.verdict
-        if (finding := finding_of(diagnosis, name)) is not None
-        and finding.gap_after is not None
-        and abs(finding.gap_after - (fitted.gap_after or 0.0)) < _SAME
+        if (one := finding_of(diagnosis, name)) is not None and one.gap_after == fitted.gap_after
     ]
     if 1 < len(together) == len(diagnosis.verdict):
         return "with both effects" if len(together) == 2 else "with all effects"
     return f"with {joined([cause_of(name).name for name in together])}"
-
-
-def _closed_so_far(before: float, gap: float, floor: float, fitted: bool) -> str:
-    if before <= floor:
-        return "The gap of the rig file is no larger than the floor; there is nothing to explain."
-    if not fitted:
-        return ""
-    share = percent(min(closed_fraction(before, gap, floor), 1.0))
-    return f"Refitted parameters explain {share} of the deviation."
-
-
-def _known(value: float | None, otherwise: float) -> float:
-    return otherwise if value is None else value
 
 
 def _fitted_words(diagnosis: Diagnosis) -> str:

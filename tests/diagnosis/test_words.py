@@ -165,7 +165,7 @@ def far(name, speed, gap, interference=0.279e-3, **channels):
 def test_it_is_said_where_the_rig_file_does_not_describe_the_rig(found, words):
     sentence = agreement_sentence(replace(one_effect(), agreement=found))
     assert words in sentence
-    assert sentence.endswith("in the torque (together 7.9 floors, p = 0.0004).")
+    assert sentence.endswith("in the torque (all recordings together: 7.9 floors, p = 0.0004).")
 
 
 @given(st.lists(st.floats(0.3, 300.0), min_size=1, max_size=6))

@@ -69,8 +69,8 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
       do.'
     >>> agreement_sentence(replace(nothing, verdict=("unknown",), agreement=(slow, fast)))
     'The rig file describes the rig at 1 of 2 recordings, not above 1 rad/s: there it deviates
-      up to 6.1 times as much as repeat measurements do, in the torque (together 0.9 floors,
-      p = 0.60).'
+      up to 6.1 times as much as repeat measurements do, in the torque (all recordings together:
+      0.9 floors, p = 0.60).'
     """
     found = diagnosis.agreement
     if not found:
@@ -119,7 +119,9 @@ def _whole(diagnosis: Diagnosis) -> str:
     """Say how large the gap of all recordings is; without a verdict, that says it."""
     if not diagnosis.verdict or not math.isfinite(diagnosis.p_value):
         return ""
-    return f" (together {floors(diagnosis.gap)} floors, {p_number(diagnosis.p_value)})"
+    return (
+        f" (all recordings together: {floors(diagnosis.gap)} floors, {p_number(diagnosis.p_value)})"
+    )
 
 
 def remainder_sentence(diagnosis: Diagnosis) -> str:

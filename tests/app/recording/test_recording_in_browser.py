@@ -20,7 +20,7 @@ def shown(browser, tmp_path_factory):
 
 def test_the_cursor_reads_time_frequency_and_level_of_a_known_tone(browser, shown):
     opened = OpenPage(browser, shown).open(TONE)
-    share = np.log(20e3 / 1010.0) / np.log(400.0)
+    share = np.log(20e3 / 1000.0) / np.log(400.0)
     opened.page.mouse.move(*opened.at(1.0, share))
     readout = opened.page.locator(".readout[data-level]")
     readout.wait_for()
@@ -29,7 +29,7 @@ def test_the_cursor_reads_time_frequency_and_level_of_a_known_tone(browser, show
         for name, value in readout.evaluate("(one) => ({...one.dataset})").items()
     }
     assert read["time"] == pytest.approx(1.0, abs=0.005)
-    assert read["frequency"] == pytest.approx(1010.0, rel=0.02)
+    assert read["frequency"] == pytest.approx(1000.0, rel=0.02)
     assert read["level"] == pytest.approx(93.98, abs=0.5)
     assert "dB re 20 µPa" in readout.text_content()
     opened.page.mouse.move(*opened.at(1.0, 0.5, "canvas.course[role=img]"))
@@ -42,7 +42,7 @@ def test_the_cursor_reads_time_frequency_and_level_of_a_known_tone(browser, show
           const pixel = (y) => column.slice(4 * Math.floor(y * image.height)).slice(0, 3);
           return [share, 0.1].map((y) => [...pixel(y)]);
         }""",
-        [np.log(20e3 / 1000.0) / np.log(400.0)],
+        [share],
     )
     assert max(levels[0]) < 60  # dark where the tone is
     assert min(levels[1]) > 240  # white where nothing is
@@ -89,11 +89,13 @@ def test_a_and_b_run_in_step_at_one_gain_and_at_equal_loudness(browser, shown):
     opened.close()
 
 
-@pytest.mark.parametrize("width", [390, 1280])
-def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, shown, width):
-    opened = OpenPage(browser, shown, width).open(TONE)
-    for key in ("h", "?"):
-        opened.press(key)
-        assert accessibility_errors(opened.page) == []
-    assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
+def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, shown):
+    opened = OpenPage(browser, shown).open(TONE)
+    opened.press("h")
+    for width in (1280, 390):
+        opened.page.set_viewport_size({"width": width, "height": 900})
+        for key in ("?", "Escape"):
+            opened.press(key)
+            assert accessibility_errors(opened.page) == []
+        assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
     opened.close()
