@@ -6,31 +6,21 @@ from argparse import Namespace
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.progress import note
 from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_recordings, run_batch
-from noise.commands.options import CALIBRATION, SEED, OneOf, Option, full_scale_of
+from noise.commands.options import CALIBRATION, SEED, Option, full_scale_of
 
 if TYPE_CHECKING:
     from models.blocks import RecordingBlocks
     from noise.recordings.meaning import PascalPerFullScale
 
 
-_PITCH_PIECE = 1 << 19
-"""About how many samples of a sound are followed at once: 11 s at 48 kHz."""
-
-_PITCH_COLUMNS = ("pressure_pitch", "pressure_pitch_range", "pressure_voiced_share")
-
-
 OPTIONS = (
     *BATCH,
-    OneOf(
-        Option("--pitch"),
-        Option("--windows"),
-    ),
+    Option("--windows"),
     PLOT,
     *CALIBRATION,
     SEED,
@@ -42,16 +32,13 @@ def run(options: Namespace) -> int:
     check_batch(options)
     from noise.batch import find_jobs
 
-    work = Featuring(full_scale_of(options), options.pitch, options.windows)
+    work = Featuring(full_scale_of(options), options.windows)
     jobs = find_jobs(options.paths)
-    if options.plot is None:
-        return run_batch(options, work, jobs)
     check_plots(options.plot, jobs)
-
-    def draw(_: object) -> list[Path]:
-        return draw_recordings(options.plot, jobs, full_scale=work.full_scale)
-
-    return run_batch(options, work, jobs, also=draw)
+    return run_batch(
+        options, work, jobs,
+        also=lambda _: draw_recordings(options.plot, jobs, full_scale=work.full_scale),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -62,14 +49,11 @@ class Featuring:
     ----------
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
-    pitch : bool
-        Whether the pitch over time is added.
     windows : bool
         Whether windows are described as the classifier is given them, not recordings.
     """
 
     full_scale: PascalPerFullScale | None = None
-    pitch: bool = False
     windows: bool = False
 
     doing = "analysing"
@@ -83,8 +67,7 @@ class Featuring:
             return ("file", "channel", "start_s", "end_s", *FEATURE_NAMES, "error")
         from features import recording_feature_names
 
-        pitch = _PITCH_COLUMNS if self.pitch else ()
-        return ("file", *recording_feature_names(), *pitch, "error")
+        return ("file", *recording_feature_names(), "error")
 
     def prepare(self) -> None:
         """Load the libraries."""
@@ -112,8 +95,7 @@ class Featuring:
                     f"{name}: its features are those of {pieces} pieces of {length:.3g} s, put "
                     "together by their power"
                 )
-            pitch = _pitch(blocks) if self.pitch else {}
-            return [{"file": name, **recording_features(blocks), **pitch}], blocks.calibrated
+            return [{"file": name, **recording_features(blocks)}], blocks.calibrated
 
 
 def _windows(
@@ -137,24 +119,3 @@ def _windows(
                     end = round(min(i * HOP + LENGTH, track.n_samples / track.rate), 6)
                     place = {"file": name, "channel": channel, "start_s": i * HOP, "end_s": end}
                     yield place | dict(zip(FEATURE_NAMES, values, strict=True))
-
-
-def _pitch(blocks: RecordingBlocks) -> dict[str, float]:
-    """Pitch of the first pressure channel, of a long one piece by piece."""
-    import numpy as np
-
-    from features.kernels.harmonics import PitchTrack, pitch_track
-
-    row = blocks.first("pressure")
-    if row is None:
-        return {}
-    pieces = max(1, round(blocks.n_samples / _PITCH_PIECE))
-    ends = np.linspace(0, blocks.n_samples, pieces + 1).round().astype(int).tolist()
-    times, pitches = [], []
-    for first, last in pairwise(ends):
-        piece = pitch_track(blocks.read(first, last)[row], blocks.rate)
-        times.append(first / blocks.rate + piece.time)
-        pitches.append(piece.frequency)
-    track = PitchTrack(np.concatenate(times), np.concatenate(pitches))
-    values = (track.median, track.range, track.voiced_share)
-    return dict(zip(_PITCH_COLUMNS, values, strict=True))

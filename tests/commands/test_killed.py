@@ -123,8 +123,6 @@ def held(journal, process):
 RUNS = ["runs", "--out", "t.csv"]
 KEEPING = {  # call, what its journal is of, exit code
     "label": (["label", *RUNS], "t.csv", 1),
-    "features": (["features", *RUNS], "t.csv", 1),
-    "two processes": (["label", *RUNS, "--workers", "2"], "t.csv", 1),
     "screen": (["screen", "fluorocarbon", "PDMS", "--simulations", "200", "--no-tolerances",
                 "--sounds", "1", "--out", "screen"], "screen/map.csv", 0),
 }  # fmt: skip
@@ -176,30 +174,6 @@ def test_told_to_end_it_writes_what_it_did_and_ends_its_processes(tmp_path, how,
     assert len({line.split(",")[0] for line in table.read_text().splitlines()[1:]}) >= 5
     assert main(["label", str(tmp_path / "runs"), "--out", str(table)]) == 1
     assert "of 40 recordings are done already" in capsys.readouterr().err
-
-
-def workers_of(process):
-    """Processes that work for another."""
-    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-    return [
-        int(pid) for pid in children if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()
-    ]
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(sys.platform != "linux", reason="tells no children of a process")
-def test_one_of_two_workers_is_killed_and_the_table_is_the_same(tmp_path):
-    make_recordings(tmp_path / "runs", 36, 2, 0.2)
-    process = start(["label", "runs", "--out", "two.csv", "--workers", "2"], tmp_path)
-    wait_for(process, journal_path(tmp_path / "two.csv"), 2)
-    os.kill(workers_of(process)[0], signal.SIGKILL)
-    _, told = process.communicate()
-    assert process.returncode == 1, told
-    assert "36 recordings, 2 refused" in told
-    assert main(["label", str(tmp_path / "runs"), "--out", str(tmp_path / "one.csv")]) == 1
-    # A file that is refused is named as the call names it.
-    said = (tmp_path / "one.csv").read_bytes().replace(os.fsencode(f"{tmp_path}/"), b"")
-    assert (tmp_path / "two.csv").read_bytes() == said
 
 
 def test_later_calls_do_only_what_is_new_or_changed(tmp_path, capsys):

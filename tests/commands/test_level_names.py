@@ -24,8 +24,6 @@ def hiss(seconds, rms=0.05, rate=48_000):
 
 
 SOUNDS = {
-    "a tone": lambda: 0.2 * np.sin(2.0 * np.pi * 997.0 * np.arange(2 * 48_000) / 48_000),
-    "hiss that ends loud": lambda: hiss(2.0) * np.linspace(0.1, 1.0, 2 * 48_000),
     "hum below the noise": lambda: (
         hiss(2.0, 0.01) + 0.5 * np.sin(2.0 * np.pi * 50.0 * np.arange(2 * 48_000) / 48_000)
     ),

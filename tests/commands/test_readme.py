@@ -86,14 +86,6 @@ def test_blocks_run_in_order_from_an_empty_folder(walked):
     assert len(said) > 8
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.parent.name)
-def test_blocks_of_a_reference_page_run_in_order(page, demo, tmp_path, monkeypatch):
-    monkeypatch.setenv("MPLBACKEND", "Agg")
-    said = walk(tmp_path, dear=DEAR, page=page, demo=demo)
-    assert refused(said) == []
-    assert missing(tmp_path, said) == []
-
-
 @pytest.mark.parametrize("page", [README, *PAGES, ROOT / "tests" / "README.md"], ids=str)
 def test_links_lead_to_pages_and_headings(page):
     text = readme(page=page)

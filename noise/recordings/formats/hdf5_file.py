@@ -24,7 +24,7 @@ from models.errors import RecordingError
 from models.units import split_unit
 from noise.recordings.formats import Format
 from noise.recordings.formats.logged import CONDITIONS, PACKING, LoggedChannel, factor_and_offset
-from noise.recordings.formats.time_axis import NOT_STATED, Axis, Read, is_time
+from noise.recordings.formats.time_axis import Axis, Read, is_time
 
 _RATES = ("rate_Hz", "rate", "fs", "sampling_rate", "sample_rate", "sampling_frequency")
 _STEPS = ("dt", "sampling_interval")
@@ -74,14 +74,13 @@ def _channel(path: Path, dataset: Any) -> LoggedChannel:
         packing=_attributes(path, dataset, PACKING),
         integers=dataset.dtype.kind in "iu",
         unit=_text(path, dataset, _UNITS),
-        problem=NOT_STATED,
     )
 
 
 def _axes(path: Path, dataset: Any) -> list[Axis]:
     """Axes as the innermost holder of a dataset states them that states any."""
     scales = [str(scale.name).rpartition("/")[2] for scale in dataset.dims[0].values()]
-    quantity = dataset.dims[0].label or next(iter(scales), NOT_STATED)
+    quantity = dataset.dims[0].label or next(iter(scales), None)
     axes: list[Axis] = []
     holder = dataset
     while True:
@@ -97,8 +96,8 @@ def _axes(path: Path, dataset: Any) -> list[Axis]:
         ]
         starts = [numbers[key] for key in _STARTS if key in numbers]
         axes += [
-            Axis(start=start, step=step, times=NOT_STATED, unit=unit, quantity=quantity)
-            for start, step in zip_longest(starts, steps, fillvalue=NOT_STATED)
+            Axis(start=start, step=step, unit=unit, quantity=quantity)
+            for start, step in zip_longest(starts, steps)
         ]
         if holder is not dataset:
             axes += _time_beside(path, holder, dataset)
@@ -118,14 +117,14 @@ def _number(path: Path, dataset: Any, key: str, value: object) -> float:
 def _time_beside(path: Path, group: Any, dataset: Any) -> Iterator[Axis]:
     """Time stamps beside a dataset, as many as it has samples."""
     for name in group:
-        times: Any = group.get(name) if is_time(name, NOT_STATED) else None
+        times: Any = group.get(name) if is_time(name, None) else None
         if getattr(times, "shape", None) == dataset.shape and times.dtype.kind in "iuf":
-            unit = _text(path, times, _UNITS) or split_unit(name)[1] or NOT_STATED
+            unit = _text(path, times, _UNITS) or split_unit(name)[1]
             if not is_time(name, unit):
                 continue
             _check_size(path, times)
             read = _reading(times, *factor_and_offset(_attributes(path, times, PACKING)))
-            yield Axis(start=NOT_STATED, step=NOT_STATED, times=read, unit=unit, quantity="time")
+            yield Axis(times=read, unit=unit, quantity="time")
 
 
 def _reading(dataset: Any, factor: float = 1.0, offset: float = 0.0) -> Read:
@@ -166,9 +165,7 @@ def _last(dataset: Any) -> str:
     return str(dataset.name).rpartition("/")[2]
 
 
-def _text(path: Path, item: Any, keys: tuple[str, ...]) -> str | None:
-    """First of some attributes as a text; none where none is stated."""
-    value = next(iter(_attributes(path, item, keys).values()), NOT_STATED)
-    if isinstance(value, bytes):
-        return value.decode("utf-8", "replace")
-    return NOT_STATED if value is NOT_STATED else str(value)
+def _text(path: Path, item: Any, keys: tuple[str, ...]) -> str:
+    """First of some attributes as a text; empty where none is stated."""
+    value = next(iter(_attributes(path, item, keys).values()), "")
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)

@@ -1,9 +1,8 @@
 """The gate through which each channel of a logger's file passes.
 
 A reader of a format states of each channel what its axis is (start, step or time stamps, unit,
-quantity) and what its values are (factor, offset, unit). What its format does not state it has to
-write as `NOT_STATED`. All that is stated is used here, or the channel is left out with a note that
-says why, or the file is refused: nothing is passed over.
+quantity) and what its values are (factor, offset, unit). All that is stated is used here, or the
+channel is left out with a note that says why, or the file is refused: nothing is passed over.
 
 - The axis is time, in any unit of time. A spectrum, samples over an angle, and time stamps that do
   not rise evenly are no recordings.
@@ -22,7 +21,7 @@ import json
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -65,24 +64,24 @@ class LoggedChannel:
     read : callable
         Reads samples as stored.
     axes : sequence of Axis
-        Empty where nothing is stated; the last one that states a start has the last word on it.
-    packing : mapping of str to object, or None
+        The last one that states a start has the last word on it.
+    packing : mapping of str to object
         Attributes among which there may be those of `PACKING`, of integers and of other numbers.
     integers : bool
         Whether it is stored in whole numbers.
-    unit : str or None
-    problem : str or None
+    unit : str
+    problem : str
         Why it cannot be read.
     """
 
     name: str
     n_samples: int
     read: Read
-    axes: Sequence[Axis]
-    packing: Mapping[str, object] | None
-    integers: bool
-    unit: str | None
-    problem: str | None
+    axes: Sequence[Axis] = ()
+    packing: Mapping[str, object] = field(default_factory=dict)
+    integers: bool = False
+    unit: str = ""
+    problem: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,12 +152,11 @@ def describe_channels(
 
     Examples
     --------
-    >>> from noise.recordings.formats.time_axis import NOT_STATED, Axis
+    >>> from noise.recordings.formats.time_axis import Axis
     >>> x = np.ones(400)
-    >>> clock = Axis(start=0.0, step=0.02, times=NOT_STATED, unit="ms", quantity=NOT_STATED)
+    >>> clock = Axis(start=0.0, step=0.02, unit="ms")
     >>> arm = LoggedChannel(
-    ...     name="Arm 1", n_samples=400, read=lambda a, b: x[a:b], axes=[clock],
-    ...     packing=NOT_STATED, integers=False, unit="N mm", problem=NOT_STATED,
+    ...     name="Arm 1", n_samples=400, read=lambda a, b: x[a:b], axes=[clock], unit="N mm"
     ... )
     >>> raw = describe_channels(Path("run.h5"), [arm], {"speed_rad_s": 5.0})
     >>> raw.channels[0].name, raw.rate, float(raw.whole().max()), raw.condition.speed
@@ -261,8 +259,7 @@ def _together(path: Path, rows: list[Row], notes: list[str]) -> tuple[list[Row],
             "together"
         )
     aligned = [
-        Row(row.logged, row.kind, row.value, row.start, rate, round(shift))
-        for row, shift in zip(rows, late, strict=True)
+        replace(row, rate=rate, first=round(shift)) for row, shift in zip(rows, late, strict=True)
     ]
     common = min(row.logged.n_samples - row.first for row in aligned)
     if common < _COMMON * longest:
@@ -306,9 +303,8 @@ def _kind(channel: LoggedChannel) -> tuple[str, float]:
 
 def _unit(channel: LoggedChannel) -> str:
     """Return the unit of a channel, which may stand behind its name."""
-    unit = (channel.unit or "").strip()
     behind = split_unit(channel.name)[1]
-    return unit or (behind if kind_of_unit(behind) else "")
+    return channel.unit.strip() or (behind if kind_of_unit(behind) else "")
 
 
 def _own_name(name: str) -> str:
@@ -323,12 +319,12 @@ def _unit_problem(channel: LoggedChannel) -> str:
     return f"has unit {unit!r}{expected}" if unit else "states no unit"
 
 
-def factor_and_offset(packing: Mapping[str, object] | None) -> tuple[float, float]:
+def factor_and_offset(packing: Mapping[str, object]) -> tuple[float, float]:
     """Return what packed numbers are multiplied with, and what is then added [unit].
 
     Examples
     --------
-    >>> factor_and_offset({"scale_factor": 0.5}), factor_and_offset(None)
+    >>> factor_and_offset({"scale_factor": 0.5}), factor_and_offset({})
     ((0.5, 0.0), (1.0, 0.0))
     """
     stated = _numbers(packing)
@@ -345,10 +341,10 @@ def _unclear(channel: LoggedChannel) -> str:
     return f"has {' and '.join(unclear)}" if unclear else ""
 
 
-def _numbers(packing: Mapping[str, object] | None) -> dict[str, float]:
+def _numbers(packing: Mapping[str, object]) -> dict[str, float]:
     return {
         key.lower(): float(value)
-        for key, value in (packing or {}).items()
+        for key, value in packing.items()
         if isinstance(value, int | float | np.number)
     }
 
@@ -370,16 +366,14 @@ def _alike(one: Row, other: Row) -> bool:
 
 def _as_named(row: Row, channel: Channel, unit: str, notes: list[str]) -> Row:
     """Return a row as a sidecar names it: by a unit of its own the samples are in it as stored."""
-    stated = row.logged.unit or ""
-    same_kind = row.kind == channel.kind
-    if same_kind and (not unit or row.value == 1.0):
+    if row.kind == channel.kind and (not unit or row.value == 1.0):
         return row
     if row.kind:
         notes.append(
-            f"the sidecar's {channel.name} in {unit or channel.unit} stands for {stated!r} of "
-            f"channel {row.logged.name!r}"
+            f"the sidecar's {channel.name} in {unit or channel.unit} stands for "
+            f"{row.logged.unit!r} of channel {row.logged.name!r}"
         )
-    return Row(row.logged, channel.kind, 1.0, row.start, row.rate)
+    return replace(row, kind=channel.kind, value=1.0)
 
 
 def _names(rows: Sequence[Row]) -> tuple[Channel, ...]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from models.errors import RecordingError
 from noise.recordings.formats import Format
 from noise.recordings.formats.logged import LoggedChannel
-from noise.recordings.formats.time_axis import NOT_STATED, Axis
+from noise.recordings.formats.time_axis import Axis
 
 _HEAD = 64  # bytes before the first block
 _UNFINISHED = slice(60, 64)  # of the head: flags of what was still to be done
@@ -97,13 +97,8 @@ def _axis(file: Any, group: int, master: Any) -> Axis:
         stamps = file.get_master(group, record_offset=start, record_count=stop - start)
         return np.asarray(stamps)
 
-    return Axis(
-        start=NOT_STATED,
-        step=NOT_STATED,
-        times=times,
-        unit=_unit(master) or NOT_STATED,
-        quantity=dict(enumerate(_QUANTITIES)).get(int(master.sync_type)) or NOT_STATED,
-    )
+    quantity = dict(enumerate(_QUANTITIES)).get(int(master.sync_type))
+    return Axis(times=times, unit=_unit(master), quantity=quantity)
 
 
 def _channel(file: Any, group: int, index: int, axes: list[Axis]) -> LoggedChannel:
@@ -131,10 +126,8 @@ def _channel(file: Any, group: int, index: int, axes: list[Axis]) -> LoggedChann
         n_samples=int(block.channel_group.cycles_nr),
         read=read,
         axes=axes,
-        packing=NOT_STATED,  # the library applies the conversion
-        integers=False,
-        unit=_unit(channel),
-        problem="has a conversion that makes texts of its values" if to_text else NOT_STATED,
+        unit=_unit(channel),  # the library applies the conversion
+        problem="has a conversion that makes texts of its values" * to_text,
     )
 
 

@@ -23,7 +23,7 @@ from models.errors import RecordingError
 from models.units import split_unit
 from noise.recordings.formats import Format
 from noise.recordings.formats.logged import LoggedChannel
-from noise.recordings.formats.time_axis import NOT_STATED, Axis, Read, is_time
+from noise.recordings.formats.time_axis import Axis, Read, is_time
 
 _BIG_ENDIAN = 1 << 6  # in the table of contents, which itself is little-endian
 _VERSIONS = (4712, 4713)
@@ -104,19 +104,17 @@ def _channel(channel: Any, clocks: list[Any], begins: set[Any]) -> LoggedChannel
         packing=channel.properties,
         integers=np.dtype(channel.dtype).kind in "iu",
         unit=_stated_unit(channel),
-        problem=NOT_STATED,
     )
 
 
-def _stated_unit(channel: Any) -> str | None:
-    stated = (str(channel.properties[key]) for key in _UNITS if key in channel.properties)
-    return next(stated, NOT_STATED)
+def _stated_unit(channel: Any) -> str:
+    return next((str(channel.properties[k]) for k in _UNITS if k in channel.properties), "")
 
 
 def _begin(channel: Any) -> Any:
     """Time of day at which a waveform begins; none where nobody set it."""
-    begin = channel.properties.get("wf_start_time", NOT_STATED)
-    return NOT_STATED if begin == _UNSET_BEGIN else begin
+    begin = channel.properties.get("wf_start_time")
+    return None if begin == _UNSET_BEGIN else begin
 
 
 def _waveform(channel: Any, begins: set[Any]) -> Axis:
@@ -124,12 +122,12 @@ def _waveform(channel: Any, begins: set[Any]) -> Axis:
     stated = channel.properties
     step, start = stated.get("wf_increment"), stated.get("wf_start_offset")
     if step is None or step in _UNSET_STEPS:
-        step = start = NOT_STATED
+        step = start = None
     elif len(begins) > 1:  # by the time of day, which all must have then
-        begin, first = _begin(channel), min(begins - {NOT_STATED})
+        begin, first = _begin(channel), min(begins - {None})
         start = None if begin is None else (begin - first) / _SECOND + (start or 0.0)
-    unit, quantity = (stated.get(key) or NOT_STATED for key in ("wf_xunit_string", "wf_xname"))
-    return Axis(start=start, step=step, times=NOT_STATED, unit=unit, quantity=quantity)
+    unit, quantity = stated.get("wf_xunit_string"), stated.get("wf_xname")
+    return Axis(start=start, step=step, unit=unit, quantity=quantity)
 
 
 def _clock(channel: Any) -> Axis:
@@ -139,13 +137,7 @@ def _clock(channel: Any) -> Axis:
         values, unit = (values - np.datetime64(0, "s")) / _SECOND, "s"
     else:
         unit = _stated_unit(channel) or split_unit(channel.name)[1]
-    return Axis(
-        start=NOT_STATED,
-        step=NOT_STATED,
-        times=lambda first, last: values[first:last],
-        unit=unit,
-        quantity="time",
-    )
+    return Axis(times=lambda first, last: values[first:last], unit=unit, quantity="time")
 
 
 def _in_order(channel: Any) -> Read:

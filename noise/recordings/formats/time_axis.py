@@ -16,9 +16,6 @@ from numpy.typing import NDArray
 from models.errors import RecordingError
 from models.units import quantity_of_unit, split_unit
 
-NOT_STATED = None
-"""Of what a format, or a file, does not state."""
-
 Read = Callable[[int, int], NDArray[np.generic]]
 """From first and last sample (exclusive) to these samples."""
 
@@ -37,19 +34,19 @@ class Axis:
 
     Parameters
     ----------
-    start, step : float or None
+    start, step : float, optional
         Of the first sample, and from one to the next [unit].
-    times : callable or None
+    times : callable, optional
         Reads the place of each sample [unit].
-    unit, quantity : str or None
+    unit, quantity : str, optional
         Such as "ms" and "time".
     """
 
-    start: float | None
-    step: float | None
-    times: Read | None
-    unit: str | None
-    quantity: str | None
+    start: float | None = None
+    step: float | None = None
+    times: Read | None = None
+    unit: str | None = None
+    quantity: str | None = None
 
 
 def is_time(name: str, unit: str | None) -> bool:
@@ -57,7 +54,7 @@ def is_time(name: str, unit: str | None) -> bool:
 
     Examples
     --------
-    >>> is_time("Time (ms)", NOT_STATED), is_time("t", "s"), is_time("T", "degC")
+    >>> is_time("Time (ms)", None), is_time("t", "s"), is_time("T", "degC")
     (True, True, False)
     """
     named = _TIME.fullmatch(split_unit(name)[0].strip()) is not None
@@ -91,15 +88,15 @@ def start_and_rate(
     start, rates = None, []
     for axis in axes:
         second = _second(axis)
-        if axis.times is not NOT_STATED:
+        if axis.times is not None:
             if axis not in steps:
                 steps[axis] = even_step(n_samples, axis.times)
             first, step = steps[axis]
             start = second * first
             rates.append(1.0 / (second * step))
-        elif axis.start is not NOT_STATED:
+        elif axis.start is not None:
             start = second * axis.start
-        if axis.step is not NOT_STATED:
+        if axis.step is not None:
             if not 0.0 < axis.step < math.inf:
                 raise RecordingError(f"has a step in time of {axis.step:g}")
             rates.append(1.0 / (second * axis.step))

@@ -17,7 +17,7 @@ from models.transfer_functions.uff import (
 )  # fmt: skip
 from noise.recordings.formats import Format
 from noise.recordings.formats.logged import LoggedChannel
-from noise.recordings.formats.time_axis import NOT_STATED, Axis
+from noise.recordings.formats.time_axis import Axis
 
 
 @contextmanager
@@ -44,17 +44,7 @@ def _channel(number: int, function: UffFunction) -> LoggedChannel:
         name=function.name or f"function {number}",
         n_samples=function.y.size,
         read=lambda first, last: function.y[first:last],
-        axes=[
-            Axis(
-                start=NOT_STATED,
-                step=NOT_STATED,
-                times=lambda first, last: function.x[first:last],
-                unit="s",
-                quantity="time",
-            )
-        ],
-        packing=NOT_STATED,  # values are in SI already where their unit is known
-        integers=False,
-        unit=function.unclear or function.unit,
-        problem="is complex, expected real samples" if np.iscomplexobj(function.y) else NOT_STATED,
+        axes=[Axis(times=lambda first, last: function.x[first:last], unit="s", quantity="time")],
+        unit=function.unclear or function.unit,  # values are in SI where it is known
+        problem="is complex, expected real samples" if np.iscomplexobj(function.y) else "",
     )
