@@ -1,10 +1,10 @@
-"""``diagnosis.json``: a diagnosis as JSON data, and back, by one table of its records."""
+"""``diagnosis.json``: a diagnosis as JSON data, and back, by the fields of its records."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import fields
 from typing import Any
 
 from noise.diagnosis.outcome import (
@@ -17,72 +17,34 @@ from noise.diagnosis.outcome import (
     StageFinding,
 )
 
+_RECORDS = {
+    "location": Location, "map": Location, "stages": StageFinding, "effects": EffectFinding,
+    "hypotheses": HypothesisFinding, "agreement": Agreement, "remainder": Remainder,
+}  # fmt: skip
+"""Of a diagnosis: what a key is, or holds as values of an object or as entries of a list."""
 
-@dataclass(frozen=True)
-class _Key:
-    """An entry of an object: its attribute, and how numbers are written."""
-
-    attribute: str
-    digits: int = 4
-    scale: float = 1.0
-    of: type | None = None
-    """Record that it is, or that it holds as values of an object or as entries of a list."""
-    optional: bool = False
-    """Whether a number may be missing; otherwise what is missing is not a number."""
-
-
-_FIGURES = (
-    "gap_before", "gap_recalibrated", "gap_after", "gap_floor", "closed", "closed_low",
-    "closed_high", "closed_by_effect",
-)  # fmt: skip
-"""Of an effect."""
-
-_PLACE = {"channels": _Key("channels"), "band_hz": _Key("band", 1)}
-
-_KEYS: dict[type, dict[str, _Key]] = {
-    StageFinding: {name: _Key(name) for name in ("gap", "share", "p_value")},
-    Location: {"stage": _Key("stage"), **_PLACE}
-    | {name: _Key(name) for name in ("phase", "conditions", "p_value")},
-    EffectFinding: {name: _Key(name) for name in ("name", "stage", "probability")}
-    | {"parameters": _Key("parameters", 6), "strength": _Key("strength", optional=True)}
-    | {name: _Key(name, optional=True) for name in _FIGURES}
-    | {"fitted_with": _Key("fitted_with")},
-    HypothesisFinding: {
-        "causes": _Key("causes"),
-        "probability": _Key("probability"),
-        "gap_after": _Key("gap", optional=True),
-    },
-    Agreement: {
-        "recording": _Key("recording"),
-        "speed_rad_s": _Key("speed", 6),
-        "interference_mm": _Key("interference", 6, 1e3),
-        "gap": _Key("gap"),
-        "channels": _Key("channels"),
-    },
-    Remainder: {"gap": _Key("gap"), **_PLACE},
-    Diagnosis: {
-        "verdict": _Key("verdict"),
-        "equivalent": _Key("equivalent"),
-        "location": _Key("location", of=Location),
-        "map": _Key("differences", of=Location),
-        "stages": _Key("stages", of=StageFinding),
-        "effects": _Key("effects", of=EffectFinding),
-        "probabilities": _Key("probabilities"),
-        "parameters": _Key("parameters"),
-        "next_measurement": _Key("next_measurement"),
-        "held_out": _Key("held_out"),
-        "gap": _Key("gap"),
-        "gap_floor": _Key("floor"),
-        "p_value": _Key("p_value"),
-        "hypotheses": _Key("hypotheses", of=HypothesisFinding),
-        "agreement": _Key("agreement", of=Agreement),
-        "remainder": _Key("remainder", of=Remainder),
-        "bench": _Key("bench"),
-        "faults": _Key("faults"),
-        "notes": _Key("notes"),
-        "seconds": _Key("seconds", 1),
-    },
+_NAMES: dict[type, dict[str, str]] = {
+    Diagnosis: {"differences": "map", "floor": "gap_floor"},
+    Location: {"band": "band_hz"},
+    Remainder: {"band": "band_hz"},
+    HypothesisFinding: {"gap": "gap_after"},
+    Agreement: {"speed": "speed_rad_s", "interference": "interference_mm"},
 }
+"""Keys of fields that are called otherwise in the file."""
+
+_LEFT_OUT = ("illustrations", "improvement")
+
+_DIGITS = {"band_hz": 1, "seconds": 1, "speed_rad_s": 6, "interference_mm": 6}
+_OF_PARAMETERS, _USUAL = 6, 4
+"""Digits of the numbers of effects, and of all others."""
+
+_MILLIMETRES = 1e3
+
+
+def _keys(kind: type) -> dict[str, Any]:
+    """Return the fields of a record by their keys."""
+    names = _NAMES.get(kind, {})
+    return {names.get(one.name, one.name): one for one in fields(kind) if one.name not in _LEFT_OUT}
 
 
 def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]:
@@ -94,7 +56,7 @@ def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]
     improved : str, optional
         Name of the file of the improved rig that lies beside it.
     """
-    written: dict[str, Any] = _written(diagnosis, _Key(""))
+    written: dict[str, Any] = _written(diagnosis, _USUAL)
     return written | {"improved": improved}
 
 
@@ -124,35 +86,47 @@ _UNKNOWN: dict[str, Any] = {
 """What a file may lack."""
 
 
-def _written(value: Any, key: _Key) -> Any:
+def _written(value: Any, digits: int) -> Any:
     """Return a value of plain data: records as objects, numbers rounded, none as null."""
-    if type(value) in _KEYS:
-        keys = _KEYS[type(value)].items()
-        return {name: _written(getattr(value, key.attribute), key) for name, key in keys}
+    if type(value) in {Diagnosis, *_RECORDS.values()}:
+        many = _OF_PARAMETERS if isinstance(value, EffectFinding) else _USUAL
+        given = {key: getattr(value, one.name) for key, one in _keys(type(value)).items()}
+        if "interference_mm" in given:
+            given["interference_mm"] *= _MILLIMETRES
+        return {
+            key: _written(one, many if key == "parameters" else _DIGITS.get(key, _USUAL))
+            for key, one in given.items()
+        }
     if isinstance(value, Mapping):
-        return {name: _written(one, key) for name, one in value.items()}
+        return {name: _written(one, digits) for name, one in value.items()}
     if isinstance(value, tuple | list):
-        return [_written(one, key) for one in value]
+        return [_written(one, digits) for one in value]
     if value is None or isinstance(value, str):
         return value
-    return round(float(value * key.scale), key.digits) if math.isfinite(value) else None
+    return round(float(value), digits) if math.isfinite(value) else None
 
 
 def _record(kind: type, data: Mapping[str, Any]) -> Any:
     """Return a record of the data of an object; what is not there stays at its default."""
-    return kind(**{
-        key.attribute: _read(data[name], key) for name, key in _KEYS[kind].items() if name in data
-    })  # fmt: skip
+    given = {}
+    for key, one in _keys(kind).items():
+        if key in data:
+            holds = _RECORDS.get(key) if kind is Diagnosis else None
+            missing = None if holds is not None or one.default is None else math.nan
+            given[one.name] = missing if data[key] is None else _read(data[key], holds)
+    if kind is Agreement:
+        given["interference"] /= _MILLIMETRES
+    return kind(**given)
 
 
-def _read(value: Any, key: _Key) -> Any:
+def _read(value: Any, holds: type | None) -> Any:
+    """Return a value of a file, with what it holds as records."""
     if value is None:
-        return None if key.optional or key.of is not None else math.nan
+        return math.nan
     if isinstance(value, Mapping):
-        if key.of is not None and set(value) & set(_KEYS.get(key.of, {})):
-            return _record(key.of, value)
-        return {name: _read(one, key) for name, one in value.items()}
+        if holds is not None and set(value) & set(_keys(holds)):
+            return _record(holds, value)
+        return {name: _read(one, holds) for name, one in value.items()}
     if isinstance(value, list | tuple):
-        records = key.of is not None
-        return tuple(_record(key.of, one) if records else _read(one, key) for one in value)  # type: ignore[arg-type]
-    return value if isinstance(value, str) else float(value) / key.scale
+        return tuple(_read(one, holds) for one in value)
+    return value if isinstance(value, str) else float(value)

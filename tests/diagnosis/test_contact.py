@@ -104,7 +104,6 @@ def test_another_kinetic_torque_is_read_off_the_slips(plain, factor):
 def test_a_sliding_contact_has_no_cycle(plain):
     sliding = _numbers(speed=30.0)
     assert "peak" not in sliding
-    assert sliding["sliding_torque"] == pytest.approx(1.0, abs=0.05)
     assert "sliding_torque" not in plain
 
 

@@ -12,13 +12,14 @@ from models.condition import Condition
 from models.rig_file import load_material_rig, load_rig
 from noise.diagnosis.case import read_case
 from noise.diagnosis.gap.distance import gap_of, reference
-from noise.diagnosis.gap.floor import case_gap, floor_widening, repeat_gap
+from noise.diagnosis.gap.floor import floor_widening, repeat_gap
 from noise.diagnosis.gap.signature import GROUPS, NAMES, block_signatures, signature
 from noise.diagnosis.simulated.repeats import Scatter, condition_key, nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.blind.cases import run_case, write_case
 from tests.blind.design import draw_design
 from tests.blind.effects import DEVELOPMENT
+from tests.helpers.small_rigs import gap_of_case
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*is missing from the simulated")
 
@@ -66,7 +67,7 @@ def _p_values(count, seed, tmp_path, *, brief):
     gaps = []
     for index in range(count):
         recordings, rig = _null(index, seed, tmp_path / str(index), brief)
-        gaps.append(case_gap(recordings, rig, seed=index))
+        gaps.append(gap_of_case(recordings, rig))
     return np.array([g.p_value for g in gaps]), np.array([g.distance for g in gaps])
 
 
@@ -99,7 +100,7 @@ def test_exchanges_give_uniform_p_values_however_few_the_repeats():
 def test_a_rig_that_is_a_sixth_stiffer_lies_beyond_the_floor(transfers):
     rig = _stiffer(1.16)
     runs = [run for at in AT for run in _runs(transfers, (1, 2), rig=rig, at=at)]
-    gap = case_gap(runs, RIG, n_repeats=8)
+    gap = gap_of_case(runs, RIG)
     assert gap.p_value < 0.05
     assert gap.distance > 1.5
 

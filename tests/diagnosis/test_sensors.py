@@ -18,7 +18,6 @@ from noise.diagnosis.case import read_case
 from noise.diagnosis.causes.verdict import needs_explaining
 from noise.diagnosis.first_answer import poor_responses, unlearned_sensors
 from noise.diagnosis.gap.distance import Gap
-from noise.diagnosis.gap.floor import case_gap
 from noise.diagnosis.gap.signature import NAMES
 from noise.diagnosis.preparation.prepare import estimated_noise, with_seen_sensors
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
@@ -28,7 +27,7 @@ from noise.identification.measured import read_measurements
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.run import simulate
-from tests.helpers.small_rigs import RATE, RIG, RIG_FILE, SECONDS, at, run
+from tests.helpers.small_rigs import RATE, RIG, RIG_FILE, SECONDS, at, gap_of_case, run
 
 COARSE = """
 [sensors]
@@ -111,7 +110,7 @@ def test_recordings_through_a_coarse_converter_are_no_gap_to_a_file_that_states_
     gaps = {}
     for name in ("rig", "plain"):
         rig = load_rig(coarse / f"{name}.toml")
-        gaps[name] = case_gap(read_case([coarse / "data"], rig).recordings, rig, n_repeats=8)
+        gaps[name] = gap_of_case(read_case([coarse / "data"], rig).recordings, rig)
     assert gaps["rig"].p_value > 0.05
     assert gaps["plain"].p_value < 0.01
     assert gaps["plain"].distance > 2.0 * gaps["rig"].distance

@@ -9,7 +9,6 @@ import pytest
 
 from models.rig_file import load_rig
 from noise.diagnosis.case import read_case
-from noise.diagnosis.gap.floor import case_gap
 from noise.recordings.files import read_recording
 from tests.blind.__main__ import main
 from tests.blind.benches import BITS, KINDS, NOISE, Bench, draw_bench
@@ -20,6 +19,7 @@ from tests.blind.files import rig_text
 from tests.blind.gap import gaps_of, null_gap
 from tests.blind.laws import CONSTANT, LAWS, draw_law
 from tests.blind.starts import STARTS
+from tests.helpers.small_rigs import gap_of_case
 
 
 def _null(kind, index=0, **changes):
@@ -57,7 +57,7 @@ def test_what_is_handed_out_of_each_kind_can_be_read(kind, tmp_path):
 def _gap_from_rig_file(case, folder):
     write_case(case, folder, None)
     read = read_case([folder], load_rig(folder / "rig.toml"))
-    return case_gap(read.recordings, read.rig).distance
+    return gap_of_case(read.recordings, read.rig).distance
 
 
 @pytest.mark.filterwarnings("ignore:.*is missing from the simulated")

@@ -8,7 +8,6 @@ import pytest
 
 from models.rig_file import load_material_rig, load_rig, measured_responses
 from noise.diagnosis.case import read_case
-from noise.diagnosis.gap.floor import case_gap
 from sim.acquisition import Acquisition
 from sim.motion import simulate_motion
 from sim.run import simulate
@@ -20,6 +19,7 @@ from tests.blind.effects import CAUSES, DEVELOPMENT, FORMS, STRANGERS
 from tests.blind.files import support_name, write_npz
 from tests.blind.rig import FIXED, Parameters, plain, turn
 from tests.blind.structure import accelerance, draw_structure, filtered
+from tests.helpers.small_rigs import gap_of_case
 
 RATE = 90e3
 
@@ -160,7 +160,7 @@ def test_over_fits_and_supports_the_second_rig_lies_within_the_floor_of_sim(tmp_
     design = _Exact(**{f.name: getattr(drawn, f.name) for f in fields(drawn)} | same)
     write_case(run_case(design), tmp_path / "case", None)
     case = read_case([tmp_path / "case"], load_rig(tmp_path / "case" / "rig.toml"))
-    gap = case_gap(case.recordings, case.rig)
+    gap = gap_of_case(case.recordings, case.rig)
     assert gap.distance < 1.2
     assert gap.p_value > 0.05
 

@@ -10,15 +10,23 @@ import numpy as np
 from models.condition import KnownCondition
 from models.rig import Fit, LawSpec
 from models.rig_file import load_material_rig
-from noise.diagnosis.simulated.repeats import record, run_signals
+from noise.diagnosis.simulated.repeats import (
+    Scatter,
+    perturb_run,
+    plan_repeat,
+    record,
+    repeat_motion,
+)
 from noise.diagnosis.simulated.transfer_functions import chain_of, torque_transfer_functions
 from noise.recordings import write_recording
+from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.run import DIAGNOSIS
+from sim.run import DIAGNOSIS, apply_sensor_effects, radiate_motion, sensor_signals
 
 __all__ = [
-    "RATE", "RIG", "RIG_FILE", "SECONDS", "at", "only", "run", "table_of", "write_case",
+    "RATE", "RIG", "RIG_FILE", "SECONDS", "at", "gap_of_case", "only", "run", "table_of",
+    "write_case",
 ]  # fmt: skip
 
 RATE, SECONDS = 25.6e3, 0.4
@@ -64,8 +72,22 @@ def run(condition, *effects, seed=0, seconds=SECONDS, rate=RATE, rig=RIG, librar
         rig, condition.interference, support, _TRANSFERS[support], fine, impacts=impacts
     )
     rng = np.random.default_rng(seed)
-    signals = run_signals(rig, condition, active, chain, seconds, rng)
+    once, found = perturb_run(rig, condition, Scatter(), rng, support=True)
+    plan = plan_repeat(once, found, active, rate=fine, seconds=seconds)
+    motion = repeat_motion(plan, rng)
+    changed = changed_chain(chain, active, np.random.default_rng(0))
+    sound = radiate_motion(motion, changed, active)
+    signals = apply_sensor_effects(
+        sensor_signals(motion, sound, plan.n_settling), active, fine, rng
+    )
     return record(signals, rate, condition, rng, decimation=DIAGNOSIS.decimation(rate))
+
+
+def gap_of_case(recordings, rig):
+    """Gap between recordings and the rig as its file has it."""
+    from noise.diagnosis.fit.case_comparison import CaseComparison
+
+    return CaseComparison(rig, tuple(recordings), EFFECTS, None, (), np.empty(0)).gap()
 
 
 def only(recording, *kinds):

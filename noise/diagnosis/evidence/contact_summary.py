@@ -200,9 +200,6 @@ _EXPLANATIONS: tuple[str, ...] = ("speed", "stiffness", "softening", "damping", 
 """Of what sliding there seems to be in stick: another speed, stiffness, damping or inertia, a
 stiffness that changes with torque, or a contact that gives before it breaks."""
 
-_SLIDES_ON = 0.3
-"""Share of a recording from which a contact slides on and on; assumed."""
-
 _FEWEST = 8
 """Samples that make a mean; assumed."""
 
@@ -272,8 +269,6 @@ def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
         "calm_spread": float(calm.std()) / wanted if calm.size else math.nan,
     }
     numbers |= of_stick
-    if n - stick - np.count_nonzero(near) >= _SLIDES_ON * n:
-        numbers |= _sliding(found, fit, ~near & (np.abs(found.sliding_speed) >= _slow(wanted)))
     numbers |= torque_by_speed(found, fit, in_intervals(starts, ends, n))
     numbers |= _cycles(found, fit, starts, ends)
     numbers |= cycle_shape(found, fit, starts, ends)
@@ -329,17 +324,6 @@ def _stick(
     return m, numbers
 
 
-def _sliding(found: Reconstruction, fit: Fit, sliding: NDArray[np.bool_]) -> Numbers:
-    """Of a contact that slides on and on."""
-    v, torque = found.sliding_speed[sliding], found.friction_torque[sliding] / fit.kinetic_torque
-    return {
-        "sliding_torque": float(torque.mean()),
-        "sliding_slope": float(np.cov(v, torque)[0, 1] / max(float(v.var()), 1e-12)),
-        "sliding_torque_spread": float(torque.std()),
-        "sliding_speed_spread": float(v.std()),
-    }
-
-
 def _cycles(
     found: Reconstruction, fit: Fit, starts: NDArray[np.int64], ends: NDArray[np.int64]
 ) -> Numbers:
@@ -376,7 +360,6 @@ def _cycles(
         "interval": math.log(_middle(interval)),
         "interval_spread": float(interval.std() / interval.mean()),
         "duration": math.log(_middle(duration)),
-        "duration_spread": float(duration.std() / duration.mean()),
         "time_stuck": math.log(_middle(stuck)),
         "fastest_drift": _slope(time, fastest) * float(time.std()),
     }
@@ -388,7 +371,6 @@ def _cycles(
         spread_in_time = 2.0 * float(when.std())
         numbers |= {
             "peak_memory": _correlation(peak[1:], peak[:-1]),
-            "peak_kurtosis": _kurtosis(peak),
             "peak_by_age": float(on_age[1]) * min(float(age.std()), 1.0),
             "peak_drift": float(on_age[2]) * spread_in_time,
             "peak_left": float(np.std(peak[1:] - a @ on_age)),
@@ -439,7 +421,3 @@ def _slope(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
 def _correlation(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
     spread = float(x.std() * y.std())
     return float(np.mean((x - x.mean()) * (y - y.mean()))) / spread if spread > 1e-12 else 0.0
-
-
-def _kurtosis(x: NDArray[np.float64]) -> float:
-    return float(np.mean((x - x.mean()) ** 4)) / (float(x.var()) ** 2 + 1e-12)

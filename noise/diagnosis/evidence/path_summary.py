@@ -262,18 +262,11 @@ def _echo(answer: NDArray[np.float64], rate: float) -> Numbers:
 def _by_time(
     p: NDArray[np.float64], m: NDArray[np.float64], residual: NDArray[np.float64]
 ) -> Numbers:
-    """Size and drift of the residual over the quarters of a recording."""
-    of_residual, of_m, of_p = (
-        x[: x.size // 4 * 4].reshape(4, -1).std(axis=1) + 1e-12 for x in (residual, m, p)
-    )
-    of_gain = of_m / of_p
+    """Size of the residual, and how unevenly it comes."""
     return {
         "residual": math.log(float(residual.std()) / (float(m.std()) + 1e-12) + 1e-9),
         "residual_kurtosis": math.log(_kurtosis(residual)),
         "kurtosis": math.log(_kurtosis(m) / _kurtosis(p)),
-        "residual_drift": math.log(of_residual[3] / of_residual[0]),
-        "residual_quarters": float(of_residual.std() / of_residual.mean()),
-        "gain_drift": math.log(of_gain[3] / of_gain[0]),
     }
 
 

@@ -123,7 +123,10 @@ class CaseComparison:
         }
 
     def gap(self, seed: int = 0) -> Gap:
-        """Gap between the recordings and the rig as its file has it, as `case_gap` has it."""
+        """Gap between the recordings and the rig as its file has it.
+
+        Its distance is 1 on average, and its p-value uniform, where only chance sets them apart.
+        """
         return repeat_gap(self.recordings, self._all_repeats(), least=0.0, seed=seed)
 
     def compared_about(self, model: Model) -> CaseComparison:

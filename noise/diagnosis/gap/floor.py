@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.recording import Recording
-from models.rig import Rig
 from noise.diagnosis.gap.distance import (
     LEAST_SCALE,
     Gap,
@@ -36,9 +35,7 @@ from noise.diagnosis.gap.signature import (
     group_of,
     signature,
 )
-from noise.diagnosis.simulated.repeats import Scatter, condition_key, nominal_repeats
-from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
-from sim.effects.effect import Effect
+from noise.diagnosis.simulated.repeats import condition_key
 
 _LIKE_THE_MOST = 0.5
 """Share of the largest deviation from which on others are as large; assumed."""
@@ -142,57 +139,6 @@ assumed."""
 
 _N_SETS, _N_DRAWS = 60, 400
 """Of repeats of one condition, and of such sets over all conditions."""
-
-
-def case_gap(
-    recordings: Sequence[Recording],
-    rig: Rig,
-    *,
-    scatter: Scatter | None = None,
-    library: Mapping[str, Effect] | None = None,
-    n_repeats: int = N_REPEATS,
-    seed: int = 0,
-) -> Gap:
-    """Gap between the recordings of a case and the rig as its file has it.
-
-    Parameters
-    ----------
-    recordings : sequence of Recording
-        With speed, interference and support stiffness in their conditions.
-    rig : Rig
-    scatter : Scatter, optional
-        Of the simulated repeats.
-    library : mapping of str to Effect, optional
-        Effects that the rig's can be found among.
-    n_repeats : int
-        Simulated repeats a condition.
-    seed : int
-
-    Returns
-    -------
-    Gap
-        Its distance is 1 on average, and its p-value uniform, where only chance sets recordings
-        and rig apart.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> from sim.run import simulate
-    >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> at = {"interference": 0.279e-3, "support_stiffness": 3745.0}
-    >>> runs = [simulate(rig, speed, **at, seconds=0.3).recording for speed in (1.0, 2.0, 3.0)]
-    >>> case_gap(runs, rig, n_repeats=6).p_value > 0.05
-    True
-    """
-    simulated: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
-    transfer_functions = TransferFunctionCache(rig)
-    for recording in recordings:
-        key = condition_key(recording)
-        if key not in simulated:
-            seeds = _seeds(seed, len(simulated), n_repeats)
-            runs = nominal_repeats(recording, rig, transfer_functions, seeds, scatter, library)
-            simulated[key] = [signature(run) for run in runs]
-    return repeat_gap(recordings, simulated, least=0.0, seed=seed)
 
 
 def repeat_gap(
@@ -348,11 +294,6 @@ def _mean(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     known = np.isfinite(rows)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.where(known, rows, 0.0).sum(axis=0) / known.sum(axis=0))
-
-
-def _seeds(seed: int, place: int, n: int) -> list[int]:
-    """Conditions share no repeat's rig: it would err in all of them alike."""
-    return [int(x) for x in np.random.SeedSequence([seed, place]).generate_state(n)]
 
 
 _GROUP_OF = group_of()

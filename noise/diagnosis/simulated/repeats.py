@@ -525,59 +525,6 @@ def repeat_motion(plan: Plan, rng: np.random.Generator, tolerance: float | None 
     return run_motion(plan, rng, tolerance=tolerance or DIAGNOSIS.tolerance)
 
 
-def run_signals(
-    rig: Rig,
-    condition: KnownCondition,
-    effects: Sequence[ActiveEffect],
-    chain: ImpulseResponses,
-    seconds: float,
-    rng: np.random.Generator,
-    *,
-    chain_seed: int = 0,
-    scatter: Scatter | None = None,
-    transfer_functions: Mapping[str, TransferFunction] | None = None,
-) -> dict[str, NDArray[np.float64]]:
-    """Run a rig as one of its runs finds it.
-
-    Parameters
-    ----------
-    rig : Rig
-    condition : KnownCondition
-    effects : sequence of ActiveEffect
-    chain : ImpulseResponses
-        Responses without effects; their rate is that of the signals.
-    seconds : float
-        [s]
-    rng : numpy.random.Generator
-    chain_seed : int
-        Of effects that change the chain by chance: one structure for all runs.
-    scatter : Scatter, optional
-    transfer_functions : mapping of str to TransferFunction, optional
-        What the responses of `chain` were made of; where given the torque goes through these.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (n,)
-        By `CHANNELS`, without noise [unit of the channel].
-
-    Raises
-    ------
-    ParameterError
-        The rig cannot be simulated.
-    """
-    once, at = perturb_run(rig, condition, scatter or Scatter(), rng, support=True)
-    plan = plan_repeat(once, at, effects, rate=chain.rate, seconds=seconds)
-    motion = repeat_motion(plan, rng)
-    changed = changed_chain(chain, effects, np.random.default_rng(chain_seed))
-    if transfer_functions is None:
-        sound = radiate_motion(motion, changed, effects)
-    else:
-        changes = chain_changes(chain, changed, n_closed(plan))
-        sound = heard_of(motion, plan, rig, transfer_functions, changes, changed, effects)
-    signals = sensor_signals(motion, sound, plan.n_settling)
-    return apply_sensor_effects(signals, effects, chain.rate, rng)
-
-
 def record(
     signals: Mapping[str, NDArray[np.float64]],
     rate: float,
