@@ -212,8 +212,8 @@ _LONGEST = 600.0
 PLOT = Option("--plot FOLDER|PICTURE", Path)
 
 
-def check_plots(target: Path, jobs: Sequence[Job]) -> None:
-    """Refuse pictures that cannot be written, before the work.
+def check_plots(target: Path | None, jobs: Sequence[Job]) -> None:
+    """Refuse pictures that cannot be written, before the work; none are asked for without a target.
 
     Raises
     ------
@@ -221,18 +221,18 @@ def check_plots(target: Path, jobs: Sequence[Job]) -> None:
         There are several recordings for one picture, or two of one name, or the place cannot be
         written to.
     """
+    if target is None:
+        return
     from noise.pictures.figure import PICTURE_ENDINGS
 
     paths = export_paths(target, [job.name for job in jobs], PICTURE_ENDINGS, "--plot")
     if target.is_file() and target.suffix.lower() not in PICTURE_ENDINGS:
         raise ParameterError(f"--plot {target}: is a file; name a folder or a picture")
-    for path in paths.values():
-        check_target(path, "--plot")
-        break
+    check_target(next(iter(paths.values())), "--plot")
 
 
 def draw_recordings(
-    target: Path,
+    target: Path | None,
     jobs: Sequence[Job],
     rows: Sequence[Mapping[str, object]] = (),
     *,
@@ -242,13 +242,16 @@ def draw_recordings(
 
     Parameters
     ----------
-    target : Path
+    target : Path or None
+        As of `check_plots`.
     jobs : sequence of Job
     rows : sequence of mapping
         Of the label table.
     full_scale : float or tuple of float, optional
         As for `noise.recordings.read_recording`.
     """
+    if target is None:
+        return []
     from noise.pictures.figure import PICTURE_ENDINGS, write_picture
     from noise.pictures.recording import plot_recording
     from noise.recordings.files import open_blocks

@@ -51,8 +51,7 @@ def run(options: Namespace) -> int:
     jobs = find_jobs(options.paths)
     if options.audacity is not None:
         export_paths(options.audacity, [job.name for job in jobs], (".txt",), "--audacity")
-    if options.plot is not None:
-        check_plots(options.plot, jobs)
+    check_plots(options.plot, jobs)
     from noise.labels.corrections import with_corrections
     from noise.labels.labelling import Labelling
     from noise.labels.summary import result_lines
@@ -67,10 +66,8 @@ def run(options: Namespace) -> int:
         rows = list(rows)
         _note_assumed(rows)
         _note_speeds(rows)
-        written = _export(options, rows)
-        if options.plot is not None:
-            written += draw_recordings(options.plot, jobs, rows, full_scale=work.full_scale)
-        return written
+        drawn = draw_recordings(options.plot, jobs, rows, full_scale=work.full_scale)
+        return [*_export(options, rows), *drawn]
 
     models = (options.classifier, options.inference)
     if options.scheduler is not None:  # other machines have other working folders
