@@ -1,3 +1,4 @@
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
 """Events in windows: where a sound that fills a part of a window only begins and ends.
 
 A squeal of a fifth of a second has the features of its onset, its end and the quiet about it, if
@@ -12,9 +13,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from features.windows.blocks import FRAME_RATE, RATE
+from models.compilation import COMPILED
 
 _SEARCH = 32
 """Samples in which a peak is sought: a period of 500 Hz."""
@@ -86,27 +89,44 @@ def events_within(
     floor = np.partition(context, rank, axis=2)[:, :, rank]
     floor = np.maximum(floor, context[:, :, inside].max(axis=(0, 2)) - _RANGE_DB)
     above = (context - floor[:, :, None]).max(axis=0)
+    ends = np.zeros((len(first), 2), dtype=np.int64)
     highest = above[:, inside].max(axis=1)
-    which, begin, end = [], [], []
-    for w in np.flatnonzero(highest >= _RISE_DB).tolist():
-        at = np.flatnonzero(above[w] >= max(_RISE_DB, highest[w] - _DROP_DB))
-        gaps = np.flatnonzero(np.diff(at) > _GAP)
-        ends = np.stack([at[np.append(0, gaps + 1)], at[np.append(gaps, at.size - 1)]], axis=1)
-        last = min(inside.stop, _BEFORE + len(bands) - int(first[w])) - 1
-        shared = np.clip(ends, inside.start, last)
-        longest = int(np.ptp(shared, axis=1).argmax())
-        if _LEAST <= np.ptp(shared[longest]) <= _MOST:
-            # All of it that fills a window, with the part in this one.
-            a = max(int(ends[longest, 0]), int(shared[longest, 1]) - _OF_WINDOW)
-            which.append(w)
-            begin.append(first[w] - _BEFORE + a)
-            end.append(first[w] - _BEFORE + min(int(ends[longest, 1]), a + _OF_WINDOW))
+    _longest(above, highest, np.minimum(len(bands) - first, _OF_WINDOW), ends)
+    which = np.flatnonzero(ends[:, 1])
+    begin, end = (ends[which] + (first[which] - _BEFORE)[:, None]).T
     hop = RATE // FRAME_RATE
     return (
-        np.array(which, dtype=np.intp),
-        np.array(begin, dtype=np.int64) * hop + round(_FROM_FIRST * RATE),
-        np.array(end, dtype=np.int64) * hop + round(_FROM_LAST * RATE),
+        which,
+        begin * hop + round(_FROM_FIRST * RATE),
+        end * hop + round(_FROM_LAST * RATE),
     )
+
+
+@njit(cache=True, **COMPILED)
+def _longest(above, highest, inside, ends) -> None:
+    """Fill in first and last frame of the event that has most in each window, if it is one."""
+    for w in range(above.shape[0]):
+        start, stop = _BEFORE, _BEFORE + inside[w] - 1
+        if highest[w] < _RISE_DB:
+            continue
+        least = max(_RISE_DB, highest[w] - _DROP_DB)
+        longest, first, last = -1, -1, -1
+        for i in range(above.shape[1] + 1):
+            if i < above.shape[1] and above[w, i] < least:
+                continue
+            if first >= 0 and (i == above.shape[1] or i - last > _GAP):
+                a, b = min(max(first, start), stop), min(max(last, start), stop)
+                if b - a > longest:
+                    longest = b - a
+                    # All of it that fills a window, with the part in this one.
+                    ends[w, 0] = max(first, b - _OF_WINDOW)
+                    ends[w, 1] = min(last, ends[w, 0] + _OF_WINDOW)
+                first = -1
+            if first < 0:
+                first = i
+            last = i
+        if not _LEAST <= longest <= _MOST:
+            ends[w] = 0
 
 
 def prolonged(
