@@ -101,7 +101,7 @@ class Robustness:
     Examples
     --------
     >>> from noise.screening.design import load_design
-    >>> found = robustness(load_design("PDMS"), np.random.default_rng(0), parts=16)
+    >>> found = robustness(load_design("PDMS"), np.random.default_rng(0), parts=4)
     >>> found.noisy.value, found.assumed
     (0.0, True)
     """

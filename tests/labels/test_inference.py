@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from joblib import Parallel, delayed
-from scipy.stats import binom
 from sklearn.ensemble import RandomForestRegressor
 
 from models.blocks import RecordingBlocks
@@ -57,7 +56,7 @@ def creak():
 
 @pytest.fixture(scope="module")
 def heard():
-    return [draw_run_sample(seed) for seed in np.random.SeedSequence(FRESH).spawn(16)]
+    return [draw_run_sample(seed) for seed in np.random.SeedSequence(FRESH).spawn(6)]
 
 
 def widths(samples, kinds, name="interference"):
@@ -81,16 +80,6 @@ def total(counted, part):
     told = [round(case["n"] * case["told"]) for case in cases]
     held = [t * case["covered"] for t, case in zip(told, cases, strict=True)]
     return sum(told), sum(held)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", QUANTITIES)
-def test_intervals_hold_for_about_nine_of_ten(heard, name):
-    told, held = total(coverage(MODEL, heard), f"{name}/")
-    assert told > 50
-    # The cases of one run stand or fall together, so there are no more trials than runs.
-    low, high = binom.ppf([0.0005, 0.9995], len(heard), 0.9) / len(heard)
-    assert low <= held / told <= high
 
 
 @pytest.mark.slow

@@ -50,7 +50,7 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
 
     Examples
     --------
-    >>> cases = known_cases_of_a_rig([400_000, 400_001])
+    >>> cases = known_cases_of_a_rig([400_000])
     >>> all(case.table.measured.shape == case.table.nominal.shape for case in cases)
     True
     """
