@@ -27,7 +27,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from models.errors import ParameterError
@@ -46,6 +46,9 @@ FEWEST = 8
 
 BAND = 10**0.1
 """Upper over lower edge of a band."""
+
+LOWEST, HIGHEST = 50.0, 10e3
+"""Middles of the lowest and the highest band [Hz]."""
 
 
 @short_repr
@@ -72,7 +75,10 @@ class BandPower:
 
 
 def radiated_spectrum(
-    modes: PlateModes, drives: NDArray[np.float64], spectrum: ArrayLike, frequency: ArrayLike
+    modes: PlateModes,
+    drives: NDArray[np.float64],
+    spectra: NDArray[np.complex128],
+    frequency: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Sound power of the upper side under harmonic drives.
 
@@ -81,10 +87,10 @@ def radiated_spectrum(
     modes : PlateModes
     drives : ndarray, shape (n_modes, n_drives)
         As for `models.structure.plate.acceleration_model`.
-    spectrum : array_like, shape (n_drives,), (n_drives, n) or (n_sets, n_drives, n)
-        Force [N] or moment [Nm] of each drive, complex, root mean square; all act together. Sets
-        know nothing of each other's phase, so that their powers add up.
-    frequency : array_like, shape (n,)
+    spectra : ndarray, shape (n_sets, n_drives, n)
+        Force [N] or moment [Nm] of each drive, complex, root mean square; those of a set act
+        together. Sets know nothing of each other's phase, so that their powers add up.
+    frequency : ndarray, shape (n,)
         [Hz]
 
     Returns
@@ -98,17 +104,12 @@ def radiated_spectrum(
     >>> from models.bench import Plate
     >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
     >>> modes = plate_modes(steel, 16e3)
-    >>> power = radiated_spectrum(modes, modes.shape([0.1], [0.05]).T, [1.0], [3e3])
+    >>> force = modes.shape([0.1], [0.05]).T
+    >>> power = radiated_spectrum(modes, force, np.ones((1, 1, 1)), np.array([3e3]))
     >>> (10 * np.log10(power / 1e-12)).round(1)  # dB re 1 pW, for 1 N
     array([64.4])
     """
-    frequency = np.asarray(frequency, dtype=np.float64)
-    given = np.asarray(spectrum, dtype=np.complex128)
-    sets = np.broadcast_to(
-        given[:, None] if given.ndim == 1 else given,
-        (len(given) if given.ndim == 3 else 1, drives.shape[1], frequency.size),
-    )
-    forces = drives @ sets  # (n_sets, n_modes, n)
+    forces = drives @ spectra  # (n_sets, n_modes, n)
     omega, natural = 2 * np.pi * frequency, 2 * np.pi * modes.frequencies[:, None]
     ratios = modes.damping_ratios[:, None]
     velocity = (
@@ -191,25 +192,19 @@ def _upper_gauss(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 def third_octave_power(
     modes: PlateModes,
     drives: NDArray[np.float64],
-    density: Callable[[NDArray[np.float64]], NDArray[np.complex128]] | None = None,
-    *,
-    low: float = 50.0,
-    high: float = 10e3,
+    density: Callable[[NDArray[np.float64]], NDArray[np.complex128]],
 ) -> BandPower:
-    """Sound power of the plate under steady drives, band by band.
+    """Sound power of the plate under steady drives, band by band from `LOWEST` to `HIGHEST`.
 
     Parameters
     ----------
     modes : PlateModes
     drives : ndarray, shape (n_modes, n_drives)
         As for `models.structure.plate.acceleration_model`.
-    density : callable, optional
-        Takes frequencies, shape (n,), each a fixed ratio above the last, to the complex spectra of
-        all drives, shape (n_drives, n), whose squared magnitude is a power spectral density
-        [N2/Hz or (Nm)2/Hz]; phases between drives count. Or to several such sets that know nothing
-        of each other's phase, shape (n_sets, n_drives, n). Default: all drives in phase at 1 N2/Hz.
-    low, high : float, optional
-        Middles of the lowest and the highest band [Hz].
+    density : callable
+        Takes frequencies, shape (n,), each a fixed ratio above the last, to sets of the complex
+        spectra of all drives, shape (n_sets, n_drives, n), whose squared magnitude is a power
+        spectral density [N2/Hz or (Nm)2/Hz]; phases between drives of a set count.
 
     Returns
     -------
@@ -218,31 +213,29 @@ def third_octave_power(
     Raises
     ------
     ParameterError
-        If the bands reach beyond the modes, or are none.
+        If the bands reach beyond the modes.
 
     Examples
     --------
     >>> from models.structure.plate import plate_modes
     >>> from models.bench import Plate
     >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
-    >>> modes = plate_modes(steel, 4e3)
-    >>> bands = third_octave_power(modes, modes.shape([0.1], [0.05]).T, low=500.0, high=2e3)
-    >>> bands.centre.round(), bands.level.round(1)
-    (array([ 501.,  631.,  794., 1000., 1259., 1585., 1995.]), array([...]))
+    >>> modes = plate_modes(steel, 16e3)
+    >>> force = modes.shape([0.1], [0.05]).T
+    >>> bands = third_octave_power(modes, force, lambda f: np.ones((1, 1, f.size)))
+    >>> bands.centre[[0, -1]].round()
+    array([   50., 10000.])
     """
-    first, last = (round(10 * np.log10(middle / 1e3)) for middle in (low, high))
+    first, last = (round(10 * np.log10(middle / 1e3)) for middle in (LOWEST, HIGHEST))
     centre = 1e3 * 10 ** (np.arange(first, last + 1) / 10)
-    if not centre.size:
-        raise ParameterError(f"bands from {low:g} to {high:g} Hz: low must not be above high")
     if centre[-1] * np.sqrt(BAND) > modes.frequencies[-1] * BAND:
         raise ParameterError(
-            f"bands to {high:g} Hz reach beyond the plate's modes, which end at "
-            f"{modes.frequencies[-1]:g} Hz; compute more modes or choose a lower high"
+            f"bands to {HIGHEST:g} Hz reach beyond the plate's modes, which end at "
+            f"{modes.frequencies[-1]:g} Hz; take a larger or thinner plate"
         )
     count = max(FEWEST, int(np.ceil(np.log(BAND) / modes.damping_ratios.min())))
     edges = centre[:, None] * BAND ** (np.linspace(-0.5, 0.5, count + 1))
     frequency = np.sqrt(edges[:, 1:] * edges[:, :-1]).ravel()
-    spectra = np.ones((drives.shape[1], frequency.size)) if density is None else density(frequency)
-    radiated = radiated_spectrum(modes, drives, spectra, frequency)
+    radiated = radiated_spectrum(modes, drives, density(frequency), frequency)
     width = np.diff(edges, axis=1)
     return BandPower(centre, np.sum(radiated.reshape(width.shape) * width, axis=1))

@@ -12,6 +12,7 @@ measured, and effects on the path of sound.
 
 import math
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from scipy.signal import csd
 from models.bench import HIGHEST_PLATE_FREQUENCY
 from models.errors import ParameterError
 from models.radiation.rig_response import anchor_drives, first_mode_damping
-from models.radiation.sound_power import BandPower, third_octave_power
+from models.radiation.sound_power import LOWEST, BandPower, third_octave_power
 from models.rig import Rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import plate_modes
@@ -29,9 +30,6 @@ from sim.effects import EFFECTS
 from sim.effects.effect import Effect, activated
 from sim.motion import Motion
 from sim.run import pulse_force
-
-LOWEST, HIGHEST = 50.0, 10e3
-"""Middles of the lowest and the highest band [Hz]."""
 
 SHORTEST = 0.25
 """Run whose lines are told apart well enough for the band at 50 Hz [s]."""
@@ -111,10 +109,7 @@ def motion_sound_power(
         transfer[0, 1] = 1.0  # a pulse is passed on by the anchor that it strikes
     spectra = np.einsum("iaf,abf,jbf->ijf", transfer, inputs, transfer.conj(), optimize=True)
 
-    def density(middle: NDArray[np.float64]) -> NDArray[np.complex128]:
-        return _sets(frequency, spectra, middle)
-
-    return third_octave_power(modes, drives, density, low=LOWEST, high=HIGHEST)
+    return third_octave_power(modes, drives, partial(_sets, frequency, spectra))
 
 
 def _cross_spectra(

@@ -104,9 +104,7 @@ def test_power_is_the_intensity_of_rayleighs_integral_over_a_far_hemisphere(freq
 def test_bands_beyond_the_modes_are_refused():
     modes = plate_modes(STEEL, 1e3)
     with pytest.raises(ParameterError, match="reach beyond the plate's modes"):
-        third_octave_power(modes, modes.shape([0.1], [0.1]).T, high=4e3)
-    with pytest.raises(ParameterError, match="low must not be above high"):
-        third_octave_power(modes, modes.shape([0.1], [0.1]).T, low=900.0, high=400.0)
+        third_octave_power(modes, modes.shape([0.1], [0.1]).T, lambda f: np.ones((1, 1, f.size)))
 
 
 def _spectrum(integral, distribution, frequency):

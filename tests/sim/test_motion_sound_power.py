@@ -55,7 +55,8 @@ def rms_drives(support):
 @pytest.mark.parametrize("support", [2214.0, 3745.0, FIXED])
 def test_a_tone_of_torque_radiates_what_its_drives_radiate(support):
     power = power_of(support)
-    (exact,) = radiated_spectrum(MODES, *rms_drives(support), [FREQUENCY])
+    drives, rms = rms_drives(support)
+    (exact,) = radiated_spectrum(MODES, drives, np.reshape(rms, (1, -1, 1)), np.array([FREQUENCY]))
     band = np.argmin(np.abs(np.log(power.centre / FREQUENCY)))
     # A line is taken to lie in the middle of its cell, half a resonance wide.
     assert 10 * np.log10(power.radiated[band] / exact) == pytest.approx(0, abs=1.0)
