@@ -387,8 +387,6 @@ class BlockEngine:
 
     def _known_paths(self, setting: Setting) -> ImpulseResponses:
         """Impulse responses of a setting; those of the last one are known."""
-        if self._known is not None and setting is self._setting:
-            return self._known[1]
         key = paths_key(setting)
         if self._known is None or self._known[0] != key:
             rate = self._acquisition.rate

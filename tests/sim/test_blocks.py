@@ -163,6 +163,17 @@ def test_no_change_clicks(change):
     )
 
 
+def test_the_sound_follows_a_change_of_the_structure():
+    run = BlockEngine(setting(MEMORY))
+    before = run.responses
+    stiffer = replace(setting(MEMORY), support_stiffness=3745.0)
+    run.block(setting(MEMORY, 6.0))
+    assert run.responses is before
+    run.block(stiffer)
+    assert run.responses.torque_to_pressure.size == before.torque_to_pressure.size
+    assert not np.array_equal(run.responses.torque_to_pressure, before.torque_to_pressure)
+
+
 @pytest.mark.parametrize(
     ("name", "before", "after"),
     [
