@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -406,15 +406,15 @@ class BlockEngine:
         if first >= self._block or not (effects or before):
             return signals
         recorded = {kind: signal[first:] for kind, signal in signals.items()}
-        memories = begun(effects, self._seed) | self._sensing
+        memories = begun(effects, self._seed, self._sensing)
         made, kept = sensors_block(recorded, self._rate, effects, memories)
         if before != effects:
-            memories = begun(before, self._seed) | self._sensing
+            memories = begun(before, self._seed, self._sensing)
             old, _ = sensors_block(recorded, self._rate, before, memories)
             coming = crossing(self._block - first)
             made = {name: old[name] + coming * (made[name] - old[name]) for name in made}
         self._sensed_by = effects
-        self._sensing = _of(effects, kept)
+        self._sensing = kept
         return {kind: np.concatenate([signals[kind][:first], made[kind]]) for kind in signals}
 
     def _advance(self, n: int) -> Motion:
@@ -457,9 +457,8 @@ class BlockEngine:
     def _uneven(
         self, even: NDArray[np.float64], n: int, effects: Sequence[ActiveEffect]
     ) -> tuple[NDArray[np.float64], Memories]:
-        memories = begun(effects, self._seed) | self._driving
-        driven, kept = drive_block(even, n, self._rate, effects, memories)
-        return driven, _of(effects, kept)
+        memories = begun(effects, self._seed, self._driving)
+        return drive_block(even, n, self._rate, effects, memories)
 
     def _solver_of(self, plan: Plan, start_speed: float) -> MotionSolver:
         with blaming_the_unusual(plan.rig):
@@ -533,19 +532,10 @@ def paths_key(setting: Setting) -> tuple[object, ...]:
     )
 
 
-def _of(effects: Sequence[ActiveEffect], memories: Memories) -> Memories:
-    names = {active.effect.name for active in effects}
-    return {name: memory for name, memory in memories.items() if name in names}
-
-
 def _crossed(old: Motion, new: Motion) -> Motion:
     coming = crossing(new.torque.size)
-    names = [field.name for field in fields(Motion) if field.name != "rate"]
-    crossed = {}
-    for name in names:
-        before = getattr(old, name)
-        crossed[name] = before + coming * (getattr(new, name) - before)
-    return Motion(new.rate, **crossed)
+    pairs = zip(old.arrays, new.arrays, strict=True)
+    return Motion(new.rate, *(before + coming * (after - before) for before, after in pairs))
 
 
 def _ended(held: Motion) -> Motion:

@@ -67,7 +67,7 @@ class Motion:
 
     def part(self, start: int, stop: int | None = None) -> Motion:
         """Return the motion from sample `start` to before `stop`, by default to its end."""
-        return Motion(self.rate, *(values[start:stop] for values in self._arrays()))
+        return Motion(self.rate, *(values[start:stop] for values in self.arrays))
 
     def since(self, first: int) -> Motion:
         """Return the motion from sample `first` on."""
@@ -75,10 +75,12 @@ class Motion:
 
     def followed_by(self, later: Motion) -> Motion:
         """Return the motion with what comes after it."""
-        pairs = zip(self._arrays(), later._arrays(), strict=True)
+        pairs = zip(self.arrays, later.arrays, strict=True)
         return Motion(self.rate, *(np.concatenate(pair) for pair in pairs))
 
-    def _arrays(self) -> list[NDArray[np.float64]]:
+    @property
+    def arrays(self) -> list[NDArray[np.float64]]:
+        """All that moves, in the order of the fields."""
         return [getattr(self, field.name) for field in fields(self) if field.name != "rate"]
 
     @property

@@ -209,12 +209,16 @@ def effect_named(name: str, effects: Mapping[str, Effect]) -> Effect:
     )
 
 
-def begun(effects: Sequence[ActiveEffect], seed: int) -> Memories:
-    """Return the memory, by name, that each effect begins with; each has its own random numbers."""
-    names = [active.effect.name for active in effects if active.effect.in_blocks]
+def begun(effects: Sequence[ActiveEffect], seed: int, kept: Memories | None = None) -> Memories:
+    """Return the memory, by name, that each effect goes on with; each has its own random numbers.
+
+    Effects that have none in `kept` begin.
+    """
     import numpy as np
 
-    return {name: {"rng": np.random.default_rng([seed, *name.encode()])} for name in names}
+    names = [active.effect.name for active in effects if active.effect.in_blocks]
+    begin = {name: {"rng": np.random.default_rng([seed, *name.encode()])} for name in names}
+    return begin | {name: memory for name, memory in (kept or {}).items() if name in begin}
 
 
 def drive_block(
