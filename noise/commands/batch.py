@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
 
 _INTERRUPTED = 130  # 128 + SIGINT
-_TERMINATED = 143  # 128 + SIGTERM
 
 
 BATCH = (
@@ -104,7 +103,7 @@ def run_batch(
                 else:  # rows are in the journal, of which there may be many
                     outcomes[job.index] = done._replace(rows=[])
         except KeyboardInterrupt as interrupt:
-            stopped = _exit_code(interrupt)
+            stopped = getattr(interrupt, "code", _INTERRUPTED)
         _note_uncalibrated(outcomes.values())
         refused = {index: done for index, done in outcomes.items() if done.error is not None}
         there = [job for job in jobs if job.index in outcomes]
@@ -112,7 +111,7 @@ def run_batch(
         try:
             rows, written = _write(options, work, made, also, keep, table=not to_read)
         except KeyboardInterrupt as interrupt:
-            stopped = _exit_code(interrupt)
+            stopped = getattr(interrupt, "code", _INTERRUPTED)
             rows, written = _write(options, work, made, also, keep, table=not to_read)
         journal.note_table()
     read = f"{len(outcomes)} of " * bool(stopped) + counted(len(jobs), "recording")
@@ -122,10 +121,10 @@ def run_batch(
     if lines is not None and to_read:
         print(*lines(rows), sep="\n")
         say("--out labels.csv, or a pipe, takes the whole table")
-    for path in written:
-        if out is not None:
-            report(path)
-        else:  # standard output is the table
+    if out is not None:
+        report(*written)
+    else:  # standard output is the table
+        for path in written:
             say(str(path))
     return stopped or int(bool(refused))
 
@@ -185,6 +184,8 @@ def _note_uncalibrated(outcomes: Iterable[Done]) -> None:
 class _Terminated(KeyboardInterrupt):
     """Told to end, as a batch system or a shutdown does: the same as Ctrl-C."""
 
+    code = 143  # 128 + SIGTERM
+
 
 @contextmanager
 def _termination_as_interrupt() -> Iterator[None]:
@@ -199,10 +200,6 @@ def _termination_as_interrupt() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-def _exit_code(interrupt: KeyboardInterrupt) -> int:
-    return _TERMINATED if isinstance(interrupt, _Terminated) else _INTERRUPTED
 
 
 _LONGEST = 600.0

@@ -11,7 +11,7 @@ from argparse import ArgumentTypeError, Namespace
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from models.condition import CONDITION as QUANTITIES, FIXED
 from models.errors import ParameterError, naming
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
     from sim.run import Run
     from sim.shaft import LoggedSpeed, ShaftMotion
+
+_T = TypeVar("_T")
 
 DEFAULT_MATERIAL = "fluorocarbon"
 DEFAULT_SECONDS = 1.0
@@ -258,7 +260,7 @@ _LEAST_SAMPLES = 16
 """What `noise.recordings` takes for a recording."""
 
 
-def _or(given: float | None, default: float) -> float:
+def _or(given: _T | None, default: _T) -> _T:
     return default if given is None else given
 
 
@@ -267,9 +269,7 @@ def _rig(options: Namespace, library: Mapping[str, Effect], read: Rig | None) ->
 
     if options.rig is None:
         with naming("--material: "):
-            rig = load_material_rig(
-                DEFAULT_MATERIAL if options.material is None else options.material
-            )
+            rig = load_material_rig(_or(options.material, DEFAULT_MATERIAL))
     else:
         with naming("--rig: "):
             rig = read or load_rig(options.rig)
@@ -297,8 +297,7 @@ def _effects(
     for spec in given:
         with naming("--effect: "):
             activated((spec,), library)
-    by_name = {spec.name: spec for spec in (*of_the_rig, *given)}
-    return tuple(by_name.values())
+    return tuple({spec.name: spec for spec in (*of_the_rig, *given)}.values())
 
 
 def _note_idle(path: Path | None, rig: Rig, library: Mapping[str, Effect]) -> None:

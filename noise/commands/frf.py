@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentTypeError, Namespace
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError, RecordingError
 from noise.base.files import atomic, check_target
@@ -26,16 +27,6 @@ if TYPE_CHECKING:
 _DEFAULT_COHERENCE = 0.8
 _MOST_BANDS = 8
 _LEFT = 0.02  # of a response at the end of a hit, from which on a peak is that much too low
-
-_MODE_COLUMNS = (
-    "frequency_hz",
-    "damping_ratio",
-    "residue_real",
-    "residue_imag",
-    "peak",
-    "coherence",
-    "orders",
-)
 
 
 def _channel(text: str) -> str:
@@ -128,12 +119,11 @@ def _check(options: Namespace) -> None:
 
 def _read(options: Namespace) -> tuple[list[Hit], str, int]:
     """Usable hits, cut to the same length, the unit of the response, and how many were refused."""
-    from features.modal.hammer import Hit, check_hit
+    from features.modal.hammer import check_hit
     from noise.recordings.hits import find_hits, read_hit
 
     hits: list[Hit] = []
-    units: list[str] = []
-    refused = 0
+    of_all, refused = "", 0
     for path in track(find_hits(options.hits), "reading", unit="hit"):
         try:
             hit, unit = read_hit(path, response=options.response, arm=options.arm)
@@ -142,24 +132,22 @@ def _read(options: Namespace) -> tuple[list[Hit], str, int]:
                 raise RecordingError(
                     f"{path}: is sampled at {hit.rate:g} Hz, {hits[0].name} at {hits[0].rate:g} Hz"
                 )
-            if units and unit != units[0]:
+            if hits and unit != of_all:
                 raise RecordingError(
-                    f"{path}: its response is in {unit}, that of {hits[0].name} in {units[0]}"
+                    f"{path}: its response is in {unit}, that of {hits[0].name} in {of_all}"
                 )
         except RecordingError as error:
             refuse(error)
             refused += 1
-            continue
-        hits.append(hit)
-        units.append(unit)
+        else:
+            of_all = unit
+            hits.append(hit)
     lengths = {hit.force.size for hit in hits}
     if len(lengths) > 1:
-        shortest = min(lengths)
-        note(f"hits of different lengths are cut to the shortest, {shortest} samples")
-        hits = [
-            Hit(hit.force[:shortest], hit.response[:shortest], hit.rate, hit.name) for hit in hits
-        ]
-    return hits, units[0] if units else "", refused
+        n = min(lengths)
+        note(f"hits of different lengths are cut to the shortest, {n} samples")
+        hits = [replace(hit, force=hit.force[:n], response=hit.response[:n]) for hit in hits]
+    return hits, of_all, refused
 
 
 def _tell_coherence(transfer: TransferFunction, least: float) -> None:
@@ -174,10 +162,9 @@ def _tell_coherence(transfer: TransferFunction, least: float) -> None:
         return
     widest = sorted(sorted(bands, key=lambda band: band[0] - band[1])[:_MOST_BANDS])
     told = ", ".join(f"{low:.5g}-{high:.5g}" for low, high in widest)
-    more = (
-        f" Hz, and {len(bands) - len(widest)} narrower ones" if len(bands) > len(widest) else " Hz"
-    )
-    note(f"coherence below {least:g}, not to be trusted: {told}{more}")
+    narrower = len(bands) - len(widest)
+    more = f", and {narrower} narrower ones" * (narrower > 0)
+    note(f"coherence below {least:g}, not to be trusted: {told} Hz{more}")
 
 
 def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) -> None:
@@ -188,15 +175,15 @@ def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) 
         if options.out is not None:
             write_transfer_function(outputs.enter_context(atomic(options.out)), transfer)
         if modes is not None:
-            table = outputs.enter_context(atomic(options.modes))
-            write_table(table, _MODE_COLUMNS, _mode_rows(modes, transfer))
+            table = _mode_table(modes, transfer)
+            lines = zip(*table.values(), strict=True)
+            rows = [dict(zip(table, line, strict=True)) for line in lines]
+            write_table(outputs.enter_context(atomic(options.modes)), list(table), rows)
     if options.out is None and options.modes is None:
         if sys.stdout is None:
             raise ParameterError("standard output is closed; name a file with --out")
         write_transfer_function_csv(sys.stdout, transfer)
-    for path in (options.out, options.modes):
-        if path is not None:
-            report(path)
+    report(*filter(None, (options.out, options.modes)))
 
 
 def _trusted(modes: Modes, transfer: TransferFunction, hits: list[Hit], least: float) -> Modes:
@@ -231,20 +218,16 @@ def _coherence(modes: Modes, transfer: TransferFunction) -> NDArray[np.float64]:
     )
 
 
-def _mode_rows(modes: Modes, transfer: TransferFunction) -> list[dict[str, object]]:
+def _mode_table(modes: Modes, transfer: TransferFunction) -> dict[str, NDArray[Any]]:
     import numpy as np
 
     (residues,) = modes.residues
-    return [
-        dict(zip(_MODE_COLUMNS, row, strict=True))
-        for row in zip(
-            modes.frequency,
-            modes.damping_ratio,
-            residues.real,
-            residues.imag,
-            np.abs(residues) / (2 * np.pi * modes.frequency * modes.damping_ratio),
-            _coherence(modes, transfer),
-            modes.orders,
-            strict=True,
-        )
-    ]
+    return {
+        "frequency_hz": modes.frequency,
+        "damping_ratio": modes.damping_ratio,
+        "residue_real": residues.real,
+        "residue_imag": residues.imag,
+        "peak": np.abs(residues) / (2 * np.pi * modes.frequency * modes.damping_ratio),
+        "coherence": _coherence(modes, transfer),
+        "orders": modes.orders,
+    }

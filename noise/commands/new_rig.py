@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from importlib import resources
 from pathlib import Path
 
 from models.errors import ParameterError
@@ -16,39 +17,6 @@ OPTIONS = (
     Option("--out FILE.toml", Path),
     SEED,
 )
-
-_TEXT = """\
-# Rig file of bushing-noise: every command takes it as --rig FILE, screen as a design.
-# What is not stated here stays as in the base. A # begins a comment.
-base = "{base}"
-name = "my rig"
-
-# Effects, in place of those of the base (`bushing-noise effects` lists them):
-# effects = [{effects}]
-
-[change]
-# A factor ("x1.2") or a percentage ("-10 %") by the name without a unit; a number, for every fit
-# and support, by the name with its unit. In the base:
-{fits}
-# elastomer_stiffness = "-10 %"
-# critical_torque = "+10 %"
-# kinetic_torque = "+10 %"
-# damping = "x1.2"
-
-# [sensors]
-# noise = {{ torque = 0.01, acceleration = 0.1, pressure = 2e-3 }}   # rms, in Nm, m/s2 and Pa
-# range = {{ torque = 100, acceleration = 5000, pressure = 20 }}     # of the converter
-# bits = 16
-
-# [design]                                 # use of the design, for `bushing-noise screen`
-# speed_rad_s = "0.25..13"
-# interference_mm = {interference}
-# support_stiffness_Nm_rad = [2214, 3745, "fixed"]
-
-# [tolerances]                             # relative standard deviations of parts
-# elastomer_stiffness = 0.05
-# critical_torque = 0.05
-"""
 
 
 def run(options: Namespace) -> int:
@@ -84,7 +52,8 @@ def new_rig_text(material: str) -> str:
     from models.rig_file import load_material_rig
 
     rig = load_material_rig(material)
-    return _TEXT.format(
+    template = resources.files("noise.commands") / "new_rig.toml"
+    return template.read_text(encoding="utf-8").format(
         base=rig.material or material,
         effects=", ".join(f'"{one}"' for one in rig.effects) or '"slip_pulse"',
         fits="\n".join(f"#   {fit_text(fit)}" for fit in rig.fits),

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import argparse
 import math
+import tomllib
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from importlib import import_module, resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,7 +21,6 @@ from models.errors import ParameterError, naming
 from models.schema import Quantity
 from noise.base.files import check_target
 from noise.base.progress import note, say
-from noise.base.tables import table_endings
 
 if TYPE_CHECKING:
     from models.rig import Rig
@@ -223,9 +224,6 @@ def help_of(command: str) -> Help:
     >>> help_of("render").options["--gap"]
     'silence between two of them in s'
     """
-    import tomllib
-    from importlib import resources
-
     text = (resources.files("noise.commands") / "help.toml").read_text(encoding="utf-8")
     texts = tomllib.loads(text)
     own = texts[command]
@@ -241,21 +239,18 @@ def help_of(command: str) -> Help:
 
 def _filled(text: str) -> str:
     """Return a text with the lists that it names in braces."""
-    if "{tables}" in text:
-        text = text.replace("{tables}", table_endings())
-    if "{materials}" in text:
-        from models.rig_file import material_names
-
-        text = text.replace("{materials}", ", ".join(material_names()))
-    if "{environments}" in text:
-        from noise.screening.environments import environment_names
-
-        text = text.replace("{environments}", ", ".join(environment_names()))
-    if "{effects}" in text:
-        from sim.effects import EFFECTS
-
-        text = text.replace("{effects}", ", ".join(EFFECTS))
+    for place, (module, name) in _LISTS.items():
+        if place in text:
+            found = getattr(import_module(module), name)
+            text = text.replace(place, ", ".join(found() if callable(found) else found))
     return text
+
+
+_LISTS = {
+    "{environments}": ("noise.screening.environments", "environment_names"),
+    "{effects}": ("sim.effects", "EFFECTS"),
+    "{materials}": ("models.rig_file", "material_names"),
+}
 
 
 def add_options(

@@ -91,11 +91,12 @@ class _File(NamedTuple):
     target: Path
     sources: list[Source]
 
-    def recordings(self, band: tuple[float, float] | None) -> list[Recording]:
-        from noise.audio.sound import heard
 
-        made = [source.recording() for source in self.sources]
-        return made if band is None else [heard(one, band) for one in made]
+def _recordings(file: _File, band: tuple[float, float] | None) -> list[Recording]:
+    from noise.audio.sound import heard
+
+    made = [source.make(source.name) for source in file.sources]
+    return made if band is None else [heard(one, band) for one in made]
 
 
 def _folder(options: Namespace, sources: list[Source]) -> Path | None:
@@ -142,7 +143,7 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
     for file in track(files, "measuring", unit="sound"):
         try:
             of = measure(
-                file.recordings(options.band),
+                _recordings(file, options.band),
                 **shape,
                 quality=options.sound_quality,
                 match=options.match_loudness,
@@ -169,7 +170,7 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
         of, scale = measured[name], scales[name]
         written, summary = render(
             target,
-            files[index].recordings(options.band),
+            _recordings(files[index], options.band),
             of,
             scale,
             **shape,

@@ -39,7 +39,7 @@ class Source:
     name : str
         Of a recording its path without the ending, below the folder named.
     make : callable
-        Reads or simulates it.
+        Reads or simulates its pressure channel, given the name.
     path : Path, optional
         Of a recording.
     seconds : float
@@ -54,10 +54,6 @@ class Source:
     seconds: float = math.inf
     notes: tuple[str, ...] = ()
 
-    def recording(self) -> Recording:
-        """Return its pressure channel."""
-        return self.make(self.name)
-
 
 def sources_of(options: Namespace) -> list[Source]:
     """Return what a call of ``render`` is to make audible.
@@ -68,7 +64,9 @@ def sources_of(options: Namespace) -> list[Source]:
         An input does not exist or does not go with the options.
     """
     given = ["--" + name.replace("_", "-") for name in given_options(options)]
-    simulated = [text for text in options.inputs if _is_condition(text) or _is_rig(text)]
+    simulated = [
+        text for text in options.inputs if _is_condition(text) or text.lower().endswith(".toml")
+    ]
     recorded = [text for text in options.inputs if text not in simulated]
     if not options.inputs and not given:
         raise ParameterError(
@@ -112,10 +110,6 @@ def _is_condition(text: str) -> bool:
     return text.lstrip().startswith("-")
 
 
-def _is_rig(text: str) -> bool:
-    return text.lower().endswith(".toml")
-
-
 def _recorded(path: Path, full_scale: PascalPerFullScale | None) -> list[Source]:
     from noise.recordings import find_recordings
 
@@ -137,7 +131,7 @@ def _read(path: Path, full_scale: PascalPerFullScale | None, _: str) -> Recordin
 
 
 def _simulated(text: str, options: Namespace) -> Source:
-    if _is_rig(text) and not _is_condition(text):
+    if not _is_condition(text):
         if options.rig is not None:
             raise ParameterError(f"--rig {options.rig} and {text} are both rig files; give one")
         return _source(Path(text).stem, _over(options, {"rig": Path(text)}))

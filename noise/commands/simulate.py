@@ -14,7 +14,7 @@ from models.errors import ParameterError, naming
 from noise.base.files import check_target
 from noise.base.progress import note, report, say
 from noise.base.tables import check_table_path, write_table
-from noise.commands.condition import CONDITION, is_long, run_arguments, with_notes
+from noise.commands.condition import CONDITION, DEFAULT_SECONDS, is_long, run_arguments, with_notes
 from noise.commands.options import SEED, Option, whole_number
 
 if TYPE_CHECKING:
@@ -46,18 +46,7 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Simulate; write the recording and the picture, or print the summary."""
-    if options.out is not None:
-        check_target(options.out)
-        if not options.force:
-            _check_own(options.out)
-    if options.plot is not None:
-        _check_plot(options.plot)
-    if options.sound_power is not None:
-        check_table_path(options.sound_power)
-        check_target(options.sound_power, "--sound-power")
-    for option in ("plot", "sound_power"):
-        if getattr(options, option) is not None:
-            _check_seconds(option, options.seconds)
+    _check(options)
     if options.rig is not None:
         from models.suspension import suspension_file
 
@@ -89,11 +78,9 @@ def run(options: Namespace) -> int:
 
 def _run_suspension(options: Namespace, path: Path) -> int:
     """Simulate a car's bar in two bushings."""
-    for option in ("plot", "sound_power"):
-        if getattr(options, option) is not None:
-            raise ParameterError(
-                f"--{option.replace('_', '-')} is of the rig; --rig {options.rig} is a suspension"
-            )
+    for option, asked in (("--plot", options.plot), ("--sound-power", options.sound_power)):
+        if asked is not None:
+            raise ParameterError(f"{option} is of the rig; --rig {options.rig} is a suspension")
     from models.suspension import load_suspension
 
     with naming("--rig: "):
@@ -201,10 +188,8 @@ def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any])
     rows = sound_power_rows(power)
     write_table(path, POWER_COLUMNS, rows)
     total = rows[-1]["power_level_dba"]
-    if total is None:
-        say("the plate radiates no sound")
-    else:
-        say(f"sound power {total:.1f} dB(A) re 1 pW in a baffle")
+    silent = "the plate radiates no sound"
+    say(silent if total is None else f"sound power {total:.1f} dB(A) re 1 pW in a baffle")
 
 
 def _check_own(out: Path) -> None:
@@ -223,25 +208,31 @@ def _check_own(out: Path) -> None:
         )
 
 
-def _check_plot(path: Path) -> None:
-    """Refuse a picture that cannot be drawn, before the run that it shows."""
-    from noise.pictures.figure import check_picture_path
+def _check(options: Namespace) -> None:
+    """Refuse what cannot be written, before the run."""
+    if options.out is not None:
+        check_target(options.out)
+        if not options.force:
+            _check_own(options.out)
+    if options.plot is not None:
+        from noise.pictures.figure import check_picture_path
 
-    with naming("--plot "):
-        check_picture_path(path)
-    check_target(path, "--plot")
-
-
-def _check_seconds(option: str, seconds: float | None) -> None:
-    called = "--" + option.replace("_", "-")
-    if seconds is not None and seconds > _MOST_AT_ONCE:
+        with naming("--plot "):
+            check_picture_path(options.plot)
+    check_table_path(options.sound_power)
+    seconds = DEFAULT_SECONDS if options.seconds is None else options.seconds
+    for option, path in (("--plot", options.plot), ("--sound-power", options.sound_power)):
+        if path is None:
+            continue
+        check_target(path, option)
+        if seconds > _MOST_AT_ONCE:
+            raise ParameterError(
+                f"{option} takes the whole run in memory, for which --seconds {seconds:g} is too "
+                f"long; give {_MOST_AT_ONCE:g} or less"
+            )
+    if options.sound_power is not None and seconds < _LEAST_OF_POWER:
         raise ParameterError(
-            f"{called} takes the whole run in memory, for which --seconds {seconds:g} is too long; "
-            f"give {_MOST_AT_ONCE:g} or less"
-        )
-    if option == "sound_power" and seconds is not None and seconds < _LEAST_OF_POWER:
-        raise ParameterError(
-            f"{called}: --seconds {seconds:g} is too short for the band at 50 Hz; "
+            f"--sound-power: --seconds {seconds:g} is too short for the band at 50 Hz; "
             f"give {_LEAST_OF_POWER:g} or more"
         )
 

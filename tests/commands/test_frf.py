@@ -56,9 +56,8 @@ def hits(tmp_path, monkeypatch):
     return ["rows.npy", "columns.npy", "hit.csv", "run.wav"]
 
 
-@pytest.mark.parametrize("ending", ["uff", "npz", "csv"])
-def test_hits_of_every_kind_give_the_response_to_a_torque(hits, capsys, ending):
-    out = Path("new") / f"beam.{ending}"
+def test_hits_of_every_kind_give_the_response_to_a_torque(hits, capsys):
+    out = Path("new") / "beam.uff"
     assert main(["frf", *hits, "--arm", "0.05", "--out", str(out)]) == 0
     assert capsys.readouterr().out == f"{out}\n"
     frf = read_transfer_function(out, input_unit="N m", output_unit="m/s^2")
