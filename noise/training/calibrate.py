@@ -208,10 +208,13 @@ def _print_speeds(title: str, speeds: Mapping[TableNumber, float]) -> None:
 def _print_noises(rig: Rig) -> None:
     print("Noises, not fitted as such (5.2.3)")
     for cell in (one for one in THESIS_TABLE if one.item in ("squawk", "squeal", "none")):
-        place = {"interference": cell.interference, "support_stiffness": cell.support_stiffness}
-        made = label_by_physics(simulate(rig, *cell.speeds, **place))
+        run = simulate(
+            rig, *cell.speeds,
+            interference=cell.interference, support_stiffness=cell.support_stiffness,
+        )  # fmt: skip
         at = f"{1e3 * cell.interference:.3f} mm, {cell.support_stiffness:.0f} Nm/rad"
-        print(f"  {at}, {cell.speeds[0]:g} rad/s  named {cell.item:<7} simulated {made}")
+        named = f"named {cell.item:<7} simulated {label_by_physics(run)}"
+        print(f"  {at}, {cell.speeds[0]:g} rad/s  {named}")
 
 
 def _fitted(

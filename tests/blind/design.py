@@ -26,10 +26,6 @@ CLASSES = (
 )
 """A block of classes: a share of 15, 15, 40, 15, 5 and 10 %."""
 
-_QUOTAS = (
-    ["none"] * 15 + ["parameters"] * 5 + ["one"] * 42 + ["pair"] * 5 + ["triple"] * 3
-    + ["stranger"] * 5
-)  # fmt: skip
 _OF_A_KIND = (
     ["none"] * 20 + ["parameters"] * 6 + ["one"] * 16 + ["pair"] * 8 + ["stranger"] * 6
 )  # fmt: skip
@@ -38,11 +34,10 @@ _SEALED_OF_A_KIND = (
     + ["stranger"] * 28
 )  # fmt: skip
 BLOCKS = {
-    "shares": CLASSES, "quotas": _QUOTAS, "kind": _OF_A_KIND, "sealed kind": _SEALED_OF_A_KIND,
+    "shares": CLASSES, "kind": _OF_A_KIND, "sealed kind": _SEALED_OF_A_KIND,
 }  # fmt: skip
-"""Twenty blocks of quotas, 1500 cases, have 300 nulls, each cause 40 times and 100 strangers; by
-shares that takes 2100. One block of a kind is what development draws of a kind of bench; one sealed
-block leaves 75 nulls, 60 singles, 30 pairs and 20 strangers where a quarter is too weak to see."""
+"""One block of a kind is what development draws of a kind of bench; one sealed block leaves 75
+nulls, 60 singles, 30 pairs and 20 strangers where a quarter is too weak to see."""
 
 OFFSET_KEYS = (
     "elastomer_stiffness", "critical_torque", "kinetic_torque", "damping", "elastomer_inertia",

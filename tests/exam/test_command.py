@@ -4,7 +4,6 @@ import ast
 import json
 import sys
 import types
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +12,10 @@ import pytest
 from tests.blind import generate as generating
 from tests.blind.__main__ import main
 from tests.blind.cases import run_case
-from tests.blind.design import BLOCKS, draw_design
-from tests.blind.effects import CAUSES, DEVELOPMENT, SEALED
+from tests.blind.design import draw_design
+from tests.blind.effects import DEVELOPMENT
 from tests.blind.gap import gaps_of
-from tests.blind.generate import LOG, Wanted, commit, generate_sealed
+from tests.blind.generate import Wanted, commit, generate_sealed
 from tests.blind.score.improving import table
 from tests.blind.score.run import Asked, score_sealed
 
@@ -109,16 +108,6 @@ def test_sealed_cases_cannot_be_generated_by_command(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_cases_of_generate_are_never_of_sealed_forms():
-    sealed = {name for i in range(80) for name in _forms(i, SEALED)}
-    open_ = {name for i in range(80) for name in _forms(i, DEVELOPMENT)}
-    assert not sealed & open_
-
-
-def _forms(index, kept_for):
-    return [form.name for form, _ in draw_design(3, index, kept_for).forms]
-
-
 def test_no_code_but_the_logged_one_asks_for_the_sealed_set():
     asking = set()
     for path in BLIND.rglob("*.py"):
@@ -136,27 +125,6 @@ def test_no_code_but_the_logged_one_asks_for_the_sealed_set():
         if isinstance(n, ast.Call) and getattr(n.func, "id", "") == "generate_sealed"
     }
     assert calls == {"run.py"}
-
-
-def test_the_log_lies_in_the_repository():
-    assert LOG.parent == BLIND
-
-
-def test_quotas_hold_what_the_first_answer_is_scored_on():
-    designs = [draw_design(1, i, SEALED, "quotas") for i in range(1500)]
-    kinds = Counter(d.kind for d in designs)
-    assert kinds["none"] >= 300
-    assert kinds["stranger"] >= 100
-    causes = Counter(d.forms[0][0].effect for d in designs if d.kind == "one")
-    assert set(causes) == set(CAUSES)
-    assert min(causes.values()) >= 40
-    assert len(BLOCKS["quotas"]) == 75
-
-
-def test_shares_take_2100_cases_for_forty_of_each_cause():
-    kinds = Counter(draw_design(1, i, SEALED).kind for i in range(2100))
-    assert kinds["one"] == 40 * len(CAUSES)
-    assert kinds["none"] == 315
 
 
 @pytest.mark.parametrize("kind", ["none", "parameters", "pair"])

@@ -12,7 +12,7 @@ from noise.base.progress import counted, say, track
 from noise.diagnosis.causes.location import learn_stage_nulls
 from noise.training.causes.cases.draw import SHARED
 from noise.training.causes.fit import null_scale, train_posterior
-from noise.training.causes.report import is_kept, report, with_forms
+from noise.training.causes.report import is_kept, report
 from noise.training.causes.store import CHUNK, draw_into, load_cases
 
 
@@ -31,10 +31,6 @@ def main() -> int:
     training = commands.add_parser("train", help="train the posterior on cases that were drawn")
     training.add_argument("folder", type=Path, metavar="FOLDER", help="of draw")
     training.add_argument("--seed", type=int, default=0, help="of the trees")
-    training.add_argument(
-        "--leave-out", nargs="+", default=(), metavar="FORM",
-        help="forms of effects (FORM, EFFECT:FORM or EFFECT) that are kept from training",
-    )  # fmt: skip
     training.add_argument(
         "--report",
         action="store_true",
@@ -67,18 +63,14 @@ def _train(options: argparse.Namespace) -> int:
     check_target(options.out)
     cases = load_cases(options.folder)
     kept = [case for case in cases if options.report and is_kept(case)]
-    left_out = [case for case in cases if with_forms(case, options.leave_out)]
-    aside = {case.seed for case in (*kept, *left_out)}
-    learned = [case for case in cases if case.seed not in aside]
+    learned = [case for case in cases if not (options.report and is_kept(case))]
     say(f"training on {counted(len(learned), 'case')}")
     posterior = train_posterior(learned, seed=options.seed)
-    seeds = f"{learned[0].seed}:{learned[-1].seed + 1}"
-    card = {**posterior.card, "seeds": seeds, "left out": list(options.leave_out)}
+    card = {**posterior.card, "seeds": f"{learned[0].seed}:{learned[-1].seed + 1}"}
     replace(posterior, card=card).save(options.out)
     print(options.out)
-    if options.report or options.leave_out:
-        out = {case.seed for case in left_out}
-        print(report(posterior, [case for case in kept if case.seed not in out], left_out))
+    if options.report:
+        print(report(posterior, kept))
     return 0
 
 

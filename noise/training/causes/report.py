@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,21 +28,7 @@ def is_kept(case: Known) -> bool:
     return case.rig % KEPT_FOR_REPORT == KEPT_FOR_REPORT - 1
 
 
-def with_forms(case: Known, forms: Collection[str]) -> bool:
-    """Whether a case has an effect in one of some forms.
-
-    Parameters
-    ----------
-    case : Known
-    forms : collection of str
-        Names of forms, ``effect:form`` or of whole effects.
-    """
-    truth = case.truth
-    named = {f"{name}:{form}" for name, form in zip(truth.effects, truth.forms, strict=True)}
-    return bool(set(forms) & {*named, *truth.effects, *truth.forms})
-
-
-def report(posterior: Posterior, cases: Sequence[Known], left_out: Sequence[Known] = ()) -> str:
+def report(posterior: Posterior, cases: Sequence[Known]) -> str:
     """Score the first look, without gap and fits.
 
     Parameters
@@ -50,35 +36,19 @@ def report(posterior: Posterior, cases: Sequence[Known], left_out: Sequence[Know
     posterior : Posterior
     cases : sequence of Known
         That it has not seen.
-    left_out : sequence of Known
-        With forms that were never drawn in training.
 
     Returns
     -------
     str
-        A table, one row for each kind of bench; then one for each form that was left out.
+        A table, one row for each kind of bench.
     """
-
-    def answered(some: Sequence[Known]) -> list[_Answer]:
-        return [(case, _verdict(posterior, case)) for case in some]
-
-    answers = answered(cases)
+    answers = [(case, _verdict(posterior, case)) for case in cases]
     kinds = sorted({name for case in cases for name in case.departures})
     rows = [("all", answers), ("quiet", [a for a in answers if not a[0].departures])]
     rows += [(kind, [a for a in answers if kind in a[0].departures]) for kind in kinds]
     lines = [f"{'bench':12}" + "".join(f"{name:>22}" for name in _SCORES)]
     lines += [f"{name:12}" + "".join(_score(some, *of) for of in _SCORES.values())
               for name, some in rows]  # fmt: skip
-    of_form: dict[str, list[_Answer]] = {}
-    for case, verdict in answered([c for c in left_out if c.truth.kind in ("one", "unknown")]):
-        form = f"{case.truth.effects[0]}:{case.truth.forms[0]}"
-        of_form.setdefault(form, []).append((case, verdict))
-    plain = {form: [a for a in some if _plain(a[0])] for form, some in sorted(of_form.items())}
-    lines += [
-        f"a form never drawn, {form}: first in {sum(map(_is_first, some))} of {len(some)} plain, "
-        f"unknown in {sum(verdict == ('unknown',) for _, verdict in some)}"
-        for form, some in plain.items()
-    ]
     return "\n".join(lines)
 
 

@@ -30,7 +30,6 @@ from models.recording import Recording
 from models.rig import Rig
 from models.sensors import Sensors
 from noise.base.files import atomic, check_target
-from noise.base.progress import say
 from noise.diagnosis.evidence.summary import CaseTable, NominalNumbers, Numbers, case_table
 from noise.diagnosis.preparation.prepare import prepared
 from noise.training.causes.cases.draw import SHARED, DrawnCase, draw_case
@@ -63,9 +62,6 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
                 case = draw_case(seed)
                 table = _table(case, shared)
         except BushingNoiseError:
-            continue
-        except Exception as error:  # one case is no reason to lose all others
-            say(f"case {seed} is left out: {type(error).__name__}: {error}")
             continue
         if table is not None:
             single = with_rows(table, _single)

@@ -66,12 +66,7 @@ def make_rig(
             for i, (f, (k, c, t, top)) in enumerate(_FITS.items())}  # fmt: skip
     damping = {kb: c * wide[6 + i] for i, (kb, c) in enumerate(_SUPPORTS.items())}
     inertias = (wide[9] / 65000.0, wide[10] / 1200.0)
-    chosen_fits = [
-        float(f) for f in rng.choice(list(_FITS), int(rng.integers(1, 3)), replace=False)
-    ]
-    supports = [
-        float(k) for k in rng.choice(list(_SUPPORTS), int(rng.integers(1, 3)), replace=False)
-    ]
+    chosen_fits, supports = _some(_FITS, rng), _some(_SUPPORTS, rng)
     rate = int(rng.choice(_RATES))
     conditions, samples, runs = [], [], []
     for k in range(recordings):
