@@ -3,7 +3,8 @@
 Whether a vibration dies, persists or breaks out is told by `noise.screening.vibration`. What sounds
 has the name that `noise.labels` gives a recording of it, by the classifier that ships. The name by
 the physics of the motion (`noise.noise_definition`) stands beside it: friction may strike the plate
-as in a creak while the ear, and the classifier, hear the lines of a squawk.
+as in a creak while the ear, and the classifier, hear the lines of a squawk. Where the one names a
+noise and the other none, the sound may swell and fade, and the classifier hears more of it.
 
 A bar on the road swings: it runs from one turning on, a whole cycle is heard, and names and regimes
 are those of the two intervals in which it moves at half its peak speed or more, whichever is
@@ -29,7 +30,7 @@ from noise.base.labels import PERSISTS
 from noise.classifier import Classifier, load_classifier
 from noise.labels.segments import file_label, label_recording
 from noise.noise_definition import LEAST_LEVEL, NoiseCriteria, noise_criteria
-from noise.screening.vibration import RATE, Condition, oscillation, vibration_at
+from noise.screening.vibration import RATE, Condition, gone_on, oscillation, vibration_at
 from sim.acquisition import Acquisition, sample
 from sim.analysis.regime import Regime
 from sim.analysis.slips import motion_slips
@@ -52,6 +53,9 @@ REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 
 JUDGED = 0.75
 """Last part of a run that is heard: two windows of the classifier [s]."""
+
+_LONGER = 3.0
+"""Where that has no name though it vibrates and is loud enough [s]."""
 
 _RINGING = 0.4
 """Before that, which the structure remembers [s]."""
@@ -143,7 +147,12 @@ def evaluate_point(rig: Rig, at: Condition) -> PointResult:
         found = vibration_at(rig, at)
         if not found.course.lasts:
             return SILENT
-        return heard_of(rig, at, found.course.motion, persists=found.state == PERSISTS)
+        persists = found.state == PERSISTS
+        heard = heard_of(rig, at, found.course.motion, persists=persists)
+        if heard.label == "none" != heard.physics:
+            longer = gone_on(found.course, at.speed, _LONGER)
+            heard = heard_of(rig, at, longer, persists=persists, judged=_LONGER)
+        return heard
     return heard_of(rig, at, _motion(rig, at, at.frequency))
 
 
@@ -158,12 +167,14 @@ def is_noisy(rig: Rig, at: Condition) -> bool:
     return levels.level_a >= LEAST_LEVEL
 
 
-def _last_part(motion: Motion) -> Motion:
-    """Cut to the part that is judged, and before it what still rings in it."""
-    return motion.since(max(0, motion.torque.size - round((JUDGED + _RINGING) * RATE)))
+def _last_part(motion: Motion, judged: float = JUDGED) -> Motion:
+    """Cut to the part that is judged [s], and before it what still rings in it."""
+    return motion.since(max(0, motion.torque.size - round((judged + _RINGING) * RATE)))
 
 
-def heard_of(rig: Rig, at: Condition, motion: Motion, *, persists: bool = False) -> PointResult:
+def heard_of(
+    rig: Rig, at: Condition, motion: Motion, *, persists: bool = False, judged: float = JUDGED
+) -> PointResult:
     """Tell what is heard of a motion at a condition.
 
     Parameters
@@ -174,6 +185,8 @@ def heard_of(rig: Rig, at: Condition, motion: Motion, *, persists: bool = False)
         Its last part is judged; of a swing all but the first quarter of a cycle.
     persists : bool
         What the result says of it.
+    judged : float
+        How much of the end is judged [s].
 
     Returns
     -------
@@ -183,8 +196,8 @@ def heard_of(rig: Rig, at: Condition, motion: Motion, *, persists: bool = False)
     if at.frequency is not None:
         start = round(0.25 / at.frequency * RATE)
     else:
-        motion = _last_part(motion)
-        start = motion.torque.size - round(JUDGED * RATE)
+        motion = _last_part(motion, judged)
+        start = motion.torque.size - round(judged * RATE)
     intervals = fast_intervals(motion.since(start), swings=swings)
     if all(oscillation(interval.torque) <= 1.0 for interval in intervals):
         return SILENT

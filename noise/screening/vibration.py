@@ -5,12 +5,14 @@ vibration that already runs goes on at speeds at which none begins (A. Papangelo
 N. Hoffmann, *Subcritical bifurcation in a self-excited single-degree-of-freedom system with
 velocity weakening-strengthening friction law*, Nonlinear Dynamics 90, 2017). So a condition is run
 from rest and from a running vibration. The latter is a continuation: the rig runs where its sliding
-is unstable, at the nearest such speed, and the shaft is then brought to the speed in question.
+is unstable, at the nearest such speed, and the shaft is then brought to the speed in question,
+slowly enough for the limit cycle to follow; a jump often loses it.
 
 The eigenvalue of steady sliding (`sim.analysis.stability`) says which runs are needed. Where it
 grows, no vibration dies. Where it falls, a run that starts vibrating and dies settles the matter.
 A run ends when growth or decay of the torque's oscillation, measured over blocks, makes its end
-certain, and after `LONGEST` at most.
+certain, and after `LONGEST` at most. An irregular vibration beside stable sliding may be a transient
+that ends of a sudden, some after seconds, which no decay announces; it is followed for longer.
 """
 
 from __future__ import annotations
@@ -46,8 +48,8 @@ _FOLLOWED = 3
 _STARTED = 0.4
 """How long a rig vibrates before its speed is changed [s]."""
 
-_RAMP = 0.05
-"""In which the speed is changed [s]."""
+_RAMP, _JUMP = 0.3, 0.05
+"""In which the speed is changed, by a limit cycle that follows and to one that sticks [s]."""
 
 _SLOWER = (0.97, 0.85, 0.5, 0.25)
 """Shares of the speed at which a contact is brought to stick and slip that slides stably at any."""
@@ -60,6 +62,12 @@ _HORIZON = 20.0
 
 _STEADY = 1.02
 """Ratio of a vibration's size to an earlier one, below which it does not grow [-]."""
+
+_REGULAR = 0.03
+"""Relative scatter of a vibration's size over blocks, up to which it repeats itself [-]."""
+
+_IRREGULAR = 5.0
+"""How long one that does not is followed beside stable sliding [s]."""
 
 _DEAD = 0.1
 """Share of the least oscillation below which a vibration in stable sliding is over [-]."""
@@ -283,8 +291,19 @@ def _outcome(sizes: NDArray[np.float64], growth: float) -> bool | None:
     early, late = np.median(sizes[half - half // 2 - 1 : half]), np.median(sizes[-half // 2 :])
     if late <= 1.0:  # too weak to count, unless it grows
         return False if growth > 0.0 and late < _STEADY * early else None
+    lately = sizes[-2 * _FOLLOWED :]
+    irregular = np.std(lately) > _REGULAR * np.mean(lately)
+    if growth <= 0.0 and irregular and sizes.size * BLOCK < _IRREGULAR:
+        return None
     seconds = 0.75 * half * BLOCK
     return True if late - 1.0 > (early - late) / seconds * _HORIZON else None
+
+
+def gone_on(course: Course, speed: float, seconds: float) -> Motion:
+    """Return the motion of a course that goes on at its speed [rad/s] for some seconds."""
+    n = round(seconds * RATE)
+    drive = np.full(n + steps_beyond(RATE), float(speed))
+    return course.motion.followed_by(course.solver.advance(drive, n))
 
 
 def oscillation(torque: NDArray[np.float64]) -> float:

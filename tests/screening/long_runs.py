@@ -21,20 +21,20 @@ JUDGED = 1.0
 """Of the end [s]."""
 
 
-def through(speeds, seconds):
+def through(speeds, seconds, ramp=0.05):
     """A shaft that turns at each speed, and `seconds` at the last."""
     held = [(HELD, speed) for speed in speeds[:-1]] + [(seconds, speeds[-1])]
     time, logged, now = [], [], 0.0
     for length, speed in held:
         time += [now, now + length]
         logged += [speed, speed]
-        now += length + 0.05
+        now += length + ramp
     return LoggedSpeed(time, logged), time[-1]
 
 
-def vibrates_after(rig, at, speeds, *, seconds):
+def vibrates_after(rig, at, speeds, *, seconds, ramp=0.05):
     """Whether the torque still oscillates by a hundredth of its mean at the end."""
-    shaft, length = through(speeds, seconds)
+    shaft, length = through(speeds, seconds, ramp)
     motion = simulate_motion(
         at_temperature(rig, at.temperature), shaft, interference=at.interference,
         support_stiffness=at.support_stiffness, seconds=length, rate=15e3,
