@@ -3,8 +3,8 @@
 Whether a vibration dies, persists or breaks out is told by `noise.screening.vibration`. What sounds
 has the name that `noise.labels` gives a recording of it, by the classifier that ships. The name by
 the physics of the motion (`noise.noise_definition`) stands beside it: friction may strike the plate
-as in a creak while the ear, and the classifier, hear the lines of a squawk. Where the one names a
-noise and the other none, the sound may swell and fade, and the classifier hears more of it.
+as in a creak while the ear, and the classifier, hear the lines of a squawk. Where a vibration lasts
+and has no name, it may still grow, or swell and fade, and more of it is heard.
 
 A bar on the road swings: it runs from one turning on, a whole cycle is heard, and names and regimes
 are those of the two intervals in which it moves at half its peak speed or more, whichever is
@@ -55,7 +55,7 @@ JUDGED = 0.75
 """Last part of a run that is heard: two windows of the classifier [s]."""
 
 _LONGER = 3.0
-"""Where that has no name though it vibrates and is loud enough [s]."""
+"""Where that has no name though it vibrates [s]."""
 
 _RINGING = 0.4
 """Before that, which the structure remembers [s]."""
@@ -149,7 +149,7 @@ def evaluate_point(rig: Rig, at: Condition) -> PointResult:
             return SILENT
         persists = found.state == PERSISTS
         heard = heard_of(rig, at, found.course.motion, persists=persists)
-        if heard.label == "none" != heard.physics:
+        if heard.label == "none":
             longer = gone_on(found.course, at.speed, _LONGER)
             heard = heard_of(rig, at, longer, persists=persists, judged=_LONGER)
         return heard

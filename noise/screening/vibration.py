@@ -11,8 +11,8 @@ slowly enough for the limit cycle to follow; a jump often loses it.
 The eigenvalue of steady sliding (`sim.analysis.stability`) says which runs are needed. Where it
 grows, no vibration dies. Where it falls, a run that starts vibrating and dies settles the matter.
 A run ends when growth or decay of the torque's oscillation, measured over blocks, makes its end
-certain, and after `LONGEST` at most. An irregular vibration beside stable sliding may be a transient
-that ends of a sudden, some after seconds, which no decay announces; it is followed for longer.
+certain, and after `LONGEST` at most. An irregular vibration beside stable sliding may be a
+transient that ends of a sudden after seconds, which no decay announces; it is followed for longer.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import detrend
 
 from models.rig import Rig
 from noise.base.labels import PERSISTS
@@ -48,11 +49,14 @@ _FOLLOWED = 3
 _STARTED = 0.4
 """How long a rig vibrates before its speed is changed [s]."""
 
-_RAMP, _JUMP = 0.3, 0.05
-"""In which the speed is changed, by a limit cycle that follows and to one that sticks [s]."""
+_RAMP = 1.0
+"""In which the speed is changed from one that is unstable [s]."""
 
-_SLOWER = (0.97, 0.85, 0.5, 0.25)
-"""Shares of the speed at which a contact is brought to stick and slip that slides stably at any."""
+_STARTS = (
+    (0.97, 0.0), (0.85, 0.0), (0.7, 0.0), (0.5, 0.0), (0.25, 0.0), (0.75, 0.6), (0.5, 0.6),
+)  # fmt: skip
+"""Shares of the speed at which a contact is brought to stick and slip that slides stably at any,
+and in which time the speed is then changed [s]."""
 
 _SURE = 10.0
 """Growth from which on sliding soon vibrates [1/s]."""
@@ -219,22 +223,16 @@ def running(
         solver.go_on_from(started.solver, at.speed)
         return _followed(solver, at, growth, longest=longest)
     unstable = _unstable_speed(rig, at)
-    shares = (unstable / at.speed,) if unstable is not None else _SLOWER
-    for share in shares:
-        course = _continued(rig, at, growth, share * at.speed, longest)
+    starts = _STARTS if unstable is None else ((unstable / at.speed, _RAMP),)
+    for share, seconds in starts:
+        start = share * at.speed
+        solver = _solver(rig, replace(at, speed=start))
+        ramp = np.linspace(start, at.speed, round(seconds * RATE))
+        approach = np.concatenate([np.full(round(_STARTED * RATE), start), ramp])
+        course = _followed(solver, at, growth, longest=longest, approach=approach)
         if course.lasts:
             break
     return course
-
-
-def _continued(rig: Rig, at: Condition, growth: float, start: float, longest: float) -> Course:
-    """Let a rig vibrate at a speed [rad/s], and bring it to that of a condition."""
-    solver = _solver(rig, replace(at, speed=start))
-    n, beyond = round(_STARTED * RATE), steps_beyond(RATE)
-    ramp = np.linspace(start, at.speed, round(_RAMP * RATE))
-    drive = np.concatenate([np.full(n, start), ramp, np.full(beyond, float(at.speed))])
-    before = solver.advance(drive, n + ramp.size)
-    return _followed(solver, at, growth, longest=longest, before=before)
 
 
 def _unstable_speed(rig: Rig, at: Condition) -> float | None:
@@ -262,22 +260,33 @@ def _followed(
     growth: float,
     *,
     longest: float,
-    before: Motion | None = None,
+    approach: NDArray[np.float64] | None = None,
 ) -> Course:
-    """Run in blocks until it is certain whether the vibration dies or lasts."""
+    """Run in blocks until it is certain whether the vibration dies or lasts.
+
+    The speeds of `approach` [rad/s] come first; a vibration that dies in them is over.
+    """
     n = round(BLOCK * RATE)
-    drive = np.full(n + steps_beyond(RATE), float(at.speed))
-    parts = [] if before is None else [before]
+    before = np.empty(0) if approach is None else approach
+    first, last = before.size // n, before.size // n + round(longest / BLOCK)
+    drive = np.concatenate([before, np.full((last - first) * n + steps_beyond(RATE), at.speed)])
+    parts: list[Motion] = []
     sizes: list[float] = []
-    lasts = False
-    while len(sizes) * BLOCK < longest:
-        parts.append(solver.advance(drive, n))
-        sizes.append(oscillation(parts[-1].torque))
-        if (certain := _outcome(np.array(sizes), growth)) is not None:
-            lasts = certain
+    certain = None
+    for block in range(last):
+        ahead = drive[block * n : (block + 1) * n + steps_beyond(RATE)]
+        parts.append(solver.advance(ahead, n))
+        torque = parts[-1].torque
+        if block >= first:
+            sizes.append(oscillation(torque))
+            certain = _outcome(np.array(sizes), growth)
+        elif block * BLOCK >= _STARTED and growth <= 0.0:
+            # Without the trend that the torque has with the speed.
+            late = torque[-torque.size // 4 :]
+            certain = False if oscillation(detrend(late) + np.mean(late)) < _DEAD else None
+        if certain is not None:
             break
-    else:
-        lasts = sizes[-1] > 1.0
+    lasts = sizes[-1] > 1.0 if certain is None else certain
     return Course(lasts, len(sizes) * BLOCK, _joined(parts), solver)
 
 

@@ -1,8 +1,9 @@
 """Drawn designs and conditions: what a screen says of them against long runs and their labels.
 
 The benchmark of screening: 200 designs by default, ``SCREEN_DRAWS`` for another number, other ones
-by ``SCREEN_SEED``, and a file of all results by ``SCREEN_RESULTS``. Of each design one condition is drawn, and two of its boundary
-of silence: the last speed that sounds and the first that does not, 0.125 rad/s apart.
+by ``SCREEN_SEED``, and a file of all results by ``SCREEN_RESULTS``. Of each design one condition is
+drawn, and two of its boundary of silence: the last speed that sounds and the first that does not,
+0.125 rad/s apart.
 """
 
 import json
