@@ -7,7 +7,6 @@ anew each time, as others may write it, and written whole or not at all. Columns
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -20,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import ParameterError, RecordingError
-from noise.base.csv_table import write_csv
 from noise.base.files import locked
 from noise.base.tables import read_table, write_table
 
@@ -31,12 +29,6 @@ COLUMNS = (
     *("order", "first", "second", "vote", "seconds", "time"),
 )
 """Of the table of votes, one row per comparison; those that wait have no vote."""
-
-SCALE_COLUMNS = (
-    *("jury", "listener", "question", "played", "sound", "value", "low_95", "high_95"),
-    *("chosen", "not_chosen", "no_difference"),
-)
-"""Of the table of a scale, the highest first."""
 
 VOTES = {"first": 1.0, "second": 0.0, "equal": 0.5}
 """What is voted for: the sound that is called A, the one that is called B, no difference; and the
@@ -418,25 +410,6 @@ def in_words(rows: Sequence[Row]) -> str:
     if len(placed) > 2:
         texts.append(f"{last['sound']} comes last: {share(last)}.")
     return " ".join(texts)
-
-
-def scale_csv(jury: Jury) -> str:
-    """Return the scale of a jury's sounds as a table.
-
-    Examples
-    --------
-    >>> jury = Jury(1, "", "Which?", "one gain", (("=a.wav", "b.wav"),), ("second",))
-    >>> scale_csv(jury).splitlines()[1].split(",")[:6]
-    ['1', '', 'Which?', 'one gain', 'b.wav', '0.76']
-    """
-    about: Row = {
-        "jury": jury.number, "listener": jury.listener, "question": jury.question,
-        "played": jury.played,
-    }  # fmt: skip
-    text = io.StringIO()
-    rows = [about | row for row in scale(jury)[0]]
-    write_csv(text, SCALE_COLUMNS, [[row[column] for column in SCALE_COLUMNS] for row in rows])
-    return text.getvalue()
 
 
 def _counted(pairs: NDArray[np.int64], shares: NDArray[np.float64], n: int) -> NDArray[np.float64]:

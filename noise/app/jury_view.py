@@ -21,7 +21,7 @@ from starlette.routing import BaseRoute, Route
 from models.errors import BushingNoiseError, ParameterError
 from models.recording import REFERENCE_PRESSURE
 from noise.app.gate import body
-from noise.app.jury import VOTES, Jury, Votes, in_words, scale, scale_csv
+from noise.app.jury import VOTES, Jury, Votes, in_words, scale
 from noise.app.opened import Opened
 from noise.app.requests import choice, number, text
 from noise.app.sounds import SoundCache
@@ -140,11 +140,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
             | {"voted": len(jury.votes)}
         )
 
-    def table(request: Request) -> Response:
-        jury = asked(request)
-        headers = {"Content-Disposition": f'attachment; filename="jury-{jury.number}.csv"'}
-        return Response(scale_csv(jury), media_type="text/csv", headers=headers)
-
     one = "/api/juries/{jury:int}"
     return [
         Route("/api/juries", juries, methods=["GET"]),
@@ -154,7 +149,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route(f"{one}/vote", body(voted), methods=["POST"]),
         Route(f"{one}/undo", body(undone), methods=["POST"]),
         Route(f"{one}/result", result),
-        Route(f"{one}/result.csv", table),
     ]
 
 

@@ -10,20 +10,22 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.orders import OrderMap
 from models.drawing import thinned
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.labels.summary import ASSUMED, assumes_material
-from noise.pages.clips import RATE, Clip, Entry, FastLevels, Row
+from noise.pages.clips import RATE, Clip, Entry, Row, number_or
 from noise.pictures.recording import level_over_time
+
+if TYPE_CHECKING:
+    from noise.pages.figures import Panel
 
 Ticks = tuple[tuple[float, str], ...]
 
@@ -109,14 +111,11 @@ def _png(steps: NDArray[np.uint8]) -> bytes:
     return png.getvalue()
 
 
-LEVELS = 60.0
+_RANGE_OVER_TIME = 60.0
 """From the highest level of a page's curves down [dB]."""
 
-_STEP = 20.0
-"""Between ticks [dB]."""
-
-_MARGIN = 5.0
-"""Of ticks from the ends of the axis [dB]."""
+_STEP, _MARGIN = 20.0, 5.0
+"""Between ticks, and of ticks from the ends of the axis [dB]."""
 
 _AT_END = 0.6
 """Where the words begin, as a share of the time [-]."""
@@ -127,7 +126,7 @@ _COLUMNS, _WIDTH, _HEIGHT = 120, 600, 100
 class LevelDisplay(NamedTuple):
     """Level over time: its line in a box of 600 by 100, ticks in per cent from below, and words.
 
-    The largest level is told where the line leaves room at its end: `above` it or below.
+    The largest level stands where the line leaves room at its end: `above` it or below.
     """
 
     line: str
@@ -136,128 +135,35 @@ class LevelDisplay(NamedTuple):
     above: bool
 
 
-@dataclass(frozen=True)
-class OrdersDisplay:
-    """An order map.
-
-    Parameters
-    ----------
-    picture : bytes
-        A PNG file, the highest order at the top.
-    speeds, orders : tuple of (float, str)
-        Ticks in % from the left, and from below.
-    words : str
-        What it shows.
-    """
-
-    picture: bytes
-    speeds: Ticks
-    orders: Ticks
-    words: str
-
-
-def level_displays(
-    clips: Mapping[str, Clip],
-    rate: float,
-    reference: float,
-    unit: str,
-    measured: Mapping[str, FastLevels] | None = None,
+def _level_displays(
+    clips: Mapping[str, Clip], entries: Mapping[str, Entry], reference: float, unit: str
 ) -> dict[str, LevelDisplay]:
-    """Draw the levels of sounds that share an axis.
-
-    Parameters
-    ----------
-    clips : mapping of str to Clip
-        By id.
-    rate : float
-        Sampling rate [Hz].
-    reference : float
-        Of the levels, in the unit of the samples, such as [Pa].
-    unit : str
-        Of the levels.
-    measured : mapping of str to FastLevels, optional
-        Of the recordings that clips were cut from; without it a clip's own are drawn.
-
-    Returns
-    -------
-    dict of str to LevelDisplay
-        Of those in which something is heard.
-
-    Examples
-    --------
-    >>> level_displays({}, 48e3, 2e-5, "dB(A)")
-    {}
-    """
+    """Draw the levels of sounds that share an axis, of those in which something is heard."""
     curves = {}
     for key, clip in clips.items():
-        if measured is not None and key in measured:
-            time, level = measured[key]
+        if (measured := entries[key].fast_levels) is not None:
+            time, level = measured
             inside = (time >= clip.start) & (time <= clip.end)
             time, level = thinned(time[inside] - clip.start, level[inside], columns=_COLUMNS)
         else:
-            time, level = level_over_time(clip.samples, rate, reference, columns=_COLUMNS)
+            time, level = level_over_time(clip.samples, RATE, reference, columns=_COLUMNS)
         if level.size:
-            curves[key] = time * rate / clip.samples.size, level
+            curves[key] = time * RATE / clip.samples.size, level
     highest = max((float(level.max()) for _, level in curves.values()), default=0.0)
     top = 5.0 * math.ceil(highest / 5.0)
     first = _STEP * math.floor((top - _MARGIN) / _STEP)
     ticks = tuple(
-        (round(100.0 * (1.0 - (top - tick) / LEVELS), 1), _level_words(tick))
-        for tick in np.arange(first, top - LEVELS + _MARGIN, -_STEP)
+        (round(100.0 * (1.0 - (top - tick) / _RANGE_OVER_TIME), 1), _plain(float(tick), ".0f"))
+        for tick in np.arange(first, top - _RANGE_OVER_TIME + _MARGIN, -_STEP)
     )
-    return {
-        key: LevelDisplay(
-            _line(share, (top - level) / LEVELS),
-            ticks,
-            f"{_level_words(level.max(), 1)} {unit}",
-            bool(level[share > _AT_END].min(initial=top) < top - 0.5 * LEVELS),
-        )
-        for key, (share, level) in curves.items()
-    }
-
-
-def orders_display(orders: OrderMap, highest: float) -> OrdersDisplay:
-    """Draw an order map in the colours of spectrograms whose darkest is `highest` [dB].
-
-    Examples
-    --------
-    >>> from features.kernels.orders import order_map
-    >>> speed = np.linspace(1.0, 11.0, 48000)
-    >>> sound = np.sin(2000 * np.cumsum(speed) / 24e3)
-    >>> found = order_map(lambda first, last: sound[first:last], 48000, 24e3, speed, 24e3)
-    >>> shown = orders_display(found, 90.0)
-    >>> [words for _, words in shown.speeds], [words for _, words in shown.orders]
-    (['2', '4', '6', '8', '10'], ['100', '1k', '10k'])
-    """
-    low, high = float(orders.speed_edges[0]), float(orders.speed_edges[-1])
-    least, most = float(orders.order_edges[0]), float(orders.order_edges[-1])
-    decades = range(math.ceil(math.log10(least)), math.floor(math.log10(most)) + 1)
-    level = np.where(np.isfinite(orders.level), orders.level, -np.inf)[::-1]
-    return OrdersDisplay(
-        picture(np.ascontiguousarray(level), highest),
-        tuple(
-            (round(100.0 * (tick - low) / (high - low), 2), f"{tick:.6g}")
-            for tick in round_ticks(low, high, 6)
-            if low <= tick <= high
-        ),
-        tuple(
-            (
-                round(100.0 * math.log(10.0**decade / least) / math.log(most / least), 2),
-                f"{10**decade}" if decade < 3 else f"{10 ** (decade - 3)}k",
-            )
-            for decade in decades
-        ),
-        f"Order map, {low:.3g} to {high:.3g} rad/s, {least:.2g} to {most:.2g} cycles a revolution",
-    )
-
-
-def _line(across: np.ndarray, down: np.ndarray) -> str:
-    x, y = _WIDTH * across, _HEIGHT * np.clip(down, 0.0, 1.0)
-    return " ".join(f"{a:.0f},{b:.1f}" for a, b in zip(x, y, strict=True))
-
-
-def _level_words(value: float, digits: int = 0) -> str:
-    return f"{value:.{digits}f}".replace("-", "\N{MINUS SIGN}")
+    displays = {}
+    for key, (share, level) in curves.items():
+        y = _HEIGHT * np.clip((top - level) / _RANGE_OVER_TIME, 0.0, 1.0)
+        line = " ".join(f"{a:.0f},{b:.1f}" for a, b in zip(_WIDTH * share, y, strict=True))
+        is_low = level[share > _AT_END].min(initial=top) < top - 0.5 * _RANGE_OVER_TIME
+        most = f"{_plain(float(level.max()), '.1f')} {unit}"
+        displays[key] = LevelDisplay(line, ticks, most, bool(is_low))
+    return displays
 
 
 _MOST_TICKS = 6
@@ -308,9 +214,10 @@ class EntryDisplay:
         Of the time axis: share of the clip [%], and seconds of the recording.
     alt : str
         What the spectrogram shows.
-    level : LevelDisplay, optional
+    level : LevelDisplay or None
         A-weighted, Fast, over the time of the clip.
-    orders : OrdersDisplay, optional
+    orders : Panel or None
+        Order map of a run-up.
     """
 
     id: str
@@ -323,8 +230,8 @@ class EntryDisplay:
     tracks: tuple[tuple[str, tuple[Band, ...]], ...]
     ticks: tuple[tuple[float, str], ...]
     alt: str
-    level: LevelDisplay | None = None
-    orders: OrdersDisplay | None = None
+    level: LevelDisplay | None
+    orders: Panel | None
 
 
 def draw_entries(
@@ -354,41 +261,30 @@ def draw_entries(
     """
     pictures: dict[str, bytes] = {}
     over_time: dict[str, LevelDisplay] = {}
-    orders: dict[str, OrdersDisplay] = {}
     scale_words = []
     for calibrated, reference, unit in ((True, REFERENCE_PRESSURE, "dB re 20 µPa"),
                                         (False, 1.0, "dBFS")):  # fmt: skip
         of_it = {key: clip for key, clip in clips.items() if entries[key].calibrated == calibrated}
-        levels = {key: _levels(clip, reference) for key, clip in of_it.items()}
+        levels = {
+            key: spectrogram(_reader(clip.samples), clip.samples.size, RATE, reference)
+            for key, clip in of_it.items()
+        }
         unit_a = "dB(A)" if calibrated else "dBFS(A)"
-        measured = {key: known for key in of_it if (known := entries[key].fast_levels) is not None}
-        over_time |= level_displays(of_it, RATE, reference, unit_a, measured)
+        over_time |= _level_displays(of_it, entries, reference, unit_a)
         if levels:
             highest = top(list(levels.values()))
             pictures |= {key: picture(one, highest) for key, one in levels.items()}
-            orders |= {
-                key: orders_display(found, highest)
-                for key in levels
-                if (found := entries[key].orders) is not None
-            }
             words = f"{highest - RANGE:.0f} to {highest:.0f} {unit}"
             scale_words.append(words.replace("-", "\N{MINUS SIGN}"))
     displays = {
-        key: replace(
-            entry_display(key, entry, clips.get(key), pictures.get(key, b"")),
-            level=over_time.get(key),
-            orders=orders.get(key),
-        )
+        key: _display(key, entry, clips.get(key), pictures.get(key, b""), over_time.get(key))
         for key, entry in entries.items()
     }
     return displays, scale_words
 
 
-def _levels(clip: Clip, reference: float) -> NDArray[np.float64]:
-    def read(first: int, last: int) -> NDArray[np.float32]:
-        return clip.samples[first:last]
-
-    return spectrogram(read, clip.samples.size, RATE, reference)
+def _reader(samples: NDArray[np.float32]) -> Callable[[int, int], NDArray[np.float32]]:
+    return lambda first, last: samples[first:last]
 
 
 def frequency_ticks() -> tuple[tuple[float, str], ...]:
@@ -405,35 +301,36 @@ def frequency_ticks() -> tuple[tuple[float, str], ...]:
     )
 
 
-def entry_display(key: str, entry: Entry, clip: Clip | None, picture: bytes) -> EntryDisplay:
-    """Lay an entry out.
-
-    Examples
-    --------
-    >>> from noise.pages.clips import Entry
-    >>> entry_display("s1", Entry("run07", note="no sound"), None, b"").note
-    'no sound'
-    """
+def _display(
+    key: str, entry: Entry, clip: Clip | None, picture: bytes, level: LevelDisplay | None
+) -> EntryDisplay:
     start = 0.0 if clip is None else clip.start
     end = entry.duration if clip is None else clip.end
-    note = entry.note
+    notes = [entry.note] if entry.note else []
     if clip is not None and end - start < entry.duration - 0.02:
-        heard = (
-            f"{_seconds(end - start)} s from {_seconds(start)} s of {_seconds(entry.duration)} s"
-        )
-        note = f"{heard}; {note}" if note else heard
+        cut, first, whole = map(_seconds, (end - start, start, entry.duration))
+        notes.insert(0, f"{cut} s from {first} s of {whole} s")
+    if any(number_or(row.get("level_dbfs"), 0.0) > 0.0 for row in entry.rows):
+        notes.append("above 0 dBFS, so it is probably clipped")
+    orders = None
+    if clip is not None and entry.orders is not None:
+        from noise.pages.figures import orders_panel  # which loads matplotlib
+
+        orders = orders_panel(entry.orders, calibrated=entry.calibrated)
     ticks = round_ticks(start, end, _MOST_TICKS) if clip is not None and end > start else []
     return EntryDisplay(
         id=key,
         title=entry.title,
         labels=entry.labels,
         facts=facts_of(entry),
-        note=note,
+        note="; ".join(notes),
         picture=picture,
         duration=end - start,
         tracks=_tracks(entry, start, end) if end > start else (),
         ticks=tuple((_per_cent(tick, start, end), f"{tick:.6g}") for tick in ticks),
         alt=_alt(entry, start, end),
+        level=level,
+        orders=orders,
     )
 
 
@@ -464,7 +361,7 @@ def facts_of(entry: Entry) -> dict[str, Fact]:
         ),
         "material": Fact(material) if material else None,
         "temperature": None if temperature is None else _number(temperature, ".3g", "°C"),
-        "frequency": _number(hertz, ".0f" if _at_least(hertz, 100.0) else ".1f", "Hz"),
+        "frequency": _number(hertz, ".0f" if number_or(hertz, 0.0) >= 100.0 else ".1f", "Hz"),
         "level": _number(row.get("level_dba"), ".1f", "dB(A)")
         or _number(row.get("level_db"), ".1f", "dB")
         or _number(row.get("level_dbfs"), ".1f", "dBFS"),
@@ -492,10 +389,6 @@ def _plain(value: float, form: str) -> str:
     if "e+" in words:  # 3400 rather than 3.4e+03
         words = f"{float(words):.0f}"
     return words.replace("-", "\N{MINUS SIGN}")
-
-
-def _at_least(value: object, least: float) -> bool:
-    return isinstance(value, int | float) and value >= least
 
 
 def _tracks(entry: Entry, start: float, end: float) -> tuple[tuple[str, tuple[Band, ...]], ...]:

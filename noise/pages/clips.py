@@ -102,8 +102,8 @@ class Entry:
         """Labels in time."""
         return tuple(
             Part(
-                _number(row.get("start_s"), 0.0),
-                min(_number(row.get("end_s"), self.duration), self.duration),
+                number_or(row.get("start_s"), 0.0),
+                min(number_or(row.get("end_s"), self.duration), self.duration),
                 str(row["label"]),
                 "" if row.get("channel") in ("all", None) else str(row["channel"]),
             )
@@ -134,7 +134,7 @@ def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
     row = naming_row(rows)
     if row is None or length >= duration:
         return 0.0
-    start, end = _number(row.get("start_s"), 0.0), _number(row.get("end_s"), duration)
+    start, end = number_or(row.get("start_s"), 0.0), number_or(row.get("end_s"), duration)
     wanted = start if end - start >= length else 0.5 * (start + end - length)
     return float(min(max(wanted, 0.0), duration - length))
 
@@ -163,7 +163,8 @@ def labels_sentence(entries: Sequence[Entry]) -> str:
     return f"{counted(len(entries), 'recording')}: {', '.join(words)}"
 
 
-def _number(value: object, missing: float) -> float:
+def number_or(value: object, missing: float) -> float:
+    """Return a cell of a table if it is a number [any unit], else what stands for it."""
     return float(value) if isinstance(value, int | float) else missing
 
 

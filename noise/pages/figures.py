@@ -26,8 +26,10 @@ from models.drawing import frequency_axis, levels, styled, thinned
 from models.recording import Recording
 from noise.pages.blocks import Panels
 from noise.pictures.figure import KINDS
+from noise.pictures.recording import draw_orders
 
 if TYPE_CHECKING:
+    from features.kernels.orders import OrderMap
     from noise.labels.segments import Segment
 
 
@@ -166,6 +168,29 @@ def lines_panel(
     if legend:
         axes.legend(loc=legend, fontsize=8)  # type: ignore[call-overload]
     return Panel(as_svg(figure), alt)
+
+
+def orders_panel(orders: OrderMap, *, calibrated: bool) -> Panel:
+    """Draw the order map of a run-up.
+
+    Examples
+    --------
+    >>> from features.kernels.orders import order_map
+    >>> speed = np.linspace(1.0, 11.0, 48000)
+    >>> sound = np.sin(2000 * np.cumsum(speed) / 24e3)
+    >>> found = order_map(lambda first, last: sound[first:last], 48000, 24e3, speed, 24e3)
+    >>> orders_panel(found, calibrated=True).alt[:30]
+    'Order map, 1.41 to 10.7 rad/s,'
+    """
+    with styled():
+        figure = Figure(figsize=_SIZE, layout="constrained")
+        draw_orders(figure, figure.add_subplot(), orders, "dB re 20 µPa" if calibrated else "dBFS")
+        svg = as_svg(figure)
+    (low, *_, high), (least, *_, most) = orders.speed_edges, orders.order_edges
+    return Panel(
+        svg,
+        f"Order map, {low:.3g} to {high:.3g} rad/s, {least:.2g} to {most:.2g} cycles a revolution",
+    )
 
 
 LOWEST, HIGHEST = 20.0, 15e3

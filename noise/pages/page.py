@@ -22,7 +22,7 @@ from noise.pages.cards import draw_entries, frequency_ticks, scale_picture
 from noise.pages.clips import MOST_RAISED, Clip, Entry, equal_factors
 from noise.pages.maps import MAP_SIZE, ConditionMap
 
-PAGE_BYTES, CARD_BYTES, ORDERS_BYTES = 75_000.0, 45_000.0, 10_000.0
+PAGE_BYTES, CARD_BYTES, ORDERS_BYTES = 75_000.0, 45_000.0, 100_000.0
 """What a page takes up, and at most each of its sounds beside the sound itself and an order map
 [byte]."""
 

@@ -202,13 +202,15 @@ _NOISES = tuple(label for label in LABELS if label not in ("none", "unknown"))
 _SILENCE = 40.0
 """What a design without a noise counts as, where levels are compared [dB(A)]."""
 
+_FAR = 10.0
+"""More than any distance, as a share of the axes."""
+
 _NEAR = 0.05
 """Points of the same labels no farther apart than that sound alike, as a share of the axes."""
 
 INTERPOLATED = "refined"
 """How a point is known that lies between simulated ones."""
 
-_ITERATIONS = 8
 
 _SUPPORT, _TEMPERATURE = 2214.0, 23.0
 """Of a screen that tells none [Nm/rad], [degree Celsius]."""
@@ -228,8 +230,8 @@ def chosen_points(points: Sequence[SharedPoint], most: int) -> list[SharedPoint]
     list of SharedPoint
         First the loudest of each noise, and where levels differ most; then of each combination of
         labels at least one, if there is room, the others by how many points it has, but no more
-        than `MOST_SILENT` that are ``none`` throughout; those of one combination in the middles of
-        the parts into which they divide its region.
+        than `MOST_SILENT` that are ``none`` throughout; those of one combination in its middle,
+        then as far from one another as can be.
 
     Examples
     --------
@@ -244,34 +246,35 @@ def chosen_points(points: Sequence[SharedPoint], most: int) -> list[SharedPoint]
     span = np.ptp(at, axis=0)
     at = at / np.where(span > 0.0, span, 1.0)
     labels = [point.labels for point in points]
-
-    def apart(one: int, chosen: Sequence[int]) -> bool:
-        near = [i for i in chosen if labels[i] == labels[one]]
-        return not near or float(np.linalg.norm(at[near] - at[one], axis=1).min()) > _NEAR
-
-    chosen: list[int] = []
-    for one in _telling(points):
-        if len(chosen) < most and apart(one, chosen):
-            chosen.append(one)
     counts = Counter(labels)
     limits = {of: MOST_SILENT if set(of) <= {"none", ""} else n for of, n in counts.items()}
-    shares = Counter(labels[one] for one in chosen)
-    new: Counter[tuple[str, ...]] = Counter()
-    for _ in range(most - len(chosen)):
-        open_ones = [of for of in counts if shares[of] < min(limits[of], counts[of])]
-        if not open_ones:
-            break
-        # The one of which each sound stands for the most points; first those without any.
-        neediest = max(
-            open_ones, key=lambda of: (not shares[of], counts[of] / (shares[of] or 1), of)
+    certain = np.array([_is_certain(point) for point in points])
+    chosen: list[int] = []
+
+    def apart(of: tuple[str, ...], among: NDArray[np.int64]) -> NDArray[np.float64]:
+        """How far points are from the chosen ones of the same labels; else from their middle."""
+        same = [i for i in chosen if labels[i] == of]
+        if not same:
+            return _FAR - np.linalg.norm(at[among] - at[among].mean(axis=0), axis=1)
+        return np.asarray(np.linalg.norm(at[among][:, None] - at[same], axis=2).min(axis=1))
+
+    for one in _telling(points):
+        if len(chosen) < most and apart(labels[one], np.array([one]))[0] > _NEAR:
+            chosen.append(one)
+    while len(chosen) < most and any(limits.values()):
+        shares = Counter(labels[one] for one in chosen)
+        # The labels of which each sound stands for the most points; first those without any.
+        of = max(
+            (of for of in counts if limits[of]),
+            key=lambda of: (not shares[of], counts[of] / (shares[of] or 1), of),
         )
-        shares[neediest] += 1
-        new[neediest] += 1
-    for of, number in new.items():
         own = np.array([i for i, found in enumerate(labels) if found == of])
-        certain = np.array([_is_certain(points[i]) for i in own])
-        among = certain if certain.any() else ~certain
-        chosen += [int(i) for i in own[_spread(at[own], number, among)] if apart(int(i), chosen)]
+        own = own[certain[own]] if certain[own].any() else own
+        distance = apart(of, own)
+        if shares[of] >= limits[of] or distance.max() <= _NEAR:
+            limits[of] = 0
+        else:
+            chosen.append(int(own[distance.argmax()]))
     return sorted((points[i] for i in chosen), key=lambda point: (point.speed, point.interference))
 
 
@@ -307,25 +310,6 @@ def _level(point: ScreenPoint | None) -> float:
     if point is None:
         return np.nan
     return _SILENCE if point.label == "none" or point.level is None else point.level
-
-
-def _spread(at: NDArray[np.float64], number: int, among: NDArray[np.bool_]) -> list[int]:
-    """Divide points into so many parts, and return that of some which is nearest to each middle.
-
-    Lloyd's iteration from points that lie as far apart as can be.
-    """
-    picked = [int(np.linalg.norm(at - at.mean(axis=0), axis=1).argmin())]
-    distance = np.linalg.norm(at - at[picked[0]], axis=1)
-    while len(picked) < number:
-        picked.append(int(distance.argmax()))
-        distance = np.minimum(distance, np.linalg.norm(at - at[picked[-1]], axis=1))
-    middles = at[picked]
-    for _ in range(_ITERATIONS):
-        nearest = np.linalg.norm(at[:, None] - middles, axis=2).argmin(axis=1)
-        middles = np.array([at[nearest == part].mean(axis=0) for part in np.unique(nearest)])
-    distance_to = np.linalg.norm(at[:, None] - middles, axis=2)
-    found = np.where(among[:, None], distance_to, np.inf).argmin(axis=0)
-    return list(dict.fromkeys(found.tolist()))
 
 
 def simulated_entries(

@@ -2,8 +2,8 @@
 
 A white line is where steady sliding loses its stability, a dark one where stick ends, so that what
 stability alone would have told stands beside what simulation found. Below the labels is how loud
-they are. With one fit, or few, a row is a fit, and a star marks one whose data are not the design's
-own. A panel in which nothing is heard says so.
+they are. A row is a fit, and a star marks one whose data are not the design's own. A panel in which
+nothing is heard says so.
 """
 
 from __future__ import annotations
@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from noise.screening.mapping import DesignMap
 
 _SIMULATED = ("none", PERSISTS, "squeal", "squawk", "creak")
-_FEW_ROWS = 8
+_NAMED_ROWS = 8
+"""Fits that have their number beside them."""
+
 _LEVELS = 40.0, 100.0
 """Of the colours of levels [dB]."""
 
@@ -72,11 +74,11 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
     """
     grid = found.grid
     n = len(grid.support_stiffness)
-    speed, rows, few = _places(found)
+    speed, rows = _places(found)
     moving = "swinging" if grid.frequency else "at constant speed"
     title = f"{found.design}, {found.environment}, {grid.temperature[temperature]:g} °C, {moving}"
     with styled():
-        figure = new_figure(7.6 if not few else 3.4 + 0.5 * rows.size, title)
+        figure = new_figure(min(7.6, 3.4 + 0.5 * rows.size), title)
         axes = figure.subplots(2, n, sharex=True, sharey=True, squeeze=False)
         images = []
         for k in range(n):
@@ -146,16 +148,13 @@ def plot_map(
     return axes
 
 
-def _places(found: DesignMap) -> tuple[NDArray[np.float64], NDArray[np.float64], bool]:
-    """Where the points of a map stand, across and up, and whether rows are few."""
-    fit = 1e3 * np.array(found.grid.interference)
-    few = fit.size <= _FEW_ROWS
-    rows = np.arange(fit.size, dtype=np.float64) if few else fit
-    return np.array(found.grid.speed), rows, few
+def _places(found: DesignMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Where the points of a map stand, across [rad/s] and up, a row a fit."""
+    return np.array(found.grid.speed), np.arange(len(found.grid.interference), dtype=np.float64)
 
 
 def _draw_labels(axes: Axes, found: DesignMap, temperature: int, support: int) -> None:
-    speed, rows, few = _places(found)
+    speed, rows = _places(found)
     label = found.label[temperature, support]
     codes = np.select([label == name for name in _SIMULATED], range(len(_SIMULATED)))
     colours = ListedColormap([LABEL_LOOKS[name].colour for name in _SIMULATED])
@@ -169,10 +168,10 @@ def _draw_labels(axes: Axes, found: DesignMap, temperature: int, support: int) -
     if beyond is not None:
         axes.axvline(beyond, **_FITTED)
     sticks = found.regime[temperature, support] == Regime.STICK_SLIP.value
-    _outline(axes, speed, rows, np.where(sticks, 1.0, -1.0), _STICK, few=few)
+    _outline(axes, speed, rows, np.where(sticks, 1.0, -1.0), _STICK)
     growth = found.growth[temperature, support]
     if np.isfinite(growth).all():
-        _outline(axes, speed, rows, growth, _STABLE, few=few)
+        _outline(axes, speed, rows, growth, _STABLE)
 
 
 def _speed_words(found: DesignMap) -> str:
@@ -180,13 +179,10 @@ def _speed_words(found: DesignMap) -> str:
 
 
 def _name_fits(axes: Axes, found: DesignMap) -> None:
-    _, rows, few = _places(found)
-    if few:
-        stars = (_star(found, np.s_[:, :, i], "fit") for i in range(rows.size))
-        fits = found.grid.interference
-        axes.set_yticks(
-            rows, [f"{1e3 * fit:.3g}{star}" for fit, star in zip(fits, stars, strict=True)]
-        )
+    fits = found.grid.interference
+    rows = range(0, len(fits), math.ceil(len(fits) / _NAMED_ROWS))
+    words = [f"{1e3 * fits[i]:.3g}{_star(found, np.s_[:, :, i], 'fit')}" for i in rows]
+    axes.set_yticks(list(rows), words)
 
 
 def _star(found: DesignMap, at: tuple[slice | int, ...], what: str) -> str:
@@ -252,20 +248,10 @@ def _outline(
     rows: NDArray[np.float64],
     values: NDArray[np.float64],
     look: Mapping[str, Any],
-    *,
-    few: bool,
 ) -> None:
-    """Draw where values pass through zero; a stroke in each row where these are few."""
-    if not few:
-        if speed.size > 1 and values.min() < 0.0 < values.max():
-            colour, width = look["color"], look["linewidth"]
-            drawn = axes.contour(
-                speed, rows, values, levels=[0.0], colors=[colour], linewidths=width
-            )
-            drawn.set_path_effects(look.get("path_effects", []))
-        return
+    """Draw where values pass through zero, by a stroke in each row."""
     for row, along in zip(rows, values, strict=True):
         for i in np.flatnonzero(np.signbit(along[:-1]) != np.signbit(along[1:])):
             share = along[i] / (along[i] - along[i + 1])
             where = speed[i] + (share if math.isfinite(share) else 0.5) * (speed[i + 1] - speed[i])
-            axes.plot([where, where], [row - 0.45, row + 0.45], "-", **look)
+            axes.plot([where, where], [row - 0.5, row + 0.5], "-", **look)

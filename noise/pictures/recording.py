@@ -112,7 +112,7 @@ def plot_recording(
         axes[0].set_xlim(0.0, duration)
         _segments(axes[1 if sound is not None else 0], rows, duration)
         if orders is not None:
-            _orders(figure, figure.add_subplot(grid[n_in_time]), orders, _unit(recording))
+            draw_orders(figure, figure.add_subplot(grid[n_in_time]), orders, _unit(recording))
         figure.align_ylabels()
     return figure
 
@@ -357,7 +357,8 @@ def _segments(axes: Axes, rows: Sequence[Mapping[str, object]], duration: float)
             )  # fmt: skip
 
 
-def _orders(figure: Figure, axes: Axes, orders: OrderMap, unit: str) -> None:
+def draw_orders(figure: Figure, axes: Axes, orders: OrderMap, unit: str) -> None:
+    """Draw an order map on axes, with the scale of its colours in `unit`."""
     highest = 5.0 * math.ceil(float(np.nanmax(orders.level)) / 5.0)
     drawn = axes.pcolormesh(
         orders.speed_edges, orders.order_edges, _shown(orders.level, highest),

@@ -35,7 +35,7 @@ def test_a_review_and_a_report_draw_both_of_a_run_up_and_no_orders_at_one_speed(
     for page in ("review.html", "report.html"):
         text = (tmp_path / page).read_text(encoding="utf-8")
         assert text.count('<svg class="level"') == 1
-        assert text.count('<figure class="orders">') == maps
+        assert text.count('class="orders"') == maps
 
 
 def test_a_diagnosis_has_the_orders_of_what_was_measured_and_of_the_model():

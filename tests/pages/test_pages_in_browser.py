@@ -251,30 +251,6 @@ def test_a_click_on_the_other_map_changes_over_without_a_jump(shown):
     assert opened.state()["title"].startswith(f"{NEW}: ")
 
 
-@pytest.mark.parametrize(("first", "second"), [(OLD, NEW), (NEW, OLD), (OLD, QUIET), (QUIET, NEW)])
-def test_the_difference_is_that_of_the_pair_that_was_chosen(shown, made, first, second):
-    opened, found = shown(screened), made(screened)[1]
-    for slot, name in (("a", first), ("b", second)):
-        opened.page.locator(f"#design-{slot}").select_option(label=name)
-    one, other = (next(of for of in found.maps if of.design == name) for name in (first, second))
-    before, after = (of.label != "none" for of in (one, other))
-    change = np.round(other.level, 1) - np.round(one.level, 1)
-    both = before & after
-    expected = {
-        "noise gone": before & ~after,
-        "noise new": ~before & after,
-        "softer by 3 dB or more": both & (change <= -3.0),
-        "louder by 3 dB or more": both & (change >= 3.0),
-        "another noise": both & (one.label != other.label),
-    }
-    said = opened.page.locator(".differs").text_content()
-    told = dict(re.findall(r"(\w[\w ]*?) at <?(\d+) %", said))
-    shares = {words: round(100.0 * where.mean()) for words, where in expected.items()}
-    assert {words: int(share) for words, share in told.items()} == {
-        words: share for words, share in shares.items() if share
-    }
-
-
 def test_maps_show_noises_or_levels(shown):
     opened = shown(screened)
     drawn = opened.page.locator("[data-map][data-design='0'] svg")

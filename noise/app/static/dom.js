@@ -8,13 +8,6 @@ export function made(tag, properties = {}, ...children) {
   return node;
 }
 
-export function drawn(tag, attributes = {}, text = "") {
-  const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
-  if (text) node.textContent = text;
-  return node;
-}
-
 export const stylesheet = (address) => document.head.append(made("link", { rel: "stylesheet", href: address.href }));
 
 // Act where a node is in the page, else once it is: of a view that is not shown nothing is asked for.

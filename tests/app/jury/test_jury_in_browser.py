@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from noise.base.tables import read_table
 from tests.helpers.browser import accessibility_errors
 from tests.helpers.jury_page import JuryPage, pairs, votes
 from tests.helpers.jury_sounds import NAMES, write_tones
@@ -45,21 +44,11 @@ def test_votes_by_keys_outlive_a_kill_and_go_on_in_the_same_order(browser, folde
         jury.page.keyboard.press("u")  # the last one, too, is undone
         jury.turn(len(order)).vote(louder(order[-1]))
         jury.page.get_by_role("button", name="Result, with names").click()
-        jury.page.locator(".result svg circle").nth(len(NAMES) - 1).wait_for()
+        jury.page.locator(".result .scale b").nth(len(NAMES) - 1).wait_for()
         shown = jury.page.locator(".result tbody th").all_text_contents()
         assert shown == list(NAMES)
-        assert jury.page.locator(".result svg text", has_text="onerror").count() == 1
-        with jury.page.expect_download() as downloaded:
-            jury.page.get_by_role("link", name="Scale as CSV").click()
-        assert len(read_table_of(downloaded.value)) == len(NAMES)
         jury.close()
     assert len(votes(folder)) == len(order)
-
-
-def read_table_of(download):
-    target = download.path().with_name("scale.csv")
-    download.save_as(target)
-    return read_table(target)[1]
 
 
 def test_what_was_looked_at_before_is_neither_in_the_page_nor_asked_for_nor_heard(browser, folder):
@@ -104,14 +93,15 @@ def test_a_and_b_are_heard_in_step_at_one_gain(browser, folder):
         jury.close()
 
 
-@pytest.mark.parametrize("width", [390, 1280])
-def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, folder, width):
+def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, folder):
     def check():
-        assert accessibility_errors(jury.page) == []
-        assert jury.page.evaluate("document.documentElement.scrollWidth") <= width
+        for width in (1280, 390):
+            jury.page.set_viewport_size({"width": width, "height": 900})
+            assert accessibility_errors(jury.page) == []
+            assert jury.page.evaluate("document.documentElement.scrollWidth") <= width
 
     with opened_app(folder, "--save-to", folder) as app:
-        jury = JuryPage(browser, app, width)
+        jury = JuryPage(browser, app)
         jury.page.wait_for_function("() => !document.querySelector('.begin').disabled")
         check()
         jury.begin()
@@ -120,7 +110,7 @@ def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, fo
         jury.vote("1")
         jury.turn(2)
         jury.page.get_by_role("button", name="Result, with names").click()
-        jury.page.locator(".result svg circle").nth(1).wait_for()
+        jury.page.locator(".result .scale b").nth(1).wait_for()
         check()
         jury.page.get_by_role("button", name="To all juries").click()
         jury.page.get_by_role("button", name="Go on with jury 1").wait_for()

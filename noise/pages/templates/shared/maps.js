@@ -12,7 +12,6 @@ const comparison = (function () {
   let [a, b] = data.pair, look = "noise";
 
   const signed = (value) => (Math.round(value) < 0 ? "\u2212" : Math.round(value) > 0 ? "+" : "") + Math.abs(Math.round(value));
-  const percent = (share) => (share > 0 && share < 0.005 ? "<1" : Math.round(100 * share)) + " %";
   const placeOf = (map) => data.places[map.closest("[data-comparison]").dataset.comparison];
   const designOf = (map) => (map.dataset.design === undefined ? null : Number(map.dataset.design));
   const has = (of, cell) => of !== undefined && of.label[cell] >= 0;
@@ -74,27 +73,13 @@ const comparison = (function () {
     return sorted.length % 2 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
   }
 
-  function drawDifference(map, place, told) {
+  function drawDifference(map, place) {
     const [one, other] = [place.designs[a], place.designs[b]];
     const by = (cell) => (one.level[cell] === null || other.level[cell] === null ? NaN : other.level[cell] - one.level[cell]);
     draw(map, place, (cell) => differing(place, cell), (kind, cells) => {
       const middle = median(cells.map(by));
       return ["gone", "new", "quiet", "alike"].includes(kind) || middle === null ? kind : signed(middle) + " dB";
     });
-    // In words, over the points that both have; a cell of a map without a grid counts as a point.
-    const cells = Array.from({ length: (place.x.length - 1) * (place.y.length - 1) }, (_, cell) => cell);
-    const known = cells.map((cell) => [differing(place, cell), cell]).filter(([kind]) => kind);
-    const parts = Object.entries({
-      "noise gone": (kind) => kind === "gone",
-      "noise new": (kind) => kind === "new",
-      "softer by 3 dB or more": (kind) => kind.startsWith("softer"),
-      "louder by 3 dB or more": (kind) => kind.startsWith("louder"),
-      "another noise": (kind, cell) => kind !== "gone" && kind !== "new" && one.label[cell] !== other.label[cell],
-    }).map(([words, test]) => [words, known.filter((of) => test(...of)).length]).filter(([, n]) => n).map(([words, n]) => words + " at " + percent(n / known.length));
-    const middle = median(known.filter(([kind]) => !["gone", "new", "quiet"].includes(kind)).map(([, cell]) => by(cell)));
-    if (!parts.length) parts.push("no difference beyond 3 dB");
-    if (middle !== null) parts.push("where both make noise " + signed(middle) + " dB in the median");
-    told.textContent = known.length ? `B, ${data.names[b]}, against A, ${data.names[a]}: ${parts.join("; ")}.` : "A and B have no conditions in common here.";
   }
 
   function cellAt(map, x, y) {
@@ -153,9 +138,8 @@ const comparison = (function () {
 
   function update() {
     for (const section of sections) {
-      const place = data.places[section.dataset.comparison], told = section.querySelector(".differs");
+      const place = data.places[section.dataset.comparison];
       const both = place.designs[a] && place.designs[b] && a !== b;
-      told.hidden = !both;
       for (const map of section.querySelectorAll("[data-map]")) {
         const design = designOf(map), slot = map.querySelector(".slot");
         for (const old of map.querySelectorAll(".drawn")) old.remove();
@@ -169,7 +153,7 @@ const comparison = (function () {
         }
         map.hidden = !both;
         if (!both) continue;
-        drawDifference(map, place, told);
+        drawDifference(map, place);
         for (const spot of map.querySelectorAll(".spot")) {
           const cell = cellAt(map, ...at(spot)), where = spot.getAttribute("aria-label").split(":")[0];
           spot.setAttribute("aria-label", `${where}: A ${says(place, a, cell)}; B ${says(place, b, cell)}`);
