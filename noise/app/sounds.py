@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from features.kernels.levels import REFERENCES, a_weighted, fast_levels, sound_levels
+from features.kernels.levels import REFERENCES, fast_level_pieces, sound_levels
 from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel
@@ -224,10 +224,6 @@ _CELL = 0.01
 _MOST_CELLS = 6000
 """Of one recording: where it is longer, so is a cell."""
 
-_PIECE, _BEFORE, _AFTER = 60.0, 2.0, 0.2
-"""Weighted at once, and what is read before and after it: a meter has forgotten what was 2 s ago,
-which has fallen by 69 dB [s]."""
-
 _LONGEST_BANDS = 120.0
 """Of a stretch whose bands are measured [s]."""
 
@@ -241,24 +237,18 @@ def wav(track: Track, query: Query) -> bytes:
 
 
 def level_course(track: Track) -> dict[str, object]:
-    """Return the A-weighted level with the time weighting F, cell by cell."""
+    """Return the A-weighted level with the time weighting F, the largest in each cell."""
     cell = max(_CELL, track.duration / _MOST_CELLS)
-    count = math.ceil(track.duration / cell)
-    edges = np.minimum(np.rint(np.arange(count + 1) * cell * track.rate).astype(int), track.n)
-    edges = np.unique(np.append(edges, track.n))
-    levels: list[float] = []
-    cells = max(1, round(_PIECE / cell))
-    for at in range(0, edges.size - 1, cells):
-        part = edges[at : at + cells + 1]
-        first = max(0, int(part[0]) - round(_BEFORE * track.rate))
-        last = min(track.n, int(part[-1]) + round(_AFTER * track.rate))
-        weighted = a_weighted(track.read(first, last), track.rate)
-        fast = fast_levels(weighted, track.rate, part - first, reference=track.reference)
-        levels += fast.tolist()
+    levels = np.full(math.ceil(track.n / (cell * track.rate)), -math.inf)
+    first = 0
+    for piece in fast_level_pieces(track.read, track.n, track.rate, reference=track.reference):
+        at = (np.arange(first, first + piece.size) / (cell * track.rate)).astype(int)
+        np.maximum.at(levels, np.minimum(at, levels.size - 1), piece)
+        first += piece.size
     return {
         "cell_s": cell,
         "unit": _weighted(track),
-        "levels": [_plain(level) for level in levels],
+        "levels": [_plain(level) for level in levels.tolist()],
     }
 
 

@@ -222,31 +222,19 @@ def _is_verdict(diagnosis: Diagnosis, name: str) -> bool:
     return name in (diagnosis.verdict or ("none",)) and is_named(diagnosis)
 
 
+_CAUSE_COLUMNS = ("Cause", "Probability", "Gap closed", "Strength, 90 %")
+
+
 def _likely(diagnosis: Diagnosis) -> list[b.Block]:
     """Return the causes that are worth a look: how likely, how far each closes, how strong."""
     chances, n = ranked_causes(diagnosis)
     if not chances:
         return [b.Text(NOT_DETERMINED.capitalize() + ".")]
-    rows: list[list[b.Cell | str]] = []
-    for name, chance in list(chances.items())[:n]:
-        finding, cause, named = finding_of(diagnosis, name), cause_of(name), ""
-        closed = strength = ""
-        if name not in _BESIDE_EFFECTS:
-            fitted = finding is not None and any(gap is not None for gap in _gaps(finding))
-            closed = closed_words(finding) if fitted else "not fitted"
-            strength = _strength(finding) if finding is not None and fitted else ""
-        if _is_verdict(diagnosis, name):
-            named = "cause"
-        bar = b.Bar(0.0, 100.0 * chance, named)
-        arrow = "\N{BLACK RIGHT-POINTING TRIANGLE} " if named else ""
-        rows.append(
-            [b.Cell(arrow + cause.name, cause.clause), b.Cell(percent(chance), bars=[bar]),
-             closed, strength]
-        )  # fmt: skip
+    rows = [_cause_row(diagnosis, *one) for one in list(chances.items())[:n]]
     more = len(chances) - n
     rest = f" {more} less probable cause{'s are' if more > 1 else ' is'} listed in the details."
     return [
-        b.Table(("Cause", "Probability", "Gap closed", "Strength, 90 %"), rows, style="causes"),
+        b.Table(_CAUSE_COLUMNS, rows, style="causes"),
         b.Text(
             "An effect's probability is that it is at work, alone or with others; the 90 % "
             "interval of what closes is that of the effect, of which the forms tried may show a "
@@ -256,26 +244,27 @@ def _likely(diagnosis: Diagnosis) -> list[b.Block]:
     ]
 
 
-def _gaps(finding: EffectFinding) -> tuple[float | None, ...]:
-    return finding.gap_before, finding.gap_recalibrated, finding.gap_after, finding.gap_floor
-
-
-def _cause_row(diagnosis: Diagnosis, name: str, chance: float) -> list[str]:
-    """Return all that is known of a cause, in the order of the table of all causes."""
-    finding, beside = finding_of(diagnosis, name), name in _BESIDE_EFFECTS
-    row = [cause_of(name).name, "" if beside else stage_of_effect(diagnosis, name), percent(chance)]
-    if finding is None or all(gap is None for gap in _gaps(finding)):
-        return [*row, *[""] * 5, "" if beside else "not fitted"]
-    known = EFFECTS[name].parameters if _known_form(finding) else {}
-    fitted = []
-    for key, value in finding.parameters.items():
-        text = value if isinstance(value, str) else number(value, ".3g")
-        unit = known[key].unit if key in known else ""
-        fitted.append(f"{parameter_name(key)} {text} {unit}".strip())
-    gaps = [number(gap) for gap in _gaps(finding)]
-    own = finding.closed_by_effect
-    alone = percent(None if own is None else min(own, 1.0))
-    return [*row, *gaps, alone, "; ".join(fitted) or NOT_DETERMINED]
+def _cause_row(diagnosis: Diagnosis, name: str, chance: float) -> list[b.Cell | str]:
+    cause, finding = cause_of(name), finding_of(diagnosis, name)
+    named = "cause" if _is_verdict(diagnosis, name) else ""
+    arrow = "\N{BLACK RIGHT-POINTING TRIANGLE} " if named else ""
+    closed, gaps, strength = "not fitted", "", ""
+    if name in _BESIDE_EFFECTS:
+        closed = ""
+    elif finding is not None and finding.gap_before is not None:
+        closed, strength = closed_words(finding), _strength(finding)
+        own = finding.closed_by_effect
+        gaps = (
+            f"gap {number(finding.gap_before)}, refitted {number(finding.gap_recalibrated)}, with "
+            f"the effect {number(finding.gap_after)}; the effect closes "
+            f"{percent(None if own is None else min(own, 1.0))} of what refitting leaves"
+        )
+    return [
+        b.Cell(arrow + cause.name, cause.clause),
+        b.Cell(percent(chance), bars=[b.Bar(0.0, 100.0 * chance, named)]),
+        b.Cell(closed, gaps),
+        strength,
+    ]
 
 
 def _strength(finding: EffectFinding) -> str:
@@ -285,21 +274,9 @@ def _strength(finding: EffectFinding) -> str:
     if finding.name not in EFFECTS:
         return f"{low} to {high}"
     effect = EFFECTS[finding.name]
-    if not _known_form(finding):
-        of = "of a gross one" if "strength" in finding.parameters else "of what was estimated"
-        return f"{low} to {high} {of}"
-    unit = effect.parameters[effect.strength].unit
+    known = finding.parameters.get("form", effect.forms[0]) in effect.forms
+    unit = effect.parameters[effect.strength].unit if known else ""
     return f"{parameter_name(effect.strength)} {low} to {high} {unit}".strip()
-
-
-def _known_form(finding: EffectFinding) -> bool:
-    """Tell whether a fit has a form of the simulator's own, whose numbers have its units."""
-    if finding.name not in EFFECTS:
-        return False
-    return (
-        finding.parameters.get("form", EFFECTS[finding.name].forms[0])
-        in EFFECTS[finding.name].forms
-    )
 
 
 _MOST_PLACES = 12
@@ -328,7 +305,7 @@ def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> list[list[b.
 
 
 def _details(diagnosis: Diagnosis) -> list[b.Block]:
-    chances, _ = ranked_causes(diagnosis)
+    chances, n = ranked_causes(diagnosis)
     found = diagnosis.differences[:_MOST_PLACES]
     places = [
         [
@@ -358,10 +335,8 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
         "Parameters, relative to the rig file, 90 % intervals": (
             ("Parameter", "Interval", "About 1.0"), parameter_rows(diagnosis.parameters),
         ),
-        "All causes": (
-            ("Cause", "Stage", "Probability", "Gap nominal", "recalibrated", "with effect", "floor",
-             "Closed by the effect alone", "As fitted"),
-            [_cause_row(diagnosis, *one) for one in chances.items()],
+        "Less probable causes": (
+            _CAUSE_COLUMNS, [_cause_row(diagnosis, *one) for one in list(chances.items())[n:]],
         ),
     }  # fmt: skip
     missing = {

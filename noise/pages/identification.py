@@ -251,15 +251,9 @@ def _html(found: Identification) -> str:
 
 
 def _title(found: Identification) -> str:
-    sources = [
-        f"{n} {what}"
-        for n, what in (
-            (len(found.seen), "recordings"), (len(found.static), "static tests"),
-        )
-        if n
-    ]  # fmt: skip
-    listed = " and ".join(filter(None, (", ".join(sources[:-1]), sources[-1])))
-    return f"The rig, identified from {listed}"
+    counts = {"recordings": len(found.seen), "static tests": len(found.static)}
+    sources = [f"{n} {what}" for what, n in counts.items() if n]
+    return f"The rig, identified from {' and '.join(sources) or 'what was known'}"
 
 
 def _answer(found: Identification) -> list[str]:

@@ -7,7 +7,6 @@ import json
 import signal
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from urllib.parse import urlsplit
 
 import pytest
@@ -156,15 +155,6 @@ def test_it_ends_when_told_by_button_key_or_terminal(tmp_path, end):
         else:
             app.process.send_signal(end)
         assert app.process.wait(PATIENCE) == 0
-
-
-def test_a_view_that_is_loaded_once_it_is_asked_for_answers_all_who_ask():
-    with opened_app() as running, ThreadPoolExecutor(3) as pool:
-        answers = list(pool.map(running.json, ["api/design"] * 3))
-        assert answers[0]["bases"]
-        assert answers == answers[:1] * 3
-        assert running.request("api/design/nothing")[0] == 404
-        assert running.request("api/designs")[0] == 404
 
 
 def test_the_address_is_there_before_the_simulator_is_loaded(tmp_path):

@@ -14,7 +14,6 @@ import soundfile
 from models.errors import ParameterError
 from noise.audio.gain import loudness
 from noise.cli import main
-from noise.pages import review_inputs as recorded
 from noise.pages.cards import facts_of
 from noise.pages.clips import Entry, Gain, common_gain, equal_factors, make_clips
 from noise.pages.diagnosis import write_diagnosis
@@ -126,23 +125,6 @@ def test_the_budget_shortens_all_sounds_alike_and_is_kept(tmp_path):
     made = review(tmp_path / "runs", tmp_path / "least.html", classify=False, megabytes=least)
     assert made.sounds == 3
     assert made.path.stat().st_size <= 1e6 * least
-
-
-def test_a_recording_that_goes_away_while_the_others_are_read_is_one_refusal(campaign, monkeypatch):
-    first = sorted((campaign / "recordings").glob("*.wav"))[0]
-    opened = recorded.open_blocks
-
-    def going_away(path, **options):
-        if path == first:  # after it was found, while it is read
-            raise FileNotFoundError(2, "No such file or directory", str(path))
-        return opened(path, **options)
-
-    monkeypatch.setattr(recorded, "open_blocks", going_away)
-    made = review(campaign, campaign / "review.html", classify=False)
-    assert made.sounds == 2
-    assert [(one.name, one.reason) for one in made.refused] == [
-        (str(first), "cannot be read (No such file or directory)")
-    ]
 
 
 def test_of_a_long_recording_the_stretch_that_names_it_is_played(tmp_path):

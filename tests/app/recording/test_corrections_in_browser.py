@@ -11,10 +11,9 @@ from models.recording import Channel, Recording
 from noise.base.tables import write_table
 from noise.labels.table import COLUMNS, read_label_table
 from noise.recordings import write_recording
-from tests.helpers.browser import until
 from tests.helpers.labelled_folder import made_row
 from tests.helpers.opened_app import opened_app
-from tests.helpers.recording_page import HALF, TONE, OpenPage, in_table
+from tests.helpers.recording_page import TONE, OpenPage, in_table
 
 
 def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
@@ -91,19 +90,6 @@ def test_a_stretch_of_both_tracks_is_labelled_by_a_drag_and_a_key(browser, tmp_p
         opened.page.get_by_role("option").filter(has_text=re.compile(", corrected")).wait_for()
         assert {r["label_source"] for r in read_label_table(tmp_path / "labels.csv")} == {"human"}
         opened.close()
-
-
-def test_changes_that_wait_are_written_although_another_recording_is_opened(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    go_on = opened.holding("segments")
-    opened.press("1", "]", "2")  # the second waits for the first
-    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
-    opened.page.get_by_role("heading", name=HALF).wait_for()
-    go_on()
-    opened.page.locator(".strip button").first.wait_for()
-    until(opened.page, lambda: [row[2] for row in in_table(folder)] == ["creak", "squawk", "none"])
-    assert opened.segments() == ["squeal, 0.00 to 2.00 s"]
-    opened.close()
 
 
 def test_what_another_page_has_changed_is_shown_and_not_overwritten(browser, app, folder):
