@@ -138,9 +138,9 @@ def motion(material: str, case: Case, seconds: float | None = None, rate: float 
 
 
 def _damped(material: str, case: Case) -> Rig:
-    rig = rig_of(material)
-    own = case.damping is not None and material == THESIS
-    return with_damping(rig, case.damping) if own else rig
+    if case.damping is None or material != THESIS:
+        return rig_of(material)
+    return with_damping(rig_of(material), case.damping)
 
 
 def _settled(run: Motion) -> Motion:

@@ -128,7 +128,8 @@ def _computed(line: Mapping[str, str]) -> dict[str, float]:
     """Values of a row by column."""
     if line["value"]:
         return {line["judged"] or "exact": float(line["value"])}
-    quantity, found = line["quantity"], {}
+    quantity = line["quantity"]
+    found: dict[str, float] = {}
     cases = [_case(text) for text in line["cases"].split(";")]
     for column in (line["columns"] or "exact calibrated").split():
         if column == "listing":
