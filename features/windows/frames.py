@@ -77,17 +77,6 @@ class Frames:
     bands: NDArray[np.float32]
 
 
-def frame_count(n: int) -> int:
-    """Return how many whole frames `n` samples hold, at least one.
-
-    Examples
-    --------
-    >>> frame_count(16_000), frame_count(100)
-    (97, 1)
-    """
-    return max(1, (n - FRAME) // HOP + 1)
-
-
 def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
     """Describe the frames of a sound.
 

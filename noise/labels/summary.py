@@ -99,7 +99,8 @@ def _result_words(row: Mapping[str, object]) -> Iterator[str]:
     for column, unit in (("level_dba", "dB(A)"), ("level_dbfs", "dBFS")):
         level = row.get(column)
         if isinstance(level, float):
-            yield f"{level:.1f} {unit}"
+            loud = " (above full scale)" if unit == "dBFS" and level > 0.0 else ""
+            yield f"{level:.1f} {unit}{loud}"
             break
     if isinstance(start, float) and isinstance(end, float):
         yield f"{start:.2f}-{end:.2f} s"

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from features.windows.arithmetic import ordered_sum
 from features.windows.lines import Lines, segments_of
 from features.windows.rhythm import envelope, rhythm_of
 from features.windows.table import describe_windows
@@ -18,19 +17,6 @@ def sound(seconds, seed=0):
     clicks = np.where(np.mod(time, 0.025) < 2.0 / RATE, 1.0, 0.0)
     tone = sum(np.sin(2.0 * np.pi * 310.0 * n * time) / n for n in range(1, 6))
     return (clicks + tone + 0.01 * rng.normal(size=time.size)).astype(np.float32)
-
-
-@pytest.mark.parametrize(("shape", "axis"), [((47, 9), 0), ((5, 47, 9), 1), ((9, 47), 1)])
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_sums_run_in_order_whatever_is_summed_beside(shape, axis, dtype):
-    terms = np.random.default_rng(1).lognormal(sigma=9.0, size=shape).astype(dtype)
-    expected = np.zeros_like(terms.take(0, axis=axis))
-    for i in range(shape[axis]):
-        expected = expected + terms.take(i, axis=axis)
-    np.testing.assert_array_equal(ordered_sum(terms, axis=axis), expected)
-    if axis < terms.ndim - 1:
-        alone = ordered_sum(terms[..., :1], axis=axis)
-        np.testing.assert_array_equal(alone, expected[..., :1])
 
 
 def test_a_window_alone_is_as_among_others():

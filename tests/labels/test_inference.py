@@ -12,7 +12,6 @@ from sklearn.ensemble import RandomForestRegressor
 
 from models.blocks import RecordingBlocks
 from models.condition import FIXED, Condition
-from models.errors import ParameterError
 from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from noise.base.tables import write_table
@@ -220,14 +219,6 @@ def test_a_saved_model_infers_the_same(tmp_path, heard):
         assert again.infer(*asked, kinds=ALL, calibrated=True) == MODEL.infer(
             *asked, kinds=ALL, calibrated=True
         )
-
-
-def test_trees_that_never_end_are_refused(tmp_path):
-    forest = MODEL.forests[0]
-    endless = replace(forest, children=np.zeros_like(forest.children))
-    replace(MODEL, forests=(endless, *MODEL.forests[1:])).save(tmp_path / "loop.npz")
-    with pytest.raises(ParameterError, match="do not end"):
-        load_inference(tmp_path / "loop.npz")
 
 
 @pytest.mark.parametrize("ending", [".csv", ".xlsx", ".jsonl", ".parquet"])
