@@ -443,8 +443,9 @@ def _solve(
     torques_now = np.empty((len(bushings), 3))
     last = n - 2
     t, h, sample, n_done, error_before = 0.0, _FIRST_STEP, 0, 0.0, 0.0
+    # `int64`, since a function is compiled once more for a literal.
     _fill_rates(
-        0, 0.0, 0, 0.0, start, k, chain, bushings, hooks, rows, drive, place,
+        np.int64(0), 0.0, np.int64(0), 0.0, start, k, chain, bushings, hooks, rows, drive, place,
         preload, limits, torques_now,
     )  # fmt: skip
     while sample < n:
@@ -477,8 +478,8 @@ def _solve(
                 states[sample, j] = u[j]
             i = min(sample, last)
             _fill_rates(
-                at.N_STAGES, (sample - i) * step, i, sample * step, u, k, chain, bushings, hooks,
-                rows, drive, place, preload, limits, torques[sample],
+                np.int64(at.N_STAGES), (sample - i) * step, i, sample * step, u, k, chain, bushings,
+                hooks, rows, drive, place, preload, limits, torques[sample],
             )  # fmt: skip
             sample += 1
         for j in range(d):
