@@ -1,10 +1,15 @@
-"""Unknown effects of what else sounds near the rig, and of sensors, cables and recorders."""
+"""Unknown effects of what else sounds near the rig, and of sensors, cables and recorders.
+
+Each is a function of a run and the numbers that its row draws; a decorator makes of it what
+`noise.training.causes.cases.variants.made` calls.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from functools import wraps
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.signal import bilinear, fftconvolve, lfilter
@@ -15,33 +20,59 @@ from noise.training.causes.cases.unknown_effects.mechanics import normed
 from noise.training.causes.cases.variants.sensors import on_signals
 from sim.effects.effect import Signals
 
-
-def _on_channel(
-    a: float, channel: int, change: Callable[[Array, float, Rng], Array]
-) -> dict[str, Any]:
-    """Change one channel, or all of them: ``change(x, rate, rng)``."""
-    names = SENSED if channel == len(SENSED) else (SENSED[channel],)
-    return on_signals(a, lambda signals, rate, rng: {
-        name: change(x, rate, rng) if name in names else x for name, x in signals.items()
-    })  # fmt: skip
+Maker = Callable[..., dict[str, Any]]
 
 
-def _added(
-    a: float, levels: Array, series: Callable[[Signals, float, Rng], Array]
-) -> dict[str, Any]:
-    """Add a series of rms 1 to torque, acceleration and pressure, at levels."""
+class _Run(NamedTuple):
+    """What was recorded, its rate [Hz], and the chance of this run."""
 
-    def change(signals: Signals, rate: float, rng: Rng) -> Signals:
-        x = series(signals, rate, rng)
-        x = x / (float(np.sqrt(np.mean(x**2))) + 1e-30)
-        parts = zip(SENSED, levels.tolist(), strict=True)
-        return signals | {name: signals[name] + a * level * x for name, level in parts}
+    signals: Signals
+    rate: float
+    rng: Rng
 
-    return on_signals(a, change)
+    @property
+    def times(self) -> Array:
+        return np.arange(self.signals["torque"].size) / self.rate
 
 
-def _times(signals: Signals, rate: float) -> Array:
-    return np.arange(signals["torque"].size) / rate
+def _signals(function: Callable[..., Signals]) -> Maker:
+    """Change signals: ``function(run, a, **numbers)``."""
+
+    @wraps(function)
+    def maker(a: float, **numbers: Any) -> dict[str, Any]:
+        return on_signals(a, lambda *run: function(_Run(*run), a, **numbers))
+
+    return maker
+
+
+def _channel(function: Callable[..., Array]) -> Maker:
+    """Change one channel, or all of them: ``function(x, rate, rng, a, **numbers)``."""
+
+    @wraps(function)
+    def maker(a: float, channel: int, **numbers: Any) -> dict[str, Any]:
+        names = SENSED if channel == len(SENSED) else (SENSED[channel],)
+        return on_signals(a, lambda signals, rate, rng: {
+            name: np.asarray(function(x, rate, rng, a, **numbers)) if name in names else x
+            for name, x in signals.items()
+        })  # fmt: skip
+
+    return maker
+
+
+def _added(function: Callable[..., Array]) -> Maker:
+    """Add ``function(run, **numbers)`` of rms 1, times levels, to what is sensed."""
+
+    @wraps(function)
+    def maker(a: float, levels: Array, **numbers: Any) -> dict[str, Any]:
+        def change(signals: Signals, rate: float, rng: Rng) -> Signals:
+            x = function(_Run(signals, rate, rng), **numbers)
+            x = x / (float(np.sqrt(np.mean(x**2))) + 1e-30)
+            parts = zip(SENSED, levels.tolist(), strict=True)
+            return signals | {name: signals[name] + a * level * x for name, level in parts}
+
+        return on_signals(a, change)
+
+    return maker
 
 
 def _ring(rng: Rng, rate: float, tones: Array, decay: float) -> Array:
@@ -50,278 +81,204 @@ def _ring(rng: Rng, rate: float, tones: Array, decay: float) -> Array:
     return np.asarray(ringing.sum(axis=1) * np.exp(-since / decay))
 
 
-def shocks(a: float, tones: Array, count: int, decay: float) -> dict[str, Any]:
+@_signals
+def shocks(run: _Run, a: float, tones: Array, count: int, decay: float) -> Signals:
     """Be struck from outside."""
-
-    def change(signals: Signals, rate: float, rng: Rng) -> Signals:
-        time = _times(signals, rate)
-        shock = np.zeros(time.size)
-        for at in rng.uniform(0.0, time[-1], count):
-            since = np.maximum(time - at, 0.0)
-            ringing = np.sin(2 * np.pi * tones[:, None] * since).sum(axis=0)
-            shock += ringing * np.exp(-since / decay)
-        sizes = {"torque": 0.5, "acceleration": 15.0, "pressure": 0.6}
-        return {name: x + a * sizes.get(name, 0.0) * shock for name, x in signals.items()}
-
-    return on_signals(a, change)
+    time = run.times
+    shock = np.zeros(time.size)
+    for at in run.rng.uniform(0.0, time[-1], count):
+        since = np.maximum(time - at, 0.0)
+        shock += np.sin(2 * np.pi * tones[:, None] * since).sum(axis=0) * np.exp(-since / decay)
+    sizes = {"torque": 0.5, "acceleration": 15.0, "pressure": 0.6}
+    return {name: x + a * sizes.get(name, 0.0) * shock for name, x in run.signals.items()}
 
 
-def second_source(
-    a: float, pace: float, jitter: float, tones: Array, decay: float, levels: Array
-) -> dict[str, Any]:
+@_added
+def second_source(run: _Run, pace: float, jitter: float, tones: Array, decay: float) -> Array:
     """Hear another joint creak."""
-
-    def series(signals: Signals, rate: float, rng: Rng) -> Array:
-        n = signals["torque"].size
-        steps = np.maximum(1.0 + jitter * rng.standard_normal(int(2 * pace * n / rate) + 4), 0.05)
-        at = ((np.cumsum(steps) - rng.random()) / pace * rate).astype(np.int64)
-        clicks = np.zeros(n)
-        clicks[at[at < n]] = 1.0
-        return np.asarray(fftconvolve(clicks, _ring(rng, rate, tones, decay))[:n])
-
-    return _added(a, levels, series)
+    n = run.signals["torque"].size
+    steps = np.maximum(
+        1.0 + jitter * run.rng.standard_normal(int(2 * pace * n / run.rate) + 4), 0.05
+    )
+    at = ((np.cumsum(steps) - run.rng.random()) / pace * run.rate).astype(np.int64)
+    clicks = np.zeros(n)
+    clicks[at[at < n]] = 1.0
+    return np.asarray(fftconvolve(clicks, _ring(run.rng, run.rate, tones, decay))[:n])
 
 
-def gear_mesh(
-    a: float, teeth: float, sizes: Array, depth: float, slow: int, levels: Array
-) -> dict[str, Any]:
+@_added
+def gear_mesh(run: _Run, teeth: float, sizes: Array, depth: float, slow: int) -> Array:
     """Hear the teeth of the drive."""
-    sizes = sizes * np.array([1.0, 0.6, 0.3])
-
-    def series(signals: Signals, _rate: float, rng: Rng) -> Array:
-        turns, phases = signals["angle"] / (2 * np.pi), rng.random(4)
-        mesh = sum(
-            s * np.sin(2 * np.pi * ((k + 1) * teeth * turns + phases[k]))
-            for k, s in enumerate(sizes.tolist())
-        )
-        return np.asarray((1.0 + depth * np.sin(2 * np.pi * (slow * turns + phases[3]))) * mesh)
-
-    return _added(a, levels, series)
+    turns, phases = run.signals["angle"] / (2 * np.pi), run.rng.random(4)
+    mesh = sum(
+        s * np.sin(2 * np.pi * ((k + 1) * teeth * turns + phases[k]))
+        for k, s in enumerate((sizes * np.array([1.0, 0.6, 0.3])).tolist())
+    )
+    return np.asarray((1.0 + depth * np.sin(2 * np.pi * (slow * turns + phases[3]))) * mesh)
 
 
-def rolling_bearing(
-    a: float, order: float, tones: Array, decay: float, levels: Array
-) -> dict[str, Any]:
+@_added
+def rolling_bearing(run: _Run, order: float, tones: Array, decay: float) -> Array:
     """Roll over a dent."""
-
-    def series(signals: Signals, rate: float, rng: Rng) -> Array:
-        turns = signals["angle"] / (2 * np.pi)
-        passed = np.floor(order * turns + rng.random())
-        clicks = np.diff(passed, prepend=passed[0]) * rng.uniform(0.6, 1.4, turns.size)
-        return np.asarray(fftconvolve(clicks, _ring(rng, rate, tones, decay))[: turns.size])
-
-    return _added(a, levels, series)
+    turns = run.signals["angle"] / (2 * np.pi)
+    passed = np.floor(order * turns + run.rng.random())
+    clicks = np.diff(passed, prepend=passed[0]) * run.rng.uniform(0.6, 1.4, turns.size)
+    return np.asarray(fftconvolve(clicks, _ring(run.rng, run.rate, tones, decay))[: turns.size])
 
 
-def inverter_tone(
-    a: float, carrier: float, apart: float, sides: Array, levels: Array
-) -> dict[str, Any]:
+@_added
+def inverter_tone(run: _Run, carrier: float, apart: float, sides: Array) -> Array:
     """Hear the converter of a drive whistle."""
-
-    def series(signals: Signals, rate: float, rng: Rng) -> Array:
-        time, phases = _times(signals, rate), 6.3 * rng.random(5)
-        tone = np.sin(2 * np.pi * carrier * time + phases[0])
-        for k, size in enumerate(sides.tolist()):
-            for sign in (-1.0, 1.0):
-                side = carrier + sign * (k + 1) * apart
-                tone += size * np.sin(2 * np.pi * side * time + phases[k + 1])
-        return np.asarray(tone)
-
-    return _added(a, levels, series)
+    time, phases = run.times, 6.3 * run.rng.random(5)
+    tone = np.sin(2 * np.pi * carrier * time + phases[0])
+    for k, size in enumerate(sides.tolist()):
+        for sign in (-1.0, 1.0):
+            side = carrier + sign * (k + 1) * apart
+            tone += size * np.sin(2 * np.pi * side * time + phases[k + 1])
+    return np.asarray(tone)
 
 
-def radio_buzz(
-    a: float, pace: float, duty: float, group: float, on: float, levels: Array
-) -> dict[str, Any]:
+@_added
+def radio_buzz(run: _Run, pace: float, duty: float, group: float, on: float) -> Array:
     """Pick up a telephone or a radio."""
-
-    def series(signals: Signals, rate: float, rng: Rng) -> Array:
-        time = _times(signals, rate)
-        pulses = np.where((pace * time + rng.random()) % 1.0 < duty, 1.0, 0.0)
-        return np.asarray(pulses * ((group * time + rng.random()) % 1.0 < on))
-
-    return _added(a, levels, series)
+    time = run.times
+    pulses = np.where((pace * time + run.rng.random()) % 1.0 < duty, 1.0, 0.0)
+    return np.asarray(pulses * ((group * time + run.rng.random()) % 1.0 < on))
 
 
-def sweeping_tone(
-    a: float, low: float, octaves: float, up: int, harmonics: int, levels: Array
-) -> dict[str, Any]:
+@_added
+def sweeping_tone(run: _Run, low: float, octaves: float, up: int, harmonics: int) -> Array:
     """Hear a machine run up or down nearby."""
-
-    def series(signals: Signals, rate: float, rng: Rng) -> Array:
-        n = signals["torque"].size
-        part = np.arange(n) / n
-        turns = np.cumsum(low * 2.0 ** (octaves * (part if up else 1.0 - part))) / rate
-        orders = range(1, harmonics + 1)
-        return np.asarray(sum(np.sin(2 * np.pi * (k * turns + rng.random())) / k for k in orders))
-
-    return _added(a, levels, series)
+    n = run.signals["torque"].size
+    part = np.arange(n) / n
+    turns = np.cumsum(low * 2.0 ** (octaves * (part if up else 1.0 - part))) / run.rate
+    orders = range(1, harmonics + 1)
+    return np.asarray(sum(np.sin(2 * np.pi * (k * turns + run.rng.random())) / k for k in orders))
 
 
-def crosstalk(a: float, way: int, sign: float) -> dict[str, Any]:
+@_signals
+def crosstalk(run: _Run, a: float, way: int, sign: float) -> Signals:
     """Leak from one channel into others."""
     source, into = (
         ("acceleration", ("torque", "pressure")),
         ("pressure", ("torque",)),
         ("torque", ("acceleration", "pressure")),
     )[way]
-
-    def change(signals: Signals, _rate: float, _rng: Rng) -> Signals:
-        leak = normed(signals[source])
-        return signals | {
-            name: signals[name] + sign * a * leak * signals[name].std() for name in into
-        }
-
-    return on_signals(a, change)
+    leak = normed(run.signals[source])
+    return run.signals | {k: run.signals[k] + sign * a * leak * run.signals[k].std() for k in into}
 
 
-def wow(a: float, slow: float, fast: float) -> dict[str, Any]:
+@_signals
+def wow(run: _Run, a: float, slow: float, fast: float) -> Signals:
     """Play back at a speed that swings."""
-
-    def change(signals: Signals, rate: float, rng: Rng) -> Signals:
-        phases = rng.random(2)
-        time = _times(signals, rate)
-        late = 4e-3 * np.sin(2 * np.pi * (slow * time + phases[0]))
-        late += 8e-4 * np.sin(2 * np.pi * (fast * time + phases[1]))
-        return {name: np.interp(time - a * late, time, x) for name, x in signals.items()}
-
-    return on_signals(a, change)
+    phases = run.rng.random(2)
+    time = run.times
+    late = 4e-3 * np.sin(2 * np.pi * (slow * time + phases[0]))
+    late += 8e-4 * np.sin(2 * np.pi * (fast * time + phases[1]))
+    return {name: np.interp(time - a * late, time, x) for name, x in run.signals.items()}
 
 
-def wrong_rate(a: float, sign: float) -> dict[str, Any]:
+@_signals
+def wrong_rate(run: _Run, a: float, sign: float) -> Signals:
     """Record all but the angle by a clock that is wrong."""
-    error = 0.2 * a * sign
-
-    def change(signals: Signals, _rate: float, _rng: Rng) -> Signals:
-        n = signals["torque"].size
-        at = np.arange(n) * (1.0 + error)
-        at = np.where(at > n - 1, 2 * (n - 1) - at, at)  # its end is played back
-        return {
-            name: x if name == "angle" else np.interp(at, np.arange(n), x)
-            for name, x in signals.items()
-        }
-
-    return on_signals(a, change)
+    n = run.signals["torque"].size
+    at = np.arange(n) * (1.0 + 0.2 * a * sign)
+    at = np.where(at > n - 1, 2 * (n - 1) - at, at)  # its end is played back
+    return {
+        name: x if name == "angle" else np.interp(at, np.arange(n), x)
+        for name, x in run.signals.items()
+    }
 
 
-def lost_samples(a: float, often: float, long: float) -> dict[str, Any]:
+@_signals
+def lost_samples(run: _Run, a: float, often: float, long: float) -> Signals:
     """Leave out samples in all channels."""
-
-    def change(signals: Signals, rate: float, rng: Rng) -> Signals:
-        n = signals["torque"].size
-        gaps = rng.random(n) < often / rate
-        jumps = gaps * np.ceil(a * long * rate * rng.exponential(1.0, n))
-        at = np.arange(n) + np.cumsum(jumps)
-        at = np.minimum(at, 2 * (n - 1) - np.minimum(at, 2 * (n - 1)))  # its end is played back
-        return {
-            name: x if name == "angle" else x[np.clip(at, 0, n - 1).astype(np.int64)]
-            for name, x in signals.items()
-        }
-
-    return on_signals(a, change)
+    n = run.signals["torque"].size
+    gaps = run.rng.random(n) < often / run.rate
+    jumps = gaps * np.ceil(a * long * run.rate * run.rng.exponential(1.0, n))
+    at = np.arange(n) + np.cumsum(jumps)
+    at = np.minimum(at, 2 * (n - 1) - np.minimum(at, 2 * (n - 1)))  # its end is played back
+    read = np.clip(at, 0, n - 1).astype(np.int64)
+    return {name: x if name == "angle" else x[read] for name, x in run.signals.items()}
 
 
-def aliased(a: float, slow: float, channel: int) -> dict[str, Any]:
+@_channel
+def aliased(x: Array, rate: float, _rng: Rng, a: float, slow: float) -> Array:
     """Sample too seldom without a filter."""
-
-    def change(x: Array, rate: float, _rng: Rng) -> Array:
-        at = np.arange(x.size)
-        kept = at[:: max(2, round(rate / slow))]
-        return np.asarray(x + a * (np.interp(at, kept, x[kept]) - x))
-
-    return _on_channel(a, channel, change)
+    at = np.arange(x.size)
+    kept = at[:: max(2, round(rate / slow))]
+    return x + a * (np.interp(at, kept, x[kept]) - x)
 
 
+@_signals
 def fading_resonance(
-    a: float, frequency: float, damping: float, corner: float, peak: float, *, both: bool
-) -> dict[str, Any]:
+    run: _Run, a: float, frequency: float, damping: float, corner: float, peak: float, *, both: bool
+) -> Signals:
     """Ring along at some times and not at others."""
     names = ("acceleration", "pressure") if both else ("pressure",)
-
-    def change(signals: Signals, rate: float, rng: Rng) -> Signals:
-        tuned = 0.5 / math.tan(math.pi * min(frequency / rate, 0.45))
-        band = bilinear([0.0, 2.0 * damping, 0.0], [1.0, 2.0 * damping, 1.0], fs=tuned)
-        gate = np.clip(slowly(rng, signals["torque"].size, rate, corner), 0.0, 2.0)
-        rung = {k: signals[k] + a * peak * gate * lfilter(*band, signals[k]) for k in names}
-        return signals | rung
-
-    return on_signals(a, change)
+    tuned = 0.5 / math.tan(math.pi * min(frequency / run.rate, 0.45))
+    band = bilinear([0.0, 2.0 * damping, 0.0], [1.0, 2.0 * damping, 1.0], fs=tuned)
+    gate = np.clip(slowly(run.rng, run.signals["torque"].size, run.rate, corner), 0.0, 2.0)
+    return run.signals | {
+        k: run.signals[k] + a * peak * gate * lfilter(*band, run.signals[k]) for k in names
+    }
 
 
-def lost_bits(a: float, channel: int, *, coarse: bool) -> dict[str, Any]:
+@_channel
+def lost_bits(x: Array, _rate: float, _rng: Rng, a: float, *, coarse: bool) -> Array:
     """Read with too few steps, or with a bit that is stuck."""
-
-    def change(x: Array, _rate: float, _rng: Rng) -> Array:
-        step = 1.5 * a * float(x.std()) + 1e-12
-        whole = np.floor(x / step)
-        stuck = whole * step
-        return np.asarray(stuck if coarse else np.where(whole % 2.0 == 1.0, stuck, x))
-
-    return _on_channel(a, channel, change)
+    step = 1.5 * a * float(x.std()) + 1e-12
+    whole = np.floor(x / step)
+    return whole * step if coarse else np.where(whole % 2.0 == 1.0, whole * step, x)
 
 
-def bit_errors(a: float, often: float, bits: int, channel: int) -> dict[str, Any]:
+@_channel
+def bit_errors(x: Array, rate: float, rng: Rng, a: float, often: float, bits: int) -> Array:
     """Read single samples far off."""
-
-    def change(x: Array, rate: float, rng: Rng) -> Array:
-        hit = rng.random(x.size) < often / rate
-        size = a * float(np.abs(x - x.mean()).max()) * 2.0 ** -rng.integers(0, bits, x.size)
-        return np.asarray(x + hit * size * rng.choice([-1.0, 1.0], x.size))
-
-    return _on_channel(a, channel, change)
+    hit = rng.random(x.size) < often / rate
+    size = a * float(np.abs(x - x.mean()).max()) * 2.0 ** -rng.integers(0, bits, x.size)
+    return np.asarray(x + hit * size * rng.choice([-1.0, 1.0], x.size))
 
 
-def loose_plug(a: float, often: float, channel: int, hiss: float, jump: float) -> dict[str, Any]:
+@_signals
+def loose_plug(
+    run: _Run, a: float, often: float, channel: int, hiss: float, jump: float
+) -> Signals:
     """Lose contact now and then."""
     name = SENSED[channel % len(SENSED)]
-
-    def change(signals: Signals, rate: float, rng: Rng) -> Signals:
-        x = signals[name]
-        open_ = np.cumsum(rng.random(x.size) < often / rate) % 2 == 1
-        more = open_ * x.std() * (hiss * rng.standard_normal(x.size) + jump)
-        return signals | {name: x * (1.0 - a * open_) + a * more}
-
-    return on_signals(a, change)
+    x = run.signals[name]
+    open_ = np.cumsum(run.rng.random(x.size) < often / run.rate) % 2 == 1
+    more = open_ * x.std() * (hiss * run.rng.standard_normal(x.size) + jump)
+    return run.signals | {name: x * (1.0 - a * open_) + a * more}
 
 
-def zero_jumps(a: float, often: float, fading: float, channel: int) -> dict[str, Any]:
+@_channel
+def zero_jumps(x: Array, rate: float, rng: Rng, a: float, often: float, fading: float) -> Array:
     """Move the zero of a channel in steps that fade."""
-
-    def change(x: Array, rate: float, rng: Rng) -> Array:
-        steps = (rng.random(x.size) < often / rate) * rng.standard_normal(x.size)
-        steps[int(rng.integers(x.size))] += 1.0
-        moved = lfilter([1.0], [1.0, -math.exp(-1.0 / (fading * rate))], steps)
-        return np.asarray(x + 2.0 * a * x.std() * moved)
-
-    return _on_channel(a, channel, change)
+    steps = (rng.random(x.size) < often / rate) * rng.standard_normal(x.size)
+    steps[int(rng.integers(x.size))] += 1.0
+    moved = lfilter([1.0], [1.0, -math.exp(-1.0 / (fading * rate))], steps)
+    return np.asarray(x + 2.0 * a * x.std() * moved)
 
 
-def slow_amplifier(a: float, share: float, channel: int) -> dict[str, Any]:
+@_channel
+def slow_amplifier(x: Array, _rate: float, _rng: Rng, a: float, share: float) -> Array:
     """Follow no faster than an amplifier's slew rate."""
-
-    def change(x: Array, _rate: float, _rng: Rng) -> Array:
-        steepest = float(np.abs(np.diff(x)).max())
-        return np.asarray(slewing(np.ascontiguousarray(x), steepest * 10.0 ** (-3.0 * share * a)))
-
-    return _on_channel(a, channel, change)
+    steepest = float(np.abs(np.diff(x)).max())
+    followed = slewing(np.ascontiguousarray(x), steepest * 10.0 ** (-3.0 * share * a))
+    return np.asarray(followed)
 
 
-def play_in_the_cell(a: float, passed: float) -> dict[str, Any]:
+@_signals
+def play_in_the_cell(run: _Run, a: float, passed: float) -> Signals:
     """Pass on a part of the torque with play."""
-
-    def change(signals: Signals, _rate: float, _rng: Rng) -> Signals:
-        x = signals["torque"]
-        lost = lagging(x, 1.2 * a * float(x.std()))
-        return signals | {"torque": passed * x + (1.0 - passed) * lost}
-
-    return on_signals(a, change)
+    x = run.signals["torque"]
+    lost = lagging(x, 1.2 * a * float(x.std()))
+    return run.signals | {"torque": passed * x + (1.0 - passed) * lost}
 
 
-def encoder_error(a: float, order: float, size: float) -> dict[str, Any]:
+@_signals
+def encoder_error(run: _Run, a: float, order: float, size: float) -> Signals:
     """Read the angle with an error that comes again."""
-
-    def change(signals: Signals, _rate: float, rng: Rng) -> Signals:
-        angle, error = signals["angle"], a * (0.5 * size) / order
-        return signals | {"angle": angle + error * np.sin(order * angle + rng.random())}
-
-    return on_signals(a, change)
+    angle, error = run.signals["angle"], a * (0.5 * size) / order
+    return run.signals | {"angle": angle + error * np.sin(order * angle + run.rng.random())}
