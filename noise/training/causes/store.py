@@ -81,15 +81,6 @@ def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
     return case_table(ready.recordings, repeats.rig, nominal=repeats)
 
 
-def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
-    """Draw cases of one rig after the other; the first seed begins a rig."""
-    rigs = [seeds[i : i + SHARED] for i in range(0, len(seeds), SHARED)]
-    drawn = Parallel(n_jobs=workers, return_as="generator")(
-        delayed(known_cases_of_a_rig)(rig) for rig in rigs
-    )
-    return (case for cases in drawn for case in cases)
-
-
 @dataclass(frozen=True, eq=False)
 class _Shared(NominalNumbers):
     """Repeats that several cases of a rig share, and the speeds that they were simulated at."""
