@@ -4,13 +4,15 @@ What is hidden is left out. A link to a folder is followed as if it were one, af
 there without links: so a recording that can be reached in both ways has its own name, and a link
 that leads back into a folder already searched ends there. A folder that goes away while it is
 searched is one without files. What is no file (a link to nothing, a pipe, a device) is never
-opened, and what nobody may look into is left out; one line says so.
+opened, and what nobody may look into is left out; a line for each reason says so.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 
 from models.errors import ParameterError
@@ -33,14 +35,16 @@ _OTHERS = {
 """Endings of recordings that are not read -> what to do."""
 
 
-def files_below(folder: Path, *, tell: bool = False) -> list[tuple[Path, str]]:
+def files_below(
+    folder: Path, left_out: dict[str, list[str]] | None = None
+) -> list[tuple[Path, str]]:
     """List the files in a folder at any depth.
 
     Parameters
     ----------
     folder : Path
-    tell : bool
-        Whether to say in one line what was left out, and why.
+    left_out : dict, optional
+        Filled with what is left out, by the reason.
 
     Returns
     -------
@@ -65,15 +69,34 @@ def files_below(folder: Path, *, tell: bool = False) -> list[tuple[Path, str]]:
     os.scandir(folder).close()  # what was named must be there; what is below may come and go
     seen: set[tuple[int, int]] = set()
     found: list[Path] = []
-    others: list[Path] = []
+
+    def leave_out(path: Path, reason: str) -> None:
+        if left_out is not None:
+            left_out.setdefault(reason, []).append(path.relative_to(folder).as_posix())
+
+    def closed(error: OSError) -> None:
+        if not isinstance(error, FileNotFoundError):  # it went away
+            leave_out(Path(error.filename), "cannot be looked into")
+
     waiting = [folder]
     while waiting:
         links: list[Path] = []
-        for top in waiting:
-            found += _walked(top, seen, links, others)
+        for place, folders, names in chain(*(os.walk(top, onerror=closed) for top in waiting)):
+            here, before = Path(place), len(seen)
+            with suppress(OSError):
+                status = here.stat()
+                seen.add((status.st_dev, status.st_ino))
+            if len(seen) == before:  # it went away, or was searched already
+                folders.clear()
+                continue
+            folders[:] = [name for name in folders if not name.startswith(".")]
+            links += [here / name for name in folders if os.path.islink(here / name)]  # noqa: PTH114
+            for path in (here / name for name in sorted(names) if not name.startswith(".")):
+                if is_file(path):
+                    found.append(path)
+                else:
+                    leave_out(path, _why(path))
         waiting = sorted(links)
-    if tell and others:
-        _tell(folder, sorted(others))
     named = ((path, path.relative_to(folder).as_posix()) for path in found)
     return sorted(named, key=lambda entry: entry[1])
 
@@ -92,48 +115,10 @@ def is_file(path: Path) -> bool:
         return False
 
 
-def _walked(
-    top: Path, seen: set[tuple[int, int]], links: list[Path], others: list[Path]
-) -> Iterator[Path]:
-    """Go through the files below `top`, each folder once; collect links to folders, and others."""
-
-    def closed(error: OSError) -> None:
-        if not isinstance(error, FileNotFoundError):  # it went away
-            others.append(Path(error.filename))
-
-    for place, folders, names in os.walk(top, onerror=closed):
-        try:
-            status = Path(place).stat()
-        except OSError:
-            folders.clear()
-            continue
-        identity = (status.st_dev, status.st_ino)
-        if identity in seen:
-            folders.clear()
-            continue
-        seen.add(identity)
-        here = Path(place)
-        folders[:] = [name for name in folders if not name.startswith(".")]
-        links += [here / name for name in folders if os.path.islink(here / name)]  # noqa: PTH114
-        for path in (here / name for name in names if not name.startswith(".")):
-            if is_file(path):
-                yield path
-            else:
-                others.append(path)
-
-
-def _tell(folder: Path, others: list[Path]) -> None:
-    said = [f"{path.relative_to(folder)}: {_why(path)}" for path in others[:_NAMED]]
-    more = len(others) - len(said)
-    note(f"{folder}: left out {'; '.join(said)}{f'; and {more} more' * bool(more)}")
-
-
 def _why(path: Path) -> str:
     """Tell what something is that is no file to be read, without opening it."""
     if os.path.islink(path) and not os.path.exists(path):  # noqa: PTH110, PTH114  # never raise
         return "links to nothing"
-    if os.path.isdir(path):  # noqa: PTH112  # never raises
-        return "cannot be looked into"
     try:
         check_plain_file(path, where="")
     except ParameterError as error:
@@ -180,8 +165,9 @@ def find_recordings(
     for path in map(Path, named):
         try:
             if path.is_dir():
-                files = files_below(path, tell=True)
-                _note_others(path, [name for _, name in files])
+                left_out: dict[str, list[str]] = {}
+                files = files_below(path, left_out)
+                _note_left_out(path, left_out, [name for _, name in files])
                 found += [
                     (file, readable(name))
                     for file, name in files
@@ -196,13 +182,15 @@ def find_recordings(
     return found
 
 
-def _note_others(folder: Path, names: list[str]) -> None:
-    """Name the recordings in a folder that cannot be read, with what to do."""
-    for advice in (_CONVERT, _EXPORT):
-        left = [name for name in names if _advice(Path(name)) == advice]
-        if left:
-            more = f" and {len(left) - _NAMED} more" * (len(left) > _NAMED)
-            note(f"{folder}: left out {', '.join(left[:_NAMED])}{more}: {why_not_read(left[0])}")
+def _note_left_out(folder: Path, left_out: dict[str, list[str]], names: list[str]) -> None:
+    """Say what is left out of a folder, recordings that are not read with what to do."""
+    others: dict[str, list[str]] = {}
+    for name in names:
+        if advice := _advice(Path(name)):
+            others.setdefault(advice, []).append(name)
+    for reason, left in (left_out | {why_not_read(o[0]): o for o in others.values()}).items():
+        more = f" and {len(left) - _NAMED} more" * (len(left) > _NAMED)
+        note(f"{folder}: left out {', '.join(left[:_NAMED])}{more}: {reason}")
 
 
 def why_not_read(name: str) -> str:
