@@ -169,7 +169,6 @@ def run_arguments(
     rig = _rig(options, library, rig)
     low, high = (1e3 * limit for limit in rig.interference_range)
     interference_mm = _or(options.interference, min(max(_FIT.default, low), high))
-    _note_idle(options.effects, rig, library)
     shaft, turning = shaft_motion(options, seconds)
     arguments: dict[str, Any] = {
         "rig": rig,
@@ -298,15 +297,6 @@ def _effects(
         with naming("--effect: "):
             activated((spec,), library)
     return tuple({spec.name: spec for spec in (*of_the_rig, *given)}.values())
-
-
-def _note_idle(path: Path | None, rig: Rig, library: Mapping[str, Effect]) -> None:
-    """Say so where effects of the user's own are read and none is on."""
-    from sim.effects import EFFECTS
-
-    own = sorted(set(library) - set(EFFECTS))
-    if own and not any(spec.name in own for spec in rig.effects):
-        note(f"--effects {path} defines {', '.join(own)}; --effect {own[0]} turns it on")
 
 
 def shaft_motion(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 
 _LOWEST, _NARROWEST = 1.0, 1.01  # Hz, and upper over lower end of a band: filters of it hold
-_LONG_ENOUGH = 2.0  # s, to be judged by ear
 
 
 def _band(text: str) -> tuple[float, float]:
@@ -160,7 +159,7 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
     scales = full_scales(
         measured, pascal=options.pascal_per_full_scale, matched=options.match_loudness
     )
-    _notes(options, files, measured)
+    _notes(measured)
     faint = _note_faint(measured, scales)
     rows: list[dict[str, object]] = []
     for index, (name, target, _) in enumerate(files):
@@ -202,7 +201,7 @@ def _filter_words(part: Part) -> str | None:
     return last.removeprefix("filtered: ") if last.startswith("filtered: ") else None
 
 
-def _notes(options: Namespace, files: list[_File], measured: Mapping[str, Measured]) -> None:
+def _notes(measured: Mapping[str, Measured]) -> None:
     """Say what the user should know of."""
     unknown = [of.name for of in measured.values() if not of.calibrated]
     if unknown:
@@ -214,9 +213,6 @@ def _notes(options: Namespace, files: list[_File], measured: Mapping[str, Measur
     for of in measured.values():
         for line in of.untold:
             note(line)
-    short = any(source.seconds < _LONG_ENOUGH for file in files for source in file.sources)
-    if short and options.seconds is None:
-        note("a sound of 2 to 10 s is easier to judge by ear; --seconds simulates for longer")
 
 
 _LEAST_AUDIBLE = -48.0

@@ -7,7 +7,6 @@ Whatever cannot be used is refused before anything is simulated.
 
 from __future__ import annotations
 
-import math
 import re
 import shlex
 from argparse import ArgumentParser, Namespace
@@ -42,8 +41,6 @@ class Source:
         Reads or simulates its pressure channel, given the name.
     path : Path, optional
         Of a recording.
-    seconds : float
-        Length that is simulated [s]; infinite for a recording.
     notes : tuple of str
         What the user should know before it is simulated.
     """
@@ -51,7 +48,6 @@ class Source:
     name: str
     make: Callable[[str], Recording]
     path: Path | None = None
-    seconds: float = math.inf
     notes: tuple[str, ...] = ()
 
 
@@ -167,7 +163,7 @@ def _source(name: str, options: Namespace) -> Source:
         run = with_notes(simulate(**arguments), notes, arguments, name)
         return heard(replace(run, name=name))
 
-    return Source(name, simulated, seconds=arguments["seconds"], notes=notes)
+    return Source(name, simulated, notes=notes)
 
 
 def _with_names_of_their_own(sources: list[Source]) -> list[Source]:

@@ -57,7 +57,15 @@ def run(options: Namespace) -> int:
     for text in notes:
         note(text)
     if options.out is not None and is_long(arguments):
-        return _write_in_blocks(options.out, arguments, notes)
+        from noise.base.remarks import NEVER_SLIPS
+        from sim.blocks import simulate_blocks
+
+        made = simulate_blocks(**arguments)
+        written = write_run(options.out, made, notes)
+        if made.watch.never_slips:
+            note(NEVER_SLIPS)
+        _print_names(written)
+        return 0
     from sim.run import simulate
 
     simulated = simulate(**arguments)
@@ -107,18 +115,6 @@ def _write_or_tell(path: Path | None, recording: Recording) -> None:
     from noise.recordings import write_recording
 
     _print_names(write_recording(path, recording))
-
-
-def _write_in_blocks(path: Path, arguments: Mapping[str, Any], notes: tuple[str, ...]) -> int:
-    from noise.base.remarks import NEVER_SLIPS
-    from sim.blocks import simulate_blocks
-
-    made = simulate_blocks(**arguments)
-    written = write_run(path, made, notes)
-    if made.watch.never_slips:
-        note(NEVER_SLIPS)
-    _print_names(written)
-    return 0
 
 
 def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...] = ()) -> Path:

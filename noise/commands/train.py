@@ -40,16 +40,20 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Train, save, and tell the score."""
-    _check_model(options.out, "--out", "a classifier")
-    if options.keep is not None:
-        _check_model(options.keep, "--keep", "what was simulated")
-    if options.inference is not None:
-        _check_model(options.inference, "--inference", "a model")
-        if options.inference.absolute() == options.out.absolute():
-            raise ParameterError(
-                f"--inference {options.inference}: is what --out names for the classifier; give "
-                "one of them another name"
-            )
+    for path, option, what in (
+        (options.out, "--out", "a classifier"),
+        (options.keep, "--keep", "what was simulated"),
+        (options.inference, "--inference", "a model"),
+    ):
+        if path is not None and (path.suffix.lower() != ".npz" or path.is_dir()):
+            raise ParameterError(f"{option} {path}: {what} is a file that ends in .npz")
+        if path is not None:
+            check_target(path, option)
+    if options.inference is not None and options.inference.absolute() == options.out.absolute():
+        raise ParameterError(
+            f"--inference {options.inference}: is what --out names for the classifier; give one of "
+            "them another name"
+        )
     with steps("training", 3 if options.inference is None else 5) as tell:
         tell("preparing")
         added, refused = _own(options.add or ())
@@ -84,12 +88,6 @@ def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Cla
         progress=_simulating,
         growing=partial(_growing, tell),
     )
-
-
-def _check_model(path: Path, option: str, what: str) -> None:
-    if path.suffix.lower() != ".npz" or path.is_dir():
-        raise ParameterError(f"{option} {path}: {what} is a file that ends in .npz")
-    check_target(path, option)
 
 
 def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
