@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import soundfile
-from hypothesis import given, strategies as st
+from hypothesis import given, settings, strategies as st
 
 from models.condition import FIXED, Condition
 from models.errors import RecordingError
@@ -188,6 +188,7 @@ conditions = st.builds(
 )
 
 
+@settings(max_examples=40)
 @given(st.lists(st.sampled_from(list(CHANNEL_UNITS)), unique=True), conditions, vectors)
 def test_what_is_written_is_read_back(names, condition, position):
     channels = tuple(Channel(name, position, (0.6, 0.0, -0.8)) for name in names)
