@@ -5,7 +5,8 @@ outwards from the design, as far as a rig file accepts them. A change ends the n
 vibration dies with it from rest, from the noise that is running as the change sets in, and from the
 changed rig's own nearest noise (`noise.screening.vibration`). It is offered if that also holds of a
 change smaller by `MARGIN` and of the next larger one, so that no offer stands on an edge. Where no
-step of a parameter does it, the advice says so. One parameter is changed at a time.
+step of a parameter does it, the advice says so, and from which on it is quiet from rest only: a
+vibration that already runs goes on. One parameter is changed at a time.
 """
 
 from __future__ import annotations
@@ -18,10 +19,19 @@ from joblib import Parallel, delayed
 
 from models.errors import ParameterError
 from models.rig import Rig
+from noise.base.labels import PERSISTS
 from noise.batch import one_thread
 from noise.screening.environments import FIT_PARAMETERS
 from noise.screening.tolerances import PARAMETERS, nominal_values
-from noise.screening.vibration import LONGEST, Condition, Course, growth_at, running, vibration_at
+from noise.screening.vibration import (
+    BREAKS_OUT,
+    LONGEST,
+    Condition,
+    Course,
+    growth_at,
+    running,
+    vibration_at,
+)
 
 STEPS = (5, 10, 15, 20, 25, 30, 40, 50, 60, 70, 80, 90, 100, 120, 150, 200)
 """Changes that are tried, up and, to a half, down [%]."""
@@ -49,6 +59,9 @@ class Offer:
         Whether it ends the noise, from rest and from running noise.
     limit : str
         Why no larger change was tried; empty where the steps end.
+    from_rest : int, optional
+        Smallest change after which none breaks out from rest, but a running one goes on [%]; None
+        where there is none.
     quiet_elsewhere, elsewhere : int
         At how many of the other noisy conditions looked at the same change ends the noise as well,
         and how many these are.
@@ -59,6 +72,7 @@ class Offer:
     percent: int
     ends: bool
     limit: str = ""
+    from_rest: int | None = None
     quiet_elsewhere: int = 0
     elsewhere: int = 0
 
@@ -183,13 +197,16 @@ def _offer(rig: Rig, at: Condition, noise: Course, name: str, way: int) -> Offer
     """Step one parameter one way until the noise ends with a margin."""
     nominal = nominal_values(rig, at)[name]
     steps = [way * step for step in STEPS if way > 0 or step <= MOST_DOWN]
-    known: dict[int, bool] = {}
+    known: dict[int, str] = {}
     limit = ""
 
     def ends(percent: int) -> bool:
         if percent not in known:
-            known[percent] = _dies(*changed(rig, at, name, percent), noise)
-        return known[percent]
+            known[percent] = _state(*changed(rig, at, name, percent), noise)
+        return known[percent] == "none"
+
+    def from_rest() -> int | None:
+        return next((one for one in steps if known.get(one) == PERSISTS), None)
 
     last = 0
     for i, percent in enumerate(steps):
@@ -206,24 +223,27 @@ def _offer(rig: Rig, at: Condition, noise: Course, name: str, way: int) -> Offer
         except ParameterError:
             beyond = True
         if beyond:
-            return Offer(name, nominal, percent, True)
-    return Offer(name, nominal, last, False, limit)
+            return Offer(name, nominal, percent, True, from_rest=from_rest())
+    return Offer(name, nominal, last, False, limit, from_rest())
 
 
-def _dies(rig: Rig, at: Condition, noise: Course | None = None) -> bool:
-    """Whether a vibration dies from every start."""
+def _state(rig: Rig, at: Condition, noise: Course | None = None) -> str:
+    """State of a vibration from every start, also from that of another rig."""
     growth = growth_at(rig, at)
     if growth > 0.0:  # which the least disturbance follows
-        return False
-    if noise is not None and running(rig, at, growth, started=noise, longest=LONGEST).lasts:
-        return False
-    return not vibration_at(rig, at, from_rest=True).course.lasts
+        return BREAKS_OUT
+    state = vibration_at(rig, at, from_rest=True).state
+    if state == "none" and noise is not None:
+        goes_on = running(rig, at, growth, started=noise, longest=LONGEST).lasts
+        return PERSISTS if goes_on else state
+    return state
 
 
 def _ends_at(rig: Rig, at: Condition, offer: Offer) -> bool:
     """Whether an offer ends the noise at another condition."""
     noise = vibration_at(rig, at).course
     try:
-        return _dies(*changed(rig, at, offer.name, offer.percent), noise if noise.lasts else None)
+        there = changed(rig, at, offer.name, offer.percent)
+        return _state(*there, noise if noise.lasts else None) == "none"
     except ParameterError:
         return False

@@ -70,7 +70,7 @@ def detail_lines(one: Standing, use: tuple[float, float]) -> list[str]:
             f"{one.mean_loudness:.3g} sone"
         )
         lines += [f"what to change: {text}" for text in [one.advice] if text]
-        lines += [f"limits: {text}" for text in limit_words(one.offers, one.loudest_label)[:2]]
+        lines += [f"limits: {text}" for text in limit_words(one.offers, one.loudest_label)]
     sure = [margin_words(one.margin_v_crit2, use)]
     if one.motion == "steady" and one.loudest is not None:
         sure.append(f"vibration ends {_ends(one)}")

@@ -166,6 +166,7 @@ _ADVICE: Columns = {
     "advised": lambda _, offer: _short(offer.value) if offer.ends else None,
     "change_percent": lambda _, offer: offer.percent,
     "ends_noise": lambda _, offer: offer.ends,
+    "quiet_from_rest_percent": lambda _, offer: offer.from_rest,
     "quiet_elsewhere": lambda _, offer: offer.quiet_elsewhere if offer.ends else None,
     "elsewhere": lambda _, offer: offer.elsewhere if offer.ends else None,
     "limit": lambda _, offer: offer.limit or None,

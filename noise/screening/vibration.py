@@ -33,6 +33,9 @@ from sim.effects.effect import activated
 from sim.motion import Motion, MotionSolver, steps_beyond
 from sim.temperature import at_temperature
 
+BREAKS_OUT = "breaks out"
+"""State of a condition at which vibration begins from rest."""
+
 RATE = 30e3
 """Of motion and sound [Hz]; creaks reach 15 kHz."""
 
@@ -180,14 +183,14 @@ def vibration_at(
         course = _followed(_solver(rig, at), at, growth, longest=longest)
         if not course.lasts:  # it grows so slowly that only what runs already shows where it ends
             course = running(rig, at, growth, longest=longest)
-        return Vibration("breaks out" if course.lasts else "none", growth, course)
+        return Vibration(BREAKS_OUT if course.lasts else "none", growth, course)
     course = running(rig, at, growth, longest=longest)
     # A contact that is stuck at rest may vibrate though no speed makes its sliding unstable.
     if not course.lasts and not from_rest and _unstable_speed(rig, at) is not None:
         return Vibration("none", growth, course)
     rested = _followed(_solver(rig, at), at, growth, longest=longest)
     if rested.lasts:
-        return Vibration("breaks out", growth, rested)
+        return Vibration(BREAKS_OUT, growth, rested)
     return Vibration(PERSISTS if course.lasts else "none", growth, course)
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -203,19 +204,48 @@ def advice_words(noise: str, at: Condition, offers: Sequence[Offer], most: int =
             others = f" (and at {one.quiet_elsewhere} of {one.elsewhere} other noisy conditions)"
         said.append(f"{one.words}{others}")
     ends = "ends" if len(said) == 1 else "each ends"
-    return f"{', or '.join(said)} {ends} {where}, by runs from rest and from the running noise"
+    more = len(ending) - len(said)
+    return f"{', or '.join(said)} {ends} {where}, by runs from rest and from the running noise" + (
+        f"; advice.csv has {more} more" if more else ""
+    )
 
 
-def limit_words(offers: Sequence[Offer], noise: str) -> list[str]:
-    """Say of changes that reach a limit before they end the noise how far they go."""
+def limit_words(offers: Sequence[Offer], noise: str, most: int = 2) -> list[str]:
+    """Say of changes that do not end the noise how far they go, and what they do.
+
+    Parameters
+    ----------
+    offers : sequence of Offer
+    noise : str
+        Its name.
+    most : int
+        Of those that reach a limit, that are named.
+
+    Examples
+    --------
+    >>> limit_words([Offer("damping", 0.1, 200, False, from_rest=150)], "squawk")
+    ['damping +150 % to 0.25 Nm s/rad is quiet from rest only: the squawk persists once started']
+    >>> limit_words([Offer("critical_torque", 10.0, -20, False, "too small")], "squawk")
+    ['critical torque -20 % to 8 Nm reaches the limit, and the squawk goes on (too small)']
+    """
     end = {one.name for one in offers if one.ends}  # in the other direction
-    return [
-        f"{one.words} reaches the limit, and the {noise} goes on ({one.limit})"
-        if one.percent
-        else f"{one.name.replace('_', ' ')} alone does not end it ({one.limit})"
+    said = [
+        f"{replace(one, percent=one.from_rest).words} is quiet from rest only: the {noise} "
+        f"persists once started{f' ({one.limit})' if one.limit else ''}"
         for one in offers
-        if one.name not in end and one.limit
+        if one.from_rest is not None and not one.ends
     ]
+    limited = [one for one in offers if one.limit and one.from_rest is None and one.name not in end]
+    for one in limited[:most]:
+        name = one.name.replace("_", " ")
+        said.append(
+            f"{one.words} reaches the limit, and the {noise} goes on ({one.limit})"
+            if one.percent
+            else f"{name} alone does not end it ({one.limit})"
+        )
+    if len(limited) > most:
+        said.append(f"advice.csv has {len(limited) - most} more that reach a limit")
+    return said
 
 
 def parts_words(found: Robustness) -> list[str]:

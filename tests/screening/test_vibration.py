@@ -9,6 +9,7 @@ from models.rig_file import load_material_rig
 from noise.screening.advice import advise, changed
 from noise.screening.point import evaluate_point
 from noise.screening.vibration import Condition, vibration_at
+from noise.screening.words import limit_words
 from tests.screening.long_runs import vibrates_after
 
 FLUOROCARBON = load_material_rig("fluorocarbon")
@@ -49,6 +50,9 @@ def test_each_offer_ends_the_squawk_in_long_runs_and_the_rig_file_takes_it():
         assert not vibrates_after(rig, at, [at.speed], seconds=10.0)
         assert not vibrates_after(rig, at, [0.5 * at.speed, at.speed], seconds=10.0)
     assert any(offer.limit for offer in offers)
+    less_torque = next(o for o in offers if o.name == "critical_torque" and o.percent < 0)
+    assert (less_torque.ends, less_torque.from_rest) == (False, -20)
+    assert any("critical torque -20 %" in words for words in limit_words(offers, "squawk"))
     assert all(offer.limit or abs(offer.percent) in (50, 200) for offer in offers if not offer.ends)
 
 
