@@ -12,6 +12,7 @@ from noise.noise_definition import LEAST_LEVEL
 from noise.screening.batches import batch_evaluator
 from noise.screening.design import Design, Swinging, Use
 from noise.screening.grid import grid_of
+from noise.screening.loudness import with_loudness
 from noise.screening.mapping import map_design
 from noise.screening.point import evaluate_point
 from noise.screening.screen import screen
@@ -40,12 +41,12 @@ def test_pdms_is_silent_everywhere():
 
 
 def test_natural_rubber_chatters_without_its_film_and_not_on_it():
-    use = Use(speed=(5.0, 7.5, 10.0), support_stiffness=(2214.0, 3745.0))
+    use = Use(speed=(5.0, 10.0), support_stiffness=(2214.0,))
     for material in ("natural-rubber", "natural-rubber-film-removed"):
         bare = mapped(material, use)
         assert (bare.label == "squawk").all()
         assert (bare.regime != "steady sliding").all()
-    on_film = mapped("natural-rubber-film", replace(use, support_stiffness=(2214.0,)))
+    on_film = mapped("natural-rubber-film", use)
     assert (on_film.label == "creak").all()  # random friction, "resembled the creaking" (6.2)
     assert (on_film.regime == "quasi-harmonic").all()
 
@@ -153,7 +154,7 @@ def test_the_design_that_is_quieter_by_construction_is_ranked_first():
         for fit in FLUOROCARBON.fits
     )
     quiet = Design("damped", replace(FLUOROCARBON, fits=fits))
-    use = Use(speed=(2.0, 5.0, 8.0), interference=(0.279e-3,), support_stiffness=(2214.0, 3745.0))
+    use = Use(speed=(5.0,), interference=(0.279e-3,), support_stiffness=(2214.0,))
     found = screen([Design("as it is", FLUOROCARBON), quiet], use)
     assert [(one.rank, one.design) for one in found.standings] == [(1, "damped"), (2, "as it is")]
     assert found.standings[0].mean_loudness < found.standings[1].mean_loudness
@@ -183,7 +184,7 @@ def test_a_design_that_cannot_be_simulated_does_not_stop_the_others():
 def test_loudness_is_that_of_the_loudest_point_of_a_region():
     pytest.importorskip("mosqito")
     use = Use(speed=(9.0, 10.0), interference=(0.279e-3,), support_stiffness=(3745.0,))
-    found = screen(["fluorocarbon"], use, loudness=True).maps[0]
+    found = with_loudness(mapped("fluorocarbon", use), FLUOROCARBON)
     heard = found.loudness[0, 0, 0]
     assert np.all((heard > 1.0) & (heard < 60.0))
     difference = found.level_max[0, 0, 0, 1] - found.level_max[0, 0, 0, 0]
