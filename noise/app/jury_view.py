@@ -8,32 +8,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from threading import Lock
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
 from models.errors import BushingNoiseError, ParameterError
-from models.recording import REFERENCE_PRESSURE
+from models.recording import REFERENCE_PRESSURE, Recording
 from noise.app.gate import body
 from noise.app.jury import VOTES, Jury, Votes, in_words, scale
 from noise.app.opened import Opened
 from noise.app.requests import choice, number, text
 from noise.app.sounds import SoundCache
-from noise.audio.gain import (
-    LOUDNESS_BLOCK,
-    QUIETEST_FULL_SCALE,
-    full_scale_without_clipping,
-    loudness,
-    matched_loudness,
-    true_peak,
-)
-from noise.audio.sound import playable
+from noise.audio.render import FullScale, Measured, full_scales, measure
+from noise.audio.sound import audible, refuse_mixed
 from noise.recordings.wav import wav_bytes
 
 MOST = 40
@@ -152,15 +143,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
     ]
 
 
-@dataclass(frozen=True)
-class _Measured:
-    """A sound: whether in pascals, its true peak [Pa, or full scale], its loudness there [LUFS]."""
-
-    calibrated: bool
-    peak: float
-    loudness: float | None
-
-
 class JuryPlaying:
     """Sounds of juries at one gain or equally loud; may be used from several threads.
 
@@ -174,7 +156,7 @@ class JuryPlaying:
         self._opened = opened
         self._sounds = sounds
         self._lock = Lock()
-        self._measured: dict[tuple[int, int, int], _Measured] = {}
+        self._measured: dict[tuple[int, int, int, bool], Measured] = {}
 
     def gain(self, indices: Sequence[int], played: str) -> str:
         """Say in words at which gain sounds are played.
@@ -184,13 +166,13 @@ class JuryPlaying:
         BushingNoiseError
             They cannot be played so; it says why.
         """
-        if played == EQUAL_LOUDNESS:
-            return f"equal loudness, {self._target(indices):.0f} LUFS"
-        full_scale = self._full_scale(indices)
-        if not self._measure(indices[0]).calibrated:
-            return f"one gain: as in the files, full scale = {full_scale:g}"
-        level = 20.0 * math.log10(full_scale / REFERENCE_PRESSURE)
-        return f"one gain: full scale = {full_scale:g} Pa ({level:.0f} dB peak re 20 µPa)"
+        found = self._full_scales(indices, played)[str(indices[0])]
+        if found.target is not None:
+            return f"equal loudness, {found.target:.0f} LUFS"
+        if not self._sounds.track(indices[0]).calibrated:
+            return f"one gain: full scale = {found.value:.3g} of that of the files"
+        level = 20.0 * math.log10(found.value / REFERENCE_PRESSURE)
+        return f"one gain: full scale = {found.value:.4g} Pa ({level:.0f} dB peak re 20 µPa)"
 
     def wav(self, index: int, indices: Sequence[int], played: str) -> bytes:
         """Return one of several sounds as a WAV file of floats, to be played as it is.
@@ -200,66 +182,30 @@ class JuryPlaying:
         BushingNoiseError
             They cannot be played so; it says why.
         """
-        if played == EQUAL_LOUDNESS:
-            measured, target = self._measure(index), self._target(indices)
-            # A gain shifts loudness by as much, but for the absolute gate, which matters to none
-            # that is 10 dB louder.
-            full_scale = measured.peak * 10.0 ** (((measured.loudness or 0.0) - target) / 20.0)
-        else:
-            full_scale = self._full_scale(indices)
-        return wav_bytes(self._samples(index) / full_scale, _RATE, 32)
+        full_scale = self._full_scales(indices, played)[str(index)].value
+        return wav_bytes(audible(self._heard(index), _RATE) / full_scale, _RATE, 32)
 
-    def _target(self, indices: Sequence[int]) -> float:
-        """Return the loudness that all can have [LUFS]."""
-        known = []
-        for index in indices:
-            reached = self._measure(index).loudness
-            if reached is None:
-                raise ParameterError(
-                    f"{self._opened.job(index).name}: has no loudness to be matched, as it is "
-                    f"silent or shorter than {LOUDNESS_BLOCK:g} s; leave it out, or play all at "
-                    "one gain"
-                )
-            known.append(reached)
-        return matched_loudness(known)
+    def _full_scales(self, indices: Sequence[int], played: str) -> dict[str, FullScale]:
+        matched = played == EQUAL_LOUDNESS
+        measured = {str(index): self._measure(index, match=matched) for index in indices}
+        if not matched:
+            kinds = {of.calibrated: of.name for of in measured.values()}
+            refuse_mixed(kinds, "leave one of them out, or compare at equal loudness")
+        return full_scales(measured, matched=matched)
 
-    def _full_scale(self, indices: Sequence[int]) -> float:
-        measured = {index: self._measure(index) for index in indices}
-        peak = max(one.peak for one in measured.values())
-        by_kind: dict[bool, list[int]] = {True: [], False: []}
-        for index, one in measured.items():
-            by_kind[one.calibrated].append(index)
-        if by_kind[True] and by_kind[False]:
-            known, other = (self._opened.job(by_kind[kind][0]).name for kind in (True, False))
-            raise ParameterError(
-                f"{known} is calibrated and {other} is not, so they share no gain; leave one "
-                "of them out, or compare at equal loudness"
-            )
-        least = QUIETEST_FULL_SCALE if by_kind[True] else 1.0
-        return max(least, full_scale_without_clipping(peak))
-
-    def _measure(self, index: int) -> _Measured:
+    def _measure(self, index: int, *, match: bool) -> Measured:
         path = self._opened.job(index).path
         try:
             state = path.stat()
         except OSError as error:
             raise ParameterError(f"{path.name}: {error.strerror}") from None
-        key = index, state.st_size, state.st_mtime_ns
+        key = index, state.st_size, state.st_mtime_ns, match
         with self._lock:
             if key not in self._measured:
-                samples = self._samples(index)
-                peak = true_peak(samples, _RATE)
-                reached = -math.inf
-                if peak > 0.0 and samples.size >= LOUDNESS_BLOCK * _RATE:
-                    reached = loudness(samples / peak, _RATE)
-                self._measured[key] = _Measured(
-                    self._sounds.track(index).calibrated,
-                    peak,
-                    reached if math.isfinite(reached) else None,
-                )
+                self._measured[key] = measure([self._heard(index)], rate=_RATE, match=match)
             return self._measured[key]
 
-    def _samples(self, index: int) -> NDArray[np.float64]:
+    def _heard(self, index: int) -> Recording:
         name = self._opened.job(index).name
         try:
             track = self._sounds.track(index)
@@ -267,8 +213,10 @@ class JuryPlaying:
             raise ParameterError(f"{name}: cannot be heard ({error})") from None
         if track.channel.kind != "pressure":
             raise ParameterError(f"{name}: has no sound pressure to be heard; leave it out")
-        last = min(track.n, round(LONGEST * track.rate))
-        return playable(track.read(0, last), track.rate, _RATE)
+        samples = track.read(0, min(track.n, round(LONGEST * track.rate)))[np.newaxis]
+        return Recording(
+            samples, track.rate, (track.channel,), calibrated=track.calibrated, name=name
+        )
 
 
 def _place(vote: dict[str, Any]) -> int:

@@ -405,7 +405,9 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
     for label, after in steps.items():
         change = f"{after - gap:+.2f}".replace("-", "\N{MINUS SIGN}")
         kind = "cause" if after <= gap else "opened"
-        rows.append((label, cell(*sorted((gap, after)), kind, f"{change}, to {after:.2f}")))
+        rows.append(
+            (label, cell(min(gap, after), max(gap, after), kind, f"{change}, to {after:.2f}"))
+        )
         gap = after
     if steps:
         rows.append(("what is left", cell(0.0, gap, "", f"{gap:.2f}")))

@@ -70,22 +70,6 @@ def test_a_few_cycles_are_drawn_sample_by_sample():
     assert np.count_nonzero(inside) in (5, 6, 7)
 
 
-def test_phase_plane_and_torque_against_speed_hold_the_orbit():
-    run, figure = drawn()
-    window = run_window(run)
-    part = slice(window.first, window.last)
-    phase = panel(figure, ylabel="Speed of the surface", xlabel="Displacement [mrad]").lines[1]
-    np.testing.assert_array_equal(phase.get_xdata(), 1e3 * run.motion.interface_angle[part])
-    np.testing.assert_array_equal(phase.get_ydata(), run.motion.interface_speed[part])
-    axes = panel(figure, ylabel="Torque [Nm]", xlabel="Sliding speed [rad/s]")
-    for name, torque in (
-        ("elastomer", run.motion.torque),
-        ("contact", run.motion.friction_torque),
-    ):
-        np.testing.assert_array_equal(line(axes, name).get_xdata(), run.motion.sliding_speed[part])
-        np.testing.assert_array_equal(line(axes, name).get_ydata(), torque[part])
-
-
 @pytest.mark.parametrize(
     ("channel", "label", "reference"),
     [
@@ -125,12 +109,6 @@ def test_every_material_and_motion_is_drawn_without_a_warning(material, shaft):
         figure = plot_run(run)
     labels = {one.get_label() for axes in figure.axes for one in axes.lines}
     assert "clamp" not in labels  # it is bolted down
-
-
-def test_a_long_run_costs_no_more_points_than_a_short_one():
-    _, figure = drawn(seconds=5.0)
-    points = sum(len(one.get_xdata()) for axes in figure.axes for one in axes.lines)
-    assert points < 100_000
 
 
 def test_a_swing_is_enlarged_where_the_beam_shakes_most():

@@ -12,9 +12,6 @@ from noise.cli import main
 from noise.pictures import thesis
 from noise.thesis.runs import CALIBRATED, LONG, SHORT, Case, rig_of
 
-DRAWN = {f"5.{i}" for i in (*range(1, 10), *range(13, 27))}
-DRAWN |= {"6.1-6.3", "6.4-6.6", "6.7", "6.8-6.9", "6.10"}
-
 
 def checked(figure, recwarn):
     figure.draw_without_rendering()
@@ -24,11 +21,6 @@ def checked(figure, recwarn):
     assert all("[" in label for label in labels)
     assert all(axes.lines for axes in figure.axes)
     return figure
-
-
-def test_every_figure_of_runs_and_sweeps_is_there():
-    swept = {name.removeprefix("figure-") for name in thesis.SWEEPS if "figure" in name}
-    assert {*thesis.RUNS, *thesis.SPECTRA, *swept} == DRAWN
 
 
 def test_pictures_are_named_and_titled_by_their_figures(monkeypatch, recwarn):
@@ -49,15 +41,6 @@ def test_spectra_are_those_of_the_recorded_torque(recwarn):
     expected = 10.0 * np.log10(autospectrum(recording["torque"], recording.rate).density)
     assert figure.axes[0].lines[0].get_ydata().max() == pytest.approx(expected[1:].max(), abs=0.1)
     assert figure.axes[0].get_title("left") == "0.279 mm, fixed clamp, 1 rad/s"
-
-
-def test_a_sweep_draws_torque_and_slips_of_each_support(monkeypatch, recwarn):
-    monkeypatch.setattr(thesis, "_STEPS", 3)
-    shown = thesis.Swept("fluorocarbon-thesis", (1.0, 10.0), [0.279], [LONG, SHORT])
-    torque, slips = checked(thesis.sweep_picture("speeds-0.279mm", shown), recwarn).axes
-    assert [len(torque.lines), len(slips.lines)] == [2, 2]
-    assert all(7.99 <= mean <= 10.7 for line in torque.lines for mean in line.get_ydata())
-    assert slips.lines[0].get_ydata()[0] == pytest.approx(150.0, abs=15.0)
 
 
 def test_acoustic_responses_are_those_of_the_rig(recwarn):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 
 import numpy as np
 import pytest
@@ -57,11 +58,13 @@ def test_a_jury_is_asked_without_a_name_and_heard_at_one_gain(app, folder):
     status, said = app.request(f"api/juries/{begun['jury']}")
     assert status == 200
     assert b".wav" not in said
-    assert b"full scale = 1.00" in said
+    full_scale = float(re.search(rb"full scale = ([\d.]+) Pa", said)[1])
+    assert full_scale == pytest.approx(10.0 ** (3.0 / 20.0), rel=0.01)  # of headroom
     for place, names in enumerate(planned(folder, begun["jury"])):
         for side, name in zip("ab", names, strict=True):
             level = rms(heard(app, begun["jury"], place, side))
-            assert level == pytest.approx(0.5 ** NAMES.index(name) / np.sqrt(2.0), rel=0.01)
+            wanted = 0.5 ** NAMES.index(name) / np.sqrt(2.0)
+            assert full_scale * level == pytest.approx(wanted, rel=0.01)
 
 
 @pytest.mark.parametrize(
@@ -74,9 +77,12 @@ def test_a_jury_is_asked_without_a_name_and_heard_at_one_gain(app, folder):
         ({"question": " "}, "must say what is asked"),
         ({"question": "x" * 201}, "at most 200 characters"),
         ({"played": "loud"}, "must be one of one gain, equal loudness"),
-        ({"sounds": [0, 4], "played": "equal loudness"}, "z-short.wav: has no loudness"),
+        (
+            {"sounds": [0, 4], "played": "equal loudness"},
+            "z-short.wav: a sound of 0.2 s has no",
+        ),
         ({"sounds": [0, 5]}, "z-torque.wav: has no sound pressure"),
-        ({"sounds": [0, 6]}, "z-uncalibrated.wav is not, so they share no gain"),
+        ({"sounds": [0, 6]}, "z-uncalibrated.wav is not, so one gain cannot keep"),
         ({"sounds": [0, 7]}, "zz-broken.wav: cannot be heard"),
     ],
 )

@@ -230,16 +230,11 @@ for (const map of document.querySelectorAll("[data-map]")) {
 
   plot.addEventListener("keydown", (event) => {
     const spot = event.target.closest(".spot");
-    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-    if (!spot || !way || event.ctrlKey || event.altKey || event.metaKey) return;
+    const by = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: -1, ArrowDown: 1 }[event.key];
+    if (!spot || !by || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     event.stopPropagation();
-    const far = (other) => {
-      const [u, v] = [at(other)[0] - at(spot)[0], at(other)[1] - at(spot)[1]], on = u * way[0] + v * way[1];
-      return on > 1e-6 ? on + 3 * (Math.abs(u * way[1]) + Math.abs(v * way[0])) : Infinity;
-    };
-    const next = spots.reduce((best, other) => (far(other) < far(best) ? other : best));
-    if (far(next) === Infinity) return;
+    const next = spots[Math.min(spots.length - 1, Math.max(0, spots.indexOf(spot) + by))];
     for (const other of spots) other.tabIndex = other === next ? 0 : -1;
     next.focus();
   });
