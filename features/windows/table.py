@@ -106,7 +106,7 @@ def describe_windows(
     if which.size:
         # Neighbouring windows often hold the same event.
         events, of_event = np.unique(edges, axis=1, return_inverse=True)
-        longer = prolonged((sound, high, top), *events, 2 * half)
+        longer = prolonged((sound, high, top), events[0], events[1], 2 * half)
         inside, numbers = describe_frames(longer[0], limit), np.arange(events.shape[1])
         parts = _parts(longer, inside, envelope(longer[0]), numbers, _APART, limit)
         features[which] = _columns(parts, numbers.size)[of_event.reshape(-1)]

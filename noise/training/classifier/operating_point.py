@@ -157,7 +157,9 @@ class Background:
 
 
 def false_name_rates(
-    backgrounds: Sequence[Background], sensitivities: Sequence[float]
+    backgrounds: Sequence[Background],
+    sensitivities: Sequence[float],
+    choosing: Sequence[Background] | None = None,
 ) -> dict[str, dict[str, float]]:
     """Count false names on sources that chose no threshold.
 
@@ -168,6 +170,8 @@ def false_name_rates(
     backgrounds : sequence of Background
     sensitivities : sequence of float
         [ratio of odds]
+    choosing : sequence of Background, optional
+        Those by which thresholds are chosen; by default the same.
 
     Returns
     -------
@@ -185,7 +189,8 @@ def false_name_rates(
     names = dict.fromkeys(sensitivities, 0)
     for part in {background.part for background in backgrounds}:
         own = [b.probabilities for b in backgrounds if b.part == part]
-        thresholds = fit_thresholds([b.probabilities for b in backgrounds if b.part != part])
+        others = [b.probabilities for b in choosing or backgrounds if b.part != part]
+        thresholds = fit_thresholds(others)
         for sensitivity in sensitivities:
             limits = at_sensitivity(thresholds, sensitivity)
             found = [labelled_stretches(p, limits)[1] for p in own]
