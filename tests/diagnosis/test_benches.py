@@ -8,31 +8,25 @@ import numpy as np
 import pytest
 
 from models.rig import LawSpec
-from noise.diagnosis.evidence.summary import aligned
 from noise.training.causes.cases.benches import (
     DEPARTURES,
     MATERIALS,
     OWN_LAWS,
-    SIZES,
     STARTS,
     draw_bench,
     draw_law,
     draw_start,
     scaled_law,
 )
-from noise.training.causes.cases.draw import draw_case
-from noise.training.causes.cases.rigs import draw_setting
 from noise.training.causes.cases.truth import Truth, seen_through
-from noise.training.causes.store import known_cases_of_a_rig
 from sim.acquisition import Acquisition
-from sim.effects import EFFECTS
 from sim.friction import LAWS, friction_law
 from sim.parameters import resolve
 
 
 @pytest.fixture(scope="module")
 def benches():
-    return [draw_bench(np.random.default_rng(seed)) for seed in range(1200)]
+    return [draw_bench(np.random.default_rng(seed)) for seed in range(600)]
 
 
 def test_a_third_is_quiet_half_have_the_constant_law_and_all_departures_are_met(benches):
@@ -95,32 +89,6 @@ def test_a_start_ends_at_the_speed_that_is_stated(name):
         assert (before == 0.0) == (name == "rest") == (speed[0] == 0.0)
 
 
-def test_a_larger_rig_sticks_and_slips_at_speeds_of_its_own():
-    for seed in range(60):
-        setting = draw_setting(np.random.default_rng(seed))
-        bench, slowest = setting.bench, min(c.speed for c in setting.conditions)
-        assert 0.5 * bench.pace <= slowest <= 13.0 * bench.pace
-        size = {name: bench.sizes[name] for name in SIZES}
-        assert setting.rig.clamp_inertia * 1200.0 == pytest.approx(size["clamp_inertia"], rel=0.4)
-        for name, sensor in setting.sensors.by_kind.items():
-            assert sensor.noise == bench.noise[name]
-            if bench.bits and name == "torque":
-                assert sensor.full_scale > setting.rig.fits[-1].critical_torque
-
-
-def test_what_a_rig_file_lists_is_no_cause_but_there_may_be_more_of_an_irregularity():
-    more = 0
-    for seed in range(0, 240, 4):
-        setting = draw_setting(np.random.default_rng([0, seed // 4]))
-        if not setting.rig.effects or setting.bench.seconds > 0.8:
-            continue
-        truth = draw_case(seed).truth
-        again = {spec.name for spec in setting.rig.effects} & set(truth.effects)
-        assert all(EFFECTS[name].irregular for name in again)
-        more += bool(again)
-    assert more
-
-
 def test_what_acts_in_no_channel_that_was_recorded_is_no_cause():
     pair = Truth("pair", ("clipping", "plate_modes"), ("plain", "modes"), (0.2, 0.3))
     acting = [{"torque", "pressure"}, {"pressure"}]
@@ -130,10 +98,3 @@ def test_what_acts_in_no_channel_that_was_recorded_is_no_cause():
     assert seen_through(pair, acting, ("angle",)).kind == "none"
     offset = Truth("parameters", offsets=(("damping", 1.1),))
     assert seen_through(offset, (), ("torque",)) == offset
-
-
-def test_cases_of_a_rig_share_repeats_though_its_noise_is_estimated():
-    cases = known_cases_of_a_rig(range(24, 28))
-    assert "seconds" in cases[0].table.bench
-    names = sorted(set.intersection(*(set(case.table.names) for case in cases)))
-    assert len({aligned(case.table, names)[1].tobytes() for case in cases}) < len(cases)

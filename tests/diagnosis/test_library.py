@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -63,7 +64,7 @@ def truths():
     """Causes of many cases, whose recordings are not made."""
     from noise.training.causes.cases import draw
 
-    return [draw._draw_cause(RIG, np.random.default_rng(seed)) for seed in range(1500)]
+    return [draw._draw_cause(RIG, np.random.default_rng(seed)) for seed in range(800)]
 
 
 def test_all_kinds_and_all_effects_occur_about_as_often_as_is_said(truths):
@@ -71,7 +72,7 @@ def test_all_kinds_and_all_effects_occur_about_as_often_as_is_said(truths):
     assert set(kinds) == set(KINDS)
     assert sum(KINDS.values()) == pytest.approx(1.0)
     for kind, share in KINDS.items():
-        assert kinds[kind] / len(truths) == pytest.approx(share, abs=0.04)
+        assert kinds[kind] / len(truths) == pytest.approx(share, abs=0.05)
     named = Counter(n for truth, _ in truths if truth.kind != "unknown" for n in truth.effects)
     assert set(named) == set(EFFECTS)
     assert min(named.values()) > 0.4 * max(named.values())
@@ -125,18 +126,24 @@ def _strange(name, strength, seed):
     )
 
 
+@cache
+def _plain():
+    return run(at(2.0), seed=1)
+
+
 @pytest.mark.parametrize("name", sorted(UNKNOWN_EFFECTS))
 def test_a_stranger_of_no_strength_does_nothing_and_a_strong_one_does(name):
-    plain = run(at(2.0), seed=1)
-    for seed in range(3):
-        still = _strange(name, 0.0, seed)
-        rest = still.samples - plain.samples
-        # chance draws of the effect's own may shift those of noise and gains, but do no more
-        gains = 4.0 * math.sqrt(2.0) * Scatter().gain
-        assert (np.std(rest, axis=1) <= gains * np.std(plain.samples, axis=1) + 0.02).all()
-    strong = [_moving(_strange(name, 1.0, seed)) - _moving(plain) for seed in range(3)]
-    share = [np.std(d, axis=1) / np.std(_moving(plain), axis=1) for d in strong]
-    assert np.max(share) > 0.1
+    plain = _plain()
+    rest = _strange(name, 0.0, 0).samples - plain.samples
+    # chance draws of the effect's own may shift those of noise and gains, but do no more
+    gains = 4.0 * math.sqrt(2.0) * Scatter().gain
+    assert (np.std(rest, axis=1) <= gains * np.std(plain.samples, axis=1) + 0.02).all()
+    shares = (
+        np.std(_moving(_strange(name, 1.0, seed)) - _moving(plain), axis=1)
+        / np.std(_moving(plain), axis=1)
+        for seed in range(3)
+    )
+    assert any(share.max() > 0.1 for share in shares)  # one that shows is enough
 
 
 def _moving(recording):

@@ -90,53 +90,22 @@ def test_a_posterior_comes_back_from_its_file(posterior, tmp_path):
     assert load_posterior(again).probabilities(table) == other
 
 
-def _other(path, posterior, kind):
-    if kind == "text":
-        path.write_text("no archive")
-    elif kind == "empty":
-        path.write_bytes(b"")
-    elif kind == "arrays":
-        np.savez(path, x=np.zeros(3))
-    elif kind == "cut":
-        posterior.save(path)
-        path.write_bytes(path.read_bytes()[:2000])
-    elif kind == "folder":
-        path.mkdir()
-    else:
-        posterior.save(path)
-        with np.load(path) as file:
-            arrays = dict(file)
-        header = json.loads(str(arrays["header"]))
-        if kind == "causes":
-            header["causes"] = header["causes"][::-1]
-        elif kind == "format":
-            header["format"] = 99
-        elif kind == "header":
-            header = [1, 2]
-        elif kind == "loop":
-            arrays["children"] = np.zeros_like(arrays["children"])
-        elif kind == "pickled":
-            arrays["scale"] = np.array([{"a": 1}], dtype=object)
-        arrays["header"] = np.array(json.dumps(header))
-        np.savez(path, **arrays)
-
-
-@pytest.mark.parametrize(
-    "kind",
-    ["text", "empty", "arrays", "cut", "folder", "causes", "format", "header", "loop", "pickled"],
-)
-def test_a_file_of_another_kind_is_refused_in_one_line(posterior, tmp_path, kind):
+@pytest.mark.parametrize("kind", ["causes", "loop"])
+def test_a_file_that_does_not_fit_this_version_is_refused_in_one_line(posterior, tmp_path, kind):
     path = tmp_path / "other.npz"
-    _other(path, posterior, kind)
+    posterior.save(path)
+    with np.load(path) as file:
+        arrays = dict(file)
+    header = json.loads(str(arrays["header"]))
+    if kind == "causes":
+        header["causes"] = header["causes"][::-1]
+    else:
+        arrays["children"] = np.zeros_like(arrays["children"])
+    np.savez(path, **arrays | {"header": np.array(json.dumps(header))})
     with pytest.raises(ParameterError) as refused:
         load_posterior(path)
     assert str(path) in str(refused.value)
     assert "\n" not in str(refused.value)
-
-
-def test_a_file_that_is_not_there_is_named(tmp_path):
-    with pytest.raises(ParameterError, match=r"nowhere\.npz: there is no such file"):
-        load_posterior(tmp_path / "nowhere.npz")
 
 
 def test_trees_that_are_offered_all_columns_say_what_scikit_learn_says():
