@@ -183,7 +183,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             i = min(sample, last)
             stick_time = time - stick_start if mode == 0 else stick_length
             friction, e, holding, critical, caught, shaft = contact_rates(
-                N_STAGES, (sample - i) * step, i, time, stick_time, mode, bushing, hooks,
+                int64(N_STAGES), (sample - i) * step, i, time, stick_time, mode, bushing, hooks,
                 drive, rows,
             )  # fmt: skip
             surface = k[0, N_STAGES]
