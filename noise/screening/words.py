@@ -201,7 +201,7 @@ def advice_words(noise: str, at: Condition, offers: Sequence[Offer], most: int =
     for one in ending[:most]:
         others = ""
         if one.elsewhere:
-            others = f" (and at {one.quiet_elsewhere} of {one.elsewhere} other noisy conditions)"
+            others = f" (and at {one.quiet_elsewhere} of {one.elsewhere} others of its map tried)"
         said.append(f"{one.words}{others}")
     ends = "ends" if len(said) == 1 else "each ends"
     more = len(ending) - len(said)
