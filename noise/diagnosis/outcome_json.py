@@ -108,7 +108,7 @@ def _written(value: Any, digits: int) -> Any:
 
 def _record(kind: type, data: Mapping[str, Any]) -> Any:
     """Return a record of the data of an object; what is not there stays at its default."""
-    given = {}
+    given: dict[str, Any] = {}
     for key, one in _keys(kind).items():
         if key in data:
             holds = _RECORDS.get(key) if kind is Diagnosis else None

@@ -184,7 +184,11 @@ def _by_static_tests(measurements: Measurements, beforehand: Beforehand) -> Iden
     fits = []
     for place in sorted({one.interference for one in static}):
         fit, here = rig.fit(place), [one for one in numbers if one.interference == place]
-        damping = {o.support_stiffness: o.value for o in here if o.name == "damping"}
+        damping = {
+            one.support_stiffness: one.value
+            for one in here
+            if one.name == "damping" and one.support_stiffness is not None
+        }
         stiffness = [one.value for one in here if one.name == "elastomer_stiffness"]
         fits.append(
             replace(
