@@ -1,8 +1,7 @@
 """Features of a half-second window, the second half of the table: what the classifier is given.
 
-Each entry has a name, a unit, a definition and how it is computed of a part
-of the windows: how the
-frames of 32 ms follow each other, the lines of the averaged spectrum, the rhythm of all of the
+Each entry has a name, a unit, a definition and how it is computed of a part of the windows: how
+the frames of 32 ms follow each other, the lines of the averaged spectrum, the rhythm of all of the
 sound and of its part above 2 kHz, and what lies above 7 kHz. All are of sound and acceleration,
 A-weighted. They are computed for hours of sound at once, in single precision and from other
 segments than the features of `features.table`; so what has the same name there is the same idea
@@ -38,6 +37,14 @@ def _of(part: str) -> Callable[[str, str, str, Callable[[Any], Any]], Feature]:
 
 def _decibel(share: Any, least: float) -> Any:
     return 10.0 * np.log10(np.maximum(share.astype(np.float64), least))
+
+
+def _band_level(i: int) -> Callable[[Any], Any]:
+    return lambda c: c.band_levels[i]
+
+
+def _octaves_above(i: int) -> Callable[[Any], Any]:
+    return lambda x: _decibel(sum(x.octaves[i + 1 :]) / x.total, 1e-6)
 
 
 _course = _of("course")
@@ -105,7 +112,7 @@ _COURSE = (
     *(
         _course(f"band_{i + 1}", "dB",
                 f"Power of half octave {i + 1} of {BANDS} from 156 Hz to 7 kHz re all.",
-                lambda c, i=i: c.band_levels[i])
+                _band_level(i))
         for i in range(BANDS)
     ),
 )  # fmt: skip
@@ -159,7 +166,7 @@ _LINES = (
           lambda x: x.clear_bins),
     *(
         _line(f"above_{2**i}", "dB", f"Power above {2**i} kHz re all.",
-              lambda x, i=i: _decibel(sum(x.octaves[i + 1:]) / x.total, 1e-6))
+              _octaves_above(i))
         for i in range(3)
     ),
 )  # fmt: skip

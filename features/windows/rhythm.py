@@ -182,7 +182,7 @@ def _spread(values: NDArray[Any], chosen: NDArray[np.bool_]) -> NDArray[np.float
 
 def _level(smooth: NDArray[np.float32], peak: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return levels re the peak, no lower than -80 dB."""
-    share = np.maximum(smooth / peak[:, None], np.float32(1e-8))
+    share: NDArray[np.float32] = np.maximum(smooth / peak[:, None], np.float32(1e-8))
     np.log(share, out=share)
     share *= np.float32(10.0 / np.log(10.0))
     return share

@@ -255,7 +255,8 @@ def chosen_points(points: Sequence[SharedPoint], most: int) -> list[SharedPoint]
         """How far points are from the chosen ones of the same labels; else from their middle."""
         same = [i for i in chosen if labels[i] == of]
         if not same:
-            return _FAR - np.linalg.norm(at[among] - at[among].mean(axis=0), axis=1)
+            middle = at[among].mean(axis=0)
+            return np.asarray(_FAR - np.linalg.norm(at[among] - middle, axis=1))
         return np.asarray(np.linalg.norm(at[among][:, None] - at[same], axis=2).min(axis=1))
 
     for one in _telling(points):
