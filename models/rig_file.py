@@ -374,7 +374,6 @@ def changed_rig_text(
     effects: Sequence[LawSpec],
     tolerances: Mapping[str, float],
     notes: Sequence[str] = (),
-    responses: Sequence[Mapping[str, str | float]] = (),
     friction: LawSpec | None = None,
     heard: Mapping[str, str | float] | None = None,
 ) -> str:
@@ -392,8 +391,6 @@ def changed_rig_text(
         Relative standard deviations [-]; ``"slip_pulse.amplitude"`` is one of an effect.
     notes : sequence of str
         Lines of comment at the top.
-    responses : sequence of mapping
-        Keys of each ``[[measured_response]]``.
     friction : LawSpec, optional
         The law where it is another than that of the base.
     heard : mapping of str to str or float, optional
@@ -421,7 +418,6 @@ def changed_rig_text(
         "change": _nested(changes),
         "tolerances": _nested(tolerances),
         "design": {"heard": heard} if heard else {},
-        "measured_response": list(responses),
     }
     content: dict[str, Any] = {"base": base, "effects": [str(spec) for spec in effects]}
     content |= {name: table for name, table in tables.items() if table}

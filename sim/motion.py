@@ -80,7 +80,7 @@ class Motion:
 
     @property
     def arrays(self) -> list[NDArray[np.float64]]:
-        """All that moves, in the order of the fields."""
+        """All that moves, in the order of the fields; each of shape (n,)."""
         return [getattr(self, field.name) for field in fields(self) if field.name != "rate"]
 
     @property

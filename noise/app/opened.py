@@ -14,7 +14,7 @@ from models.errors import ParameterError
 from models.foreign_file import check_plain_file
 from noise.base.files import check_target
 from noise.base.tables import TABLE_ENDINGS, check_table_path
-from noise.batch import Job, find_jobs
+from noise.batch import Job, find_jobs, journal_path
 
 _TABLE = "labels.csv"
 """Beside the folder of recordings with the folder's name before it; in it where it is there."""
@@ -127,6 +127,11 @@ def open_paths(
 
 
 def _table_of(folder: Path) -> Path:
-    """Return the label table of a folder of recordings, in which nothing new is written."""
+    """Return the label table of a folder of recordings, in which nothing new is written.
+
+    A table of which only the journal is there yet is being written, or was when it was interrupted.
+    """
     inside = folder / _TABLE
-    return inside if inside.exists() else folder.parent / f"{folder.name}-{_TABLE}"
+    if inside.exists() or journal_path(inside).exists():
+        return inside
+    return folder.parent / f"{folder.name}-{_TABLE}"

@@ -152,15 +152,20 @@ def _stated(
 ) -> Diagnosis:
     """State a verdict: where it lies, what else it could be, what to measure next."""
     verdict, probabilities = judged.verdict, judged.probabilities
-    findings = stage_findings(first.table, nulls)
+    findings = stage_findings(first.table, nulls, first.flat)
+    faults = _faults(case, first.flat)
     ranked = [name for name in _ranked(probabilities) if name in library]
     stage = library[verdict[0]].stage.value if verdict and verdict[0] in library else None
     if stage is not None and findings[stage].p_value >= _AS_REPEATS:
         stage = None  # it shows elsewhere
-    place = locate(first.table, nulls, stage)
+    place = locate(first.table, nulls, stage, first.flat)
     return Diagnosis(
         verdict=verdict,
-        equivalent=equivalent_pairs(ranked, probabilities, _kinds(case)),
+        equivalent=tuple(
+            pair
+            for pair in equivalent_pairs(ranked, probabilities, _kinds(case))
+            if not (first.flat and "clipping" in pair)  # flat peaks tell it from all else
+        ),
         location=place if verdict else None,
         stages=findings,
         effects=tuple(
@@ -178,20 +183,20 @@ def _stated(
         p_value=first.gap.p_value,
         seconds=0.0,
         notes=(
-            *case.faults,
+            *faults,
             *map(_listed, first.suspected),
             *unchecked_units(case, library),
             *_notes(case),
             *first.unlearned,
             *case_remarks(case, library),
         ),
-        differences=differences(first.table, nulls),
+        differences=differences(first.table, nulls, first.flat),
         hypotheses=tuple(
             HypothesisFinding(tuple(sorted(hypothesis)), p)
             for hypothesis, p in islice(judged.hypotheses.items(), _SHOWN)
         ),
         agreement=_agreement(case, first.gap),
-        faults=case.faults,
+        faults=faults,
     )
 
 
@@ -204,6 +209,18 @@ def _unasked(case: Case, library: Mapping[str, Effect]) -> tuple[str, ...]:
     return (
         f"{joined(own)} was not asked for: only fits tell of effects of your own, and a quick "
         "answer has none",
+    )
+
+
+def _faults(case: Case, flat: Sequence[str]) -> tuple[str, ...]:
+    """Say which channels are dead, clip at a range, or have flat peaks: each channel once."""
+    return (
+        *case.faults,
+        *(
+            f"channel {kind} looks clipped: its peaks are flat, and those of the simulation are not"
+            for kind in flat
+            if not any(text.startswith(f"channel {kind} clips") for text in case.faults)
+        ),
     )
 
 

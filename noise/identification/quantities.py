@@ -150,20 +150,14 @@ class Quantity:
 
     Parameters
     ----------
-    unit : str
     found : callable
-        Of a rig, the number asked for, and the runs at its speeds: its value [`unit`].
+        Of a rig, the number asked for, and the runs at its speeds: its value.
     misfit : callable
         Of found and measured value [-].
-    needs_runs, at_a_speed : bool
-        Whether it takes runs, and whether at one speed.
     """
 
-    unit: str
     found: Found
     misfit: Callable[[float, float], float] = _log_error
-    needs_runs: bool = True
-    at_a_speed: bool = True
 
 
 def _v_crit2(rig: Rig, number: TableNumber, runs: Sequence[SettledRun]) -> float:  # noqa: ARG001
@@ -198,8 +192,7 @@ def _of_fit(name: str) -> Quantity:
     def found(rig: Rig, number: TableNumber, _runs: Sequence[SettledRun]) -> float:
         return float(getattr(rig.fit(number.interference), name))
 
-    return Quantity("Nm/rad" if name.endswith("stiffness") else "Nm", found, needs_runs=False,
-                    at_a_speed=False)  # fmt: skip
+    return Quantity(found)
 
 
 def _damping(rig: Rig, number: TableNumber, _runs: Sequence[SettledRun]) -> float:
@@ -252,26 +245,24 @@ def _silence(run: SettledRun) -> float:
 
 
 def _noise(distance: Callable[[SettledRun], float]) -> Quantity:
-    return Quantity("1", _of_run(distance), lambda found, _measured: found)
+    return Quantity(_of_run(distance), lambda found, _measured: found)
 
 
 QUANTITIES: Mapping[str, Quantity] = {
     "elastomer_stiffness": _of_fit("elastomer_stiffness"),
-    "effective_stiffness": Quantity("Nm/rad", _effective, needs_runs=False, at_a_speed=False),
-    "damping": Quantity("Nm s/rad", _damping, needs_runs=False, at_a_speed=False),
+    "effective_stiffness": Quantity(_effective),
+    "damping": Quantity(_damping),
     "critical_torque": _of_fit("critical_torque"),
     "kinetic_torque": _of_fit("kinetic_torque"),
-    "mean_torque": Quantity("Nm", _of_run(lambda run: run.mean_torque)),
-    "highest_torque": Quantity("Nm", _of_run(lambda run: float(run.torque.max()))),
-    "slip_frequency": Quantity("Hz", _of_run(lambda run: run.repetition_rate)),
-    "strongest_line": Quantity("Hz", _of_run(lambda run: run.strongest_line)),
-    "v_crit1": Quantity("rad/s", _v_crit1, at_a_speed=False),
-    "v_crit2": Quantity("rad/s", _v_crit2, at_a_speed=False),
-    "sudden_share": Quantity("1", _of_run(lambda run: run.slips.sudden_share), _above),
-    "mean_torque_spread": Quantity(
-        "1", _torque_spread, lambda found, most: max(0.0, found - most), at_a_speed=False
-    ),
-    "slip_rate_rise": Quantity("Hz s/rad", _slip_rate_rise, _rise_misfit, at_a_speed=False),
+    "mean_torque": Quantity(_of_run(lambda run: run.mean_torque)),
+    "highest_torque": Quantity(_of_run(lambda run: float(run.torque.max()))),
+    "slip_frequency": Quantity(_of_run(lambda run: run.repetition_rate)),
+    "strongest_line": Quantity(_of_run(lambda run: run.strongest_line)),
+    "v_crit1": Quantity(_v_crit1),
+    "v_crit2": Quantity(_v_crit2),
+    "sudden_share": Quantity(_of_run(lambda run: run.slips.sudden_share), _above),
+    "mean_torque_spread": Quantity(_torque_spread, lambda found, most: max(0.0, found - most)),
+    "slip_rate_rise": Quantity(_slip_rate_rise, _rise_misfit),
     "squawk": _noise(_squawk),
     "squeal": _noise(_squeal),
     "none": _noise(_silence),

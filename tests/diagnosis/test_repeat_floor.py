@@ -88,12 +88,12 @@ def test_p_values_of_100_second_rigs_without_effects_are_uniform(tmp_path):
 def test_exchanges_give_uniform_p_values_however_few_the_repeats():
     rng = np.random.default_rng(1)
     p_values = []
-    for _ in range(80):
+    for _ in range(200):
         runs = rng.standard_t(3, (2, 7, len(NAMES))) + rng.standard_t(3, (2, 7, 1))
         references = [reference(list(runs[i, 2:])) for i in (0, 0, 1)]
         references[1] = references[0]
         own = [runs[0, 0], runs[0, 1], runs[1, 0]]
-        p_values.append(gap_of(own, references, n_draws=400).p_value)
+        p_values.append(gap_of(own, references, n_draws=1000).p_value)
     assert kstest(p_values, "uniform").pvalue > 0.05
 
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -248,6 +248,10 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Sta
     return StageNulls(names=tuple(header["names"]), **own)
 
 
+_FLAT = len(STAGES) / 140.0
+"""p-value of the measurement where a channel's peaks are flat [-]: none of 139 development cases
+without clipping had such (`noise.diagnosis.first_answer`), and there are five stages."""
+
 _WHOLE_BAND = (0.0, 1800.0)
 """Of a difference that is in no band: where the contact's cycle lives [Hz]; assumed."""
 
@@ -260,7 +264,9 @@ _PHASES = {
 }
 
 
-def stage_findings(table: CaseTable, nulls: StageNulls) -> dict[str, StageFinding]:
+def stage_findings(
+    table: CaseTable, nulls: StageNulls, flat: Collection[str] = ()
+) -> dict[str, StageFinding]:
     """How each stage differs.
 
     The gap is that of the number that differs most, over what is usual without a cause; the
@@ -270,14 +276,19 @@ def stage_findings(table: CaseTable, nulls: StageNulls) -> dict[str, StageFindin
     ----------
     table : CaseTable
     nulls : StageNulls
+    flat : collection of str
+        Kinds of channel that are overloaded: whatever differs in them is the sensor's.
     """
     size, surprise = nulls.sizes(table), nulls.surprises(table)
-    stages = np.array([stage_of(name) for name in nulls.names])
+    stages = np.array([_stage(name, flat) for name in nulls.names])
     found = {}
     for i, stage in enumerate(STAGES):
         inside = stages == stage
         gap = min(largest_of(size[inside]) / float(nulls.typical[i]), LARGEST_GAP)
         found[stage] = (gap, _p_value(largest_of(surprise[inside]), nulls.largest[:, i]))
+    if flat:
+        gap, p_value = found["measurement"]
+        found["measurement"] = (gap, min(p_value, _FLAT))
     excess = {stage: max(gap - 1.0, 0.0) ** 2 for stage, (gap, _) in found.items()}
     whole = sum(excess.values())
     return {
@@ -286,7 +297,9 @@ def stage_findings(table: CaseTable, nulls: StageNulls) -> dict[str, StageFindin
     }
 
 
-def locate(table: CaseTable, nulls: StageNulls, stage: str | None = None) -> Location:
+def locate(
+    table: CaseTable, nulls: StageNulls, stage: str | None = None, flat: Collection[str] = ()
+) -> Location:
     """Say where the difference is most certain.
 
     Parameters
@@ -295,12 +308,14 @@ def locate(table: CaseTable, nulls: StageNulls, stage: str | None = None) -> Loc
     nulls : StageNulls
     stage : str, optional
         Where to look; by default the stage that differs most surely.
+    flat : collection of str
+        As of `stage_findings`.
     """
-    findings = stage_findings(table, nulls)
+    findings = stage_findings(table, nulls, flat)
     if stage is None:
         stage = min(findings, key=lambda name: (findings[name].p_value, -findings[name].gap))
     names = nulls.names
-    inside = np.array([stage_of(name) == stage for name in names])
+    inside = np.array([_stage(name, flat) == stage for name in names])
     if not inside.any():
         inside[:] = True
     sizes = np.nan_to_num(nulls.surprises(table))
@@ -321,13 +336,17 @@ def locate(table: CaseTable, nulls: StageNulls, stage: str | None = None) -> Loc
     )
 
 
-def differences(table: CaseTable, nulls: StageNulls) -> tuple[Location, ...]:
+def differences(
+    table: CaseTable, nulls: StageNulls, flat: Collection[str] = ()
+) -> tuple[Location, ...]:
     """Look at every stage, channel, band and phase of the cycle.
 
     Parameters
     ----------
     table : CaseTable
     nulls : StageNulls
+    flat : collection of str
+        As of `stage_findings`.
 
     Returns
     -------
@@ -341,7 +360,7 @@ def differences(table: CaseTable, nulls: StageNulls) -> tuple[Location, ...]:
     places: dict[tuple[str, str, tuple[float, float] | None, str], list[int]] = {}
     for i, name in enumerate(names):
         if np.isfinite(size[i]):
-            key = (stage_of(name), _channel(name), _band(name), _phase(name))
+            key = (_stage(name, flat), _channel(name), _band(name), _phase(name))
             places.setdefault(key, []).append(i)
     found = []
     for (stage, channel, band, phase), numbers in places.items():
@@ -355,6 +374,10 @@ def differences(table: CaseTable, nulls: StageNulls) -> tuple[Location, ...]:
         if place.p_value <= SURE:
             found.append((place.p_value, -most, place))
     return tuple(place for _, _, place in sorted(found, key=lambda entry: entry[:2]))
+
+
+def _stage(name: str, flat: Collection[str]) -> str:
+    return "measurement" if _channel(name) in flat else stage_of(name)
 
 
 def _p_value(size: float, null: NDArray[np.float64]) -> float:
