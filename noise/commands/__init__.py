@@ -44,7 +44,7 @@ COMMANDS = {
     "label": "recordings -> a table of labelled segments",
     "screen": "bushing designs -> maps of which noise occurs where, margins, ranking",
     "frf": "hammer hits -> frequency response, coherence and modes",
-    "diagnose": "recordings against the simulator -> which effect is missing, how far it closes",
+    "diagnose": "recordings against the simulator -> which effect is missing, how much it explains",
     "identify": "recordings of a rig -> its rig file, with intervals",
     "review": "recordings, labels, screens, diagnoses -> one page to look at and to listen to",
     "train": "build the classifier again from simulation",

@@ -11,6 +11,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from noise.base.labels import LABELS
+
 if TYPE_CHECKING:
     from noise.pages.figures import Panel  # which loads matplotlib
     from noise.pages.maps import ConditionMap
@@ -158,10 +160,10 @@ class Group:
 
 @dataclass(frozen=True)
 class Sounds:
-    """What holds for all sounds: their gains, equal loudness, and the colours of spectrograms."""
+    """What holds for all sounds: gains, equal loudness, labels, and the colours of spectrograms."""
 
     gain: Sequence[str]
-    labels: bool = True
+    labels: Sequence[str] = LABELS
 
 
 @dataclass(frozen=True)

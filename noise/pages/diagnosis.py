@@ -109,7 +109,7 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
         "Where it lies" if judged else "Each stage of the chain",
         [b.Other("chain", () if bench else stages_chain(diagnosis))],
     )
-    far = b.Section("How far it closes" if judged else "", waterfall(diagnosis))
+    far = b.Section("How much the fit explains" if judged else "", waterfall(diagnosis))
     causes = b.Section("Which cause" if judged else "What else it could be", _likely(diagnosis))
     following = diagnosis.next_measurement or "No further measurement was proposed."
     notes: b.Block = b.Items(diagnosis.notes, "notes")
@@ -173,7 +173,7 @@ def stages_chain(diagnosis: Diagnosis) -> list[dict[str, object]]:
     >>> found = {"drive": StageFinding(1.04, 0.02, 0.4)}
     >>> chain = stages_chain(Diagnosis((), (), None, found, (), {}, {}, "", (), 1.0, 1.0, 0.6, 1.0))
     >>> [(stage["name"], stage["gap"]) for stage in chain][:2]
-    [('drive', 'gap 1.04 floors, 2 % of it all'), ('friction', 'not determined')]
+    [('drive', 'gap 1.04 floors, 2 % of all'), ('friction', 'not determined')]
     """
     chain, place = [], diagnosis.location
     named = diagnosis.verdict if is_named(diagnosis) else ()
@@ -183,7 +183,7 @@ def stages_chain(diagnosis: Diagnosis) -> list[dict[str, object]]:
         if found is not None and found.gap != 0.0:  # else nothing of it was recorded
             p_value = found.p_value
             if math.isfinite(found.gap):
-                gap = f"gap {floors(found.gap, '.2f')} floors, {percent(found.share)} of it all"
+                gap = f"gap {floors(found.gap, '.2f')} floors, {percent(found.share)} of all"
         known = f"{p_number(p_value)}: {evidence(p_value)}" if math.isfinite(p_value) else ""
         causes = [cause_of(c).name for c in named if stage_of_effect(diagnosis, c) == name]
         guilty = begins(diagnosis) and place is not None and place.stage == name
@@ -222,7 +222,7 @@ def _is_verdict(diagnosis: Diagnosis, name: str) -> bool:
     return name in (diagnosis.verdict or ("none",)) and is_named(diagnosis)
 
 
-_CAUSE_COLUMNS = ("Cause", "Probability", "Gap closed", "Strength, 90 %")
+_CAUSE_COLUMNS = ("Cause", "Probability", "Explained", "Strength, 90 %")
 
 
 def _likely(diagnosis: Diagnosis) -> list[b.Block]:
@@ -256,7 +256,7 @@ def _cause_row(diagnosis: Diagnosis, name: str, chance: float) -> list[b.Cell | 
         own = finding.closed_by_effect
         gaps = (
             f"gap {number(finding.gap_before)}, refitted {number(finding.gap_recalibrated)}, with "
-            f"the effect {number(finding.gap_after)}; the effect closes "
+            f"the effect {number(finding.gap_after)}; it explains "
             f"{percent(None if own is None else min(own, 1.0))} of what refitting leaves"
         )
     return [

@@ -382,5 +382,5 @@ def draw_comparisons(
     return (
         entries,
         clips,
-        [b.Sounds(gain.sentences if clips else (), labels=False), curves, *groups],
+        [b.Sounds(gain.sentences if clips else (), labels=()), curves, *groups],
     )

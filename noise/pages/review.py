@@ -19,7 +19,7 @@ from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.foreign_file import LARGEST_JSON, parse_json, reading, refusing
 from models.rig import Rig
 from models.show import short_repr
-from noise.base.labels import LABELS, PERSISTS
+from noise.base.labels import LABELS, MAP_LABELS, PERSISTS
 from noise.base.progress import counted
 from noise.base.tables import read_table
 from noise.diagnosis.outcome_json import from_json
@@ -387,7 +387,7 @@ def review(
         title,
         [
             b.Text(summary, "summary"),
-            b.Sounds(gain.sentences if clips else ()),
+            b.Sounds(gain.sentences if clips else (), LABELS if compared is None else MAP_LABELS),
             shortened_text(shortened),
         ],
         [

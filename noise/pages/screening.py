@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.base.labels import LABEL_LOOKS
+from noise.base.labels import LABEL_LOOKS, MAP_LABELS
 from noise.base.progress import counted
 from noise.pages import blocks as b
 from noise.pages.clips import BYTES_A_SECOND, SHORTEST, common_gain, make_clips
@@ -139,7 +139,7 @@ def write_screening(
         _title(found),
         [
             b.Text(_summary(found), "summary"),
-            b.Sounds(gain.sentences),
+            b.Sounds(gain.sentences, MAP_LABELS),
             shortened_text(shortened),
         ],
         [
