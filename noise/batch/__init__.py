@@ -11,6 +11,7 @@ from noise.batch.journal import (
     journal_path,
     kept_results,
     open_journal,
+    written_rows,
 )
 from noise.batch.work import (
     DIED,
@@ -40,4 +41,5 @@ __all__ = [
     "one_thread",
     "open_journal",
     "perform_all",
+    "written_rows",
 ]

@@ -50,14 +50,7 @@ class Journal:
     ----------
     path : Path or None
         None is a file that goes with the journal.
-
-    Attributes
-    ----------
-    table_written : bool
-        Whether the table beside it was last written by a call with the same options.
     """
-
-    table_written = False
 
     def __init__(self, path: Path | None = None) -> None:
         self._path = path
@@ -71,7 +64,6 @@ class Journal:
         """Forget what is of another call, or all of it."""
         call = (RESULTS_VERSION, identity)
         found = self._database.execute("select version, identity from call").fetchone()
-        self.table_written = found == call and self.get(_TABLE) is not None
         if found == call and not fresh:
             return
         if found is not None and not fresh and self._path is not None and len(self):
@@ -158,6 +150,34 @@ class JournalReader:
 
     def _opened(self) -> sqlite3.Connection:
         return sqlite3.connect(f"{self._path.absolute().as_uri()}?mode=rw", uri=True)
+
+
+def written_rows(table: Path) -> list[list[Any]]:
+    """Return the rows that a table had when it was last written, by whatever options.
+
+    Parameters
+    ----------
+    table : Path
+
+    Returns
+    -------
+    list of list
+        Empty where the journal does not know them.
+
+    Examples
+    --------
+    >>> written_rows(Path("none-of-it.csv"))
+    []
+    """
+    path = journal_path(table)
+    if not path.exists():
+        return []
+    with suppress(sqlite3.Error), closing(sqlite3.connect(path, timeout=_PATIENCE)) as database:
+        version = database.execute("select version from call").fetchone()
+        results = dict(database.execute("select key, value from result"))
+        if version == (RESULTS_VERSION,) and results.pop(_TABLE, None) is not None:
+            return [row for value in results.values() for row in json.loads(value)[2]]
+    return []
 
 
 @contextmanager

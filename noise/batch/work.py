@@ -274,7 +274,6 @@ class BatchRows:
     ) -> None:
         self._columns, self._journal = columns, journal
         self._jobs, self._refused = list(jobs), refused
-        self.continues = journal.table_written  # the table that is there is by the same options
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         for job in self._jobs:

@@ -52,15 +52,15 @@ def run(options: Namespace) -> int:
     if options.audacity is not None:
         export_paths(options.audacity, [job.name for job in jobs], (".txt",), "--audacity")
     check_plots(options.plot, jobs)
-    from noise.labels.corrections import with_corrections
+    from noise.labels.corrections import sign_corrections, with_corrections
     from noise.labels.labelling import Labelling
     from noise.labels.summary import result_lines
 
-    # Or its corrections could not be kept after all the work.
-    with_corrections(options.out, [], [job.name for job in jobs])
+    if options.out is not None:
+        sign_corrections(options.out, [job.name for job in jobs])
 
     def keep(out: Path | None, rows: BatchRows) -> list[dict[str, object]]:
-        return with_corrections(out, list(rows), continues=rows.continues)
+        return with_corrections(out, list(rows))
 
     def export(rows: Iterable[dict[str, object]]) -> list[Path]:
         rows = list(rows)

@@ -6,6 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from models.errors import ParameterError
+from noise.base.progress import say
 from noise.commands.options import SEED, Option, check_folder, whole_number
 
 OPTIONS = (
@@ -29,6 +30,8 @@ def run(options: Namespace) -> int:
 
     def ready(address: str) -> None:
         print(address, flush=True)
+        if opened.table is not None:
+            say(f"corrections are written to {opened.table}")
         if not options.no_browser:
             import webbrowser
 

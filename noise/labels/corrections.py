@@ -11,9 +11,18 @@ from hashlib import blake2b
 from pathlib import Path
 
 from models.errors import ParameterError, RecordingError
+from noise.base.files import locked
 from noise.base.labels import LABELS
 from noise.base.progress import readable
-from noise.labels.table import CLASSIFIER, HUMAN, own_columns, read_label_table
+from noise.batch import written_rows
+from noise.labels.table import (
+    CLASSIFIER,
+    COLUMNS,
+    HUMAN,
+    LabelTable,
+    own_columns,
+    read_label_table,
+)
 
 Row = Mapping[str, object]
 Place = tuple[str, float, float]
@@ -81,13 +90,7 @@ def version(rows: Sequence[Row]) -> str:
     return blake2b("\n".join(said).encode(), digest_size=8).hexdigest()
 
 
-def with_corrections(
-    path: Path | None,
-    rows: list[dict[str, object]],
-    names: Iterable[str] = (),
-    *,
-    continues: bool = False,
-) -> list[dict[str, object]]:
+def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[dict[str, object]]:
     """Return new rows of a table, with those recordings as they were that somebody has corrected.
 
     Parameters
@@ -96,19 +99,13 @@ def with_corrections(
         The label table that the rows are for; there need be none yet.
     rows : list of dict
         By `COLUMNS`.
-    names : iterable of str
-        Recordings that rows will be of, where there are none yet.
-    continues : bool
-        Whether the table that is there was written by a call with the same options.
 
     Returns
     -------
     list of dict
         Where some row of a recording's track is by a human in the table that is there, all rows of
         that track are those of that table: whoever moves a border changes both sides of it. So are
-        labels of a table of one's own, which says of none that a classifier gave it. A row is by a
-        human, too, where the table continues and its label is another than the new one though all
-        probabilities are the same. Tracks
+        labels of a table of one's own, which says of none that a classifier gave it. Tracks
         that the new rows do not have come last. What the table has in columns of its own stays with
         the stretch of time that it is beside.
 
@@ -130,9 +127,47 @@ def with_corrections(
     ...     with_corrections(Path(folder) / "labels.csv", new)[0]["label"]
     'squeal'
     """
-    if path is None or not path.exists() or not path.stat().st_size:
+    if path is None:
         return rows
-    known = {readable(str(name)) for name in (*names, *(row.get("file") for row in rows))}
+    before = _corrected_table(path, (str(row.get("file")) for row in rows))
+    return rows if before is None else with_corrected_rows(before, rows)
+
+
+def sign_corrections(path: Path, names: Iterable[str]) -> None:
+    """Mark labels of a table as a human's that differ from those that the program wrote.
+
+    Whoever corrects a table in a spreadsheet may leave `label_source` as it was. The journal of the
+    table knows what was written. It is forgotten by a call with other options, so this is done
+    before the journal is opened.
+
+    Parameters
+    ----------
+    path : Path
+        The label table; there need be none yet.
+    names : iterable of str
+        Recordings that are to be labelled.
+
+    Raises
+    ------
+    ParameterError
+        As of `with_corrections`: corrections could not be kept after all the work.
+    """
+    names = list(names)
+    if not _corrected_table(path, names):
+        return
+    written = [dict(zip(COLUMNS, row, strict=False)) for row in written_rows(path)]
+    with locked(path):
+        before = _corrected_table(path, names) or []
+        signed = _signed(before, written)
+        if signed != before:
+            LabelTable(signed).write(path)
+
+
+def _corrected_table(path: Path, names: Iterable[str]) -> list[dict[str, object]] | None:
+    """Read a table that must not be written over unread; None where there is none."""
+    if not path.exists() or not path.stat().st_size:
+        return None
+    known = {readable(name) for name in names}
     try:
         before = read_label_table(path, names=known)
     except RecordingError as error:
@@ -141,16 +176,13 @@ def with_corrections(
             "another table"
         ) from None
     _check_names(path, before, known)
-    return with_corrected_rows(_signed(before, rows) if continues else before, rows)
+    return before
 
 
 def _signed(
     before: Iterable[dict[str, object]], rows: Iterable[dict[str, object]]
 ) -> list[dict[str, object]]:
-    """Sign the rows whose label alone was changed: same segment, same probabilities, other label.
-
-    Whoever corrects a table in a spreadsheet may leave `label_source` as it was.
-    """
+    """Sign rows whose label alone was changed: same segment and probabilities, other label."""
     new = {(readable(str(row.get("file"))), place(row)): row for row in rows}
 
     def changed(row: dict[str, object]) -> bool:

@@ -19,7 +19,7 @@ from noise.classifier import Classifier, load_classifier
 from noise.classifier.model import CLASSIFIER
 from noise.inference import Inference, load_inference
 from noise.inference.model import INFERENCE
-from noise.labels.corrections import with_corrections
+from noise.labels.corrections import sign_corrections, with_corrections
 from noise.labels.levels import with_loudness
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, label_recording
@@ -109,8 +109,8 @@ def label(
         loudness=loudness,
     )
     work.prepare()
-    # Refused before the work.
-    with_corrections(None if out is None else Path(out), [], [job.name for job in jobs])
+    if out is not None:
+        sign_corrections(Path(out), [job.name for job in jobs])
     with open_journal(None if out is None else Path(out), work, fresh=fresh) as journal:
         refused: dict[int, Done] = {}
         left = [job for job in jobs if journal.find(job) is None]
@@ -124,7 +124,7 @@ def label(
             return LabelTable(rows)
         # Nobody may correct the table between the look at its corrections and the writing.
         with locked(Path(out)):
-            table = LabelTable(with_corrections(Path(out), rows, continues=journal.table_written))
+            table = LabelTable(with_corrections(Path(out), rows))
             table.write(out)
             journal.note_table()
     return table

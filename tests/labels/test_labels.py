@@ -224,8 +224,8 @@ def test_labelling_loads_neither_simulator_nor_training(tmp_path):
     assert said.splitlines()[-1] == "[]"
 
 
-@pytest.mark.parametrize("fresh", [[], ["--fresh"]], ids=["resumed", "fresh"])
-def test_a_label_that_was_changed_in_the_table_alone_is_never_lost(squeal, tmp_path, fresh):
+@pytest.mark.parametrize("more", [[], ["--fresh"], ["--sensitivity", "2"]], ids=" ".join)
+def test_a_label_that_was_changed_in_the_table_alone_is_never_lost(squeal, tmp_path, more):
     write_recording(tmp_path / "run", sound(squeal))
     table = tmp_path / "labels.csv"
     given = ["label", str(tmp_path / "run.wav"), "--out", str(table)]
@@ -233,7 +233,7 @@ def test_a_label_that_was_changed_in_the_table_alone_is_never_lost(squeal, tmp_p
     text = table.read_text(encoding="utf-8")
     assert ",squeal," in text
     table.write_text(text.replace(",squeal,", ",squawk,"), encoding="utf-8")
-    assert main([*given, *fresh]) == 0
+    assert main([*given, *more]) == 0
     with table.open(encoding="utf-8", newline="") as file:
         rows = [row for row in csv.DictReader(file) if row["label"] == "squawk"]
     assert [row["label_source"] for row in rows] == ["human"]
