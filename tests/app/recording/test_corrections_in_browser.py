@@ -82,7 +82,7 @@ def test_a_stretch_of_both_tracks_is_labelled_by_a_drag_and_a_key(browser, tmp_p
         assert {row["label_source"] for row in found if row["label"] == "none"} == {"classifier"}
         assert [row["start_s"] for row in found] == pytest.approx([0.0, 0.5, 1.0] * 2, abs=0.004)
         assert opened.page.locator(".strip .lane").count() == 1  # they are alike
-        assert opened.page.get_by_role("option").filter(has_text="partly corrected").count() == 1
+        opened.page.get_by_role("option").filter(has_text="partly corrected").wait_for()
         opened.press("Control+z")
         opened.page.locator(".saved").filter(has_text="undone").wait_for()
         assert len(read_label_table(tmp_path / "labels.csv")) == 2
