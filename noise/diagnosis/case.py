@@ -14,7 +14,6 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,9 +28,6 @@ from noise.diagnosis.preparation.settled_part import shortest
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.rotation import as_logged
 from noise.recordings.sidecar import sidecar_text
-
-if TYPE_CHECKING:
-    pass
 
 
 def sidecar_request(

@@ -10,16 +10,11 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from noise.base import SURE_90
 from noise.identification.outcome import Number
-
-if TYPE_CHECKING:
-    pass
-
 
 UNITS = {
     "elastomer_stiffness": "Nm/rad",

@@ -152,12 +152,11 @@ def sign_corrections(path: Path, names: Iterable[str]) -> None:
     ParameterError
         As of `with_corrections`: corrections could not be kept after all the work.
     """
-    names = list(names)
-    if not _corrected_table(path, names):
+    if not path.exists():
         return
-    written = [dict(zip(COLUMNS, row, strict=False)) for row in written_rows(path)]
     with locked(path):
         before = _corrected_table(path, names) or []
+        written = [dict(zip(COLUMNS, row, strict=False)) for row in written_rows(path)]
         signed = _signed(before, written)
         if signed != before:
             LabelTable(signed).write(path)
