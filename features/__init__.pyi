@@ -1,8 +1,6 @@
 from .kernels.harmonics import (
     Harmonics as Harmonics,
-    PitchTrack as PitchTrack,
     analyse_harmonics as analyse_harmonics,
-    pitch_track as pitch_track,
 )
 from .kernels.levels import (
     NOMINAL_THIRD_OCTAVES as NOMINAL_THIRD_OCTAVES,
@@ -59,9 +57,6 @@ from .table import (
     feature_names as feature_names,
     features_of as features_of,
     recording_feature_names as recording_feature_names,
-)
-from .transformer import (
-    RecordingFeatures as RecordingFeatures,
 )
 from .window_table import (
     WINDOW_FEATURES as WINDOW_FEATURES,

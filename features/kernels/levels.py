@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
@@ -544,33 +545,16 @@ def _weighted_pieces(
         end = min(n, start + _SEGMENTS_AT_ONCE * useful)
         count = -(-(end - start) // useful)
         longer = _continued(read, n, start - margin, start + count * useful + margin, margin)
+        longer = longer - longer.mean()  # nothing to hear, and it would cost digits
         scale = float(max(longer.max(), -longer.min()))
         if scale > 0.0:
-            segments = np.empty((count, length), dtype=np.float32)
-            _cut(longer, useful, 1.0 / scale, segments)
-            bins = fft.rfft(segments, axis=1)
+            single = (longer / scale).astype(np.float32)
+            bins = fft.rfft(sliding_window_view(single, length)[::useful], axis=1)
             bins *= gain
             whole = fft.irfft(bins, length, axis=1)[:, margin : margin + useful]
         else:
             whole = np.zeros((count, useful), dtype=np.float32)
         yield whole.reshape(-1)[: end - start], scale
-
-
-@njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
-def _cut(x: NDArray[np.float64], hop: int, gain: float, out: NDArray[np.float32]) -> None:
-    """Cut out a row every `hop` samples, times a gain.
-
-    An offset is taken off first: it is nothing to hear, and would cost digits.
-    """
-    n = out.shape[1]
-    for row in range(out.shape[0]):
-        part = x[row * hop : row * hop + n]
-        total = 0.0
-        for i in range(n):
-            total += part[i]
-        mean = total / n
-        for i in range(n):
-            out[row, i] = gain * (part[i] - mean)
 
 
 def _continued(read: Read, n: int, first: int, last: int, margin: int) -> NDArray[np.float64]:
@@ -608,11 +592,9 @@ def fast_level_pieces(
     >>> round(float(max(piece.max() for piece in pieces)))
     94
     """
-    from scipy.signal import lfilter
-
-    kept, state = _kept(rate), np.zeros(1)
+    state = np.zeros(1)
     for piece, scale in _weighted_pieces(read, n, rate):
-        smoothed, state = lfilter([1.0 - kept], [1.0, -kept], (piece * scale) ** 2, zi=state)
+        smoothed, state = _smoothed((piece * scale) ** 2, rate, state)
         yield band_levels(smoothed, reference)
 
 
@@ -652,9 +634,16 @@ def fast_levels(
     >>> fast_levels(burst, 48e3, np.array([0, 4800, 9600]), reference=1.0).round(1).tolist()
     [-2.6, -1.0]
     """
+    smoothed, _ = _smoothed(checked_signal(signal, rate) ** 2, rate, np.zeros(1))
+    return band_levels(np.maximum.reduceat(smoothed[: edges[-1]], edges[:-1]), reference)
+
+
+def _smoothed(
+    power: NDArray[np.float64], rate: float, state: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return a squared sound with the time weighting F on it, and where the meter stands then."""
     from scipy.signal import lfilter
 
-    x = checked_signal(signal, rate)
     kept = _kept(rate)
-    smoothed = lfilter([1.0 - kept], [1.0, -kept], x**2)
-    return band_levels(np.maximum.reduceat(smoothed[: edges[-1]], edges[:-1]), reference)
+    smoothed, state = lfilter([1.0 - kept], [1.0, -kept], power, zi=state)
+    return smoothed, state

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given, settings, strategies as st
 
 from features.kernels.conditioning import band_signal, forward
-from features.kernels.harmonics import analyse_harmonics, pitch_track
+from features.kernels.harmonics import analyse_harmonics
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
 
@@ -97,20 +97,3 @@ def test_a_stiff_string_is_as_inharmonic_as_its_b_says(stiffness):
     power = amplitude**2 / (amplitude**2).sum()
     assert found.fundamental == pytest.approx(200.0, rel=0.01)
     assert found.inharmonicity == pytest.approx(2 * power @ abs(order - number), abs=0.003)
-
-
-# Pitch over time
-
-
-def test_a_glide_is_followed():
-    time = np.arange(16_000) / RATE
-    phase = 2 * np.pi * (200.0 * time + 100.0 * time**2)  # from 200 to 400 Hz
-    track = pitch_track(np.sin(phase), RATE)
-    inside = (track.time > 0.15) & (track.time < 0.85)
-    assert track.frequency[inside] == pytest.approx(200.0 + 200.0 * track.time[inside], rel=0.03)
-    assert track.range == pytest.approx(1.0, abs=0.15)
-
-
-@pytest.mark.parametrize("signal", [np.zeros(8000), noise(8000)])
-def test_silence_and_noise_have_no_pitch_to_speak_of(signal):
-    assert pitch_track(signal, RATE).voiced_share < 0.3

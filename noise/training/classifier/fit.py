@@ -249,7 +249,7 @@ if __name__ == "__main__":
 
 
 _PACKAGES = ("models", "sim", "features", "noise")
-_LIBRARIES = ("librosa", "numba", "numpy", "scikit-learn", "scipy", "soundfile")
+_LIBRARIES = ("numba", "numpy", "scikit-learn", "scipy", "soundfile")
 """What the samples come from."""
 
 
