@@ -209,7 +209,7 @@ def _in_order(path: Path, table: ForeignTable) -> tuple[NDArray[np.float64], str
 
 def _rate(path: Path, time: NDArray[np.float64]) -> float:
     try:
-        _, step = even_step(time.size, lambda first, last: time[first:last], _UNEVEN)
+        _, step = even_step(time, _UNEVEN)
     except RecordingError:
         raise RecordingError(
             f"{path}: time does not rise evenly; expected time in s, force, response in this order"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import struct
 import tracemalloc
+from contextlib import suppress
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -15,7 +16,6 @@ from hypothesis import given, strategies as st
 
 from models.errors import RecordingError
 from noise.recordings import read_recording
-from noise.recordings.formats.containers import bext_description, chunks
 from noise.recordings.formats.sound_file import open_sound_file
 
 RATE = 48_000
@@ -165,9 +165,7 @@ ID3V1 = b"TAG" + b"t" * 125
 APE = b"APETAGEX" + struct.pack("<IIII", 2000, 40, 1, 0) + bytes(8) + bytes(40)
 
 
-@pytest.mark.parametrize(
-    ("before", "after"), [(ID3V2, ID3V1), (b"", APE + ID3V1), (b"\0" * 777, b"\0" * 100)]
-)
+@pytest.mark.parametrize(("before", "after"), [(ID3V2, ID3V1), (b"", APE + ID3V1)])
 def test_tags_around_an_mp3_are_no_sound(tmp_path, before, after):
     for data in (mp3("VARIABLE"), headless(mp3("CONSTANT"))):
         bare = read(tmp_path, data, "mp3").samples
@@ -214,7 +212,6 @@ def test_several_sounds_in_a_file_are_refused(tmp_path):
         "flac": parts(2.0, 1.0, format="FLAC"),
         "wav": parts(2.0, 1.0, format="WAV"),
         "mp3": (mp3("VARIABLE"), ID3V1 + ID3V2 + mp3("VARIABLE")),
-        "mpeg": (headless(mp3("CONSTANT")), mp3("CONSTANT")),
     }
     for ending, (one, other) in joined.items():
         with pytest.raises(RecordingError, match=r"a second sound begins at byte \d+"):
@@ -329,34 +326,26 @@ def test_what_follows_the_samples_is_none_of_them_and_named_where_it_is_no_chunk
     assert raw.notes == (f"{rest} bytes after the end that the header states are not read",)
 
 
-def test_an_odd_chunk_before_the_samples_may_lack_its_last_byte(tmp_path):
-    odd = b"LIST" + struct.pack("<I", 3) + b"abc"
-    assert_sound(read(tmp_path, riff(HEAD, odd, chunk(b"data", AS_16))))
-
-
 # The description of Broadcast Wave files
 
 
 @pytest.mark.parametrize("tag", [b"RIFF", b"RF64", b"BW64"])
-@pytest.mark.parametrize("pad", [b"", b"\0", b"\x41"])
-def test_a_description_after_an_odd_number_of_bytes_is_found_padded_or_not(tmp_path, tag, pad):
+def test_a_description_after_an_odd_number_of_bytes_is_found(tmp_path, tag):
     text = chunk(b"bext", b"Sound: 0dBFS = 109.7 dBSPL".ljust(602, b"\0"))
-    odd = b"data" + struct.pack("<I", 4801) + b"\x11" * 4801 + pad
+    odd = b"data" + struct.pack("<I", 4801) + b"\x11" * 4801 + b"\0"
     path = tmp_path / "run.wav"
     path.write_bytes(riff(fmt(8), odd, text, tag=tag))
-    assert bext_description(path) == "Sound: 0dBFS = 109.7 dBSPL"
     calibrated = read_recording(path)
     assert calibrated.channels[0].full_scale == pytest.approx(20e-6 * 10 ** (109.7 / 20))
 
 
 @given(st.sampled_from([b"RIFF", b"RIFX", b"RF64", b"FORM", b"fLaC", b""]), st.binary(max_size=300))
-def test_any_bytes_end_the_walk(head, rest):
-    found = list(chunks(io.BytesIO(head + rest)))
-    assert all(part.start <= 4 + len(rest) for part in found)
+def test_any_bytes_are_refused_or_empty(tmp_path_factory, head, rest):
+    with suppress(RecordingError):
+        assert read(tmp_path_factory.mktemp("any"), head + rest + b"\0").samples.size < 400
 
 
 @given(st.binary(min_size=1, max_size=40))
 def test_any_description_is_text(tmp_path_factory, content):
-    path = tmp_path_factory.mktemp("bext") / "run.wav"
-    path.write_bytes(riff(chunk(b"bext", content)))
-    assert bext_description(path).encode("latin-1") in content
+    data = riff(HEAD, chunk(b"bext", content), chunk(b"data", bytes(64)))
+    assert read(tmp_path_factory.mktemp("bext"), data).description.encode("latin-1") in content

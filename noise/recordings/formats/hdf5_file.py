@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,7 @@ from models.errors import RecordingError
 from models.units import split_unit
 from noise.recordings.formats import Format
 from noise.recordings.formats.logged import CONDITIONS, PACKING, LoggedChannel, factor_and_offset
-from noise.recordings.formats.time_axis import Axis, Read, is_time
+from noise.recordings.formats.time_axis import Axis, is_time
 
 _RATES = ("rate_Hz", "rate", "fs", "sampling_rate", "sample_rate", "sampling_frequency")
 _STEPS = ("dt", "sampling_interval")
@@ -69,7 +70,7 @@ def _channel(path: Path, dataset: Any) -> LoggedChannel:
     return LoggedChannel(
         name=_last(dataset),
         n_samples=int(dataset.size),
-        read=_reading(dataset),
+        values=partial(_values, dataset),
         axes=_axes(path, dataset),
         packing=_attributes(path, dataset, PACKING),
         integers=dataset.dtype.kind in "iu",
@@ -123,16 +124,13 @@ def _time_beside(path: Path, group: Any, dataset: Any) -> Iterator[Axis]:
             if not is_time(name, unit):
                 continue
             _check_size(path, times)
-            read = _reading(times, *factor_and_offset(_attributes(path, times, PACKING)))
-            yield Axis(times=read, unit=unit, quantity="time")
+            packing = factor_and_offset(_attributes(path, times, PACKING))
+            yield Axis(times=partial(_values, times, *packing), unit=unit, quantity="time")
 
 
-def _reading(dataset: Any, factor: float = 1.0, offset: float = 0.0) -> Read:
-    def read(start: int, stop: int) -> NDArray[np.generic]:
-        values = np.asarray(dataset[start:stop])
-        return values if (factor, offset) == (1.0, 0.0) else factor * values + offset
-
-    return read
+def _values(dataset: Any, factor: float = 1.0, offset: float = 0.0) -> NDArray[np.generic]:
+    values = np.asarray(dataset[:])
+    return values if (factor, offset) == (1.0, 0.0) else factor * values + offset
 
 
 def _check_size(path: Path, dataset: Any) -> None:

@@ -3,34 +3,35 @@
 Libraries that follow the pointers of a file hang on one that leads in a circle, set aside the 4 GB
 that a damaged length asks for, or die. They do so in a process that is ended when it takes too
 long and may not have more memory than a file of that size can need; whatever becomes of it, here it
-is one recording refused. A process lives on from file to file, since it costs a second to start.
-Samples come over part by part, so that reading takes the memory of the result and no more.
+is one recording refused. It writes the samples into a plain file of numbers, of which any part can
+be had. The process lives on from file to file, since it costs a second to start.
 """
 
 from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable, Iterator
+import threading
+from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, TimeoutError as TookLongerError
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
+from functools import lru_cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, NamedTuple
+from tempfile import TemporaryDirectory
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.errors import RecordingError, not_installed
 from models.foreign_file import one_line
 from noise.base.processes import Worker
 from noise.recordings.formats import RawRecording, formats
-from noise.recordings.formats.logged import describe_channels
+from noise.recordings.formats.logged import convert
 
 _PATIENCE = 15.0
-"""How long an answer may take, beside the size of the file [s]."""
+"""How long reading may take, beside the size of the file [s]."""
 
 _SLOWEST = 1e6
 """What is read at least, of a large file over a network [byte/s]."""
@@ -38,8 +39,7 @@ _SLOWEST = 1e6
 _ALLOWANCE = 2 << 30
 """Memory that a file may take, beside four times its size [byte]."""
 
-_idle: list[tuple[int, Worker]] = []
-"""A process that waits for its next file, and whose it is: a fork needs one of its own."""
+_one_at_a_time = threading.Lock()
 
 
 @contextmanager
@@ -59,83 +59,56 @@ def open_isolated(path: Path) -> Iterator[RawRecording]:
     Raises
     ------
     RecordingError
-        Also by reading it: the file is damaged, holds no channels, these do not go together, or
-        reading took longer or more memory than it may; or its library is not installed.
+        The file is damaged, holds no channels, these do not go together, or reading took longer or
+        more memory than it may; or its library is not installed.
     """
     of = formats()[path.suffix.lower()]
     if find_spec(of.library) is None:
         message = not_installed(f"{path}: {of.name} files need", of.library, of.extra)
         raise RecordingError(message)
     path.open("rb").close()  # a file that may not be read is not damaged
-    size = path.stat().st_size
-    seconds = _PATIENCE + size / _SLOWEST
-    worker, at_rest = _borrowed(), False
+    with TemporaryDirectory(prefix="bushing-noise-", ignore_cleanup_errors=True) as folder:
+        target = Path(folder) / "samples"
+        raw = _converted(path, target, of.name)
+        samples = np.memmap(target, np.float64, "r", shape=(raw.n_channels, raw.n_samples))
+        if os.name != "nt":
+            target.unlink()  # mapped, it stays until then, whatever becomes of this process
+        yield replace(raw, read=lambda first, last: np.array(samples[:, first:last]))
 
-    def ask(perform: Callable[..., Any], *given: object) -> Any:
-        nonlocal at_rest
-        at_rest = False
+
+def _converted(path: Path, target: Path, name: str) -> RawRecording:
+    """Have the samples of a file written; return what it states of them."""
+    seconds = _PATIENCE + path.stat().st_size / _SLOWEST
+    folder = os.curdir if path.is_absolute() else Path.cwd()
+    with _one_at_a_time:
         try:
-            answer = worker.submit(_timed, seconds, perform, *given).result(seconds)
-        except RecordingError:
-            at_rest = True
-            raise
+            _worker(os.getpid()).submit(os.getpid).result()
+        except BrokenExecutor:  # it ended meanwhile
+            _worker.cache_clear()
+        worker = _worker(os.getpid())
+        try:
+            return worker.submit(_convert, folder, path, target, seconds).result(seconds)
         except TookLongerError:
             reason = f"took longer than {seconds:.0f} s"
         except (BrokenExecutor, OSError):
             reason = "ended the process"
-        else:
-            at_rest = True
-            return answer
-        raise RecordingError(f"{path}: is damaged or no {of.name} file (reading it {reason})")
-
-    try:
-        raw = ask(_open, os.curdir if path.is_absolute() else Path.cwd(), path, size)
-        yield replace(raw, read=lambda first, last: ask(raw.read, first, last))
-    finally:
-        if at_rest:
-            with suppress(RecordingError):  # it died of the last part
-                ask(_close)
-        if at_rest and not _idle:
-            _idle.append((os.getpid(), worker))
-        else:
-            worker.end()
+        worker.end()
+        _worker.cache_clear()
+    raise RecordingError(f"{path}: is damaged or no {name} file (reading it {reason})")
 
 
-def _borrowed() -> Worker:
-    with suppress(IndexError, BrokenExecutor):
-        owner, worker = _idle.pop()
-        if owner == os.getpid() and worker.submit(os.getpid).result():
-            return worker
+@lru_cache(maxsize=1)
+def _worker(_owner: int) -> Worker:
+    """Return the process that reads for this one; a fork needs one of its own."""
     return Worker()
 
 
 # --- in the process that reads -------------------------------------------------------------------
 
 
-class _Opened(NamedTuple):
-    """The file that is open, how to refuse it, and what closes it."""
-
-    file: ExitStack
-    raw: RawRecording
-    refusal: str
-    memory: int
-
-
-_opened: list[_Opened] = []
-
-
-def _timed(seconds: float, perform: Callable[..., Any], *given: object) -> Any:
-    """Do a call in a process that ends should nobody be there any more to end it."""
+def _convert(folder: str | Path, path: Path, target: Path, seconds: float) -> RawRecording:
     alarm = getattr(signal, "alarm", lambda _: None)
-    alarm(int(seconds) + 10)
-    try:
-        return perform(*given)
-    finally:
-        alarm(0)
-
-
-def _open(folder: str | Path, path: Path, size: int) -> RawRecording:
-    _close()
+    alarm(int(seconds) + 10)  # should nobody be there any more to end it
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)  # some libraries print what they cannot follow
     os.dup2(nowhere, 2)
@@ -143,41 +116,21 @@ def _open(folder: str | Path, path: Path, size: int) -> RawRecording:
     os.chdir(folder)
     of = formats()[path.suffix.lower()]
     import_module(of.library)
-    memory = _ALLOWANCE + 4 * size
+    memory = _ALLOWANCE + 4 * path.stat().st_size
     _limit_memory(memory)
-    refusal = f"{path}: is damaged or no {of.name} file"
-    with ExitStack() as stack, _refusing(refusal, memory):
-        channels, properties = stack.enter_context(of.channels(path))  # type: ignore[misc]
-        raw = describe_channels(path, channels, properties)
-        _opened.append(_Opened(stack.pop_all(), raw, refusal, memory))
-    return replace(raw, read=_read)
-
-
-def _read(first: int, last: int) -> NDArray[np.float64]:
-    (opened,) = _opened
-    with _refusing(opened.refusal, opened.memory):
-        return opened.raw.read(first, last)
-
-
-def _close() -> None:
-    while _opened:
-        with suppress(Exception):  # of a damaged file
-            _opened.pop().file.close()
-    _limit_memory(None)
-
-
-@contextmanager
-def _refusing(refusal: str, memory: int) -> Iterator[None]:
     try:
-        yield
+        with of.channels(path) as (channels, properties):  # type: ignore[misc]
+            return convert(path, channels, properties, target)
     except RecordingError:
         raise
     except MemoryError:
         reason = f"reading it took more than {memory / 1e9:.1f} GB of memory"
-        raise RecordingError(f"{refusal} ({reason})") from None
     except Exception as error:
         reason = one_line(f"{type(error).__name__}: {error}")
-        raise RecordingError(f"{refusal} ({reason})") from None
+    finally:
+        alarm(0)
+        _limit_memory(None)
+    raise RecordingError(f"{path}: is damaged or no {of.name} file ({reason})")
 
 
 def _limit_memory(more: int | None) -> None:

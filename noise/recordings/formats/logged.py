@@ -12,7 +12,7 @@ channel is left out with a note that says why, or the file is refused: nothing i
   common. Other differences are refused: to bring channels together one would have to invent
   samples, and the delay of a resampling filter would look like one of the rig.
 
-Samples are read block by block, so that reading takes the memory of the result and no more.
+Only channels that are taken are read, one after the other.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -32,7 +32,7 @@ from models.errors import RecordingError, naming
 from models.recording import Channel
 from models.units import CHANNEL_UNITS, kind_of_unit, known_units, split_unit
 from noise.recordings.formats import RawRecording, check_rate
-from noise.recordings.formats.time_axis import SAME_RATE, Axis, Read, start_and_rate
+from noise.recordings.formats.time_axis import SAME_RATE, Axis, start_and_rate
 from noise.recordings.sidecar import Sidecar, parse_sidecar, sidecar_of
 
 CONDITIONS = (*(one.key for one in CONDITION.values()), "material")
@@ -61,8 +61,8 @@ class LoggedChannel:
     ----------
     name : str
     n_samples : int
-    read : callable
-        Reads samples as stored.
+    values : callable
+        Reads its samples as stored, shape (n_samples,).
     axes : sequence of Axis
         The last one that states a start has the last word on it.
     packing : mapping of str to object
@@ -76,7 +76,7 @@ class LoggedChannel:
 
     name: str
     n_samples: int
-    read: Read
+    values: Callable[[], NDArray[np.generic]]
     axes: Sequence[Axis] = ()
     packing: Mapping[str, object] = field(default_factory=dict)
     integers: bool = False
@@ -110,26 +110,26 @@ class Row:
     rate: float
     first: int = 0
 
-    def read(self, first: int, last: int) -> NDArray[np.float64]:
-        """Read samples of the recording, shape (n,) [SI unit of the channel]."""
-        begin, end = self.first + first, self.first + last
-        block = np.array(self.logged.read(begin, end), dtype=np.float64)
-        if block.shape != (last - first,):
+    def samples(self, n: int) -> NDArray[np.float64]:
+        """Read the samples of the recording, shape (n,) [SI unit of the channel]."""
+        stored = self.logged.values()
+        if stored.shape != (self.logged.n_samples,):
             raise RecordingError(
                 f"channel {self.logged.name!r} is truncated; {self.logged.n_samples} samples are "
-                f"announced, {begin + len(block)} can be read"
+                f"announced, {len(stored)} can be read"
             )
+        samples = np.array(stored[self.first : self.first + n], dtype=np.float64)
         factor, offset = factor_and_offset(self.logged.packing)
         with np.errstate(over="ignore", invalid="ignore"):  # refused where it is not finite
-            block *= self.value * factor
-            block += self.value * offset
-        return block
+            samples *= self.value * factor
+            samples += self.value * offset
+        return samples
 
 
-def describe_channels(
-    path: Path, logged: Sequence[LoggedChannel], properties: Mapping[str, object]
+def convert(
+    path: Path, logged: Sequence[LoggedChannel], properties: Mapping[str, object], target: Path
 ) -> RawRecording:
-    """Choose the channels of a logger's file that make a recording.
+    """Write the channels of a logger's file that make a recording as plain numbers.
 
     Parameters
     ----------
@@ -139,11 +139,13 @@ def describe_channels(
         In the order of the file.
     properties : mapping
         Of the file as a whole; those named as conditions are ours.
+    target : Path
+        Gets the samples in SI as float64, channel after channel.
 
     Returns
     -------
     RawRecording
-        In SI.
+        Reads nothing: its samples are in `target`.
 
     Raises
     ------
@@ -152,25 +154,28 @@ def describe_channels(
 
     Examples
     --------
+    >>> import tempfile
     >>> from noise.recordings.formats.time_axis import Axis
-    >>> x = np.ones(400)
     >>> clock = Axis(start=0.0, step=0.02, unit="ms")
     >>> arm = LoggedChannel(
-    ...     name="Arm 1", n_samples=400, read=lambda a, b: x[a:b], axes=[clock], unit="N mm"
+    ...     name="Arm 1", n_samples=400, values=lambda: np.ones(400), axes=[clock], unit="N mm"
     ... )
-    >>> raw = describe_channels(Path("run.h5"), [arm], {"speed_rad_s": 5.0})
-    >>> raw.channels[0].name, raw.rate, float(raw.whole().max()), raw.condition.speed
-    ('torque', 50000.0, 0.001, 5.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     target = Path(folder) / "samples"
+    ...     raw = convert(Path("run.h5"), [arm], {"speed_rad_s": 5.0}, target)
+    ...     float(np.fromfile(target).max())
+    0.001
+    >>> raw.channels[0].name, raw.rate, raw.condition.speed
+    ('torque', 50000.0, 5.0)
     """
     if not logged:
         raise RecordingError(f"{path}: holds no channel of numbers")
     on_time: list[Row] = []
     left_out: list[tuple[bool, str]] = []
-    steps: dict[Axis, tuple[float, float]] = {}
     for channel in logged:
         try:
             kind, value = _kind(channel)
-            start, rate = start_and_rate(channel.axes, channel.n_samples, steps)
+            start, rate = start_and_rate(channel.axes)
         except RecordingError as error:
             # Of many channels those that ought to be ours are named first.
             ours = bool(kind_of_unit(_unit(channel)) or _own_name(channel.name))
@@ -209,20 +214,23 @@ def describe_channels(
     ]
     rows, n_samples = _together(path, rows, notes)
 
-    def read(first: int, last: int) -> NDArray[np.float64]:
-        with naming(f"{path}: "):
-            return np.stack([row.read(first, last) for row in rows])
-
+    with naming(f"{path}: "), target.open("wb") as file:
+        for row in rows:
+            row.samples(n_samples).tofile(file)
     return RawRecording(
         n_channels=len(rows),
         n_samples=n_samples,
         rate=rows[0].rate,
         fractional=False,
-        read=read,
+        read=_nothing,
         channels=channels,
         condition=stated_condition(properties, str(path)),
         notes=tuple(notes),
     )
+
+
+def _nothing(first: int, last: int) -> NDArray[np.float64]:
+    raise NotImplementedError
 
 
 def _listed(reasons: Sequence[str]) -> str:

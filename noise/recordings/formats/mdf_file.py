@@ -93,29 +93,23 @@ def _group(path: Path, file: Any, group: int) -> list[LoggedChannel]:
 
 
 def _axis(file: Any, group: int, master: Any) -> Axis:
-    def times(start: int, stop: int) -> NDArray[np.generic]:
-        stamps = file.get_master(group, record_offset=start, record_count=stop - start)
-        return np.asarray(stamps)
-
-    quantity = dict(enumerate(_QUANTITIES)).get(int(master.sync_type))
-    return Axis(times=times, unit=_unit(master), quantity=quantity)
+    return Axis(
+        times=lambda: np.asarray(file.get_master(group)),
+        unit=_unit(master),
+        quantity=dict(enumerate(_QUANTITIES)).get(int(master.sync_type)),
+    )
 
 
 def _channel(file: Any, group: int, index: int, axes: list[Axis]) -> LoggedChannel:
     block = file.groups[group]
     channel = block.channels[index]
 
-    def read(start: int, stop: int) -> NDArray[np.generic]:
+    def values() -> NDArray[np.generic]:
         samples, invalid = file.get(
-            group=group,
-            index=index,
-            samples_only=True,
-            record_offset=start,
-            record_count=stop - start,
-            ignore_invalidation_bits=False,
+            group=group, index=index, samples_only=True, ignore_invalidation_bits=False
         )
         if invalid is not None and np.any(invalid):
-            first = start + int(np.argmax(invalid))
+            first = int(np.argmax(invalid))
             raise RecordingError(f"channel {channel.name!r} is marked as invalid at sample {first}")
         return np.asarray(samples)
 
@@ -124,7 +118,7 @@ def _channel(file: Any, group: int, index: int, axes: list[Axis]) -> LoggedChann
     return LoggedChannel(
         name=str(channel.name),
         n_samples=int(block.channel_group.cycles_nr),
-        read=read,
+        values=values,
         axes=axes,
         unit=_unit(channel),  # the library applies the conversion
         problem="has a conversion that makes texts of its values" * to_text,

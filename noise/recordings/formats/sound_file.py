@@ -1,18 +1,25 @@
 """Sound files (WAV, FLAC, AIFF, OGG, MP3), read to their end at any sample.
 
-The sound library stops quietly where a file breaks off. A measurement cut short is not the
-measurement, so the samples announced are counted against the samples found. Where a header does not
-state the length, `noise.recordings.formats.containers` makes of it what the library reads whole.
+The sound library reads the first sound of a file and stops quietly where it breaks off. A
+measurement cut short is not the measurement, so the samples announced are counted against those
+that there are, and a file of several sounds is refused. Where a recorder did not come to write the
+length (a WAV file whose recorder was switched off, FLAC from a pipe, MP3 without a header), the
+library is given the file with its true length.
 """
 
 from __future__ import annotations
 
+import io
 import os
+import re
+import struct
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from itertools import islice
+from mmap import ACCESS_COPY, mmap
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import soundfile
@@ -20,18 +27,22 @@ from numpy.typing import NDArray
 
 from models.errors import RecordingError
 from noise.recordings.formats import Format, RawRecording, Read
-from noise.recordings.formats.containers import (
-    Piece,
-    PieceFile,
-    bext_description,
-    flac_length,
-    sound_of,
-    with_flac_length,
-)
 
 _BLOCK, _FEW = 1 << 16, 1 << 12  # samples a channel
-_OTHERS = (b"RIFF", b"RIFX", b"RF64", b"FORM", b"fLaC", b"OggS")
-"""How files begin that are no MP3, whatever they are called."""
+_RIFF = (b"RIFF", b"RF64", b"BW64")  # tech.ebu.ch/docs/tech/tech3306.pdf, ITU-R BS.2088
+_CHUNKED = (*_RIFF, b"RIFX", b"FORM")
+_MOST_CHUNKS = 100_000  # what holds more was made to be walked for ever
+_NO_SIZE = 0xFFFFFFFF
+_UNFINISHED = (0, _NO_SIZE, 0x7FFFFFFF, 0x80000000, 0x7FFFF000)
+"""Sizes of samples that recorders write before they know better (the last ones: arecord, SoX)."""
+
+_DESCRIPTION_BYTES = 256  # EBU Tech 3285, first field of the chunk
+_STARTS = re.compile(rb"OggS\x00\x02|fLaC\x00\x00\x00\x22|(?:Xing|Info)\x00\x00\x00.", re.S)
+"""What a stream of Ogg or FLAC, or an MP3 that states its length, has once near its beginning."""
+
+_NO_LENGTH = 100
+"""Times its size that an MP3 without a length is given out to have: the library estimates a length
+from the size and the first frames, of 8 to 320 kbit/s, and reads no further than that."""
 
 _EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
 """Formats of the sound library that can be entered at any sample; of others, what comes before is
@@ -40,12 +51,13 @@ decoded."""
 
 @contextmanager
 def open_sound_file(path: Path) -> Iterator[RawRecording]:
-    """Open a sound file.
+    """Open a sound file, which is not empty.
 
     Raises
     ------
     RecordingError
-        The file is no sound file, is damaged, or ends before its header says; also by reading it.
+        The file is no sound file, is damaged, holds several sounds, or ends before its header says;
+        also by reading it.
 
     Examples
     --------
@@ -58,19 +70,22 @@ def open_sound_file(path: Path) -> Iterator[RawRecording]:
     >>> samples.shape, raw.rate, raw.fractional, float(samples[0, 0])
     ((1, 480), 48000.0, True, 0.5)
     """
-    piece, notes = sound_of(path)
     with ExitStack() as stack:
+        with path.open("rb") as file:
+            content = stack.enter_context(_Content(file.fileno(), 0, access=ACCESS_COPY))
+        chunked = content[:4] in _CHUNKED
+        patched, note = _completed(path, content) if chunked else (False, "")
         with _errors(path):
-            sound, n_samples = _opened(path, piece, stack)
+            sound, n_samples = _opened(path, content, stack, patched=patched)
         yield RawRecording(
             n_channels=int(sound.channels),
             n_samples=n_samples,
             rate=float(sound.samplerate),
             fractional=sound.subtype not in ("FLOAT", "DOUBLE"),
-            description=bext_description(path),
+            description=_description(content) if chunked else "",
             comment=sound.comment,
             read=_reading(path, sound, n_samples),
-            notes=tuple(notes),
+            notes=tuple(filter(None, [note])),
         )
 
 
@@ -82,6 +97,73 @@ FORMAT = Format(
     ),
     open=open_sound_file,
 )
+
+
+class _Content(mmap):
+    """A file in memory, where what it lacks can be added; nothing leads beyond its end."""
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> None:  # type: ignore[override]
+        """Go to a byte."""
+        base = {os.SEEK_SET: 0, os.SEEK_CUR: self.tell(), os.SEEK_END: len(self)}[whence]
+        super().seek(min(max(0, base + offset), len(self)))
+
+
+@contextmanager
+def _errors(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except soundfile.LibsndfileError as error:
+        reason = error.error_string.rstrip(".")
+        raise RecordingError(f"{path}: is damaged or no sound file ({reason})") from error
+
+
+def _opened(path: Path, content: mmap, stack: ExitStack, *, patched: bool) -> tuple[Any, int]:
+    """Open the sound of a file, whose name the library takes in UTF-8 alone; tell its length."""
+    file: Any = content if patched else path if os.name == "nt" else os.fsencode(path)
+    if content[:4] in _CHUNKED:
+        sound = stack.enter_context(soundfile.SoundFile(file))
+        return sound, int(sound.frames)
+    starts = [found.start() for found in islice(_STARTS.finditer(content), 2)]
+    if starts[1:]:
+        raise RecordingError(
+            f"{path}: a second sound begins at byte {starts[1]}; save each as its own"
+        )
+    if content[:4] == b"OggS" or (content[:4] == b"fLaC" and _flac_length(content)):
+        sound = stack.enter_context(soundfile.SoundFile(file))
+        return sound, int(sound.frames)
+    if content[:4] == b"fLaC":
+        with _Quiet(file) as unknown:
+            n_samples = _count(path, unknown, _BLOCK)
+        content[21] |= n_samples >> 32
+        content[22:26] = (n_samples & 0xFFFFFFFF).to_bytes(4, "big")
+        return stack.enter_context(soundfile.SoundFile(content)), n_samples
+    if starts or b"VBRI" in content[:_FEW]:
+        sound = stack.enter_context(_Quiet(file))
+        return sound, int(sound.frames)
+    with _Unending(path) as counted, _Quiet(counted) as unknown:
+        n_samples = _count(path, unknown, _FEW)
+    return stack.enter_context(_Quiet(stack.enter_context(_Unending(path)))), n_samples
+
+
+def _flac_length(content: mmap) -> int:
+    """Return how many samples a stream of FLAC states (RFC 9639), 0 if unknown."""
+    head = content[:26].ljust(26, b"\0")
+    return (head[21] & 0x0F) << 32 | int.from_bytes(head[22:26], "big")
+
+
+def _count(path: Path, sound: Any, n_at_once: int) -> int:
+    """Decode a sound to its end; MP3 may break off within its last frame."""
+    n = 0
+    try:
+        while passed := len(sound.read(n_at_once)):
+            n += passed
+    except soundfile.LibsndfileError as error:
+        if not (n and sound.format == "MP3"):
+            raise RecordingError(
+                f"{path}: does not say how long it is, and breaks off after {n} samples "
+                f"({n / sound.samplerate:.6g} s; {error.error_string.rstrip('.')})"
+            ) from None
+    return n
 
 
 def _reading(path: Path, sound: Any, n_samples: int) -> Read:
@@ -117,53 +199,112 @@ def _reading(path: Path, sound: Any, n_samples: int) -> Read:
     return read
 
 
-@contextmanager
-def _errors(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except soundfile.LibsndfileError as error:
-        reason = error.error_string.rstrip(".")
-        raise RecordingError(f"{path}: is damaged or no sound file ({reason})") from error
+# RIFF and AIFF
 
 
-def _opened(path: Path, piece: Piece, stack: ExitStack) -> tuple[Any, int]:
-    """Open the sound of a file, whose name the library takes in UTF-8 alone; tell its length."""
-    n_samples = None
-    if piece.unknown or flac_length(path, piece) == 0:
-        with PieceFile(path, piece) as counted:
-            n_samples = _count(path, _Quiet(counted), piece)
-        if not piece.unknown:
-            piece = with_flac_length(path, piece, n_samples)
-    file: Any
-    if piece == Piece(0, path.stat().st_size):
-        file = path if os.name == "nt" else os.fsencode(path)
-    else:
-        file = stack.enter_context(PieceFile(path, piece))
-    with path.open("rb") as start:
-        known = (piece.head or start.read(4))[:4] in _OTHERS
-    sound = stack.enter_context((soundfile.SoundFile if known else _Quiet)(file))
-    return sound, int(sound.frames) if n_samples is None else n_samples
+class _Chunk(NamedTuple):
+    """One chunk: its four-letter name, where its content starts, and its announced size [byte]."""
+
+    name: bytes
+    start: int
+    size: int
+
+    @property
+    def end(self) -> int:
+        """Where the next one begins."""
+        return self.start + self.size + self.size % 2
 
 
-def _count(path: Path, sound: Any, piece: Piece) -> int:
-    """Decode a sound to its end; one of unknown length may break off within its last frame."""
-    n = 0
-    try:
-        while passed := len(sound.read(_FEW if piece.unknown else _BLOCK)):
-            n += passed
-    except soundfile.LibsndfileError as error:
-        if not (piece.unknown and n):
+def _chunks(content: mmap) -> Iterator[_Chunk]:
+    """Walk the chunks of a file, up to where none begins."""
+    order: Any = "big" if content[:4] in (b"RIFX", b"FORM") else "little"
+    at, long_data = 12, 0
+    for _ in range(_MOST_CHUNKS):
+        name, size = content[at : at + 4], int.from_bytes(content[at + 4 : at + 8], order)
+        if at + 8 > len(content) or not all(0x20 <= byte < 0x7F for byte in name):
+            return
+        if name == b"ds64":
+            # A 64-bit file puts the true size of its samples here, and -1 where it belongs.
+            long_data = int.from_bytes(content[at + 16 : at + 24], "little")
+        if name == b"data" and size == _NO_SIZE and long_data not in (0, (1 << 64) - 1):
+            size = long_data
+        yield (chunk := _Chunk(name, at + 8, size))
+        at = chunk.end
+
+
+def _completed(path: Path, content: mmap) -> tuple[bool, str]:
+    """Write in memory what a header lacks; return whether it does, and what to note."""
+    end, tag = len(content), content[:4]
+    found = list(_chunks(content))
+    at = next((i for i, one in enumerate(found) if one.name in (b"data", b"SSND")), None)
+    if at is None:
+        return False, ""
+    data, last = found[at], found[-1]
+    n = end - data.start
+    followed = last is not data and last.end in (end, end + 1)  # by chunks up to the end
+    open_end = data.size > n if data.size else n > 0 and not followed
+    if tag in _RIFF and data.size in _UNFINISHED and open_end:
+        for one in found[:at]:
+            if one.name == b"ds64":
+                content[one.start : one.start + 24] = struct.pack("<QQQ", end - 8, n, 0)
+        if tag == b"RIFF":
+            content[data.start - 4 : data.start] = struct.pack("<I", min(n, _NO_SIZE))
+        else:
+            content[:4] = b"RF64"
+        return (
+            True,
+            f"the recorder did not finish the header; the {n} bytes that follow it are read",
+        )
+    if data.size > n:
+        raise RecordingError(
+            f"{path}: is truncated; its header announces {data.size - n} bytes of samples more "
+            f"than the {n} that there are"
+        )
+    for one in found[at + 1 :]:
+        if one.name in _RIFF:
             raise RecordingError(
-                f"{path}: does not say how long it is, and breaks off after {n} samples "
-                f"({n / sound.samplerate:.6g} s; {error.error_string.rstrip('.')})"
-            ) from None
-    finally:
-        sound.close()
-    return n
+                f"{path}: a second sound begins at byte {one.start - 8}; save each as its own"
+            )
+    if tag == b"BW64":
+        content[:4] = b"RF64"
+    rest = end - last.start - last.size
+    note = f"{rest} bytes after the end that the header states are not read"
+    return tag == b"BW64", note * (rest > 0 and any(content[-rest:][: 1 << 20]))
+
+
+def _description(content: mmap) -> str:
+    """Return the description in the ``bext`` chunk of a WAV file, empty where it has none."""
+    for chunk in _chunks(content):
+        if chunk.name == b"bext":
+            text = content[chunk.start : chunk.start + min(chunk.size, _DESCRIPTION_BYTES)]
+            return text.partition(b"\0")[0].decode("latin-1").strip()
+    return ""
+
+
+# MP3, whose library (mpg123) prints what it thinks of a file: that goes nowhere
+
+
+class _Unending(io.FileIO):
+    """A file that is given out to be longer than it is, with zeros behind its end."""
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """Go to a byte."""
+        if whence == os.SEEK_END:
+            whence, offset = os.SEEK_SET, offset + _NO_LENGTH * os.fstat(self.fileno()).st_size
+        return super().seek(offset, whence)
+
+    def readinto(self, buffer: Any) -> int:
+        """Read as many bytes as fit."""
+        if self.tell() > os.fstat(self.fileno()).st_size:  # where a tag would stand
+            view = memoryview(buffer).cast("B")
+            view[:] = bytes(len(view))
+            self.seek(len(view), os.SEEK_CUR)
+            return len(view)
+        return super().readinto(buffer) or 0
 
 
 class _Quiet(soundfile.SoundFile):  # type: ignore[misc]  # the library has no types
-    """MP3, whose library (mpg123) prints what it thinks of a file: that goes nowhere."""
+    """A sound read by mpg123."""
 
     def __init__(self, file: object) -> None:
         with _silence():

@@ -10,20 +10,18 @@ contradicts it.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.errors import RecordingError
 from models.units import split_unit
 from noise.recordings.formats import Format
 from noise.recordings.formats.logged import LoggedChannel
-from noise.recordings.formats.time_axis import Axis, Read, is_time
+from noise.recordings.formats.time_axis import Axis, is_time
 
 _BIG_ENDIAN = 1 << 6  # in the table of contents, which itself is little-endian
 _VERSIONS = (4712, 4713)
@@ -99,7 +97,7 @@ def _channel(channel: Any, clocks: list[Any], begins: set[Any]) -> LoggedChannel
     return LoggedChannel(
         name=channel.name,
         n_samples=len(channel),
-        read=_in_order(channel),
+        values=lambda: np.asarray(channel[:]),
         axes=[_waveform(channel, begins), *map(_clock, clocks)],
         packing=channel.properties,
         integers=np.dtype(channel.dtype).kind in "iu",
@@ -137,29 +135,4 @@ def _clock(channel: Any) -> Axis:
         values, unit = (values - np.datetime64(0, "s")) / _SECOND, "s"
     else:
         unit = _stated_unit(channel) or split_unit(channel.name)[1]
-    return Axis(times=lambda first, last: values[first:last], unit=unit, quantity="time")
-
-
-def _in_order(channel: Any) -> Read:
-    """Give samples as they come: the library reads a chunk again for each part of it asked for.
-
-    Whoever goes back begins with the first chunk again.
-    """
-    chunks: Iterator[NDArray[np.generic]] = iter(())
-    buffer: NDArray[np.generic] = np.empty(0)
-    first = math.inf  # of the buffer
-
-    def read(start: int, stop: int) -> NDArray[np.generic]:
-        nonlocal chunks, buffer, first
-        if start < first:
-            chunks = (np.asarray(chunk[:]) for chunk in channel.data_chunks())
-            buffer, first = np.empty(0), 0
-        while True:
-            passed = min(start - int(first), buffer.size)
-            buffer, first = buffer[passed:], first + passed
-            following = None if first + buffer.size >= stop else next(chunks, None)
-            if following is None:
-                return buffer[: stop - int(first)]
-            buffer = np.concatenate([buffer, following]) if buffer.size else following
-
-    return read
+    return Axis(times=lambda: values, unit=unit, quantity="time")

@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,15 +17,11 @@ from numpy.typing import NDArray
 from models.errors import RecordingError
 from models.units import quantity_of_unit, split_unit
 
-Read = Callable[[int, int], NDArray[np.generic]]
-"""From first and last sample (exclusive) to these samples."""
-
 SAME_RATE = 1e-6
 """Share by which rates may differ that are the same."""
 
 _JITTER = 0.05  # of a step, by which time stamps may miss their place
 _CONTRADICTION = 1e-3  # share by which two statements of one rate differ
-_BLOCK = 1 << 16  # samples a channel
 _TIME = re.compile(r"time|zeit|temps|tiempo|tempo|timestamps?|t", re.IGNORECASE)
 
 
@@ -44,9 +41,15 @@ class Axis:
 
     start: float | None = None
     step: float | None = None
-    times: Read | None = None
+    times: Callable[[], NDArray[np.generic]] | None = None
     unit: str | None = None
     quantity: str | None = None
+
+    @cached_property
+    def even(self) -> tuple[float, float]:
+        """First time stamp and their step, which many channels may share [unit]."""
+        assert self.times is not None
+        return even_step(self.times())
 
 
 def is_time(name: str, unit: str | None) -> bool:
@@ -67,18 +70,13 @@ def _time_unit(unit: str) -> float | None:
     return found[1] if found is not None and found[0] == "time" else None
 
 
-def start_and_rate(
-    axes: Sequence[Axis], n_samples: int, steps: dict[Axis, tuple[float, float]]
-) -> tuple[float | None, float]:
+def start_and_rate(axes: Sequence[Axis]) -> tuple[float | None, float]:
     """Return start [s] and sampling rate [Hz] of a channel, of which several axes are stated.
 
     Parameters
     ----------
     axes : sequence of Axis
         The last one that states a start has the last word on it.
-    n_samples : int
-    steps : dict
-        Filled with the time stamps that were read, which many channels may share.
 
     Raises
     ------
@@ -89,9 +87,7 @@ def start_and_rate(
     for axis in axes:
         second = _second(axis)
         if axis.times is not None:
-            if axis not in steps:
-                steps[axis] = even_step(n_samples, axis.times)
-            first, step = steps[axis]
+            first, step = axis.even
             start = second * first
             rates.append(1.0 / (second * step))
         elif axis.start is not None:
@@ -122,8 +118,8 @@ def _second(axis: Axis) -> float:
     return 1.0
 
 
-def even_step(n: int, read: Read, jitter: float = _JITTER) -> tuple[float, float]:
-    """Return the first of `n` time stamps and their step, which must be even.
+def even_step(times: NDArray[np.generic], jitter: float = _JITTER) -> tuple[float, float]:
+    """Return the first of time stamps, shape (n,), and their step, which must be even.
 
     Each may miss its place by a share `jitter` of a step.
 
@@ -135,23 +131,20 @@ def even_step(n: int, read: Read, jitter: float = _JITTER) -> tuple[float, float
     Examples
     --------
     >>> t = 0.5 + np.arange(480) / 48e3
-    >>> start, step = even_step(480, lambda a, b: t[a:b])
+    >>> start, step = even_step(t)
     >>> start, round(1.0 / step)
     (0.5, 48000)
     """
+    n = times.size
     if n < 2:
         raise RecordingError(f"has {n} time stamps, expected at least 2")
-    start, end = float(read(0, 1)[0]), float(read(n - 1, n)[0])
-    step = (end - start) / (n - 1)
+    start, step = float(times[0]), (float(times[-1]) - float(times[0])) / (n - 1)
     if not 0.0 < step < math.inf:
         raise RecordingError("has a time that does not rise")
-    for begin in range(0, n, _BLOCK):
-        stop = min(n, begin + _BLOCK)
-        place = start + step * np.arange(begin, stop)
-        off = np.abs(np.asarray(read(begin, stop), dtype=np.float64) - place)
-        if not off.max() <= jitter * step:
-            at = begin + int(np.argmax(~(off <= jitter * step)))
-            raise RecordingError(f"has a time that does not rise evenly (sample {at})")
+    off = np.abs(np.asarray(times, dtype=np.float64) - (start + step * np.arange(n)))
+    if not off.max() <= jitter * step:
+        at = int(np.argmax(~(off <= jitter * step)))
+        raise RecordingError(f"has a time that does not rise evenly (sample {at})")
     return start, step
 
 

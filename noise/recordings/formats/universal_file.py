@@ -43,8 +43,8 @@ def _channel(number: int, function: UffFunction) -> LoggedChannel:
     return LoggedChannel(
         name=function.name or f"function {number}",
         n_samples=function.y.size,
-        read=lambda first, last: function.y[first:last],
-        axes=[Axis(times=lambda first, last: function.x[first:last], unit="s", quantity="time")],
+        values=lambda: function.y,
+        axes=[Axis(times=lambda: function.x, unit="s", quantity="time")],
         unit=function.unclear or function.unit,  # values are in SI where it is known
         problem="is complex, expected real samples" if np.iscomplexobj(function.y) else "",
     )
