@@ -14,7 +14,7 @@ from noise.batch.work import Done
 from noise.labels.labelling import Labelling, label
 from noise.labels.table import read_label_table
 from tests.helpers.labelled_folder import made_row, write_folder
-from tests.helpers.opened_app import quick_processes, started_app
+from tests.helpers.opened_app import started_app
 
 NAMES = [f"run{number:02d}.wav" for number in range(30)]
 LABELS = ("creak", "squawk", "squeal", "unknown")
@@ -23,11 +23,6 @@ MOST = 5
 
 LATER = 0.05
 """After the last that is waited for, within what one takes [s]."""
-
-
-@pytest.fixture(scope="module")
-def processes():
-    return quick_processes()
 
 
 def labelled_journal(folder):
@@ -39,9 +34,9 @@ def labelled_journal(folder):
             journal.keep(job, file_identity(job.path), Done(rows, True))
 
 
-def kill_while_correcting(processes, folder, rng):
+def kill_while_correcting(folder, rng):
     """Correct until the kill; return what was answered, by file, and what was under way."""
-    app = started_app(processes, folder)
+    app = started_app(folder)
     answers, asked, dead = [], {}, Event()
 
     def correct():
@@ -74,11 +69,11 @@ def kill_while_correcting(processes, folder, rng):
 
 
 @pytest.mark.parametrize("tries", [8, pytest.param(200, marks=pytest.mark.slow)])
-def test_no_correction_is_lost_by_a_kill_while_the_table_is_labelled(processes, tmp_path, tries):
+def test_no_correction_is_lost_by_a_kill_while_the_table_is_labelled(tmp_path, tries):
     rng, said, n_answered = np.random.default_rng(tries), {}, 0
     labelled_journal(tmp_path)
     for _ in range(tries):
-        answers, under_way = kill_while_correcting(processes, tmp_path, rng)
+        answers, under_way = kill_while_correcting(tmp_path, rng)
         said |= dict(answers)
         n_answered += len(answers)
         rows = {row["file"]: row for row in read_label_table(tmp_path / "labels.csv")}

@@ -8,7 +8,7 @@ import pytest
 from models.recording import Channel, Recording
 from noise.recordings import write_recording
 from tests.helpers.labelled_folder import many_rows, write_folder
-from tests.helpers.opened_app import opened_app
+from tests.helpers.opened_app import served_app
 
 MANY = 1000
 EVIL = "<img src=x onerror=alert(1)>.wav"
@@ -34,7 +34,7 @@ def written(folder, number):
 
 @pytest.fixture(scope="module")
 def app(tmp_path_factory):
-    with opened_app(written(tmp_path_factory.mktemp("many"), MANY)) as running:
+    with served_app(written(tmp_path_factory.mktemp("many"), MANY)) as running:
         yield running
 
 
@@ -107,7 +107,7 @@ def test_labels_arrive_while_they_are_computed_and_the_table_holds_them(browser,
     for name in ("a", "b"):
         write_recording(tmp_path / f"{name}.wav", Recording(hiss, 16_000.0, (Channel("pressure"),)))
     write_folder(tmp_path, ("bad.wav",))
-    with opened_app(tmp_path) as app:
+    with served_app(tmp_path) as app:
         page = mounted(browser, app)
         app.correct(1, "creak", 0.0, 0.5)
         page.get_by_role("button", name="Label 3", exact=True).click()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -11,10 +12,10 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from noise.cli import main
 from tests.helpers.labelled_folder import made_row, write_folder
-from tests.helpers.opened_app import PATIENCE, opened_app
+from tests.helpers.opened_app import PATIENCE, opened_app, served_app, started_app
 
-SPOKEN = {"capture_output": True, "text": True, "check": False}
 NAMES = ("a.wav", "b.wav", "<img src=x onerror=alert(1)>.wav")
 
 
@@ -28,7 +29,7 @@ def app(tmp_path_factory):
     ]
     write_folder(folder, NAMES, rows)
     (folder.parent / "secret.wav").write_bytes(b"secret")
-    with opened_app(folder) as running:
+    with served_app(folder) as running:
         yield running
 
 
@@ -147,28 +148,36 @@ def test_a_body_that_is_none_is_refused_and_the_server_lives(app, body):
     assert app.json("api/recordings")["state"]["total"] == 3
 
 
+def test_the_command_ends_well_when_told_by_key(tmp_path):
+    with opened_app(write_folder(tmp_path, ("a.wav",))) as app:
+        app.process.send_signal(signal.SIGINT)
+        assert app.process.wait(PATIENCE) == 0
+
+
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, "button"])
 def test_it_ends_when_told_by_button_key_or_terminal(tmp_path, end):
-    with opened_app(write_folder(tmp_path, ("a.wav",))) as app:
-        if end == "button":
-            assert app.json("api/stop", {}) == {"stopped": True}
-        else:
-            app.process.send_signal(end)
-        assert app.process.wait(PATIENCE) == 0
+    app = started_app(write_folder(tmp_path, ("a.wav",)))
+    if end == "button":
+        assert app.json("api/stop", {}) == {"stopped": True}
+    else:
+        os.kill(app.process.pid, end)
+    app.process.join(PATIENCE)
+    assert app.process.exitcode == 0
 
 
 def test_the_address_is_there_before_the_simulator_is_loaded(tmp_path):
     loaded = "import sys, noise.app.server, noise.app.opened as o; a = noise.app.server.create_app("
     loaded += "o.open_paths([]), 't', 1); print(any(m.split('.')[0] == 'sim' for m in sys.modules))"
-    done = subprocess.run([sys.executable, "-c", loaded], cwd=tmp_path, **SPOKEN)
+    done = subprocess.run(
+        [sys.executable, "-c", loaded], cwd=tmp_path, capture_output=True, text=True
+    )
     assert done.stdout == "False\n"
 
 
-def test_a_rig_that_cannot_be_is_refused_before_anything_is_served(tmp_path):
+def test_a_rig_that_cannot_be_is_refused_before_anything_is_served(tmp_path, capsys):
     rig = tmp_path / "wrong.toml"
     rig.write_text('base = "granite"\n', encoding="utf-8")
-    command = [sys.executable, "-m", "noise", "open", "--no-browser", str(rig)]
-    done = subprocess.run(command, timeout=PATIENCE, **SPOKEN)
-    assert done.returncode != 0
-    assert done.stdout == ""
-    assert "granite" in done.stderr
+    assert main(["open", "--no-browser", str(rig)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "granite" in err

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from tests.helpers.jury_sounds import write_tones
-from tests.helpers.opened_app import opened_app
+from tests.helpers.opened_app import served_app
 
 
 def test_the_token_stays_in_the_tab_and_not_in_its_address(browser, tmp_path):
-    with opened_app(write_tones(tmp_path)) as app:
+    with served_app(write_tones(tmp_path)) as app:
         page = browser.new_page()
         page.goto(app.address)
         page.locator(".recording-list .row").first.wait_for()

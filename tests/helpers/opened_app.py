@@ -9,6 +9,7 @@ import sys
 import urllib.error
 import urllib.request
 from contextlib import contextmanager
+from functools import cache
 from typing import TYPE_CHECKING
 
 from noise.app.opened import open_paths
@@ -72,23 +73,35 @@ def opened_app(*arguments) -> Iterator[OpenedApp]:
                 process.wait(PATIENCE)
 
 
-def quick_processes():
-    """Processes that need no time to start, as they have read the program."""
+@contextmanager
+def served_app(*paths, save=None) -> Iterator[OpenedApp]:
+    """Serve paths in a process that needs no time to start, and end it after the test."""
+    app = started_app(*paths, save=save)
+    try:
+        yield app
+    finally:
+        app.process.terminate()
+        app.process.join(PATIENCE)
+
+
+def started_app(*paths, save=None):
+    """Serve paths in a process that has read the program already; who starts it ends it."""
+    hears, told = _processes().Pipe(duplex=False)
+    process = _processes().Process(target=_served, args=(paths, save, told))
+    process.start()
+    told.close()  # so that what it dies of is no waiting
+    return OpenedApp(process, hears.recv())
+
+
+@cache
+def _processes():
     context = multiprocessing.get_context("forkserver")
     views = [f"noise.app.{v}" for v in ("sounds", "label_view", "design_view", "jury_view")]
     context.set_forkserver_preload(["noise.app.server", *views, "uvicorn"])
     return context
 
 
-def started_app(processes, folder):
-    """Serve a folder in one of these processes."""
-    hears, told = processes.Pipe(duplex=False)
-    process = processes.Process(target=_served, args=(folder, told))
-    process.start()
-    return OpenedApp(process, hears.recv())
-
-
-def _served(folder, told):
+def _served(paths, save, told):
     from noise.app.server import serve
 
-    serve(open_paths([folder]), 0, told.send)
+    serve(open_paths(paths, save=save), 0, told.send)

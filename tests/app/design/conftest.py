@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from tests.helpers.opened_app import opened_app
+from tests.helpers.opened_app import served_app
 
 
 @pytest.fixture
 def app(tmp_path):
     rig = tmp_path / "mine.toml"
     rig.write_text('base = "fluorocarbon"\n[change]\ndamping = "x1.1"\n', encoding="utf-8")
-    with opened_app(rig) as running:
+    with served_app(rig) as running:
         yield running

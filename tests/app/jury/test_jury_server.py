@@ -13,7 +13,7 @@ from models.recording import Channel, Recording
 from noise.base.tables import read_table
 from noise.recordings.wav import write_recording
 from tests.helpers.jury_sounds import NAMES, RATE, tone, write_tones
-from tests.helpers.opened_app import opened_app
+from tests.helpers.opened_app import served_app
 
 ASKED = {"sounds": [0, 1, 2, 3], "question": "Which is louder?"}
 
@@ -31,7 +31,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def app(folder):
-    with opened_app(folder, "--save-to", folder) as running:
+    with served_app(folder, save=folder) as running:
         yield running
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.helpers.opened_app import opened_app
+from tests.helpers.opened_app import served_app
 from tests.helpers.recording_page import write_sounds
 
 
@@ -13,5 +13,5 @@ def folder(tmp_path):
 
 @pytest.fixture
 def app(browser, folder):
-    with opened_app(folder) as running:
+    with served_app(folder) as running:
         yield running

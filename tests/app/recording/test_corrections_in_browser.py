@@ -12,7 +12,7 @@ from noise.base.tables import write_table
 from noise.labels.table import COLUMNS, read_label_table
 from noise.recordings import write_recording
 from tests.helpers.labelled_folder import made_row
-from tests.helpers.opened_app import opened_app
+from tests.helpers.opened_app import served_app
 from tests.helpers.recording_page import TONE, OpenPage, in_table
 
 
@@ -69,7 +69,7 @@ def test_a_stretch_of_both_tracks_is_labelled_by_a_drag_and_a_key(browser, tmp_p
     )
     rows = [made_row("both.wav", "none", channel=track) for track in ("1", "2")]
     write_table(tmp_path / "labels.csv", COLUMNS, rows)
-    with opened_app(tmp_path) as app:
+    with served_app(tmp_path) as app:
         opened = OpenPage(browser, app).open("both.wav")  # which it is at once
         opened.page.mouse.move(*opened.at(0.5))
         opened.page.mouse.down()

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from tests.helpers.browser import accessibility_errors
-from tests.helpers.opened_app import opened_app
+from tests.helpers.opened_app import served_app
 from tests.helpers.recording_page import HALF, RATE, TONE, OpenPage, write_sounds
 
 
 @pytest.fixture(scope="module")
 def shown(browser, tmp_path_factory):
-    with opened_app(write_sounds(tmp_path_factory.mktemp("shown"))) as app:
+    with served_app(write_sounds(tmp_path_factory.mktemp("shown"))) as app:
         yield app
 
 
