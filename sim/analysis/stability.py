@@ -29,10 +29,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import float64, int64, njit, types
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from models.compilation import COMPILED, PART
+from models.compilation import COMPILED
 from models.rig import Rig
 from sim.bushing import packed_systems
 from sim.contact import (
@@ -55,6 +55,7 @@ from sim.contact import (
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, activated
 from sim.friction import friction_law
+from sim.friction.law import FrictionLaw
 from sim.motion import contact_hooks
 from sim.parameters import resolve
 from sim.rig_effects import constant_version
@@ -70,8 +71,6 @@ _STEP = 1e-5
 
 _GONE = -1e6
 """Eigenvalue in place of a clamp that cannot move [1/s]."""
-
-_VECTOR = float64[::1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,12 +146,7 @@ def steady_sliding(
     systems = packed_systems(rig, fit, support)
     acting = activated(constant_version(rig, library).effects, library)
     contacts = _contacts(contact_hooks(acting, np.random.default_rng(0)), systems, v)
-    state = law.state()
-    matrices = np.zeros((v.size, 4 + state.size, 4 + state.size))
-    compiled: Any = _linearised
-    compiled(
-        address_of(law.torque), coefficients, state, systems, v, contacts, matrices,
-    )  # fmt: skip
+    matrices = _linearised(law, coefficients, systems, v, contacts)
     eigenvalues = np.linalg.eigvals(matrices) if v.size else np.zeros((0, 1), dtype=complex)
     rows, leading = np.arange(v.size), eigenvalues.real.argmax(axis=1)
     found = eigenvalues[rows, leading]
@@ -183,108 +177,74 @@ def _contacts(
     return contacts
 
 
-@njit(**PART)
-def _solve(a, x) -> None:
-    """Replace `x` by the solution y of a y = x, by elimination with the largest pivots."""
-    n = x.size
-    for k in range(n):
-        pivot = k
-        for i in range(k + 1, n):
-            if abs(a[i, k]) > abs(a[pivot, k]):
-                pivot = i
-        for j in range(k, n):
-            a[k, j], a[pivot, j] = a[pivot, j], a[k, j]
-        x[k], x[pivot] = x[pivot], x[k]
-        for i in range(k + 1, n):
-            factor = a[i, k] / a[k, k]
-            for j in range(k + 1, n):
-                a[i, j] -= factor * a[k, j]
-            x[i] -= factor * x[k]
-    for k in range(n - 1, -1, -1):
-        for j in range(k + 1, n):
-            x[k] -= a[k, j] * x[j]
-        x[k] /= a[k, k]
+def _linearised(
+    law: FrictionLaw,
+    coefficients: NDArray[np.float64],
+    systems: NDArray[np.float64],
+    v: NDArray[np.float64],
+    contacts: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return the matrix of each condition: theta1, theta1', theta2, theta2', inner state."""
+    rest = law.state()
+    n, (contact, above, below), dv = rest.size, contacts, _STEP * v
+    a = np.zeros((v.size, 4 + n, 4 + n))
+    j_e, j_c, _, k_b, c_e, c_b = systems[:, :6].T
+    k_e = contact[:, STIFFNESS]
+    slope = 0.5 * (above[:, KINETIC] - below[:, KINETIC]) / dv
+    if law.torque is not None:
 
+        def law_at(
+            v: NDArray[np.float64], contact: NDArray[np.float64], state: NDArray[np.float64]
+        ) -> NDArray[np.float64]:
+            """Rates of the state and, after them, the torque, shape (n, n_states + 1)."""
+            found = np.zeros((v.size, n + 1))
+            compiled: Any = _call_law
+            compiled(address_of(law.torque), coefficients, v, contact, state, found)
+            return found
 
-@njit(**PART)
-def _rates_and_slopes(law, c, v, contact, state, rates, high, low, slopes) -> None:
-    """Fill the state's rates and, over it, their slopes and in the last row the torque's."""
-    n = state.size
-    call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, rates.ctypes)
-    for j in range(n):
-        kept = state[j]
-        change = _STEP * abs(kept) + 1e-12
-        state[j] = kept + change
-        above = call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, high.ctypes)
-        state[j] = kept - change
-        below = call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, low.ctypes)
-        state[j] = kept
-        for i in range(n):
-            slopes[i, j] = (high[i] - low[i]) / (2.0 * change)
-        slopes[n, j] = (above - below) / (2.0 * change)
-
-
-@njit(
-    types.void(
-        int64, _VECTOR, _VECTOR, float64[:, ::1], _VECTOR,
-        float64[:, :, ::1], float64[:, :, ::1],
-    ),
-    cache=True, error_model="numpy",
-)  # fmt: skip
-def _linearised(law, c, rest, systems, speeds, contacts, matrices) -> None:
-    """Fill the matrix of each condition: theta1, theta1', theta2, theta2', inner state."""
-    has_law = law != 0
-    n = rest.size if has_law else 0
-    state, rates, above, below = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    system, slopes = np.empty((n, n)), np.empty((n + 1, n))
-    for run in range(speeds.size):
-        v, contact = speeds[run], contacts[0, run]
-        j_e, j_c, k_b = systems[run, 0], systems[run, 1], systems[run, 3]
-        c_e, c_b, k_e = systems[run, 4], systems[run, 5], contact[STIFFNESS]
-        a = matrices[run]
-        slope = 0.5 * (contacts[1, run, KINETIC] - contacts[2, run, KINETIC]) / (_STEP * v)
-        if has_law:
-            # Implicit steps in time that grow until they are Newton's: the state of steady sliding.
-            for i in range(n):
-                state[i] = rest[i]
-            pause = 1e-7
-            for _ in range(80):
-                _rates_and_slopes(law, c, v, contact, state, rates, above, below, slopes)
-                for i in range(n):
-                    for j in range(n):
-                        system[i, j] = -slopes[i, j]
-                    system[i, i] += 1.0 / pause
-                _solve(system, rates)
-                pause *= 1.6
-                settled = pause > 1.0
-                for i in range(n):
-                    state[i] += rates[i]
-                    settled &= abs(rates[i]) / (abs(state[i]) + 1e-15) < 1e-10
-                if settled:
-                    break
-            _rates_and_slopes(law, c, v, contact, state, rates, above, below, slopes)
-            dv = _STEP * v
-            high = call_law_at(
-                law, v + dv, c.ctypes, contacts[1, run].ctypes, state.ctypes, above.ctypes
-            )
-            low = call_law_at(
-                law, v - dv, c.ctypes, contacts[2, run].ctypes, state.ctypes, below.ctypes
-            )
-            slope = (high - low) / (2.0 * dv)
+        def slopes_at(some: NDArray[np.intp], state: NDArray[np.float64]) -> NDArray[np.float64]:
+            slopes = np.empty((some.size, n + 1, n))
             for j in range(n):
-                a[4 + j, 1] = -(above[j] - below[j]) / (2.0 * dv)
-                a[1, 4 + j] = slopes[n, j] / j_e
-                for i in range(n):
-                    a[4 + i, 4 + j] = slopes[i, j]
-        a[0, 1] = 1.0
-        a[1, 0], a[1, 1] = -k_e / j_e, -(c_e + slope) / j_e
-        if k_b < 0.0:
-            a[2, 2] = a[3, 3] = _GONE
-        else:
-            a[1, 2], a[1, 3] = k_e / j_e, c_e / j_e
-            a[2, 3] = 1.0
-            a[3, 0], a[3, 1] = k_e / j_c, c_e / j_c
-            a[3, 2], a[3, 3] = -(k_e + k_b) / j_c, -(c_e + c_b) / j_c
+                change = np.zeros_like(state)
+                change[:, j] = _STEP * np.abs(state[:, j]) + 1e-12
+                high, low = (law_at(v[some], contact[some], state + x) for x in (change, -change))
+                slopes[:, :, j] = (high - low) / (2.0 * change[:, j, np.newaxis])
+            return slopes
+
+        state, moving, pause = np.tile(rest, (v.size, 1)), np.arange(v.size), 1e-7
+        for _ in range(80):  # backward Euler by ever longer steps, until each state stays
+            rates = law_at(v[moving], contact[moving], state[moving])[:, :n, np.newaxis]
+            stiff = np.eye(n) / pause - slopes_at(moving, state[moving])[:, :n]
+            step = np.linalg.solve(stiff, rates)[:, :, 0]
+            state[moving] += step
+            pause *= 1.6
+            if pause > 1.0:
+                still = np.abs(step) < 1e-10 * (np.abs(state[moving]) + 1e-15)
+                moving = moving[~still.all(axis=1)]
+        slopes = slopes_at(np.arange(v.size), state)
+        by_speed = (law_at(v + dv, above, state) - law_at(v - dv, below, state)).T / (2.0 * dv)
+        slope = by_speed[n]
+        a[:, 4:, 1] = -by_speed[:n].T
+        a[:, 1, 4:] = slopes[:, n] / j_e[:, np.newaxis]
+        a[:, 4:, 4:] = slopes[:, :n]
+    a[:, 0, 1] = 1.0
+    a[:, 1, 0], a[:, 1, 1] = -k_e / j_e, -(c_e + slope) / j_e
+    a[:, 1, 2], a[:, 1, 3] = k_e / j_e, c_e / j_e
+    a[:, 2, 3] = 1.0
+    a[:, 3, 0], a[:, 3, 1] = k_e / j_c, c_e / j_c
+    a[:, 3, 2], a[:, 3, 3] = -(k_e + k_b) / j_c, -(c_e + c_b) / j_c
+    fixed = k_b < 0.0
+    a[fixed, 2:4], a[fixed, :, 2:4] = 0.0, 0.0
+    a[fixed, 2, 2] = a[fixed, 3, 3] = _GONE
+    return a
+
+
+@njit(cache=True, **COMPILED)
+def _call_law(law, c, speeds, contacts, states, found) -> None:
+    for i in range(speeds.size):
+        found[i, -1] = call_law_at(
+            law, speeds[i], c.ctypes, contacts[i].ctypes, states[i].ctypes, found[i].ctypes
+        )
 
 
 _LONG = 1.0
@@ -296,53 +256,37 @@ def _averaged(
 ) -> None:
     """Replace the contact at each speed by the mean over the last half of steady sliding.
 
-    The effect acts at so many moments; `contacts`, shape (n, N_CONTACT), are changed in place.
+    Each step of the state is exact where its rate is linear in it; the mean is that of the moments.
     """
-    compiled: Any = _average
-    compiled(
-        address_of(hook.function), hook.values, moments, speed,
-        np.zeros((4, hook.n_states)), np.zeros(N_CONTEXT), np.zeros((2, contacts.shape[1])),
-        contacts,
-    )  # fmt: skip
+    step, first = _LONG / moments, moments // 2
+    context = np.zeros((speed.size, N_CONTEXT))
+    context[:, SHAFT_SPEED] = context[:, SLIDING_SPEED] = speed
+    context[:, TORQUE] = contacts[:, KINETIC]
+    context[:, TWIST] = contacts[:, KINETIC] / contacts[:, STIFFNESS]
+    state, mean = np.zeros((speed.size, hook.n_states)), np.zeros_like(contacts)
+    address, compiled = address_of(hook.function), _call_hook
+
+    def hook_at(state: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        contact, rates = contacts.copy(), np.zeros_like(state)
+        compiled(address, hook.values, context, state, rates, contact)
+        return contact, rates
+
+    for moment in range(moments):
+        context[:, TIME] = context[:, STICK_TIME] = moment * step
+        (contact, rates), (_, moved) = hook_at(state), hook_at(state + 1e-6)
+        decay = np.minimum((moved - rates) * 1e6 * step, 0.0)
+        state += step * rates * np.divide(
+            np.expm1(decay), decay, out=np.ones_like(decay), where=decay < 0.0
+        )  # fmt: skip
+        if moment >= first:
+            mean += contact / (moments - first)
+    contacts[:] = mean
 
 
 @njit(cache=True, **COMPILED)  # when the first effect needs it
-def _average(hook, values, moments, speeds, states, context, work, contacts) -> None:
-    state, rates, moved, rates_moved = states[0], states[1], states[2], states[3]
-    contact, mean = work[0], work[1]
-    step = _LONG / moments
-    first = moments // 2
-    for run in range(speeds.size):
-        given = contacts[run]
-        for i in range(state.size):
-            state[i] = 0.0
-        for i in range(given.size):
-            mean[i] = 0.0
-        context[SHAFT_SPEED] = context[SLIDING_SPEED] = speeds[run]
-        context[TORQUE] = given[KINETIC]
-        context[TWIST] = given[KINETIC] / given[STIFFNESS]
-        for moment in range(moments):
-            context[TIME] = context[STICK_TIME] = moment * step
-            # Each state on its own, by its exponential: heat flows at rates far above the steps.
-            for i in range(state.size):
-                rates[i] = rates_moved[i] = 0.0
-                moved[i] = state[i] + 1e-6
-            for i in range(given.size):
-                contact[i] = given[i]
-            call_hook_at(
-                hook, context.ctypes, values.ctypes, moved.ctypes, rates_moved.ctypes,
-                contact.ctypes,
-            )  # fmt: skip
-            for i in range(given.size):
-                contact[i] = given[i]
-            call_hook_at(
-                hook, context.ctypes, values.ctypes, state.ctypes, rates.ctypes, contact.ctypes
-            )
-            for i in range(state.size):
-                decay = min((rates_moved[i] - rates[i]) * 1e6 * step, 0.0)
-                state[i] += step * rates[i] * (math.expm1(decay) / decay if decay else 1.0)
-            if moment >= first:
-                for i in range(given.size):
-                    mean[i] += contact[i] / (moments - first)
-        for i in range(given.size):
-            given[i] = mean[i]
+def _call_hook(hook, values, contexts, states, rates, contacts) -> None:
+    for i in range(len(contexts)):
+        call_hook_at(
+            hook, contexts[i].ctypes, values.ctypes, states[i].ctypes, rates[i].ctypes,
+            contacts[i].ctypes,
+        )  # fmt: skip
