@@ -1,46 +1,19 @@
-"""Whether an effect can change anything, with a friction law.
-
-A law with an inner state solves the contact itself: what an effect does to the creep of true stick
-alone it never reads, nor torques that it does not ask for. Which entries of the contact an effect
-changes, and which a law reads, is found by calling them.
-"""
-
-from __future__ import annotations
+"""Effects of a rig: which can act on its friction law, which make one slip differ by chance."""
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-import numpy as np
-
-from sim.contact import (
-    CREEP,
-    CRITICAL,
-    KINETIC,
-    N_CONTACT,
-    N_CONTEXT,
-    STICK_TIME,
-    STICKS,
-    TIME,
-    call_hook,
-    call_law,
-)  # fmt: skip
+from models.rig import LawSpec, Rig
+from sim.contact import CRITICAL
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, Effect
 from sim.friction import friction_law
-from sim.parameters import resolve
-
-if TYPE_CHECKING:
-    from models.rig import LawSpec, Rig
-    from sim.friction.law import FrictionLaw
-
-
-_PROBES = 64
-"""States of the contact that are tried."""
 
 
 def can_act(active: ActiveEffect, friction: LawSpec) -> bool:
     """Whether an effect can change a run with a friction law.
+
+    A law with an inner state solves the contact itself, so it never reads the creep of true stick.
 
     Parameters
     ----------
@@ -50,7 +23,7 @@ def can_act(active: ActiveEffect, friction: LawSpec) -> bool:
     Raises
     ------
     ParameterError
-        The law is unknown, or has no such parameter.
+        The law is unknown.
 
     Examples
     --------
@@ -60,43 +33,8 @@ def can_act(active: ActiveEffect, friction: LawSpec) -> bool:
     >>> can_act(creep, LawSpec("coulomb")), can_act(creep, LawSpec("contact_with_memory"))
     (True, False)
     """
-    law, effect = friction_law(friction.name), active.effect
-    if effect.contact is None or law.torque is None:
-        return True
-    rng = np.random.default_rng(0)
-    values = active.packed(rng)
-    changed = np.zeros(N_CONTACT, dtype=bool)
-    for _ in range(_PROBES):
-        context = 10.0 ** rng.uniform(-4.0, 1.0, N_CONTEXT)
-        context[STICKS], context[STICK_TIME] = 0.0, context[TIME]  # throughout, with such a law
-        contact = rng.uniform(5.0, 50.0, N_CONTACT)
-        contact[CREEP] = 0.0
-        before = contact.copy()
-        state = 10.0 ** rng.uniform(-6.0, 1.0, max(effect.n_states, 1))
-        call_hook(effect.contact, context, values, state, np.zeros_like(state), contact)
-        changed |= contact != before
-    read = set(range(N_CONTACT)) - {CREEP, CRITICAL, KINETIC}
-    read |= {entry for entry in (CRITICAL, KINETIC) if _reads(law, friction, entry, rng)}
-    return any(changed[entry] for entry in read)
-
-
-def _reads(law: FrictionLaw, friction: LawSpec, entry: int, rng: np.random.Generator) -> bool:
-    """Whether a law's torque, or how its state goes on, depends on an entry of the contact."""
-    values = resolve(f"friction law {law.name!r}", law.parameters, friction.parameters)
-    coefficients = law.coefficients(values)
-    at_rest = law.state()
-    for _ in range(_PROBES):
-        speed, contact = float(rng.uniform(0.1, 10.0)), rng.uniform(5.0, 50.0, N_CONTACT)
-        state = at_rest + rng.uniform(0.0, 1e-3, at_rest.size)
-        found = []
-        for factor in (1.0, 1.3):
-            asked, rates = contact.copy(), np.zeros(max(state.size, 1))
-            asked[entry] *= factor
-            torque = call_law(law.torque, speed, coefficients, asked, state, rates)
-            found.append((torque, *rates))
-        if found[0] != found[1]:
-            return True
-    return False
+    law, entry = friction_law(friction.name), active.effect.changes_only
+    return law.torque is None or entry is None or (entry == CRITICAL and law.reads_critical)
 
 
 def constant_version(rig: Rig, library: Mapping[str, Effect] = EFFECTS) -> Rig:

@@ -76,6 +76,9 @@ class Effect:
         parameters in their order, and after them the place of the form among `forms`.
     n_states : int
         Inner states of `contact`, zero at the start.
+    changes_only : int, optional
+        The entry of the contact (``CREEP`` or ``CRITICAL`` of `sim.contact`) that `contact` changes
+        where it changes no other: with a law that does not read it the effect cannot act.
     force : callable, optional
         ``force(motion, form, values)``: force of blows in the anchors' joint [N].
     chain : callable, optional
@@ -102,6 +105,7 @@ class Effect:
     contact: Any = None
     pack: PackFunction | None = None
     n_states: int = 0
+    changes_only: int | None = None
     force: ForceFunction | None = None
     chain: ChainFunction | None = None
     sensors: SensorFunction | None = None

@@ -62,5 +62,6 @@ EFFECT = Effect(
     },
     strength="share",
     contact=_contact,
+    changes_only=CREEP,
 )
 """Gradual release of the contact during stick."""

@@ -58,6 +58,7 @@ EFFECT = Effect(
     },
     strength="share",
     contact=_contact,
+    changes_only=CRITICAL,
     n_states=1,
 )
 """Critical torque that grows with the time of stick."""

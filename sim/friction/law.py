@@ -36,6 +36,8 @@ class FrictionLaw:
     rest : tuple of float
         The contact's inner state after a long rest, as `torque` has it [rad or s, by the law]; by
         default there is none.
+    reads_critical : bool
+        Whether `torque` reads the critical torque.
     tolerance : float
         Error of a step of the solver, over twist, speed and inner state [-]. The default serves the
         most chaotic; where neighbouring motions part slowly, a larger one is as good and faster.
@@ -49,6 +51,7 @@ class FrictionLaw:
     torque: Any = None
     pack: Callable[[Mapping[str, float]], NDArray[np.float64]] | None = None
     rest: tuple[float, ...] = ()
+    reads_critical: bool = True
     tolerance: float = 1e-8
     master_speeds: tuple[str, ...] = ()
 

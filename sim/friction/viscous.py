@@ -39,5 +39,6 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     rest=(0.0,),
+    reads_critical=False,
     tolerance=1e-6,
 )
