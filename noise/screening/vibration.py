@@ -12,7 +12,8 @@ The eigenvalue of steady sliding (`sim.analysis.stability`) says which runs are 
 grows, no vibration dies. Where it falls, a run that starts vibrating and dies settles the matter.
 A run ends when growth or decay of the torque's oscillation, measured over blocks, makes its end
 certain, and after `LONGEST` at most. An irregular vibration beside stable sliding may be a
-transient that ends of a sudden after seconds, which no decay announces; it is followed for longer.
+transient that ends of a sudden after seconds, which no decay announces; it is followed for longer,
+and where it ends, started anew in other ways.
 """
 
 from __future__ import annotations
@@ -52,8 +53,9 @@ _FOLLOWED = 3
 _STARTED = 0.4
 """How long a rig vibrates before its speed is changed [s]."""
 
-_RAMP = 1.0
-"""In which the speed is changed from one that is unstable [s]."""
+_RAMPS = (1.0, 0.5, 0.0)
+"""In which the speed is changed from one that is unstable [s]; those after the first are for a
+vibration that ends of a sudden, which with another start may not."""
 
 _STARTS = (
     (0.97, 0.0), (0.85, 0.0), (0.7, 0.0), (0.5, 0.0), (0.25, 0.0), (0.75, 0.6), (0.5, 0.6),
@@ -70,7 +72,7 @@ _HORIZON = 20.0
 _STEADY = 1.02
 """Ratio of a vibration's size to an earlier one, below which it does not grow [-]."""
 
-_REGULAR = 0.03
+_REGULAR = 0.003
 """Relative scatter of a vibration's size over blocks, up to which it repeats itself [-]."""
 
 _IRREGULAR = 5.0
@@ -226,16 +228,25 @@ def running(
         solver.go_on_from(started.solver, at.speed)
         return _followed(solver, at, growth, longest=longest)
     unstable = _unstable_speed(rig, at)
-    starts = _STARTS if unstable is None else ((unstable / at.speed, _RAMP),)
+    starts = _STARTS if unstable is None else [(unstable / at.speed, ramp) for ramp in _RAMPS]
     for share, seconds in starts:
         start = share * at.speed
         solver = _solver(rig, replace(at, speed=start))
         ramp = np.linspace(start, at.speed, round(seconds * RATE))
         approach = np.concatenate([np.full(round(_STARTED * RATE), start), ramp])
         course = _followed(solver, at, growth, longest=longest, approach=approach)
-        if course.lasts:
+        if course.lasts or (unstable is not None and not _ends_of_a_sudden(course)):
             break
     return course
+
+
+def _ends_of_a_sudden(course: Course) -> bool:
+    """Whether a vibration ended that did not fade before."""
+    count = round(course.seconds / BLOCK)
+    if count <= _FOLLOWED:
+        return False
+    blocks = course.motion.torque[-round(course.seconds * RATE) :].reshape(count, -1)
+    return oscillation(blocks[-3]) > max(1.0, 0.5 * oscillation(blocks[0]))
 
 
 def _unstable_speed(rig: Rig, at: Condition) -> float | None:

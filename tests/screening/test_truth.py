@@ -63,8 +63,9 @@ def boundary(rig, at):
 
 
 def ends_of(rig, at, seconds):
-    """Whether it vibrates in the end: from rest; through slower speeds, by a jump and by a ramp."""
+    """Whether it vibrates in the end: from rest; through other speeds, by a jump and by ramps."""
     ways = [(share, 0.05) for share in (0.97, 0.85, 0.7, 0.5)] + [(0.7, 0.5), (0.5, 0.5)]
+    ways += [(0.75, 2.0), (1.2, 2.0)]  # slow enough for a small limit cycle to follow
     return vibrates_after(rig, at, [at.speed], seconds=seconds), any(
         vibrates_after(rig, at, [share * at.speed, at.speed], seconds=seconds, ramp=ramp)
         for share, ramp in ways
