@@ -71,20 +71,16 @@ def detail_lines(one: Standing, use: tuple[float, float]) -> list[str]:
         )
         lines += [f"what to change: {text}" for text in [one.advice] if text]
         lines += [f"limits: {text}" for text in limit_words(one.offers, one.loudest_label)]
-    sure = [margin_words(one.margin_v_crit2, use)]
-    if one.motion == "steady" and one.loudest is not None:
-        sure.append(f"vibration ends {_ends(one)}")
+    sure = [margin_words(one, use)]
+    if one.advice and any(offer.ends for offer in one.offers):
+        sure.append(
+            "each change was run from rest, from the running noise, and with 2 % less of it"
+        )
     if one.robustness is not None:
         sure += parts_words(one.robustness)
     lines += [f"how sure: {'; '.join(filter(None, sure))}"] if any(sure) else []
     lines += [f"not told: {why}" for why in one.failed]
     return [*lines, *(f"note: {note}" for note in one.notes if note != one.never_slips)]
-
-
-def _ends(one: Standing) -> str:
-    if math.isinf(one.v_crit2):
-        return "beyond the fastest speed of the map"
-    return f"between {one.v_crit2:.3g} and {one.v_crit2_high:.3g} rad/s (V_crit2)"
 
 
 def conditions_lines(screening: Screening) -> list[str]:

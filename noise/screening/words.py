@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,9 @@ from noise.screening.axis_values import axis_words
 from noise.screening.mapping import DesignMap
 from noise.screening.parts import Robustness
 from noise.screening.vibration import Condition
+
+if TYPE_CHECKING:
+    from noise.screening.standing import Standing
 
 RANKING_RULE = (
     "ranked by mean loudness, the mean over the conditions of use of what is heard there or would "
@@ -151,36 +155,50 @@ def condition_words(at: Condition) -> str:
     return f"{at.speed:.3g} rad/s, {1e3 * at.interference:.3g} mm, {support}"
 
 
-def margin_words(margin: float, use: tuple[float, float]) -> str:
-    """Say how far a use is from what vibrates [rad/s]; empty where the shaft swings.
+def margin_words(one: Standing, use: tuple[float, float]) -> str:
+    """Say up to which speed it vibrates, and how far its use is from that; none of a swing.
+
+    Parameters
+    ----------
+    one : Standing
+    use : (float, float)
+        Slowest and fastest speed of use [rad/s].
 
     Examples
     --------
-    >>> margin_words(math.inf, (1.0, 5.0)), margin_words(-1.0, (1.0, 5.0))
-    ('nothing vibrates', 'worst case: up to 1 rad/s of the operating range vibrates')
+    >>> from noise.screening.design import Use
+    >>> from noise.screening.screen import screen
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,)))
+    >>> margin_words(found.standings[0], (1.0, 5.0))
+    'nothing vibrates at any speed of the map'
     """
+    margin, last = one.margin_v_crit2, one.v_crit2
     if math.isnan(margin):
         return ""
     if margin == math.inf:
-        return "nothing vibrates"
+        return "nothing vibrates at any speed of the map"
+    ends = f"between {last:.3g} and {one.v_crit2_high:.3g} rad/s (V_crit2)"
+    if math.isinf(last):
+        ends = "above the fastest speed of the map (V_crit2)"
+    said = f"the last vibration ends {ends}"
     if margin > 0.0:
-        return f"margin {margin:.3g} rad/s to the vibrating range"
+        return f"{said}; every speed of use is at least {margin:.3g} rad/s from what vibrates"
     if margin == 0.0:
-        return "no margin to the vibrating range"
+        return f"{said}, where the use begins"
     if -margin >= use[1] - use[0]:
-        return "worst case: the whole operating range vibrates"
-    return f"worst case: up to {-margin:.3g} rad/s of the operating range vibrates"
+        return f"{said}; at worst all speeds of use vibrate"
+    return f"{said}; at worst {-margin:.3g} rad/s of the speeds of use vibrate"
 
 
 def advice_words(noise: str, at: Condition, offers: Sequence[Offer], most: int = 3) -> str:
-    """Say which changes end a noise, and which cannot.
+    """Say which changes silence the loudest point, and what they do at other noisy ones.
 
     Parameters
     ----------
     noise : str
-        Its name.
+        What is heard at the loudest point.
     at : Condition
-        At which it is.
+        Which that is.
     offers : sequence of Offer
         Of `noise.screening.advice.advise`.
     most : int
@@ -189,24 +207,37 @@ def advice_words(noise: str, at: Condition, offers: Sequence[Offer], most: int =
     Examples
     --------
     >>> at = Condition(5.0, 0.279e-3, 2214.0)
-    >>> offers = [Offer("critical_torque", 10.7, -20, True), Offer("damping", 0.1, 100, False)]
+    >>> offers = [
+    ...     Offer("critical_torque", 10.7, -20, True, quiet_elsewhere=2, elsewhere=6),
+    ...     Offer("damping", 0.1, 100, False),
+    ... ]
     >>> advice_words("squawk", at, offers)
-    'critical torque -20 % to 8.56 Nm ends the squawk at 5 rad/s, 0.279 mm, 2214 Nm/rad, by runs...
+    'the loudest point (squawk at 5 rad/s, 0.279 mm, 2214 Nm/rad) falls silent by critical torque...
     """
-    where = f"the {noise} at {condition_words(at)}"
+    where = f"the loudest point ({noise} at {condition_words(at)})"
     ending = [one for one in offers if one.ends]
     if not ending:
-        return f"no single change ends {where}" if offers else ""
-    said = []
-    for one in ending[:most]:
-        others = ""
-        if one.elsewhere:
-            others = f" (and at {one.quiet_elsewhere} of {one.elsewhere} others of its map tried)"
-        said.append(f"{one.words}{others}")
-    ends = "ends" if len(said) == 1 else "each ends"
+        return f"no change of one parameter silences {where}" if offers else ""
+    said = [one.words + _elsewhere(one) for one in ending[:most]]
+    by = "by" if len(ending) == 1 else "by any one of"
     more = len(ending) - len(said)
-    return f"{', or '.join(said)} {ends} {where}, by runs from rest and from the running noise" + (
+    return f"{where} falls silent {by} {', or '.join(said)}" + (
         f"; advice.csv has {more} more" if more else ""
+    )
+
+
+def _elsewhere(offer: Offer) -> str:
+    """Say what an offer does at the other noisy points that were tried."""
+    quiet, tried = offer.quiet_elsewhere, offer.elsewhere
+    if not tried:
+        return ""
+    if quiet == tried:
+        return f" (all {tried} other noisy points that were tried too)"
+    if not quiet:
+        return f" (the {tried} other noisy points that were tried stay noisy)"
+    return (
+        f" ({quiet} of the {tried} other noisy points that were tried too, {tried - quiet} "
+        f"stay{'s' if tried - quiet == 1 else ''} noisy)"
     )
 
 
