@@ -62,7 +62,7 @@ def _identified(options: Namespace, tell: Steps) -> tuple[Identification | None,
         return None, True
     tell.expect(len(measurements.used) + 2 * len(CANDIDATES) + 2)
     try:
-        found = identify_rig(measurements, beforehand, seed=options.seed or 0, progress=tell)
+        found = identify_rig(measurements, beforehand, progress=tell)
     except NothingSlipsError as error:
         say(f"{', '.join(one.name for one in measurements.used)}: {error}; nothing is written")
         return None, True

@@ -26,7 +26,7 @@ from noise.diagnosis.bench.check import unit_findings
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers, read_again, torque_levels
 from noise.identification.evidence import with_evidence
-from noise.identification.law_choice import MARGIN, Choice, choose_law, overall
+from noise.identification.law_choice import MARGIN, Choice, choose_law
 from noise.identification.law_model import LOCAL, fitted_evidence
 from noise.identification.outcome import Identification, Number, Seen, values_of
 from noise.identification.static_test import static_evidence, static_notes
@@ -89,7 +89,6 @@ def identify_rig(
     measurements: Measurements,
     beforehand: Beforehand,
     *,
-    seed: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> Identification:
     """Identify a rig.
@@ -99,8 +98,6 @@ def identify_rig(
     measurements : Measurements
     beforehand : Beforehand
         What is known of it.
-    seed : int
-        Of simulated repeats.
     progress : callable, optional
         Told what is being done, and the first numbers.
 
@@ -146,7 +143,7 @@ def identify_rig(
         )
     # what truly sticks tells its stiffness itself; what yields looks softer than it is
     evidence = {sticks: static_evidence(static, known, sticks=sticks) for sticks in (True, False)}
-    choice = choose_law(beforehand, subjects, material, tell, evidence=evidence, seed=seed)
+    choice = choose_law(known, subjects, tell, evidence)
     model = choice.fit.model
     seen = read_again(seen, choice.fit)
     rig = model.rig(choice.fit.vector, beforehand.rig, material)
@@ -231,11 +228,11 @@ def _notes(choice: Choice) -> tuple[str, ...]:
     rivals = [s.law for s in choice.scores if s.missed <= _RIVALS * best.missed and s != chosen]
     if rivals:
         notes.append(f"these recordings hardly tell {' and '.join([chosen.law, *rivals])} apart")
-    if overall(chosen) > _FAR or chosen.missed > _MISSED:
+    if max(chosen.missed, chosen.held_out) > _MISSED:
         notes.append(
             f"no law describes these recordings, so do not trust the numbers. The best law leaves "
-            f"{overall(chosen):.1f} floors, and {100.0 * chosen.missed:.0f} % of the oscillation "
-            "within a cycle unexplained. diagnose finds which effect is missing"
+            f"{100.0 * chosen.held_out:.0f} % of the oscillation within a cycle unexplained. "
+            "diagnose finds which effect is missing"
         )
     return tuple(notes)
 
@@ -245,9 +242,6 @@ _RIVALS = 1.2
 
 _MISSED = 0.2
 """Share of the oscillation from which no law is said to describe the recordings; assumed."""
-
-_FAR = 2.0
-"""Held-out distance from which no law is said to describe the recordings [floors]; assumed."""
 
 _HEAD = "Identified from recordings; intervals and what is assumed are in identification.json."
 

@@ -57,11 +57,10 @@ class LawScore:
     law : str
         Of `noise.identification.law_model`.
     held_out : float
-        Distance of recordings that its fit has not seen, in floors [-].
-    trained : float
-        The same of those that it has seen [-].
-    missed : float
-        Share of the oscillation that it does not foretell over a cycle or two [-].
+        Share of the oscillation that it does not foretell over a cycle or two, of recordings that
+        its fit has not seen [-].
+    trained, missed : float
+        The same of those that it has seen, and of all [-].
     parameters : mapping of str to float
         [units of the law's file]
     """

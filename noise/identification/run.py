@@ -14,8 +14,6 @@ from noise.identification.outcome import Identification, as_json
 def identify(
     data: str | Path | Sequence[str | Path],
     rig: str | Path | None = None,
-    *,
-    seed: int = 0,
 ) -> Identification:
     """Identify a rig from recordings.
 
@@ -25,8 +23,6 @@ def identify(
         Recordings of torque and angle, or folders of them.
     rig : path, optional
         Rig file that states what is known, the two inertias above all.
-    seed : int
-        Of simulated repeats.
 
     Returns
     -------
@@ -48,7 +44,7 @@ def identify(
     paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
     beforehand = known_beforehand(None if rig is None else Path(rig))
     calibrations = beforehand.rig.sensors.calibrations
-    return identify_rig(read_measurements(paths, calibrations), beforehand, seed=seed)
+    return identify_rig(read_measurements(paths, calibrations), beforehand)
 
 
 def identification_json(data: Path, rig: Path) -> dict[str, Any]:

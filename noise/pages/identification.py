@@ -186,7 +186,7 @@ def _html(found: Identification) -> str:
                 f"{100.0 * one.missed:.1f}",
                 bars=[b.Bar(0.0, 100.0 * one.missed / most, "cause" * (one.law == found.law))],
             ),
-            f"{one.held_out:.2f}", f"{one.trained:.2f}",
+            f"{100.0 * one.held_out:.1f}", f"{100.0 * one.trained:.1f}",
         ]
         for one in found.laws
     ]  # fmt: skip
@@ -194,8 +194,7 @@ def _html(found: Identification) -> str:
         f"Held out: {', '.join(found.held_out) or 'none'}. Missed is the share of the oscillation "
         "that a law, begun where a recording shows a slip, does not predict over the next cycle. "
         f"The simplest law is taken that misses at most {100.0 * (found.margin - 1.0):.0f} % more "
-        "than the best for each number that it has less, and is as near over a whole run; 1 floor "
-        "is what repeats of one run differ by."
+        "than the best for each number that it has less."
     )
     numbers = list(map(_row, found.numbers))
     lists = {
@@ -204,7 +203,7 @@ def _html(found: Identification) -> str:
         "To know": found.notes,
         "Left out": [f"{name}: {reason}" for name, reason in found.refused],
     }
-    columns = ("Law", "Meaning", "Missed [%]", "Held out [floors]", "Fitted to [floors]")
+    columns = ("Law", "Meaning", "Missed [%]", "Held out [%]", "Fitted to [%]")
     return page_html(
         "diagnosis",
         _title(found),
@@ -268,8 +267,8 @@ def _answer(found: Identification) -> list[str]:
     chosen = next(score for score in found.laws if score.law == found.law)
     return [
         f"Law of friction: {found.law.replace('_', ' ')} ({_WORDS[found.law]}); within a cycle it "
-        f"leaves {100.0 * chosen.missed:.1f} % of the oscillation unexplained. Recordings that its "
-        f"fit has not seen deviate by {chosen.held_out:.2f} floors.",
+        f"leaves {100.0 * chosen.missed:.1f} % of the oscillation unexplained, and "
+        f"{100.0 * chosen.held_out:.1f} % of that of recordings that its fit has not seen.",
         *stiffness,
     ]
 

@@ -24,8 +24,8 @@ __all__ = ["score", "table"]
 IDENTIFY = "noise.identification.run:identification_json"
 """What ``bushing-noise identify`` calls."""
 
-COSTLY = 3.0
-"""Floors beyond which the best distance of the other laws says that leaving one out costs."""
+COSTLY = 2.0
+"""Factor on what the true law misses, beyond which the best of the others says that it matters."""
 
 
 def score(seed: int, rigs: int, workers: int) -> dict[str, Any]:
@@ -47,16 +47,13 @@ def _one(job: tuple[int, int]) -> dict[str, Any]:
         except Exception as error:  # a rig that is refused counts as one that failed
             return {"index": job[1], "law": made.law.name, "failed": str(error)[:200]}
         seconds = time.perf_counter() - started
-    laws = {
-        one["law"]: math.sqrt(0.5 * (one["held_out"] ** 2 + one["trained"] ** 2))
-        for one in answer["laws"]
-    }
+    laws = {one["law"]: one["missed"] for one in answer["laws"]}
     others = [away for law, away in laws.items() if law != made.law.name]
     held = [one["held_out"] for one in answer["laws"] if one["law"] == answer["law"]]
     return {
         "index": job[1], "law": made.law.name, "picked": answer["law"],
         "right": answer["law"] == made.law.name, "laws": laws, "held_out": held[0],
-        "costly": min(others, default=math.nan) > COSTLY, "seconds": seconds,
+        "costly": min(others, default=math.nan) > COSTLY * laws[made.law.name], "seconds": seconds,
         "numbers": [row for n in answer["numbers"] if (row := _row(n, made)) is not None],
     }  # fmt: skip
 
