@@ -71,6 +71,10 @@ HOOK_SIGNATURE = types.void(_POINTER, _POINTER, _POINTER, _POINTER, _POINTER)
 LAW_SIGNATURE = float64(float64, _POINTER, _POINTER, _POINTER, _POINTER)
 """``torque = law(sliding_speed, coefficients, contact, state, state_rates)``."""
 
+contact_hook = njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+law_torque = njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+"""Compile a hook or a law's torque when its file is imported."""
+
 
 @intrinsic
 def pointer(_context, address):

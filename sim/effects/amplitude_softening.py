@@ -18,14 +18,11 @@ torque rises with the departure everywhere as s <= 0.8.
 
 import math
 
-from numba import njit
-
-from sim.contact import ELASTOMER_TORQUE, HOOK_SIGNATURE, STIFFNESS, TWIST
-from sim.effects.effect import Effect, Stage
-from sim.parameters import Parameter
+from sim.contact import ELASTOMER_TORQUE, STIFFNESS, TWIST, contact_hook
+from sim.effects.effect import Effect, Parameter, Stage
 
 
-@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+@contact_hook
 def _contact(context, values, state, state_rates, contact):
     mean = state[0]
     departure = context[TWIST] - mean

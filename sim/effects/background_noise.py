@@ -25,8 +25,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
 from sim.chain import channel_level
-from sim.effects.effect import Effect, Memory, Signals, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Memory, Parameter, Signals, Stage, Values
 
 _LOWEST, _HIGHEST = 20.0, 20e3
 """Band that levels are those of [Hz]."""

@@ -36,8 +36,7 @@ from scipy.signal import fftconvolve
 
 from models.radiation.impulse_responses import ImpulseResponses
 from sim.chain import HIGHEST_SHARE, padded_sum, resonance
-from sim.effects.effect import Effect, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _SECOND = 4.0 / 3.0
 """Frequency of the second mode of a pair over the first: 6000 over 4500 Hz."""

@@ -31,8 +31,7 @@ from scipy.ndimage import map_coordinates
 from scipy.signal import lfilter
 
 from sim.chain import change_channels, channel_shares
-from sim.effects.effect import Effect, Signals, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Parameter, Signals, Stage, Values
 
 _DEGREE = 5
 

@@ -24,8 +24,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from sim.chain import change_channels, channel_shares
-from sim.effects.effect import Effect, Signals, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Parameter, Signals, Stage, Values
 
 
 def _sensors(

@@ -33,15 +33,14 @@ from numpy.typing import NDArray
 
 from sim.contact import (
     CRITICAL,
-    HOOK_SIGNATURE,
     KINETIC,
     SHAFT_SPEED,
     SLIDING_SPEED,
     STICKS,
+    contact_hook,
     slipless,
 )
-from sim.effects.effect import Effect, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _FORMS = ("normal", "uniform", "correlated")
 _N_DRAWS = 4096
@@ -72,7 +71,7 @@ def _draw(place, values):
     return (1.0 - x) * values[_HEADER + i % _N_DRAWS] + x * values[_HEADER + (i + 1) % _N_DRAWS]
 
 
-@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+@contact_hook
 def _contact(context, values, state, state_rates, contact):
     if slipless(context):
         sliding, even = abs(context[SLIDING_SPEED]), 2.0 * abs(context[SHAFT_SPEED])

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from models.errors import ParameterError
 from models.schema import did_you_mean
 from models.show import short_repr
-from sim.parameters import Parameter, resolve
+from sim.parameters import Parameter as Parameter, resolve
 
 if TYPE_CHECKING:
     import numpy as np

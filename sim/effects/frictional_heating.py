@@ -22,12 +22,10 @@ Limits: b = 0 is the plain model, and so is a contact that never slides.
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED
-from sim.effects.effect import Effect, Stage, Values
-from sim.parameters import Parameter
+from sim.contact import CRITICAL, KINETIC, SLIDING_SPEED, contact_hook
+from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _FORMS = ("half_space", "lumped", "two_layer", "linear_with_floor")
 
@@ -72,7 +70,7 @@ def _pack(form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.fl
     return np.concatenate([header, weights, rates])
 
 
-@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+@contact_hook
 def _contact(context, values, state, state_rates, contact):
     n = int(values[3])
     rise = 0.0

@@ -26,8 +26,7 @@ from numpy.typing import NDArray
 from scipy.signal import butter, lfilter, lfilter_zi
 
 from sim.chain import change_channels, channel_shares
-from sim.effects.effect import Effect, Signals, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Parameter, Signals, Stage, Values
 
 
 def _sensors(

@@ -29,8 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.chain import channel_level
-from sim.effects.effect import Effect, Memory, Signals, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Memory, Parameter, Signals, Stage, Values
 
 _ODD = (1, 3, 5, 7, 9)
 

@@ -30,8 +30,7 @@ from numpy.typing import NDArray
 from scipy.signal import bilinear, lfilter, lfilter_zi
 
 from sim.chain import change_channels, channel_shares
-from sim.effects.effect import Effect, Signals, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Parameter, Signals, Stage, Values
 
 _SECOND = 2.3
 """Frequency of the rocking over that of the first mode; assumed."""

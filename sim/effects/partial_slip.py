@@ -22,17 +22,14 @@ Limits: s = 0 is true stick; s -> 1 never breaks, but passes into sliding at T_c
 
 import math
 
-from numba import njit
-
-from sim.contact import CREEP, CRITICAL, HOOK_SIGNATURE, SHAFT_SPEED, TORQUE
-from sim.effects.effect import Effect, Stage
-from sim.parameters import Parameter
+from sim.contact import CREEP, CRITICAL, SHAFT_SPEED, TORQUE, contact_hook
+from sim.effects.effect import Effect, Parameter, Stage
 
 _MOST = 0.999
 """Of r, so that the creep rises with a slope that the integration can follow."""
 
 
-@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+@contact_hook
 def _contact(context, values, state, state_rates, contact):  # noqa: ARG001
     if context[TORQUE] * context[SHAFT_SPEED] <= 0.0:
         return

@@ -30,8 +30,7 @@ from numpy.typing import NDArray
 
 from models.radiation.impulse_responses import ImpulseResponses
 from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
-from sim.effects.effect import Effect, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _HIGHEST = 16e3
 """[Hz], as for the plate's own modes."""

@@ -32,8 +32,7 @@ from numpy.typing import NDArray
 from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rayleigh import SOUND_SPEED
 from sim.chain import filter_pressure
-from sim.effects.effect import Effect, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _SOURCE_HEIGHT = 0.9
 """Of the rig on its bench over the floor [m]; assumed."""

@@ -22,12 +22,10 @@ raised to stay there, which the integration can resolve; its motion is then quas
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from sim.contact import HOOK_SIGNATURE, SHAFT_INERTIA, SHAFT_LAG, SHAFT_LAG_RATE, SHAFT_TORQUE
-from sim.effects.effect import Effect, Stage, Values
-from sim.parameters import Parameter
+from sim.contact import SHAFT_INERTIA, SHAFT_LAG, SHAFT_LAG_RATE, SHAFT_TORQUE, contact_hook
+from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _FORMS = ("linear", "stiffening", "quadratic_damping")
 
@@ -50,7 +48,7 @@ def _pack(form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.fl
     return np.array([inertia, stiffness, cubic, damping, quadratic])
 
 
-@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+@contact_hook
 def _contact(context, values, state, state_rates, contact):  # noqa: ARG001
     lag, rate = context[SHAFT_LAG], context[SHAFT_LAG_RATE]
     contact[SHAFT_INERTIA] = values[0]

@@ -17,9 +17,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Parameter, Stage
 from sim.motion import Motion
-from sim.parameters import Parameter
 
 _REFERENCE_DROP = 6.94
 """T_crit - T_kin at 0.381 mm, from the peak sliding speed of Figure 6.7 [Nm]."""

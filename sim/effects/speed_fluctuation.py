@@ -30,8 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from sim.effects.effect import Effect, Memory, Stage, Values
-from sim.parameters import Parameter
+from sim.effects.effect import Effect, Memory, Parameter, Stage, Values
 
 _HARMONICS = 4
 

@@ -19,14 +19,11 @@ Limits: s = 0 is the plain model; s = 1 breaks at T_kin at once and at T_crit af
 
 import math
 
-from numba import njit
-
-from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED, STICK_TIME, slipless
-from sim.effects.effect import Effect, Stage
-from sim.parameters import Parameter
+from sim.contact import CRITICAL, KINETIC, SLIDING_SPEED, STICK_TIME, contact_hook, slipless
+from sim.effects.effect import Effect, Parameter, Stage
 
 
-@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+@contact_hook
 def _contact(context, values, state, state_rates, contact):
     stick_time, own_age = max(context[STICK_TIME], 0.0), max(state[0], 0.0)
     unslipped = slipless(context)

@@ -23,9 +23,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED, TIME
-from sim.effects.effect import Effect, Stage, Values
-from sim.parameters import Parameter
+from sim.contact import CRITICAL, KINETIC, SLIDING_SPEED, TIME, contact_hook
+from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _FORMS = ("exponential", "linear", "logistic")
 
@@ -67,7 +66,7 @@ def _cubic(table, place, first, n):
     )
 
 
-@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+@contact_hook
 def _contact(context, values, state, state_rates, contact):
     state_rates[0] = abs(context[SLIDING_SPEED])
     x = state[0] / values[5]

@@ -16,14 +16,11 @@ surface follows the shaft faster than any bearable number of steps, and the run 
 
 import math
 
-from numba import njit
-
-from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED
-from sim.effects.effect import Effect, Stage
-from sim.parameters import Parameter
+from sim.contact import CRITICAL, KINETIC, SLIDING_SPEED, contact_hook
+from sim.effects.effect import Effect, Parameter, Stage
 
 
-@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+@contact_hook
 def _contact(context, values, state, state_rates, contact):  # noqa: ARG001
     x = abs(context[SLIDING_SPEED]) / values[1]
     if values[2] == 0.0:

@@ -16,12 +16,10 @@ below 20 us, shorter than the integration resolves, are raised to that.
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from sim.contact import ELASTOMER_TORQUE, HOOK_SIGNATURE, STIFFNESS, TWIST
-from sim.effects.effect import Effect, Stage, Values
-from sim.parameters import Parameter
+from sim.contact import ELASTOMER_TORQUE, STIFFNESS, TWIST, contact_hook
+from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _BRANCHES = {"one_branch": 1, "two_branches": 2, "fractional": 4}
 _MOST_BRANCHES = max(_BRANCHES.values())
@@ -37,7 +35,7 @@ def _pack(form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.fl
     return np.concatenate([[n], shares, 1.0 / np.maximum(times, _SHORTEST)])
 
 
-@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+@contact_hook
 def _contact(context, values, state, state_rates, contact):
     n = int(values[0])
     share = 0.0

@@ -20,12 +20,9 @@ torque relaxes; at high speed nothing is, and T = T_r + eta v.
 
 import math
 
-from numba import njit
-
-from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
-from sim.friction.law import FrictionLaw
+from sim.contact import CRITICAL, KINETIC, law_torque
+from sim.friction.law import FrictionLaw, Parameter
 from sim.friction.shared import FASTEST, shear_speed
-from sim.parameters import Parameter
 
 _FEWEST_BONDS = 1e-9
 
@@ -44,7 +41,7 @@ _PARAMETERS = {
 }
 
 
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_torque
 def _torque(v, c, contact, state, state_rates):
     kinetic = contact[KINETIC]
     stiffness = c[0] * kinetic

@@ -22,12 +22,9 @@ long, T may rise to T_crit and the share beta of T_kin.
 
 import math
 
-from numba import njit
-
-from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
-from sim.friction.law import FrictionLaw
+from sim.contact import CRITICAL, KINETIC, law_torque
+from sim.friction.law import FrictionLaw, Parameter
 from sim.friction.shared import BRISTLE_PARAMETERS
-from sim.parameters import Parameter
 
 _LONG_REST = 1.0
 """Age of the contact at the start [s]."""
@@ -55,7 +52,7 @@ _PARAMETERS = {
 }
 
 
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_torque
 def _torque(v, c, contact, state, state_rates):
     critical, kinetic, z, age = contact[CRITICAL], contact[KINETIC], state[0], state[1]
     stiffness, damping = c[0] * kinetic, c[1] * kinetic

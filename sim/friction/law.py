@@ -10,11 +10,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from sim.parameters import Parameter as Parameter
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-    from sim.parameters import Parameter
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,8 @@ as PDMS does on the rig (5.1.2).
 
 import math
 
-from numba import njit
-
-from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
-from sim.friction.law import FrictionLaw
-from sim.parameters import Parameter
+from sim.contact import CRITICAL, KINETIC, law_torque
+from sim.friction.law import FrictionLaw, Parameter
 
 _PARAMETERS = {
     "contact_stiffness_per_torque": Parameter(
@@ -31,7 +28,7 @@ _PARAMETERS = {
 }
 
 
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_torque
 def _torque(v, c, contact, state, state_rates):
     kinetic = contact[KINETIC]
     stiffness = c[0] * kinetic

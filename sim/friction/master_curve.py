@@ -20,13 +20,11 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
-from sim.friction.law import FrictionLaw
+from sim.contact import CRITICAL, KINETIC, law_torque
+from sim.friction.law import FrictionLaw, Parameter
 from sim.friction.shared import BRISTLE_PARAMETERS, shear_speed
-from sim.parameters import Parameter
 
 _LEAST_SPEED = 1e-30
 """Whose logarithm stands in for that of rest [rad/s]."""
@@ -53,7 +51,7 @@ def _pack(values: Mapping[str, float]) -> NDArray[np.float64]:
     )
 
 
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_torque
 def _torque(v, c, contact, state, state_rates):
     peak, floor = c[4] * contact[CRITICAL], c[5] * contact[KINETIC]
     stiffness = c[0] * floor

@@ -20,12 +20,9 @@ creeps; equal torques give a constant friction.
 
 import math
 
-from numba import njit
-
-from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
-from sim.friction.law import FrictionLaw
+from sim.contact import CRITICAL, KINETIC, law_torque
+from sim.friction.law import FrictionLaw, Parameter
 from sim.friction.shared import BRISTLE_PARAMETERS, shear_speed
-from sim.parameters import Parameter
 
 N_ELEMENTS = 16
 
@@ -39,7 +36,7 @@ _PARAMETERS = {
 }
 
 
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_torque
 def _torque(v, c, contact, state, state_rates):
     kinetic = contact[KINETIC]
     stiffness = c[0] * kinetic

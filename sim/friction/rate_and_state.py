@@ -19,12 +19,9 @@ tau -> infinity and a = 0, give a constant friction.
 
 import math
 
-from numba import njit
-
-from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
-from sim.friction.law import FrictionLaw
+from sim.contact import CRITICAL, KINETIC, law_torque
+from sim.friction.law import FrictionLaw, Parameter
 from sim.friction.shared import BRISTLE_PARAMETERS, FASTEST, shear_speed
-from sim.parameters import Parameter
 
 _LONG_REST = 1.0
 """Age of the contact at the start [s], long against the ageing time of a rubber."""
@@ -40,7 +37,7 @@ _PARAMETERS = {
 }
 
 
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_torque
 def _torque(v, c, contact, state, state_rates):
     kinetic = contact[KINETIC]
     stiffness = c[0] * kinetic

@@ -13,14 +13,12 @@ torques give a constant friction; s = 0 is one scale, and so is v_1 = v_2 with a
 
 import math
 
-from numba import njit
-
-from sim.contact import LAW_SIGNATURE
+from sim.contact import law_torque
 from sim.friction.law import FrictionLaw
 from sim.friction.shared import STRIBECK_PARAMETERS, stribeck_torque
 
 
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_torque
 def _torque(v, c, contact, state, state_rates):
     first = math.exp(-abs(v) / c[2])
     second = math.exp(-abs(v) / c[4])

@@ -11,14 +11,12 @@ Limits: steady sliding gives T = g(v), which is T_crit at rest and falls to T_ki
 torques give a constant friction; s = 0 is one scale, and so is v_1 = v_2 with any s.
 """
 
-from numba import njit
-
-from sim.contact import LAW_SIGNATURE
+from sim.contact import law_torque
 from sim.friction.law import FrictionLaw
 from sim.friction.shared import STRIBECK_PARAMETERS, stribeck_torque
 
 
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_torque
 def _torque(v, c, contact, state, state_rates):
     first = 1.0 / (1.0 + (v / c[2]) ** 2)
     second = 1.0 / (1.0 + (v / c[4]) ** 2)

@@ -11,12 +11,9 @@ Limits: steady sliding gives T = T_kin (1 + v / v_0) along v; v_0 -> infinity gi
 friction; the torque never falls with speed, so that sliding is stable at any.
 """
 
-from numba import njit
-
-from sim.contact import KINETIC, LAW_SIGNATURE
-from sim.friction.law import FrictionLaw
+from sim.contact import KINETIC, law_torque
+from sim.friction.law import FrictionLaw, Parameter
 from sim.friction.shared import BRISTLE_PARAMETERS, shear_speed
-from sim.parameters import Parameter
 
 _PARAMETERS = {
     **BRISTLE_PARAMETERS,
@@ -26,7 +23,7 @@ _PARAMETERS = {
 }
 
 
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_torque
 def _torque(v, c, contact, state, state_rates):
     kinetic = contact[KINETIC]
     w = shear_speed(v, 1.0 / c[0])
