@@ -150,7 +150,7 @@ def simulate_motion(
     n = round(seconds * rate)
     if not n >= 2:
         raise ParameterError(f"seconds = {seconds:g} at rate = {rate:g} Hz gives no samples")
-    drive = _drive(shaft, 0, n, rate)
+    drive = shaft.speed(np.arange(n, dtype=np.float64) * (1.0 / rate))
     effects = activated(rig.effects, EFFECTS) if effects is None else effects
     for active in effects:
         drive = active.driven(drive, rate, {"rng": rng, "whole": True})
@@ -268,11 +268,6 @@ class MotionSolver:
             clamp_angle=states[:, 4],
             clamp_speed=states[:, 5],
         )
-
-
-def _drive(shaft: ShaftMotion, start: int, n: int, rate: float) -> NDArray[np.float64]:
-    """Speed of the drive at `n` samples from `start` on [rad/s]."""
-    return shaft.speed(np.arange(start, start + n, dtype=np.float64) * (1.0 / rate))
 
 
 def _integral(speed: NDArray[np.float64], step: float) -> NDArray[np.float64]:

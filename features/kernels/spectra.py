@@ -16,12 +16,10 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from features.kernels.conditioning import Transform, checked_signal
-from models.compilation import COMPILED
 from models.errors import ParameterError
 from models.show import short_repr
 
@@ -93,25 +91,10 @@ def segment_spectra(x: NDArray[np.float64], length: int) -> NDArray[np.complex12
     >>> segment_spectra(np.ones(1024), 256).shape
     (7, 129)
     """
-    step = length // 2
-    windowed = np.empty(((x.size - length) // step + 1, length))
-    _cut(x, step, _unit_hann(length), windowed)
+    segments = np.lib.stride_tricks.sliding_window_view(x, length)[:: length // 2]
+    windowed = segments - segments.mean(axis=1, keepdims=True)
+    windowed *= _unit_hann(length)
     return np.asarray(fft.rfft(windowed, axis=1, overwrite_x=True))
-
-
-@njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
-def _cut(
-    x: NDArray[np.float64], step: int, window: NDArray[np.float64], segments: NDArray[np.float64]
-) -> None:
-    """Cut a signal into segments, each about its mean and windowed; one array instead of four."""
-    length = window.size
-    for i in range(segments.shape[0]):
-        first, total = i * step, 0.0
-        for k in range(length):
-            total += x[first + k]
-        mean = total / length
-        for k in range(length):
-            segments[i, k] = (x[first + k] - mean) * window[k]
 
 
 @lru_cache(maxsize=8)

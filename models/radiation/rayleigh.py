@@ -98,14 +98,7 @@ def rayleigh_integral(
     time = distance * (rate / SOUND_SPEED)
     sample = np.maximum(np.floor(time).astype(np.int64), 1)
     f = time - sample
-    weights = np.stack(
-        [
-            -f * (1 - f) * (2 - f) / 6,
-            (1 + f) * (1 - f) * (2 - f) / 2,
-            (1 + f) * f * (2 - f) / 2,
-            -(1 + f) * f * (1 - f) / 6,
-        ]
-    )
+    weights = cubic_weights(f)
     delay = int(sample.min()) - 1
     rows = sample - 1 - delay + np.arange(4)[:, None]
     columns = np.broadcast_to(np.arange(distance.size), rows.shape)
@@ -114,6 +107,34 @@ def rayleigh_integral(
         shape=(int(rows.max()) + 1, distance.size),
     )
     return RayleighIntegral(matrix, delay)
+
+
+def cubic_weights(f: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Weights of Lagrange's cubic between samples.
+
+    Parameters
+    ----------
+    f : ndarray, shape (n,)
+        Place after the second of four samples, 0 to 1 [samples].
+
+    Returns
+    -------
+    ndarray, shape (4, n)
+        [-]
+
+    Examples
+    --------
+    >>> cubic_weights(np.array([0.5]))[:, 0].tolist()
+    [-0.0625, 0.5625, 0.5625, -0.0625]
+    """
+    return np.stack(
+        [
+            -f * (1 - f) * (2 - f) / 6,
+            (1 + f) * (1 - f) * (2 - f) / 2,
+            (1 + f) * f * (2 - f) / 2,
+            -(1 + f) * f * (1 - f) / 6,
+        ]
+    )
 
 
 def rectangle_integral(

@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.radiation.impulse_responses import ImpulseResponses
-from models.radiation.rayleigh import SOUND_SPEED
+from models.radiation.rayleigh import SOUND_SPEED, cubic_weights
 from sim.chain import filter_pressure
 from sim.effects.effect import Effect, Parameter, Stage, Values
 
@@ -99,12 +99,7 @@ def _echoes(
     sample = np.maximum(np.floor(time).astype(np.int64), 2)
     f = np.maximum(time - sample, 0.0)
     taps = np.zeros(int(sample.max()) + 3)
-    for offset, weight in (
-        (-1, -f * (1 - f) * (2 - f) / 6),
-        (0, (1 + f) * (1 - f) * (2 - f) / 2),
-        (1, (1 + f) * f * (2 - f) / 2),
-        (2, -(1 + f) * f * (1 - f) / 6),
-    ):
+    for offset, weight in enumerate(cubic_weights(f), start=-1):
         np.add.at(taps, sample + offset, gain * weight)
     return taps
 
