@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import sys
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from noise.training.causes import store
+from noise.diagnosis.causes.posterior import load_posterior
+from noise.training.causes import __main__ as command, store
 from noise.training.causes.store import draw_into, load_cases, save_cases
-from tests.helpers.made_posteriors import made_cases
+from tests.helpers.made_posteriors import made_cases, made_posterior
 
 
 def test_cases_come_back_from_their_file(tmp_path):
@@ -49,3 +53,19 @@ def test_a_folder_without_cases_and_a_damaged_file_are_refused(tmp_path):
     (tmp_path / "cases-0-4.npz").write_bytes(b"no archive")
     with pytest.raises(ParameterError, match="no file of drawn cases"):
         load_cases(tmp_path)
+
+
+def test_the_command_trains_on_files(tmp_path, monkeypatch):
+    save_cases(
+        tmp_path / "cases-0-9.npz",
+        [replace(case, seed=i) for i, case in enumerate(made_cases(3, each=2))],
+    )
+
+    def quickly(cases, *, seed):
+        return replace(made_posterior(), card={"cases": len(cases)})
+
+    monkeypatch.setattr(command, "train_posterior", quickly)
+    target = tmp_path / "causes.npz"
+    monkeypatch.setattr(sys, "argv", ["causes", "train", str(tmp_path), "--out", str(target)])
+    assert command.main() == 0
+    assert load_posterior(target).card["cases"] == len(load_cases(tmp_path))

@@ -12,7 +12,6 @@ from noise.base.progress import counted, say, track
 from noise.diagnosis.causes.location import learn_stage_nulls
 from noise.training.causes.cases.draw import SHARED
 from noise.training.causes.fit import null_scale, train_posterior
-from noise.training.causes.report import is_kept, report
 from noise.training.causes.store import CHUNK, draw_into, load_cases
 
 
@@ -31,11 +30,6 @@ def main() -> int:
     training = commands.add_parser("train", help="train the posterior on cases that were drawn")
     training.add_argument("folder", type=Path, metavar="FOLDER", help="of draw")
     training.add_argument("--seed", type=int, default=0, help="of the trees")
-    training.add_argument(
-        "--report",
-        action="store_true",
-        help="keep a tenth of the rigs from training, and say how they are answered",
-    )
     training.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
     stages = commands.add_parser(
         "stages", help="learn what stages differ by without a cause, from cases that were drawn"
@@ -62,15 +56,11 @@ def _draw(options: argparse.Namespace) -> int:
 def _train(options: argparse.Namespace) -> int:
     check_target(options.out)
     cases = load_cases(options.folder)
-    kept = [case for case in cases if options.report and is_kept(case)]
-    learned = [case for case in cases if not (options.report and is_kept(case))]
-    say(f"training on {counted(len(learned), 'case')}")
-    posterior = train_posterior(learned, seed=options.seed)
-    card = {**posterior.card, "seeds": f"{learned[0].seed}:{learned[-1].seed + 1}"}
+    say(f"training on {counted(len(cases), 'case')}")
+    posterior = train_posterior(cases, seed=options.seed)
+    card = {**posterior.card, "seeds": f"{cases[0].seed}:{cases[-1].seed + 1}"}
     replace(posterior, card=card).save(options.out)
     print(options.out)
-    if options.report:
-        print(report(posterior, kept))
     return 0
 
 
