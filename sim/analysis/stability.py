@@ -26,7 +26,7 @@ shaft that yields and an elastomer with a memory do not count.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numba import njit
@@ -192,37 +192,31 @@ def _linearised(
     k_e = contact[:, STIFFNESS]
     slope = 0.5 * (above[:, KINETIC] - below[:, KINETIC]) / dv
     if law.torque is not None:
+        address, compiled, work = address_of(law.torque), cast("Any", _fill_slopes), np.empty(n + 1)
 
         def law_at(
             v: NDArray[np.float64], contact: NDArray[np.float64], state: NDArray[np.float64]
-        ) -> NDArray[np.float64]:
-            """Rates of the state and, after them, the torque, shape (n, n_states + 1)."""
-            found = np.zeros((v.size, n + 1))
-            compiled: Any = _call_law
-            compiled(address_of(law.torque), coefficients, v, contact, state, found)
-            return found
-
-        def slopes_at(some: NDArray[np.intp], state: NDArray[np.float64]) -> NDArray[np.float64]:
-            slopes = np.empty((some.size, n + 1, n))
-            for j in range(n):
-                change = np.zeros_like(state)
-                change[:, j] = _STEP * np.abs(state[:, j]) + 1e-12
-                high, low = (law_at(v[some], contact[some], state + x) for x in (change, -change))
-                slopes[:, :, j] = (high - low) / (2.0 * change[:, j, np.newaxis])
-            return slopes
+        ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+            """Rates of the state and, after them, the torque; their slopes over the state."""
+            found, slopes = np.empty((v.size, n + 1)), np.empty((v.size, n + 1, n))
+            compiled(address, coefficients, v, contact, state, found, slopes, work, work.copy())
+            return found, slopes
 
         state, moving, pause = np.tile(rest, (v.size, 1)), np.arange(v.size), 1e-7
         for _ in range(80):  # backward Euler by ever longer steps, until each state stays
-            rates = law_at(v[moving], contact[moving], state[moving])[:, :n, np.newaxis]
-            stiff = np.eye(n) / pause - slopes_at(moving, state[moving])[:, :n]
-            step = np.linalg.solve(stiff, rates)[:, :, 0]
+            found, slopes = law_at(v[moving], contact[moving], state[moving])
+            stiff = np.eye(n) / pause - slopes[:, :n]
+            step = np.linalg.solve(stiff, found[:, :n, np.newaxis])[:, :, 0]
             state[moving] += step
             pause *= 1.6
             if pause > 1.0:
                 still = np.abs(step) < 1e-10 * (np.abs(state[moving]) + 1e-15)
                 moving = moving[~still.all(axis=1)]
-        slopes = slopes_at(np.arange(v.size), state)
-        by_speed = (law_at(v + dv, above, state) - law_at(v - dv, below, state)).T / (2.0 * dv)
+                if not moving.size:
+                    break
+        _, slopes = law_at(v, contact, state)
+        (high, _), (low, _) = law_at(v + dv, above, state), law_at(v - dv, below, state)
+        by_speed = (high - low).T / (2.0 * dv)
         slope = by_speed[n]
         a[:, 4:, 1] = -by_speed[:n].T
         a[:, 1, 4:] = slopes[:, n] / j_e[:, np.newaxis]
@@ -240,11 +234,22 @@ def _linearised(
 
 
 @njit(cache=True, **COMPILED)
-def _call_law(law, c, speeds, contacts, states, found) -> None:
-    for i in range(speeds.size):
-        found[i, -1] = call_law_at(
-            law, speeds[i], c.ctypes, contacts[i].ctypes, states[i].ctypes, found[i].ctypes
-        )
+def _fill_slopes(law, c, speeds, contacts, states, found, slopes, high, low) -> None:
+    n = states.shape[1]
+    for run in range(speeds.size):
+        v, contact, state = speeds[run], contacts[run].ctypes, states[run]
+        at = state.ctypes
+        found[run, n] = call_law_at(law, v, c.ctypes, contact, at, found[run].ctypes)
+        for j in range(n):
+            kept = state[j]
+            change = _STEP * abs(kept) + 1e-12
+            state[j] = kept + change
+            high[n] = call_law_at(law, v, c.ctypes, contact, at, high.ctypes)
+            state[j] = kept - change
+            low[n] = call_law_at(law, v, c.ctypes, contact, at, low.ctypes)
+            state[j] = kept
+            for i in range(n + 1):
+                slopes[run, i, j] = (high[i] - low[i]) / (2.0 * change)
 
 
 _LONG = 1.0
