@@ -10,7 +10,7 @@ from hypothesis import given, settings, strategies as st
 
 import features
 from features.recording import feature_vector, recording_features
-from features.table import FEATURES, KINDS, feature_names, features_of, recording_feature_names
+from features.table import FEATURES, KINDS, feature_names, recording_feature_names
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 
@@ -34,11 +34,6 @@ def test_every_feature_says_what_it_is(feature):
         or feature.name in ("level", "level_a", "slope_ratio")
         or feature.name.startswith("third_octave_")
     )
-
-
-def test_an_unknown_kind_is_refused():
-    with pytest.raises(ParameterError, match="'angle' have no features; use pressure"):
-        features_of("angle")
 
 
 def test_every_public_name_is_there_and_importing_the_package_is_light():

@@ -70,13 +70,6 @@ def test_what_is_no_sound_is_refused(measure):
         measure(np.array([0.0, 1.0, 2.0, np.nan] * 8), 48e3)
 
 
-PASCAL_DB = 93.979
-
-
-def sine(frequency, rate=48e3, seconds=2.0):
-    return math.sqrt(2) * np.sin(2 * np.pi * frequency * np.arange(round(rate * seconds)) / rate)
-
-
 def test_bands_share_out_the_whole_power_whatever_their_edges():
     spectrum = autospectrum(np.random.default_rng(1).normal(size=30_000), 30e3, resolution=7.0)
     edges = np.array([0.0, 3.3, 101.7, 998.2, 5000.1, 15_000.0])

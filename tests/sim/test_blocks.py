@@ -191,16 +191,6 @@ def test_no_change_of_drive_or_sensors_clicks(name, before, after):
     assert max(highest(between * one) for one in sounds[1:]) <= max(1.3 * loudest, INAUDIBLE)
 
 
-@pytest.mark.parametrize("law", ["coulomb", "lugre", "bond_population"])
-def test_one_law_takes_over_from_another(law):
-    of = setting(MEMORY, 3.0)
-    run = BlockEngine(of)
-    other = replace(of, rig=replace(of.rig, friction=LawSpec(law)))
-    sounds = np.concatenate([sound(run, 5), sound(run, 15, other), sound(run, 15, of)])
-    assert np.isfinite(sounds).all()
-    assert np.std(sounds[-4800:]) == pytest.approx(np.std(sound(BlockEngine(of), 5)), rel=0.6)
-
-
 @pytest.mark.parametrize("form", ["white", "brown"])
 def test_the_background_is_that_of_a_recording_and_has_no_seams(form):
     of = setting(effect="background_noise", form=form, pressure_level=70.0)

@@ -25,8 +25,6 @@ STRIBECK = {
     "stribeck_lorentzian": lambda x: 1.0 / (1.0 + x**2),
 }
 NAMES = tuple(name for name in LAWS if name not in {"coulomb", "lugre"})
-RISING = {"bond_population", "contact_with_memory", "viscous"}
-CONSTANT_AT_EQUAL_TORQUES = tuple(name for name in NAMES if name not in RISING)
 
 _VECTOR = float64[::1]
 
@@ -133,12 +131,6 @@ def test_steady_sliding_gives_the_torque_of_the_law(name, speed, given):
     assert steady(name, -speed, values) == pytest.approx(-expected, rel=1e-6)
 
 
-@pytest.mark.parametrize("name", CONSTANT_AT_EQUAL_TORQUES)
-def test_equal_torques_make_a_constant_friction(name):
-    found = [steady(name, speed, torques=(T_KIN, T_KIN)) for speed in (0.2, 2.0, 20.0)]
-    assert found == pytest.approx([T_KIN] * 3, rel=1e-6)
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_torques_twice_as_large_make_twice_the_friction(name):
     speed = 5.0 * np.sin(np.linspace(0.0, 20.0, 4000))
@@ -195,9 +187,3 @@ def test_an_ageing_contact_breaks_at_a_torque_that_grows_with_its_rest(rest):
     broke_at = torque[round((0.02 + rest) / 1e-6) :].max()
     grown = T_KIN + (T_CRIT - T_KIN) * (1.0 - math.exp(-(1e-3 / 5.0 + rest) / 1e-3))
     assert broke_at == pytest.approx(grown, abs=0.1 * (T_CRIT - T_KIN))
-
-
-@pytest.mark.parametrize("speed", [0.5, 5.0, 17.0])
-def test_viscous_friction_never_sustains_a_vibration(speed):
-    torque = on_the_rig("viscous", speed, seconds=0.5, step=1 / 90e3)[-9000:, 1]
-    assert torque.std() < 1e-6 * torque.mean()

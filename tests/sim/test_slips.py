@@ -9,9 +9,8 @@ from hypothesis import given, settings, strategies as st
 from models.condition import FIXED
 from models.rig_file import load_material_rig
 from sim.analysis.critical_damping import with_damping
-from sim.analysis.critical_speeds import SPEEDS, motion_from_rest
-from sim.analysis.regime import LEAST_OSCILLATION, Regime, friction_regime, regime_measures
-from sim.analysis.slips import LEAST_SUDDEN, find_slips, motion_slips
+from sim.analysis.regime import Regime, friction_regime
+from sim.analysis.slips import find_slips, motion_slips
 from sim.bushing import lumped_bushing
 from sim.motion import simulate_motion
 from sim.rig_effects import constant_version
@@ -112,26 +111,3 @@ def test_grazing_the_shafts_speed_is_no_stick_slip():
     run = motion(FLUOROCARBON, 7.0, support=2214.0)
     assert run.since(15000).stuck.mean() > 0.01
     assert friction_regime(run) is Regime.QUASI_HARMONIC
-
-
-@pytest.mark.parametrize(
-    ("rig", "fit", "support"),
-    [*((THESIS, *place) for place in PLACES[::4]), (FLUOROCARBON, 0.178e-3, 2214.0)],
-)
-def test_no_critical_speed_hangs_on_a_limit(rig, fit, support):
-    # Twice and half of each limit; from the fastest speed down to one that is beyond all.
-    limits = {"sudden": LEAST_SUDDEN, "oscillation": LEAST_OSCILLATION}
-    ends = {(name, factor): 0.0 for name in limits for factor in (0.5, 1.0, 2.0)}
-    for speed in reversed(SPEEDS):
-        sudden, oscillation = regime_measures(motion_from_rest(rig, speed, fit, support))
-        sudden *= oscillation > LEAST_OSCILLATION
-        measures = {"sudden": sudden, "oscillation": oscillation}
-        for (name, factor), end in ends.items():
-            if end == 0.0 and measures[name] > factor * limits[name]:
-                ends[name, factor] = speed
-        if all(ends.values()):
-            break
-    step = SPEEDS[1] - SPEEDS[0]
-    for name in limits:
-        assert abs(ends[name, 0.5] - ends[name, 1.0]) <= step
-        assert abs(ends[name, 2.0] - ends[name, 1.0]) <= step
