@@ -67,7 +67,7 @@ class LazyRoutes(BaseRoute):
             return self._router
 
 
-VIEWS = {"labels": "Listen and label", "design": "Design", "jury": "Jury"}
+VIEWS = {"labels": "Recordings", "design": "Design", "jury": "Jury"}
 """Views in the order of their tabs: folder under ``static``, title."""
 
 _ROUTES = {

@@ -182,6 +182,11 @@ def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
         if not places:
             note("no segment is labelled, so there is no map")
             return written
+        if all(one.speed is one.interference is one.support_stiffness is None for one in places):
+            note(
+                "no speed, interference or support stiffness is logged, so the map has one place, "
+                '"?"; sidecars or columns of a label table state them (noise/recordings/README.md)'
+            )
         number = len({row["file"] for row in rows if row["label"] is not None})
         title = f"Labels by condition: {counted(number, 'recording')}"
         write_picture(options.map, plot_conditions(places, title=title))

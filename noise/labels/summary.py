@@ -69,8 +69,8 @@ def result_lines(rows: Iterable[Mapping[str, object]]) -> Iterator[str]:
     Yields
     ------
     str
-        Of the segment that names the file, and of the longest of each other noise in it; or why
-        it was refused.
+        Of the segment that names the file, and of the longest of each other noise in it, with
+        their track where tracks are labelled apart; or why it was refused.
 
     Examples
     --------
@@ -78,6 +78,8 @@ def result_lines(rows: Iterable[Mapping[str, object]]) -> Iterator[str]:
     ...        "frequency_hz": 974.2, "level_dba": 59.9, "p_squeal": 0.93}
     >>> list(result_lines([row, {"file": "b.wav", "label": None, "error": "is empty"}]))
     ['run07.wav  squeal 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.93', 'b.wav  refused: is empty']
+    >>> list(result_lines([row | {"channel": "2"}]))
+    ['run07.wav  squeal 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.93  track 2']
     """
     for file, of_file in groupby(rows, key=lambda row: row["file"]):
         segments = list(of_file)
@@ -113,6 +115,8 @@ def _result_words(row: Mapping[str, object]) -> Iterator[str]:
         p, name = max(noises, default=(0.0, ""))
         less = label == "unknown" and p > probability
         yield f"p {probability:.2f}" + (f" ({name} {p:.2f})" if less else "")
+    if row.get("channel", "all") != "all":
+        yield f"track {row['channel']}"
 
 
 def _length(row: Mapping[str, object]) -> float:

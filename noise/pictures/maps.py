@@ -159,9 +159,10 @@ def _draw_labels(axes: Axes, found: DesignMap, temperature: int, support: int) -
     codes = np.select([label == name for name in _SIMULATED], range(len(_SIMULATED)))
     colours = ListedColormap([LABEL_LOOKS[name].colour for name in _SIMULATED])
     axes.pcolormesh(_edges(speed), _edges(rows), codes, cmap=colours, vmin=-0.5, vmax=4.5)
-    hatched = np.where(label == PERSISTS, 1.0, -1.0)
-    if (label == PERSISTS).any() and min(label.shape) > 1:
-        axes.contourf(speed, rows, hatched, levels=[0.0, 2.0], colors="none", hatches=["///"])
+    persists = np.pad(np.where(label == PERSISTS, 1.0, -1.0), 1, mode="edge")
+    if persists.max() > 0.0:  # up to the edges of the map, not to the middle of its last cells
+        x, y = (np.r_[_edges(at)[0], at, _edges(at)[-1]] for at in (speed, rows))
+        axes.contourf(x, y, persists, levels=[0.0, 2.0], colors="none", hatches=["///"])
     axes.grid(visible=False)
     _say_quiet(axes, found, temperature, support)
     beyond = _beyond(found)

@@ -1,5 +1,6 @@
 """The README, as somebody follows it who pastes one block after the other into an empty folder."""
 
+import fnmatch
 import html
 import re
 
@@ -10,11 +11,14 @@ import soundfile
 from features.modal.hammer import estimate_transfer_function
 from models.radiation.rig_response import impulse_responses
 from models.rig_file import load_material_rig
+from noise.app import jury
 from noise.cli import main
 from noise.commands import COMMANDS
 from noise.demo import ARM, CASES, N_HITS
+from noise.labels import table as label_table
 from noise.recordings import read_recording
 from noise.recordings.hits import find_hits, read_hit
+from noise.screening import tables
 from tests.helpers.files import csv_rows
 from tests.helpers.readme_blocks import (
     PAGES,
@@ -30,6 +34,14 @@ from tests.helpers.readme_blocks import (
 
 BLOCKS = [block for page in (README, *PAGES) for block in blocks(readme(page=page))]
 COMMAND_LINES = [line for block in BLOCKS if block.kind == "commands" for line in block.commands]
+
+SCREEN_TABLES = (
+    tables._MAP,
+    tables._CRITICAL,
+    tables._DESIGNS,
+    tables._ADVICE,
+    tables._SENSITIVITIES,
+)
 
 DEAR = ("diagnose", "identify", "screen", "thesis", "train")
 """Commands that take a minute or more."""
@@ -107,6 +119,22 @@ def test_the_readme_is_short():
     sentences = [one for part in paragraphs for one in re.split(r"(?<=[.!?:;])\s", part)]
     assert len(sentences) > 40
     assert [one for one in sentences if len(one.split()) > 35] == []
+
+
+@pytest.mark.parametrize(
+    ("page", "columns"),
+    [
+        ("labels", label_table.COLUMNS),
+        ("screening", [name for table in SCREEN_TABLES for name in table]),
+        ("app", jury.COLUMNS),
+    ],
+)
+def test_every_column_of_a_table_is_explained(page, columns):
+    text = readme(page=ROOT / "noise" / page / "README.md")
+    cells = [line.split("|")[1] for line in text.splitlines() if line.startswith("| `")]
+    explained = [name for cell in cells for name in re.findall(r"`([^`]+)`", cell)]
+    lacking = [c for c in columns if not any(fnmatch.fnmatch(c, name) for name in explained)]
+    assert lacking == []
 
 
 def test_the_folder_holds_what_the_readme_says(demo):
