@@ -3,25 +3,34 @@
 from __future__ import annotations
 
 import dataclasses
+import reprlib
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, TypeGuard, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from models.errors import ParameterError, not_installed
 
 if TYPE_CHECKING:
-    import numpy as np
     from pandas import DataFrame
 
 _Class = TypeVar("_Class", bound=type)
 
-_LONGEST_TEXT = 60
-"""Characters of a text that are shown."""
-
-_MOST_SHOWN = 4
-"""Values of a sequence that are shown one by one."""
-
 _LONGEST = 400
 """Characters of the whole."""
+
+
+class _Short(reprlib.Repr):
+    """Values in a few words: arrays by shape and type, dataclasses by name."""
+
+    def repr1(self, x: Any, level: int) -> str:
+        if dataclasses.is_dataclass(x):
+            return f"<{type(x).__name__}>"  # before anything is asked of it, which may take long
+        if hasattr(x, "shape") and hasattr(x, "dtype"):
+            return f"<{' x '.join(map(str, x.shape))} {x.dtype}>" if x.shape else repr(x.item())
+        return super().repr1(x, level)
+
+
+_short = _Short()
+_short.maxstring = _short.maxother = 60
 
 
 def short_repr(cls: _Class) -> _Class:
@@ -41,7 +50,7 @@ def short_repr(cls: _Class) -> _Class:
 
     def representation(self: object) -> str:
         shown = [
-            f"{field.name}={short_words(getattr(self, field.name))}"
+            f"{field.name}={_short.repr(getattr(self, field.name))}"
             for field in dataclasses.fields(cls)
             if field.repr
         ]
@@ -52,40 +61,6 @@ def short_repr(cls: _Class) -> _Class:
 
     cls.__repr__ = representation  # type: ignore[assignment]
     return cls
-
-
-def short_words(value: object) -> str:
-    """Return a value in a few words.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> short_words(np.zeros(3)), short_words([1.0] * 9), short_words({"a": 1})
-    ('<3 float64>', '<9 float>', "{'a': 1}")
-    """
-    if dataclasses.is_dataclass(value):
-        return f"<{type(value).__name__}>"  # before anything is asked of it, which may take long
-    if _is_array(value):
-        shape = " x ".join(map(str, value.shape))
-        return f"<{shape} {value.dtype}>" if shape else repr(value.item())
-    if isinstance(value, str):
-        return repr(value if len(value) <= _LONGEST_TEXT else f"{value[:_LONGEST_TEXT]} ...")
-    if isinstance(value, Mapping):
-        if len(value) > _MOST_SHOWN:
-            return f"<{len(value)} entries>"
-        return f"{{{', '.join(f'{key!r}: {short_words(one)}' for key, one in value.items())}}}"
-    if isinstance(value, Sequence) and not isinstance(value, bytes):
-        if len(value) > _MOST_SHOWN:
-            return f"<{len(value)} {type(value[0]).__name__}>"
-        words = ", ".join(map(short_words, value))
-        return f"[{words}]" if isinstance(value, list) else f"({words}{',' * (len(value) == 1)})"
-    words = repr(value)
-    return words if len(words) <= _LONGEST_TEXT else f"<{type(value).__name__}>"
-
-
-def _is_array(value: object) -> TypeGuard[np.ndarray]:
-    """Ask without loading numpy: a module that shows nothing starts without it."""
-    return hasattr(value, "shape") and hasattr(value, "dtype") and hasattr(value, "item")
 
 
 def data_frame(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> DataFrame:
