@@ -476,15 +476,7 @@ def plan_of(
 ) -> Plan:
     """Plan the run of a setting at a sampling rate [Hz], of effects those that act on blocks."""
     plan = plan_run(
-        setting.rig,
-        setting.shaft,
-        interference=setting.interference,
-        support_stiffness=setting.support_stiffness,
-        temperature=setting.temperature,
-        seconds=max(1.0, 2.0 / rate),
-        rate=rate,
-        settling=settling,
-        library=library,
+        **vars(setting), seconds=max(1.0, 2.0 / rate), rate=rate, settling=settling, library=library
     )
     kept = [active for active in plan.effects if not active.effect.needs_whole_run]
     return replace(plan, effects=kept)
