@@ -41,11 +41,7 @@ from noise.diagnosis.evidence.reconstruction import (
     shaft_speed,
 )
 from noise.diagnosis.simulated.repeats import condition_key, nominal_repeats
-from noise.diagnosis.simulated.transfer_functions import (
-    TransferFunctionCache,
-    predict,
-    predict_outputs,
-)
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict_outputs
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
 from sim.effects.effect import Effect
@@ -443,11 +439,7 @@ def summary(
         What a missing channel would tell is missing [unit of the number].
     """
     condition, rate = known_condition(recording.condition), recording.rate
-    signal = {
-        kind: recording.samples[row]
-        for kind in ("torque", *_OUTPUTS, "angle")
-        if (row := recording.first(kind)) is not None
-    }
+    signal = signals_of(recording)
     numbers: Numbers = {}
     # Torque and motion change sign together: what turns backwards is looked at from behind.
     turn, wanted = math.copysign(1.0, condition.speed), abs(condition.speed)
@@ -469,42 +461,60 @@ def summary(
     fit = rig.fit(condition.interference)
     numbers |= _named("contact", contact_summary(found, fit, wanted))
     slips = slip_starts(found, wanted)[0] / found.rate + found.start
-    residuals = {}
-    paths = {kind: transfer_functions[kind] for kind in _OUTPUTS if kind in signal}
-    for kind, expected in predict_outputs(spectrum, torque.size, rate, paths).items():
-        more, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
-        numbers |= _named(kind, more) | _named(kind, hum_summary(residuals[kind], rate))
+    more, residuals = path_numbers(signal, spectrum, rate, transfer_functions, slips)
+    numbers |= more
+    for kind, residual in residuals.items():
+        numbers |= _named(kind, hum_summary(residual, rate))
     if len(residuals) == len(_OUTPUTS):
         numbers |= common_residual(residuals["acceleration"], residuals["pressure"], rate)
     return numbers
 
 
+def signals_of(recording: Recording) -> dict[str, NDArray[np.float64]]:
+    """Return the first channel of each kind, by its kind [unit of the channel]."""
+    return {
+        kind: recording.samples[row]
+        for kind in ("torque", *_OUTPUTS, "angle")
+        if (row := recording.first(kind)) is not None
+    }
+
+
 def path_numbers(
-    recording: Recording, transfer_functions: Mapping[str, TransferFunction]
-) -> Numbers:
+    signal: Mapping[str, NDArray[np.float64]],
+    spectrum: NDArray[np.complex128],
+    rate: float,
+    transfer_functions: Mapping[str, TransferFunction],
+    slips: NDArray[np.float64],
+) -> tuple[Numbers, dict[str, NDArray[np.float64]]]:
     """Compare acceleration and sound with what the torque should have made of them.
 
     Parameters
     ----------
-    recording : Recording
+    signal : mapping of str to ndarray, shape (n,)
+        By kind of channel [unit of the channel].
+    spectrum : ndarray of complex
+        Of the torque, as `closed_spectrum` gives it [Nm].
+    rate : float
+        Sampling rate [Hz].
     transfer_functions : mapping of str to TransferFunction
         As `torque_transfer_functions` gives them.
+    slips : ndarray, shape (n_slips,)
+        When the contact slips [s].
 
     Returns
     -------
     dict of str to float
-        Those numbers of `summary` that need nothing else [unit of the number].
+        [unit of the number]
+    dict of str to ndarray, shape (n,)
+        What the torque does not make, by kind of channel [unit of the channel].
     """
     numbers: Numbers = {}
-    row = recording.first("torque")
-    for kind in _OUTPUTS if row is not None else ():
-        if (output := recording.first(kind)) is not None:
-            expected = predict(recording.samples[row], recording.rate, transfer_functions[kind])
-            found, _ = path_summary(
-                expected, recording.samples[output], recording.rate, np.empty(0)
-            )
-            numbers |= _named(kind, found)
-    return numbers
+    residuals = {}
+    paths = {kind: transfer_functions[kind] for kind in _OUTPUTS if kind in signal}
+    for kind, expected in predict_outputs(spectrum, signal["torque"].size, rate, paths).items():
+        found, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
+        numbers |= _named(kind, found)
+    return numbers, residuals
 
 
 @dataclass(frozen=True, eq=False)

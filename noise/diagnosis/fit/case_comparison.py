@@ -21,7 +21,14 @@ from numpy.typing import NDArray
 from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import LawSpec, Rig
-from noise.diagnosis.evidence.summary import CaseTable, aligned, path_numbers, same_channels
+from noise.diagnosis.evidence.reconstruction import closed_spectrum
+from noise.diagnosis.evidence.summary import (
+    CaseTable,
+    aligned,
+    path_numbers,
+    same_channels,
+    signals_of,
+)
 from noise.diagnosis.gap.distance import Gap, Reference, group_costs
 from noise.diagnosis.gap.floor import references_of, repeat_gap
 from noise.diagnosis.gap.signature import signature
@@ -283,15 +290,20 @@ class CaseComparison:
             template = self.recordings[i]
             key = (repr(model), condition_key(template))
             if key not in self._numbers:
-                run = self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0, 0.0))
-                found = path_numbers(
-                    same_channels(run, template), self.runs.transfer_functions.whole(template)
-                )
-                self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])
+                self._numbers[key] = self._path_numbers(model, template)
             scale = np.sqrt(np.nan_to_num(scatter[i]) ** 2 + self.scale**2)
             z = (measured[i] - self._numbers[key]) / scale
             rows.append(np.tanh(np.nan_to_num(z)[np.isfinite(self._numbers[key])] / _SATURATION))
         return np.array(rows)
+
+    def _path_numbers(self, model: Model, template: Recording) -> NDArray[np.float64]:
+        run = self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0, 0.0))
+        signal, rate, found = signals_of(same_channels(run, template)), run.rate, {}
+        if "torque" in signal:
+            transfer_functions = self.runs.transfer_functions.whole(template)
+            spectrum = closed_spectrum(signal["torque"], rate)
+            found = path_numbers(signal, spectrum, rate, transfer_functions, np.empty(0))[0]
+        return np.array([found.get(name, math.nan) for name in self.names])
 
     def _repeats(self, model: Model, template: Recording, n: int) -> NDArray[np.float64]:
         """Signatures of a model's first scattered repeats, shape (n, n_values)."""

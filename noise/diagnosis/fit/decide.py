@@ -4,7 +4,10 @@ A right name closes more of what refitted parameters leave than a wrong one does
 counted once on 71 fits of 50 cases whose cause was known: closing all of a large gap was worth a
 factor of about twenty, for an effect and for parameters alike. Recordings that no fit has seen
 count as much as all that were fitted to. An effect is named only where its fit closes some of the
-gap of the former.
+gap of the former. That may be what parameters alone close as well: where they stand for an effect,
+as a lower stiffness does for one that softens, a name need not close more than they do. Asked to, of
+42 single effects of the second rig (development, seed 21) 22 were named first and 11 called unknown,
+without it 26 and 7 (`tests/blind/README.md`).
 """
 
 from __future__ import annotations
@@ -40,12 +43,6 @@ _CLOSING = 3.0
 
 _MORE = 1.4
 """And that one effect more costs [-]; counted on the same fits."""
-
-_CLOSES = 0.02
-"""Share that a fit has to close for its effects to be named, as `closed_of` has it; assumed."""
-
-_AS_PARAMETERS = 0.5
-"""The same of the whole gap, where refitted parameters leave nothing to close [-]; assumed."""
 
 _FEWEST, _MOST = 3, 5
 """Fits of a diagnosis, those of the user's own effects not counted: as the right cause is among the
@@ -154,18 +151,13 @@ class CaseFits:
         return min((self.of[hypothesis].squared, *parts), key=self.gap)
 
     def closes(self, hypothesis: Hypothesis) -> bool:
-        """Tell whether a fit closes some of the gap of recordings held out.
+        """Tell whether a fit closes some of the gap of recordings held out, parameters and all.
 
-        Of what parameters leave; where these leave nothing, as much of the whole gap as would be
-        remarkable. Where there was none to close, it must at least leave less.
+        What parameters alone leave is weighed by `updated`: they may only stand for the effect.
+        Where there was none to close, the fit must open none.
         """
-        after = self.least(hypothesis)
-        gap, left, now = (rms(self.held_out(x)) for x in (self.before, self.recalibrated, after))
-        if left >= 1.0 + CLOSABLE:
-            return closed_of(left, now) >= _CLOSES
-        if gap >= 1.0 + CLOSABLE:
-            return closed_of(gap, now) >= _AS_PARAMETERS * room_of(gap)
-        return now < left
+        gap, now = (rms(self.held_out(x)) for x in (self.before, self.least(hypothesis)))
+        return now < gap if gap >= 1.0 + CLOSABLE else now < 1.0 + CLOSABLE
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,6 +17,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -307,14 +308,14 @@ def _searched(
     model: Model,
     numbers: Sequence[_Number],
     shrink: Sequence[float],
-) -> Model:
-    """Search about some numbers of a model."""
+) -> tuple[float, Model]:
+    """Search about some numbers of a model; return the least cost and its model."""
     steps = [_STEP_OF_OFFSET if place is None else _STEP_OF_EFFECT for place, *_ in numbers]
-    x, _ = pattern_search(
+    x, cost = pattern_search(
         lambda x: cost_of(comparison, few, _moved(model, numbers, x)), np.zeros(len(steps)),
         np.array(steps), shrink,
     )  # fmt: skip
-    return _moved(model, numbers, x)
+    return cost, _moved(model, numbers, x)
 
 
 def fit_parameters(comparison: CaseComparison, chosen: Sequence[int]) -> Fitted:
@@ -331,8 +332,7 @@ def fit_parameters(comparison: CaseComparison, chosen: Sequence[int]) -> Fitted:
     found = [_searched(comparison, few, read, _offsets(), _SHRINK[1:])]
     if cost_of(comparison, few, plain) < cost_of(comparison, few, read):
         found.append(_searched(comparison, few, plain, _offsets(), _SHRINK))
-    best = min(found, key=lambda model: cost_of(comparison, few, model))
-    return Fitted(best, comparison, few)
+    return Fitted(min(found, key=itemgetter(0))[1], comparison, few)
 
 
 def read_offsets(table: CaseTable | None, chosen: Sequence[int]) -> tuple[float, ...]:
@@ -420,8 +420,8 @@ def fit_effects(
     if len(names) > 1:  # what the first had to stand for is the others' now
         for place in range(len(names)):
             numbers = _numbers(comparison, best, place)
-            best = _searched(comparison, few, best, numbers, _SHRINK[:3])
-    best = _searched(comparison, few, best, _offsets(), _SHRINK[2:])
+            _, best = _searched(comparison, few, best, numbers, _SHRINK[:3])
+    _, best = _searched(comparison, few, best, _offsets(), _SHRINK[2:])
     return Fitted(_settled(comparison, few, best), comparison, few)
 
 
@@ -440,7 +440,7 @@ def fit_closer(comparison: CaseComparison, chosen: Sequence[int], model: Model) 
     numbers = _numbers(comparison, model)
     if any(model.offsets):
         numbers = [*_offsets(), *numbers]
-    return Fitted(_searched(comparison, few, model, numbers, _SHRINK[1:]), comparison, few)
+    return Fitted(_searched(comparison, few, model, numbers, _SHRINK[1:])[1], comparison, few)
 
 
 def stated_candidates(effect: Effect, seed: int) -> list[LawSpec]:
@@ -501,8 +501,8 @@ def _added(
         _searched(comparison, few, one, _numbers(comparison, one, place), _SHRINK[:3])
         for one in starts
     ]
-    best = min(refined, key=lambda one: cost_of(comparison, few, one))
-    if not math.isfinite(cost_of(comparison, few, best)):
+    cost, best = min(refined, key=itemgetter(0))
+    if not math.isfinite(cost):
         comparison.simulated(best, comparison.recordings[few[0]], 0)  # says why
         raise ParameterError("it breaks down in some of the recordings, in all forms tried")
     return best

@@ -23,12 +23,11 @@ from models.rig import Rig
 from models.transfer_functions.filtering import (
     FINER,
     fill_between_lines,
-    filter_period,
     impulse_response,
 )
 from models.transfer_functions.measured import measured_with
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.evidence.reconstruction import closed_length, closed_loop
+from noise.diagnosis.evidence.reconstruction import closed_length, closed_spectrum
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, Effect, activated
@@ -202,8 +201,9 @@ def predict(
     >>> bool(np.allclose(predict(tone, 8e3, double)[100:700], 2 * tone[100:700], atol=0.1))
     True
     """
-    closed = closed_loop(torque, rate)
-    return filter_period(closed - closed.mean(), rate, transfer, falls_below=True)[: torque.size]
+    spectrum = closed_spectrum(torque - torque.mean(), rate)
+    spectrum[0] = 0.0
+    return predict_outputs(spectrum, torque.size, rate, {"": transfer})[""]
 
 
 def predict_outputs(
@@ -237,7 +237,6 @@ def predict_outputs(
     --------
     >>> double = TransferFunction(np.array([0.0, 4e3]), np.array([2.0 + 0j, 2.0 + 0j]))
     >>> tone = np.sin(2 * np.pi * 100.0 * np.arange(800) / 8e3)
-    >>> from noise.diagnosis.evidence.reconstruction import closed_spectrum
     >>> found = predict_outputs(closed_spectrum(tone, 8e3), 800, 8e3, {"pressure": double})
     >>> bool(np.allclose(found["pressure"], predict(tone, 8e3, double)))
     True
