@@ -79,7 +79,12 @@ def assumed_fit(rig: Rig, interferences: Sequence[float]) -> str:
         f"{fit.critical_torque:.3g}, slides at {fit.kinetic_torque:.3g} N m"
         for fit in fits
     )
-    return f"no [[fit]] of its own in the rig file: the bushing is that shipped for {name}, {each}"
+    listed = joined([spec.name for spec in rig.effects])
+    shipped_with = f", with {listed}, which cannot be found missing then" if listed else ""
+    return (
+        f"no [[fit]] of its own in the rig file: the bushing is that shipped for {name}, {each}"
+        f"{shipped_with}"
+    )
 
 
 _SHOWN = 5

@@ -101,7 +101,8 @@ class EffectFinding:
     parameters : mapping of str to float or str
         As fitted; empty where it was not [unit of the parameter].
     strength : (float, float), optional
-        90 % interval of the parameter that switches it off.
+        90 % interval of the parameter that switches it off, given that the form and the other
+        numbers are as fitted; another form may do the same at another strength.
     gap_before, gap_recalibrated, gap_after, gap_floor : float, optional
         On recordings that no fit has seen; None where it was not fitted, in floors [-].
     closed, closed_low, closed_high, closed_by_effect : float, optional

@@ -5,9 +5,9 @@ counted once on 71 fits of 50 cases whose cause was known: closing all of a larg
 factor of about twenty, for an effect and for parameters alike. Recordings that no fit has seen
 count as much as all that were fitted to. An effect is named only where its fit closes some of the
 gap of the former. That may be what parameters alone close as well: where they stand for an effect,
-as a lower stiffness does for one that softens, a name need not close more than they do. Asked to, of
-42 single effects of the second rig (development, seed 21) 22 were named first and 11 called unknown,
-without it 26 and 7 (`tests/blind/README.md`).
+as a lower stiffness does for one that softens, a name need not close more than they do. Where it
+had to, of 42 single effects of the second rig 22 were named first and 11 called unknown; now 26 and
+7 (development, seed 21; `tests/blind/README.md`).
 """
 
 from __future__ import annotations

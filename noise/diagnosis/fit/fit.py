@@ -168,7 +168,9 @@ class Fitted:
         """Standard deviation of the logarithm of each number, by its name.
 
         Parameters by their own, numbers of an effect as ``EFFECT.NUMBER``: how far each can be off
-        before the cost tells, which is taken to rise as the square.
+        before the cost tells, which is taken to rise as the square. What the fit leaves above the
+        floor makes it less sure in proportion (Birge 1932). It is that of one form, the other
+        numbers as they are.
         """
         best, found = cost_of(self.comparison, self.few, self.model), {}
         for number in (*_offsets(), *_numbers(self.comparison, self.model)):
@@ -178,7 +180,7 @@ class Fitted:
             known = [one for one in tried if math.isfinite(one)]
             rise = max(sum(known) / len(known) - best, 1e-9) if known else 1e-9
             most, beside = (PRIOR, _BESIDE) if of_offset else (_LEAST_SURE, 0.0)
-            own = math.hypot(look * math.sqrt(_UNSURE / rise), beside)
+            own = math.hypot(look * math.sqrt(_UNSURE * max(best, 1.0) / rise), beside)
             found[_name(self.model, number)] = min(own, most)
         return found
 
