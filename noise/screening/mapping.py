@@ -32,7 +32,7 @@ from noise.screening.batches import LABELS, Batch, Evaluator
 from noise.screening.grid import Grid
 from noise.screening.point import REGIMES
 from noise.screening.provenance import is_substituted, point_notes, rows_of
-from sim.analysis.stability import steady_sliding
+from sim.analysis.stability import sliding_growth
 from sim.temperature import at_temperature
 
 Cell = tuple[int, int, int, int, int]
@@ -244,7 +244,7 @@ def growth_rates(
     """
     at = interference[:, None], support[:, None, None]
     return np.stack(
-        [steady_sliding(at_temperature(rig, float(t)), speed, *at).growth for t in temperature]
+        [sliding_growth(at_temperature(rig, float(t)), speed, *at) for t in temperature]
     )
 
 

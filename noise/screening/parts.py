@@ -32,7 +32,7 @@ from noise.screening.grid import grid_of
 from noise.screening.point import is_noisy
 from noise.screening.tolerances import Tolerance, nominal_values, varied
 from noise.screening.vibration import Condition
-from sim.analysis.stability import steady_sliding
+from sim.analysis.stability import sliding_growth
 from sim.friction import friction_law
 from sim.temperature import at_temperature
 
@@ -216,7 +216,7 @@ def robustness(
 
 def _growth(rig: Rig, at: Condition, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
     hot = at_temperature(rig, at.temperature)
-    return steady_sliding(hot, speeds, at.interference, at.support_stiffness).growth
+    return sliding_growth(hot, speeds, at.interference, at.support_stiffness)
 
 
 def _sensitivities(

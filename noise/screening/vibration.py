@@ -28,7 +28,7 @@ from scipy.signal import detrend
 from models.rig import Rig
 from noise.base.labels import PERSISTS
 from sim.analysis.regime import LEAST_OSCILLATION
-from sim.analysis.stability import steady_sliding
+from sim.analysis.stability import sliding_growth
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import Motion, MotionSolver, steps_beyond
@@ -199,7 +199,7 @@ def vibration_at(
 def growth_at(rig: Rig, at: Condition) -> float:
     """Growth of a small vibration about steady sliding [1/s]."""
     rig = at_temperature(rig, at.temperature)
-    return float(steady_sliding(rig, at.speed, at.interference, at.support_stiffness).growth)
+    return float(sliding_growth(rig, at.speed, at.interference, at.support_stiffness))
 
 
 def running(
@@ -253,7 +253,7 @@ def _unstable_speed(rig: Rig, at: Condition) -> float | None:
     """Nearest speed at which sliding is unstable [rad/s], surely so if there is one."""
     speed = at.speed * np.concatenate([np.arange(0.98, 0.2, -0.04), np.arange(1.04, 1.6, 0.06)])
     hot = at_temperature(rig, at.temperature)
-    growth = steady_sliding(hot, speed, at.interference, at.support_stiffness).growth
+    growth = sliding_growth(hot, speed, at.interference, at.support_stiffness)
     near = np.flatnonzero(growth > _SURE)
     if near.size:
         return float(speed[near[np.argmin(np.abs(speed[near] - at.speed))]])
