@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
@@ -92,9 +92,6 @@ def piece_count(n_samples: int) -> int:
 
 def recording_features(
     recording: Recording | RecordingBlocks,
-    *,
-    rig: Rig | None = None,
-    names: Collection[str] | None = None,
 ) -> dict[str, float]:
     """Features of the first channel of each kind in a recording.
 
@@ -103,11 +100,6 @@ def recording_features(
     recording : Recording or RecordingBlocks
         In memory, or one of which parts can be had, as `noise.recordings` opens. From
         2^21 samples on it is described in pieces.
-    rig : Rig, optional
-        What the stiffness of the bushing is taken from; without it, the shipped rig with the
-        material that the recording names.
-    names : collection of str, optional
-        Those to compute, which saves the time of the others; all by default.
 
     Returns
     -------
@@ -132,14 +124,12 @@ def recording_features(
     found: dict[str, float] = {}
     for kind in KINDS:
         wanted = {f"{kind}_{feature.name}": feature for feature in features_of(kind)}
-        if names is not None:
-            wanted = {name: feature for name, feature in wanted.items() if name in names}
         row = recording.first(kind)
-        if row is None or not wanted:
+        if row is None:
             found |= dict.fromkeys(wanted, math.nan)
             continue
         try:
-            stick_rate = stick_rate_of(recording, rig) if kind == "torque" else math.nan
+            stick_rate = stick_rate_of(recording) if kind == "torque" else math.nan
             values = _in_pieces(
                 reader_of(recording, row), n_samples_of(recording), [*wanted.values()],
                 rate=recording.rate, kind=kind, calibrated=recording.calibrated,
@@ -215,16 +205,14 @@ _AT_ONCE = 1 << 16
 """Samples looked at together."""
 
 
-def stick_rate_of(recording: Recording | RecordingBlocks, rig: Rig | None = None) -> float:
+def stick_rate_of(recording: Recording | RecordingBlocks) -> float:
     """Product of k_EFF and the shaft's speed (thesis, (5.1)).
 
     Parameters
     ----------
     recording : Recording or RecordingBlocks
-        Its condition tells interference and support, and material where no rig is given.
-    rig : Rig, optional
-        What the elastomer's stiffness is taken from; the shipped one with the recording's material
-        otherwise.
+        Its condition tells interference, support and material, whose shipped rig has the
+        elastomer's stiffness.
 
     Returns
     -------
@@ -243,9 +231,7 @@ def stick_rate_of(recording: Recording | RecordingBlocks, rig: Rig | None = None
     condition = recording.condition
     if condition.interference is None or condition.support_stiffness is None:
         return math.nan
-    if rig is None:
-        rig = _shipped(condition.material)
-    speed = _speed(recording)
+    rig, speed = _shipped(condition.material), _speed(recording)
     if rig is None or speed is None or speed == 0.0:
         return math.nan
     fit = rig.fit(condition.interference)

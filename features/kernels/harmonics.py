@@ -298,9 +298,7 @@ class Harmonics:
         return 10.0 * math.log10(inside / max(1.0 - self.harmonicity, least * inside))
 
 
-def analyse_harmonics(
-    signal: ArrayLike, rate: float, *, lowest: float = LOWEST, highest: float = HIGHEST
-) -> Harmonics:
+def analyse_harmonics(signal: ArrayLike, rate: float) -> Harmonics:
     """Find the fundamental of a vibration, its harmonics and all discrete lines.
 
     Parameters
@@ -309,18 +307,17 @@ def analyse_harmonics(
         Samples in any unit; the mean is removed.
     rate : float
         Sampling rate [Hz].
-    lowest, highest : float
-        Limits of the fundamental [Hz]. Two periods must fit into the signal, which may raise the
-        lower one; the upper one is held below 0.4375 times the rate.
 
     Returns
     -------
     Harmonics
+        The fundamental lies between 5 Hz, or what two periods in the signal leave, and 8 kHz, or
+        0.4375 times the rate.
 
     Raises
     ------
     ParameterError
-        A signal that can't be analysed, or limits that leave nothing between them.
+        A signal that can't be analysed, also by its rate.
 
     Examples
     --------
@@ -332,21 +329,18 @@ def analyse_harmonics(
     (155.0, True, 0.99)
     """
     x = checked_signal(signal, rate)
-    highest = min(highest, usable_limit(rate))
-    if not 0.0 < lowest < highest:
-        raise ParameterError(
-            f"no fundamental lies between {lowest:g} and {highest:g} Hz (0.4375 times the rate at "
-            f"most); give 0 < lowest < highest"
-        )
+    highest = min(HIGHEST, usable_limit(rate))
+    if highest <= LOWEST:
+        raise ParameterError(f"rate is {rate:g} Hz, which holds no fundamental above {LOWEST:g} Hz")
     mean = float(x.mean())
     x = x - mean
     if float(np.abs(x).max()) <= NOTHING * abs(mean):
         x = np.zeros_like(x)
-    x, rate = band_signal(forward(x, rate), lowest, usable_limit(rate))
+    x, rate = band_signal(forward(x, rate), LOWEST, usable_limit(rate))
     spectrum = welch(x, rate, line_resolution(x.size / rate))
     floor = noise_floor(spectrum)
-    lines = find_lines(spectrum, low=lowest, high=usable_limit(rate), floor=floor)
-    return harmonics_of(x, spectrum, floor, lines, lowest=lowest, highest=highest)
+    lines = find_lines(spectrum, low=LOWEST, high=usable_limit(rate), floor=floor)
+    return harmonics_of(x, spectrum, floor, lines, lowest=LOWEST, highest=highest)
 
 
 def harmonics_of(

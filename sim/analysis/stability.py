@@ -24,7 +24,6 @@ shaft that yields and an elastomer with a memory do not count.
 # ruff: noqa: ANN001
 
 import math
-from collections.abc import Mapping
 from typing import Any, cast
 
 import numpy as np
@@ -52,7 +51,7 @@ from sim.contact import (
     call_law_at,
 )  # fmt: skip
 from sim.effects import EFFECTS
-from sim.effects.effect import Effect, activated
+from sim.effects.effect import activated
 from sim.friction import friction_law
 from sim.friction.law import FrictionLaw
 from sim.motion import contact_hooks
@@ -77,8 +76,6 @@ def sliding_growth(
     speed: ArrayLike,
     interference: ArrayLike = 0.279e-3,
     support_stiffness: ArrayLike = 2214.0,
-    *,
-    library: Mapping[str, Effect] = EFFECTS,
 ) -> NDArray[np.float64]:
     """Return how fast a small vibration about steady sliding grows, at many conditions at once.
 
@@ -89,8 +86,6 @@ def sliding_growth(
         Of the shaft, other than zero [rad/s]; either sign is alike.
     interference, support_stiffness : array_like
         [m] and [Nm/rad]; all three are broadcast against each other.
-    library : mapping of str to Effect
-        Effects that the rig's can be found among.
 
     Returns
     -------
@@ -123,7 +118,7 @@ def sliding_growth(
     values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
     coefficients = law.coefficients(values)
     systems = packed_systems(rig, fit, support)
-    acting = activated(constant_version(rig, library).effects, library)
+    acting = activated(constant_version(rig).effects, EFFECTS)
     contacts = _contacts(contact_hooks(acting, np.random.default_rng(0)), systems, v)
     matrices = _linearised(law, coefficients, systems, v, contacts)
     eigenvalues = np.linalg.eigvals(matrices) if v.size else np.zeros((0, 1), dtype=complex)

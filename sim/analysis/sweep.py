@@ -16,8 +16,6 @@ from models.errors import ParameterError
 from models.rig import Rig
 from models.show import data_frame, short_repr
 from sim.analysis.slips import motion_slips
-from sim.effects import EFFECTS
-from sim.effects.effect import Effect, activated
 from sim.motion import Motion, simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -37,6 +35,10 @@ FEATURES = {
 }
 """Features of a motion, in words. Slips are those of `sim.analysis.slips`, their frequency is NaN
 for fewer than two, and stick is that of `sim.motion.Motion.stuck`."""
+
+
+_RATE = 30e3
+"""Of the samples [Hz]."""
 
 
 @short_repr
@@ -123,10 +125,6 @@ def sweep(
     *,
     seconds: float = 1.0,
     settling: float = 0.0,
-    rate: float = 30e3,
-    library: Mapping[str, Effect] = EFFECTS,
-    seed: int = 0,
-    workers: int = -1,
 ) -> Sweep:
     """Simulate the motion of one or several rigs at many constant speeds.
 
@@ -137,14 +135,6 @@ def sweep(
         [rad/s], [m] and [Nm/rad]. They and `rig` are broadcast against each other.
     seconds, settling : float
         How long each run is looked at, and how long it has run before, from rest [s].
-    rate : float
-        Of the samples [Hz].
-    library : mapping of str to Effect
-        Effects that the rigs' can be found among.
-    seed : int
-        Of effects that scatter; run i takes the i-th child of this seed.
-    workers : int
-        Threads; -1 is one a core. Results do not depend on it.
 
     Returns
     -------
@@ -182,13 +172,13 @@ def sweep(
     ) -> NDArray[np.float64]:
         motion = simulate_motion(
             one, ConstantSpeed(at.speed), interference=at.interference,
-            support_stiffness=at.support_stiffness, seconds=settling + seconds, rate=rate,
-            effects=activated(one.effects, library), rng=np.random.default_rng(stream),
+            support_stiffness=at.support_stiffness, seconds=settling + seconds, rate=_RATE,
+            rng=np.random.default_rng(stream),
         )  # fmt: skip
-        return motion_features(motion.since(round(settling * rate)))
+        return motion_features(motion.since(round(settling * _RATE)))
 
-    streams = np.random.SeedSequence(seed).spawn(len(runs))
-    rows = Parallel(n_jobs=workers, prefer="threads")(
+    streams = np.random.SeedSequence(0).spawn(len(runs))
+    rows = Parallel(n_jobs=-1, prefer="threads")(
         delayed(features)(*run, stream) for run, stream in zip(runs, streams, strict=True)
     )
     found, shape = np.array(rows).reshape(len(runs), len(FEATURES)), columns[0].shape
