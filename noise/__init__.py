@@ -52,7 +52,7 @@ _EXPORTS = {
     "noise.diagnosis.outcome": ("Diagnosis",),
     "noise.diagnosis.run": ("diagnose",),
     "noise.identification.outcome": ("Identification",),
-    "noise.identification.run": ("identify",),
+    "noise.identification.identify": ("identify",),
     "noise.inference": ("Inference", "Inferred", "Interval", "load_inference"),
     "noise.training.inference.fit": ("train_inference",),
     "noise.labels.segments": ("Segment", "Segments", "file_label", "label_recording"),

@@ -12,7 +12,8 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,7 +29,13 @@ from noise.identification.bushing_numbers import bushing_numbers, read_again, to
 from noise.identification.evidence import with_evidence
 from noise.identification.law_choice import MARGIN, Choice, choose_law
 from noise.identification.law_model import LOCAL, fitted_evidence
-from noise.identification.outcome import Identification, Number, Seen, values_of
+from noise.identification.measured import (
+    Beforehand,
+    Measurements,
+    known_beforehand,
+    read_measurements,
+)
+from noise.identification.outcome import Identification, Number, Seen, as_json, values_of
 from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.subjects import subjects_of
 from sim.effects import EFFECTS
@@ -36,7 +43,6 @@ from sim.friction import friction_law
 
 if TYPE_CHECKING:
     from noise.identification.law_fit import LawFit
-    from noise.identification.measured import Beforehand, Measurements
 
 
 def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
@@ -172,6 +178,47 @@ def identify_rig(
         static=static,
         seconds=time.perf_counter() - started,
     )
+
+
+def identify(
+    data: str | Path | Sequence[str | Path],
+    rig: str | Path | None = None,
+) -> Identification:
+    """Identify a rig from recordings.
+
+    Parameters
+    ----------
+    data : path or sequence of paths
+        Recordings of torque and angle, or folders of them.
+    rig : path, optional
+        Rig file that states what is known, the two inertias above all.
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    ParameterError
+        Rig file or recordings cannot be used.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     identify(folder)
+    Traceback (most recent call last):
+    models.errors.ParameterError: ...
+    """
+    paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
+    beforehand = known_beforehand(None if rig is None else Path(rig))
+    calibrations = beforehand.rig.sensors.calibrations
+    return identify_rig(read_measurements(paths, calibrations), beforehand)
+
+
+def identification_json(data: Path, rig: Path) -> dict[str, Any]:
+    """Identify a folder's rig; return what ``identification.json`` holds."""
+    return as_json(identify(data, rig))
 
 
 def _by_static_tests(measurements: Measurements, beforehand: Beforehand) -> Identification:

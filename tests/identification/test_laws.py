@@ -9,10 +9,10 @@ import pytest
 from models.condition import KnownCondition
 from models.rig_file import load_material_rig, load_rig, rig_text
 from noise.identification.bushing_fit import Known
+from noise.identification.identify import identify
 from noise.identification.law_choice import left_out
 from noise.identification.law_fit import starts
 from noise.identification.law_model import CANDIDATES, LawModel
-from noise.identification.run import identify
 from noise.identification.subjects import Subject
 from tests.blind.identify.laws import LAWS
 from tests.blind.identify.rigs import make_rig, write_rig

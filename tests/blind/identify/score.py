@@ -21,7 +21,7 @@ from .rigs import make_rig, write_rig
 
 __all__ = ["score", "table"]
 
-IDENTIFY = "noise.identification.run:identification_json"
+IDENTIFY = "noise.identification.identify:identification_json"
 """What ``bushing-noise identify`` calls."""
 
 COSTLY = 2.0
