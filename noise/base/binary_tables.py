@@ -15,8 +15,8 @@ from noise.base.progress import readable
 _FEW_CELLS, _MOST_CELLS = 200_000, 20
 """Cells that a workbook or Parquet file may hold: so many, and so many a byte."""
 
-_MOST_ROWS, _LONGEST_TEXT, _WIDEST = 1_048_576, 32_767, 48
-"""Of a sheet; of a cell; and of a column [characters]."""
+_MOST_ROWS, _LONGEST_TEXT = 1_048_576, 32_767
+"""Of a sheet; and of a cell [characters]."""
 
 
 def finite(value: Cell) -> Cell:
@@ -91,7 +91,6 @@ def write_workbook(
     """Write one sheet: its header frozen, numbers as numbers, no text ever a formula."""
     from openpyxl import Workbook
     from openpyxl.cell import WriteOnlyCell
-    from openpyxl.utils import get_column_letter
 
     lines = [list(map(finite_or_fixed, columns, row)) for row in rows]
     if len(lines) >= _MOST_ROWS:
@@ -103,22 +102,14 @@ def write_workbook(
     title = "".join("_" if letter in r"[]:*?/\'" else letter for letter in readable(name))[:31]
     sheet = book.create_sheet(title or "table")
     sheet.freeze_panes = "A2"
-    for place, column in enumerate(columns):
-        longest = max(len(str(cell)) for cell in (column, *(line[place] for line in lines[:200])))
-        width = min(longest, _WIDEST) + 2
-        sheet.column_dimensions[get_column_letter(place + 1)].width = width
 
-    def cell(value: Cell) -> Any:
+    def text(value: str) -> Any:
         of_text: Any = WriteOnlyCell(sheet)
-        of_text.value = value[:_LONGEST_TEXT] if isinstance(value, str) else value
-        if isinstance(value, str):
-            of_text.data_type = "s"  # what begins like a formula is none
+        of_text.value, of_text.data_type = value[:_LONGEST_TEXT], "s"  # never a formula
         return of_text
 
     for line in (columns, *lines):
-        sheet.append([cell(value) if isinstance(value, str) else value for value in line])
-    if columns:
-        sheet.auto_filter.ref = f"A1:{get_column_letter(len(columns))}{len(lines) + 1}"
+        sheet.append([text(value) if isinstance(value, str) else value for value in line])
     book.properties.creator = "bushing-noise"
     book.save(path)
 

@@ -14,7 +14,7 @@ import json
 import math
 import numbers
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from datetime import date, time
 from importlib import import_module
@@ -32,15 +32,7 @@ from noise.base.binary_tables import (
     write_parquet,
     write_workbook,
 )
-from noise.base.csv_table import (
-    PLAIN,
-    Cell,
-    csv_form,
-    csv_lines,
-    decimal_sign,
-    decoded,
-    write_csv,
-)
+from noise.base.csv_table import Cell, CsvForm, decimal_sign, read_csv, write_csv
 from noise.base.files import atomic
 from noise.base.progress import readable
 
@@ -178,14 +170,15 @@ def write_table(
                     named = dict(zip(columns, map(finite, row), strict=True))
                     file.write(json.dumps(named, ensure_ascii=False) + "\n")
         else:
-            _write_csv(temporary, columns, cells, path)
+            form = CsvForm()  # that of the table that is there, if it is one
+            with suppress(BushingNoiseError), reading(path, "table", largest=LARGEST_TEXT):
+                form = read_csv(path.read_bytes())[0]
+            with temporary.open("w", encoding=form.encoding, newline="") as file:
+                write_csv(file, columns, cells(), form)
 
 
 def read_table(
-    path: Path,
-    known: Collection[str] = (),
-    numbers: Collection[str] = (),
-    names: Iterable[str] = (),
+    path: Path, known: Collection[str] = (), numbers: Collection[str] = ()
 ) -> tuple[list[str], list[dict[str, object]]]:
     r"""Read a table as it stands: cells of CSV are text.
 
@@ -197,8 +190,6 @@ def read_table(
         Columns whose names are understood in capitals and with spaces about them as well.
     numbers : collection of str
         Columns of numbers, whose decimal commas become points.
-    names : iterable of str
-        That are likely in it, such as of recordings, by which code pages are told apart.
 
     Returns
     -------
@@ -231,7 +222,7 @@ def read_table(
         if path.suffix.lower() == ".jsonl":
             with path.open(encoding="utf-8-sig") as file:
                 return [], [parse_json(line) for line in file if line.strip()]
-        lines, separator = _lines(path, names)
+        lines, separator = _lines(path)
         meant = {name.casefold(): name for name in known}
         header = [
             meant.get(name.strip().casefold(), name) for name in map(cell_text, next(lines, ()))
@@ -239,14 +230,13 @@ def read_table(
         return [name for name in header if name], _named(header, lines, numbers, separator)
 
 
-def _lines(path: Path, names: Iterable[str] = ()) -> tuple[Iterator[Sequence[object]], str]:
+def _lines(path: Path) -> tuple[Iterator[Sequence[object]], str]:
     """Return names of columns and rows, and what stands between the cells of a CSV."""
     ending = path.suffix.lower()
     if ending != ".csv":
         return (parquet_lines(path) if ending == ".parquet" else sheet_lines(path)), ""
-    text, encoding = decoded(path.read_bytes(), names)
-    form = csv_form(text, encoding)
-    return csv_lines(text, form), form.separator
+    form, lines = read_csv(path.read_bytes())
+    return lines, form.separator
 
 
 def _named(
@@ -255,21 +245,16 @@ def _named(
     numbers: Collection[str],
     separator: str,
 ) -> list[dict[str, object]]:
-    twice = {name for name in header if name and header.count(name) > 1}
-    if twice:
-        raise ExcessError(f"has two columns {min(twice)!r}")
     at = {name: place for place, name in enumerate(header) if name}
-    unnamed = [place for place, name in enumerate(header) if not name]
+    if len(at) < len(list(filter(None, header))):
+        raise ExcessError(f"has two columns {max(filter(None, header), key=header.count)!r}")
     rows: list[dict[str, object]] = []
     for line in lines:
-        if all(cell_text(cell) == "" for cell in line):
+        if not any(map(cell_text, line)):
             continue
-        beyond = [*(line[place] for place in unnamed if place < len(line)), *line[len(header) :]]
-        if any(cell_text(cell) for cell in beyond):
-            cell = next(filter(cell_text, beyond))
-            raise ExcessError(
-                f"row {len(rows) + 1} has {cell_text(cell)!r} in a column without a name"
-            )
+        beyond = (c for i, c in enumerate(line) if i >= len(header) or not header[i])
+        if cell := next(filter(None, map(cell_text, beyond)), ""):
+            raise ExcessError(f"row {len(rows) + 1} has {cell!r} in a column without a name")
         rows.append(
             {name: line[place] if place < len(line) else None for name, place in at.items()}
         )
@@ -342,20 +327,3 @@ def _cell(value: object) -> Cell:
     if isinstance(plain, str):  # such as a name, which may hold what no UTF-8 can
         return readable(plain)
     return None if isinstance(plain, float) and math.isnan(plain) else plain
-
-
-def _write_csv(
-    path: Path, columns: Sequence[str], cells: Callable[[], Iterable[Sequence[Cell]]], there: Path
-) -> None:
-    """Write in the form of the table that is there; in that of programs where it is none."""
-    form = PLAIN
-    with suppress(BushingNoiseError), reading(there, "table", largest=LARGEST_TEXT):
-        form = csv_form(*decoded(there.read_bytes()))
-    # A code page may not have a letter of a name.
-    for one in (form, form._replace(encoding="utf-8", head=f"\ufeff{form.head}")):
-        with (
-            suppress(UnicodeEncodeError),
-            path.open("w", encoding=one.encoding, newline="") as file,
-        ):
-            write_csv(file, columns, cells(), one)
-            return

@@ -168,7 +168,7 @@ def _corrected_table(path: Path, names: Iterable[str]) -> list[dict[str, object]
         return None
     known = {readable(name) for name in names}
     try:
-        before = read_label_table(path, names=known)
+        before = read_label_table(path)
     except RecordingError as error:
         raise ParameterError(
             f"{error}; what was corrected in it would be lost: mend it, move it away, or name "

@@ -164,9 +164,7 @@ def own_columns(rows: Iterable[Mapping[str, object]]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for row in rows for name in row if name not in COLUMNS))
 
 
-def read_label_table(
-    path: Path, refusals: list[str] | None = None, names: Iterable[str] = ()
-) -> list[dict[str, object]]:
+def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict[str, object]]:
     r"""Read a label table.
 
     Parameters
@@ -176,8 +174,6 @@ def read_label_table(
     refusals : list of str, optional
         Takes one line for each row that cannot be used, which is left out; without it, such a row
         is an error.
-    names : iterable of str
-        Recordings that are likely in it, by which code pages are told apart.
 
     Returns
     -------
@@ -203,7 +199,7 @@ def read_label_table(
     >>> row["label"], row["speed_rad_s"], row["material"]
     ('creak', 5.0, None)
     """
-    columns, rows = read_table(path, known=COLUMNS, numbers=_NUMBERS, names=names)
+    columns, rows = read_table(path, known=COLUMNS, numbers=_NUMBERS)
     missing = [column for column in NEEDED if column not in columns]
     if missing and path.suffix.lower() != ".jsonl":
         raise RecordingError(f"{path}: has no column {missing[0]!r}, so is no label table")

@@ -103,7 +103,7 @@ FORMS = {
     "plain": "file,level_db,count,calibrated,error,own\n",
     "de": "\ufefffile;level_db;count;calibrated;error;own\r\nx;0,5\r\n",
     "en": "\ufefffile,level_db,count,calibrated,error,own\r\n",
-    "de-ch": "# J.D.\r\nfile;level_db;count;calibrated;error;own\r\nx;0.5\r\n",
+    "de-ch": "file;level_db;count;calibrated;error;own\r\nx;0.5\r\n",
 }
 OWN = {"file": "-2.wav", "level_db": -3.7, "count": 5, "calibrated": True, "error": "=1, 5; x"}
 
