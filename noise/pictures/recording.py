@@ -8,7 +8,7 @@ second.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from features.kernels.levels import fast_level_pieces
 from features.kernels.orders import OrderMap, order_map, speed_of_angle
-from models.blocks import Read, RecordingBlocks, in_pieces, n_samples_of, reader_of
+from models.blocks import Read, RecordingBlocks, n_samples_of, reader_of
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE, Recording
@@ -36,11 +36,6 @@ _LEAST_LEVELS = 20.0
 
 _RUN_UP = 1.25
 """Ratio of largest and smallest speed from which on orders are told apart from frequencies [-]."""
-
-_MOST = 1 << 20
-"""Samples of a curve; of more the lowest and the highest of every so many are kept."""
-
-_AT_ONCE = 1 << 16
 
 _NAMED = 0.06
 """A segment as long as this share of the axis has room for its label [-]."""
@@ -99,13 +94,13 @@ def plot_recording(
         axes = [figure.add_subplot(grid[0])]
         axes += [figure.add_subplot(grid[n], sharex=axes[0]) for n in range(1, n_in_time)]
         if sound is None:
-            _trace(axes[0], _curve(recording, others[0]), kinds[others[0]])
+            values = reader_of(recording, others[0])(0, n_samples_of(recording))
+            _trace(axes[0], values, recording.rate, kinds[others[0]])
         else:
             _spectrogram(figure, axes[0], recording, sound)
             _level(axes[1], recording)
         if speed is not None:
-            values, rate = speed
-            _trace(axes[n_in_time - 1], (np.arange(values.size) / rate, values), "speed")
+            _trace(axes[n_in_time - 1], speed, recording.rate, "speed")
         for one in axes[:-1]:
             one.tick_params(labelbottom=False)
         axes[-1].set_xlabel("Time [s]")
@@ -151,40 +146,12 @@ def level_over_time(
 def _levels(
     read: Read, n: int, rate: float, reference: float, columns: int = 1200
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    pieces = fast_level_pieces(read, n, rate, reference=reference)
-    place, level = _extremes(pieces, 1 + n // _MOST)
-    heard = np.isfinite(level)
-    if not heard.any():
+    pieces = list(fast_level_pieces(read, n, rate, reference=reference))
+    level = np.concatenate([np.empty(0), *pieces])
+    there = np.isfinite(level)
+    if not there.any():
         return level[:0], level[:0]
-    return thinned(place[heard] / rate, level[heard], columns=columns)
-
-
-def _extremes(
-    pieces: Iterable[NDArray[np.float64]], every: int
-) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """Keep the lowest and the highest of every so many samples; where they are, and they."""
-    places, values, first = [np.empty(0, np.intp)], [np.empty(0)], 0
-    for piece in pieces:
-        if every == 1:
-            kept = np.arange(piece.size)
-        else:
-            starts = np.arange(0, piece.size, every)
-            cells = np.split(piece, starts[1:])
-            ends = [(cell.argmin(), cell.argmax()) for cell in cells]
-            kept = np.sort(starts[:, np.newaxis] + np.array(ends), axis=1).ravel()
-        places.append(first + kept)
-        values.append(piece[kept])
-        first += piece.size
-    return np.concatenate(places), np.concatenate(values)
-
-
-def _curve(
-    recording: Recording | RecordingBlocks, row: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return what is drawn of a channel over time."""
-    n = n_samples_of(recording)
-    place, values = _extremes(in_pieces(reader_of(recording, row), n), 1 + n // _MOST)
-    return place / recording.rate, values
+    return thinned(np.flatnonzero(there) / rate, level[there], columns=columns)
 
 
 def recorded_levels(
@@ -204,9 +171,7 @@ def recorded_levels(
     return _levels(read, n_samples_of(recording), recording.rate, _reference(recording))
 
 
-def recorded_speed(
-    recording: Recording | RecordingBlocks,
-) -> tuple[NDArray[np.float64], float] | None:
+def recorded_speed(recording: Recording | RecordingBlocks) -> NDArray[np.float64] | None:
     """Speed of the shaft over time, as it was recorded.
 
     Parameters
@@ -215,31 +180,22 @@ def recorded_speed(
 
     Returns
     -------
-    speed : ndarray, shape (n,)
-        [rad/s], from a channel of speed, else of angle.
-    rate : float
-        Its sampling rate [Hz]: less than the recording's where that is long. None instead of both
-        where there is neither channel.
+    ndarray, shape (n,)
+        [rad/s], from a channel of speed, else of angle; None where there is neither.
 
     Examples
     --------
     >>> from models.recording import Channel, Recording
     >>> turning = Recording(5.0 * np.arange(1000)[None] / 1e3, 1e3, (Channel("angle"),))
-    >>> float(recorded_speed(turning)[0].round(3).max())
+    >>> float(recorded_speed(turning).round(3).max())
     5.0
     """
     speed, angle = recording.first("speed"), recording.first("angle")
     if not recording.calibrated or (speed is None and angle is None):
         return None
     row = angle if speed is None else speed
-    n = n_samples_of(recording)
-    every = 1 + n // _MOST
-    pieces = in_pieces(reader_of(recording, row or 0), n, every * (1 + _AT_ONCE // every))
-    means = [
-        piece[: piece.size // every * every].reshape(-1, every).mean(axis=1) for piece in pieces
-    ]
-    values, rate = np.concatenate(means), recording.rate / every
-    return (values if speed is not None else speed_of_angle(values, rate)), rate
+    values = reader_of(recording, row or 0)(0, n_samples_of(recording))
+    return values if speed is not None else speed_of_angle(values, recording.rate)
 
 
 def recorded_orders(recording: Recording | RecordingBlocks) -> OrderMap | None:
@@ -261,13 +217,13 @@ def recorded_orders(recording: Recording | RecordingBlocks) -> OrderMap | None:
     row = next(filter(lambda r: r is not None, map(recording.first, _WITH_ORDERS)), None)
     if speed is None or row is None:
         return None
-    values, rate = speed
-    slowest, fastest = np.quantile(np.abs(values), (0.05, 0.95))
+    slowest, fastest = np.quantile(np.abs(speed), (0.05, 0.95))
     if fastest <= max(_RUN_UP * slowest, 0.05):
         return None
     try:
         found = order_map(
-            reader_of(recording, row), n_samples_of(recording), recording.rate, values, rate,
+            reader_of(recording, row), n_samples_of(recording), recording.rate, speed,
+            recording.rate,
             reference=_reference(recording),
         )  # fmt: skip
     except ParameterError:  # too short, or what a sensor gives that fails
@@ -335,9 +291,9 @@ def _level(axes: Axes, recording: Recording | RecordingBlocks) -> None:
     axes.set_ylabel(f"L_AF [{_unit(recording)}]")
 
 
-def _trace(axes: Axes, curve: tuple[NDArray[np.float64], NDArray[np.float64]], kind: str) -> None:
+def _trace(axes: Axes, values: NDArray[np.floating], rate: float, kind: str) -> None:
     look = CHANNEL_LOOKS[kind]
-    axes.plot(*thinned(*curve), color=look.colour, linewidth=1.0)
+    axes.plot(*thinned(np.arange(values.size) / rate, values), color=look.colour, linewidth=1.0)
     axes.set_ylabel(f"{look.name}\n[{look.unit}]")
 
 
