@@ -72,43 +72,6 @@ def transform_size(signal: int, impulse_response: int) -> int:
     return size
 
 
-def filter_period(
-    period: NDArray[np.float64],
-    rate: float,
-    transfer: TransferFunction,
-    *,
-    falls_below: bool = False,
-) -> NDArray[np.float64]:
-    """Send a signal that repeats for ever through a transfer function.
-
-    Parameters
-    ----------
-    period : ndarray, shape (n,)
-        One period, in the transfer function's input [unit]. A signal that does not repeat is to be
-        led back to its start, else it has a step there.
-    rate : float
-        Sampling rate [Hz].
-    transfer : TransferFunction
-    falls_below : bool
-        As `TransferFunction.at` takes it.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        One period of the output, in the output [unit].
-
-    Examples
-    --------
-    >>> double = TransferFunction(np.array([0.0, 4e3]), np.array([2.0 + 0j, 2.0 + 0j]))
-    >>> filter_period(np.array([1.0, 0.0, 0.0, -1.0]), 8e3, double).round(9)
-    array([ 2.,  0.,  0., -2.])
-    """
-    n = period.size
-    frequencies = np.asarray(np.fft.rfftfreq(n, 1.0 / rate), np.float64)
-    spectrum = rfft(period) * transfer.at(frequencies, falls_below=falls_below)
-    return np.asarray(irfft(spectrum, n))
-
-
 FINER = 8
 """By how much lines are refined before straight lines join them [-]."""
 
