@@ -196,7 +196,8 @@ def test_maps_laid_over_each_other_keep_what_lies_where(first, second):
         assert area(laid) == pytest.approx(area(own))
 
 
-def test_the_loudest_of_each_noise_and_the_largest_difference_are_heard(two):
+def test_the_loudest_of_each_noise_and_the_largest_difference_are_heard(two, monkeypatch):
+    monkeypatch.setattr("noise.screening.screen.advise", lambda *_, **__: ())
     wide = of("fluorocarbon", use=replace(QUICK, speed=tuple(np.linspace(0.5, 12.5, 25))),
               damping="x2")  # fmt: skip
     shared = shared_points(screen_maps(wide))
