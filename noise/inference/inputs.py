@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,18 +56,9 @@ _FIXED = 10.0
 """Of the bolted clamp on a scale of logarithms that end at 9.2 [-]; assumed."""
 
 
-@dataclass(frozen=True)
-class _Scale:
-    low: float
-    high: float
-    logarithmic: bool
-
-
-_SCALES = {
-    "speed": _Scale(*SPEED_RANGE, True),
-    "interference": _Scale(*INTERFERENCE_RANGE, False),
-    "support_stiffness": _Scale(*SUPPORT_RANGE, True),
-}
+_RANGES = {
+    "speed": SPEED_RANGE, "interference": INTERFERENCE_RANGE, "support_stiffness": SUPPORT_RANGE,
+}  # fmt: skip
 
 
 def scaled(condition: Condition) -> NDArray[np.float64]:
@@ -120,11 +110,11 @@ def unscaled(name: str, point: float) -> float:
     >>> unscaled("interference", 0.279), unscaled("support_stiffness", 10.0)
     (0.000279, inf)
     """
-    scale = _SCALES[name]
+    low, high = _RANGES[name]
     if name == "support_stiffness" and point >= _FIXED:
         return FIXED
-    value = math.exp(point) if scale.logarithmic else 1e-3 * point
-    return min(max(value, scale.low), scale.high)
+    value = 1e-3 * point if name == "interference" else math.exp(point)
+    return min(max(value, low), high)
 
 
 def segment_features(

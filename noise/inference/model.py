@@ -50,9 +50,6 @@ _NARROWER = 0.8
 """An interval as wide as this share of the one known beforehand, or wider, is none [-];
 assumed."""
 
-_UNITS = {
-    "speed": (1.0, "rad/s"), "interference": (1e3, "mm"), "support_stiffness": (1.0, "Nm/rad"),
-}  # fmt: skip
 INFERENCE = ModelKind(
     "model of conditions", 1, "bushing-noise train --inference",
     ("noise.inference", "conditions.npz"),
