@@ -291,7 +291,7 @@ def _level(axes: Axes, recording: Recording | RecordingBlocks) -> None:
     axes.set_ylabel(f"L_AF [{_unit(recording)}]")
 
 
-def _trace(axes: Axes, values: NDArray[np.floating], rate: float, kind: str) -> None:
+def _trace(axes: Axes, values: NDArray[np.float64], rate: float, kind: str) -> None:
     look = CHANNEL_LOOKS[kind]
     axes.plot(*thinned(np.arange(values.size) / rate, values), color=look.colour, linewidth=1.0)
     axes.set_ylabel(f"{look.name}\n[{look.unit}]")

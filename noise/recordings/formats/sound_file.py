@@ -102,7 +102,7 @@ FORMAT = Format(
 class _Content(mmap):
     """A file in memory, where what it lacks can be added; nothing leads beyond its end."""
 
-    def seek(self, offset: int, whence: int = os.SEEK_SET) -> None:  # type: ignore[override]
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> None:
         """Go to a byte."""
         base = {os.SEEK_SET: 0, os.SEEK_CUR: self.tell(), os.SEEK_END: len(self)}[whence]
         super().seek(min(max(0, base + offset), len(self)))
