@@ -23,12 +23,12 @@ from sim.contact import (
     TIME,
     TORQUE,
     TWIST,
-    call_hook,
 )
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
+from tests.helpers.contact_calls import call_hook
 from tests.helpers.contacts import contact_of, hook, solve_contact
 
 TRUE_STICK = load_material_rig("fluorocarbon-thesis")

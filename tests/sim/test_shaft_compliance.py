@@ -13,9 +13,9 @@ from sim.contact import (
     SHAFT_LAG,
     SHAFT_LAG_RATE,
     SHAFT_TORQUE,
-    call_hook,
 )
 from sim.effects import EFFECTS
+from tests.helpers.contact_calls import call_hook
 from tests.helpers.contacts import contact_of, hook, solve_contact
 
 TRUE_STICK = load_material_rig("fluorocarbon-thesis")

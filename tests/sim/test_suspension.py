@@ -15,13 +15,14 @@ from models.rig_file import load_material_rig
 from models.suspension import Bar, TorsionChain, load_suspension, suspension_file, torsion_chain
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
-from sim.contact import CRITICAL, KINETIC, N_CONTACT, call_law
+from sim.contact import CRITICAL, KINETIC, N_CONTACT
 from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.parameters import resolve
 from sim.run import Plan
 from sim.shaft import ConstantSpeed, Oscillation
 from sim.suspension import run_suspension, solve_chain, torque_gain
+from tests.helpers.contact_calls import call_law
 
 CAR = load_suspension(suspension_file())
 AT = {"interference": 0.279e-3, "support_stiffness": 2214.0}

@@ -6,7 +6,7 @@ from hypothesis import given, settings, strategies as st
 from scipy.integrate import simpson, solve_ivp
 
 from models.rig_file import load_material_rig
-from sim.contact import call_law
+from tests.helpers.contact_calls import call_law
 from tests.helpers.contacts import contact_of, solve_contact
 
 RIG = load_material_rig("fluorocarbon")
