@@ -135,7 +135,7 @@ KEEPING = {  # call, what its journal is of, exit code
 def test_what_was_done_before_a_kill_is_not_done_again(command, tmp_path, monkeypatch):
     call, target, code = KEEPING[command]
     undisturbed, killed = tmp_path / "undisturbed", tmp_path / "killed"
-    make_recordings(undisturbed / "runs", 24, 2, 0.2)
+    make_recordings(undisturbed / "runs", 12, 2, 0.2)
     shutil.copytree(undisturbed / "runs", killed / "runs")
     monkeypatch.chdir(undisturbed)
     assert main(call) == code
@@ -162,7 +162,7 @@ def test_what_was_done_before_a_kill_is_not_done_again(command, tmp_path, monkey
     [(signal.SIGTERM, 143), pytest.param(signal.SIGINT, 130, marks=pytest.mark.slow)],
 )
 def test_told_to_end_it_writes_what_it_did_and_ends_its_processes(tmp_path, how, code, capsys):
-    make_recordings(tmp_path / "runs", 40, 4, 0.2)
+    make_recordings(tmp_path / "runs", 20, 4, 0.2)
     table = tmp_path / "t.csv"
     process = start(["label", *RUNS, "--workers", "2"], tmp_path, start_new_session=True)
     wait_for(process, journal_path(table), 5)
@@ -173,7 +173,7 @@ def test_told_to_end_it_writes_what_it_did_and_ends_its_processes(tmp_path, how,
     assert "Traceback" not in err
     assert len({line.split(",")[0] for line in table.read_text().splitlines()[1:]}) >= 5
     assert main(["label", str(tmp_path / "runs"), "--out", str(table)]) == 1
-    assert "of 40 recordings are done already" in capsys.readouterr().err
+    assert "of 20 recordings are done already" in capsys.readouterr().err
 
 
 def test_later_calls_do_only_what_is_new_or_changed(tmp_path, capsys):

@@ -13,16 +13,7 @@ from models.errors import ParameterError
 from models.rig_file import load_rig
 from noise.cli import main
 from noise.diagnosis.case import read_case, usable
-from tests.helpers.made_posteriors import made_posterior
 from tests.helpers.small_rigs import RATE, RIG, RIG_FILE, at, only, run, write_case
-
-
-@pytest.fixture(autouse=True)
-def posterior(monkeypatch):
-    """What is said does not matter here, so the shipped posterior is not needed."""
-    made = made_posterior()
-    monkeypatch.setattr("noise.diagnosis.diagnose.load_posterior", lambda: made)
-    return made
 
 
 @pytest.fixture(scope="module")

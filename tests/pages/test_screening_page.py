@@ -18,6 +18,7 @@ from noise.pages.screen_sounds import chosen_points, screen_maps, shared_points
 from noise.pages.screening import RANKING, ranking_rows, write_screening
 from noise.screening.design import Design, Use
 from noise.screening.screen import screen
+from tests.helpers.quick_screens import no_advice, quick_screen
 
 QUICK = Use(speed=(1.0, 5.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
 
@@ -92,10 +93,15 @@ HOSTILE = st.one_of(
 )  # fmt: skip
 
 
-@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@pytest.fixture(scope="module")
+def plain(two, tmp_path_factory):
+    """The page of both without sounds."""
+    return page_of(two, tmp_path_factory.mktemp("plain"), sounds=0)
+
+
+@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(HOSTILE, min_size=2, max_size=2, unique=True))
-def test_a_hostile_name_is_text_and_nothing_else(two, tmp_path, names):
-    plain = page_of(two, tmp_path, sounds=0)
+def test_a_hostile_name_is_text_and_nothing_else(two, plain, tmp_path, names):
     page = page_of(renamed(two, names), tmp_path, sounds=0)
     # The same elements, and the same attributes but for what they say.
     assert [(tag, set(attrs)) for tag, attrs in page.tags] == [
@@ -121,7 +127,7 @@ def test_a_design_that_never_slips_has_no_rank_no_sound_and_says_why(tmp_path):
     held = load_material_rig("fluorocarbon").changed(
         critical_torque="x1000", kinetic_torque="x1000"
     )
-    found = screen(["fluorocarbon", Design("in Nmm", held)], replace(QUICK, speed=(5.0,)))
+    found = quick_screen(["fluorocarbon", Design("in Nmm", held)], replace(QUICK, speed=(5.0,)))
     row = by_name(ranking_rows(found))["in Nmm"]
     assert (row["Rank"], row["Margin"], row["Loudest"]) == ("\N{EN DASH}", "", "")
     assert "never slips" in row["In its use"].text
@@ -196,10 +202,10 @@ def test_maps_laid_over_each_other_keep_what_lies_where(first, second):
         assert area(laid) == pytest.approx(area(own))
 
 
-def test_the_loudest_of_each_noise_and_the_largest_difference_are_heard(two, monkeypatch):
-    monkeypatch.setattr("noise.screening.screen.advise", lambda *_, **__: ())
-    wide = of("fluorocarbon", use=replace(QUICK, speed=tuple(np.linspace(0.5, 12.5, 25))),
-              damping="x2")  # fmt: skip
+def test_the_loudest_of_each_noise_and_the_largest_difference_are_heard(two):
+    use = replace(QUICK, speed=tuple(np.linspace(0.5, 12.5, 25)))
+    with no_advice():
+        wide = of("fluorocarbon", use=use, damping="x2")
     shared = shared_points(screen_maps(wide))
     chosen = chosen_points(shared, 10)
     for number in range(2):

@@ -6,7 +6,7 @@ from matplotlib.colors import to_hex
 
 from noise.pictures.maps import plot_screen
 from noise.screening.design import Use
-from noise.screening.screen import screen
+from tests.helpers.quick_screens import quick_screen
 
 
 @pytest.fixture(scope="module")
@@ -16,9 +16,7 @@ def found():
         interference=(0.279e-3,),
         support_stiffness=(2214.0, 3000.0),
     )
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("noise.screening.screen.advise", lambda *_, **__: ())
-        return screen(["fluorocarbon", "PDMS"], use)
+    return quick_screen(["fluorocarbon", "PDMS"], use)
 
 
 def test_lines_look_in_the_key_as_they_do_in_the_map(found):

@@ -12,6 +12,7 @@ from noise.pages.review import read_screen, rig_of
 from noise.screening.design import load_design
 from noise.screening.parts import robustness
 from noise.screening.standing import SHARED
+from tests.helpers.quick_screens import no_advice
 
 QUICK = ["--speed", "1,5,9", "--support-stiffness", "2214"]
 BAD = """\
@@ -102,8 +103,10 @@ kinetic_torque = 0.05
 
 @pytest.fixture
 def few(monkeypatch):
-    """Few parts, which take a tenth of the time."""
+    """Few parts, which take a tenth of the time, and no advice."""
     monkeypatch.setattr("noise.screening.screen.robustness", partial(robustness, parts=8))
+    with no_advice():
+        yield
 
 
 def test_a_design_with_tolerances_tells_what_its_parts_do(tmp_path, capsys, few):

@@ -15,10 +15,10 @@ from noise.screening.grid import grid_of
 from noise.screening.loudness import with_loudness
 from noise.screening.mapping import map_design
 from noise.screening.point import evaluate_point
-from noise.screening.screen import screen
 from noise.screening.summary import summary_lines
 from noise.screening.tables import screening_tables
 from noise.screening.vibration import Condition
+from tests.helpers.quick_screens import quick_screen
 from tests.screening.long_runs import label_after
 
 SUPPORTS = (2214.0, 3745.0, math.inf)
@@ -93,7 +93,7 @@ def test_points_are_labelled_as_recordings_of_them_are(material):
 
 def test_a_constant_torque_sticks_and_slips_where_stability_sees_nothing():
     use = Use(speed=tuple(np.arange(0.5, 9.01, 0.25)), support_stiffness=(3745.0,))
-    found = screen(["fluorocarbon-thesis"], replace(use, interference=(0.279e-3,)))
+    found = quick_screen(["fluorocarbon-thesis"], replace(use, interference=(0.279e-3,)))
     (point,) = found.critical
     label = found.maps[0].label[0, 0, 0]
     from_rest = np.array(use.speed)[(label != "none") & (label != "persists")]
@@ -139,11 +139,13 @@ def test_a_bar_that_swings_on_the_road_makes_noise_where_its_rubber_does():
 
 def test_a_swing_is_mapped_over_its_frequencies_beside_constant_speed():
     swinging = Swinging(math.radians(15), (1.0, 2.0, 3.0))
-    alone = screen(["PDMS"], Use(swinging=swinging, support_stiffness=(2214.0,)))
+    alone = quick_screen(["PDMS"], Use(swinging=swinging, support_stiffness=(2214.0,)))
     assert [found.motion for found in alone.maps] == ["swinging"]
     assert alone.maps[0].grid.speed == swinging.peak_speed
     assert alone.critical == ()
-    both = screen(["PDMS"], Use(speed=(1.0, 2.0), swinging=swinging, support_stiffness=(2214.0,)))
+    both = quick_screen(
+        ["PDMS"], Use(speed=(1.0, 2.0), swinging=swinging, support_stiffness=(2214.0,))
+    )
     assert [found.motion for found in both.maps] == ["steady", "swinging"]
 
 
@@ -155,7 +157,7 @@ def test_the_design_that_is_quieter_by_construction_is_ranked_first():
     )
     quiet = Design("damped", replace(FLUOROCARBON, fits=fits))
     use = Use(speed=(5.0,), interference=(0.279e-3,), support_stiffness=(2214.0,))
-    found = screen([Design("as it is", FLUOROCARBON), quiet], use)
+    found = quick_screen([Design("as it is", FLUOROCARBON), quiet], use)
     assert [(one.rank, one.design) for one in found.standings] == [(1, "damped"), (2, "as it is")]
     assert found.standings[0].mean_loudness < found.standings[1].mean_loudness
     assert found.standings[0].margin_stability > found.standings[1].margin_stability
@@ -164,7 +166,7 @@ def test_the_design_that_is_quieter_by_construction_is_ranked_first():
 @pytest.mark.slow
 def test_environments_change_a_map_and_are_told_apart():
     use = Use(speed=(3.0, 6.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
-    found = screen(["fluorocarbon"], use, environments=["dry", "grease", "wet"])
+    found = quick_screen(["fluorocarbon"], use, environments=["dry", "grease", "wet"])
     assert [one.environment for one in found.maps] == ["dry", "grease", "wet"]
     assert (found.maps[1].label == "none").all()
     growth = [one.growth.mean() for one in found.maps]
@@ -174,11 +176,11 @@ def test_environments_change_a_map_and_are_told_apart():
 def test_a_design_that_cannot_be_simulated_does_not_stop_the_others():
     fast = replace(FLUOROCARBON, elastomer_inertia=1e-14)
     use = Use(speed=(1.0, 2.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
-    found = screen([Design("fast", fast), "PDMS"], use)
+    found = quick_screen([Design("fast", fast), "PDMS"], use)
     assert [name for name, _ in found.refused] == ["fast"]
     assert [one.design for one in found.maps] == ["PDMS"]
     with pytest.raises(ParameterError, match="grows without bound"):
-        screen([Design("fast", fast)], use)
+        quick_screen([Design("fast", fast)], use)
 
 
 def test_loudness_is_that_of_the_loudest_point_of_a_region():
@@ -196,7 +198,7 @@ HELD = Design("held", load_material_rig("fluorocarbon-thesis").changed(critical_
 
 def test_a_contact_that_never_slips_gets_no_rank_and_comes_last():
     use = Use(speed=(1.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
-    found = screen([HELD, "PDMS"], use)
+    found = quick_screen([HELD, "PDMS"], use)
     assert [(one.design, one.rank) for one in found.standings] == [("PDMS", 1), ("held", None)]
     line = next(line for line in summary_lines(found) if "held" in line)
     assert "no rank; never slips" in line
@@ -210,6 +212,6 @@ def test_in_a_swing_it_is_a_result():
         interference=(0.279e-3,),
         support_stiffness=(2214.0,),
     )
-    best, other = screen(["fluorocarbon-thesis", HELD], swing).standings
+    best, other = quick_screen(["fluorocarbon-thesis", HELD], swing).standings
     assert (best.design, best.rank, other.rank) == ("held", 1, 2)
     assert best.words.endswith("; quiet")

@@ -20,6 +20,7 @@ from noise.screening.standing import refuse_unlike
 from noise.screening.summary import summary_lines
 from noise.screening.tables import screening_tables
 from noise.screening.vibration import Condition
+from tests.helpers.quick_screens import quick_screen
 
 THESIS = load_material_rig("fluorocarbon-thesis")
 FLUOROCARBON = load_material_rig("fluorocarbon")
@@ -119,7 +120,7 @@ def test_what_one_was_asked_all_are(designs, asked):
 
 
 def test_maps_over_other_points_are_not_ranked(quick):
-    found = screen(["PDMS", "fluorocarbon"], Use(speed=(1.0, 9.0)))
+    found = quick_screen(["PDMS", "fluorocarbon"], Use(speed=(1.0, 9.0)))
     refuse_unlike(found.maps)
     one, other = found.maps
     fewer = replace(other, grid=replace(other.grid, support_stiffness=(2214.0,)))
@@ -135,7 +136,7 @@ SINGLE = Design(
 
 
 def test_a_design_of_one_damping_meets_the_supports_of_the_others(quick):
-    found = screen([SINGLE, "fluorocarbon-thesis"], Use(speed=(1.0, 5.0, 9.0)))
+    found = quick_screen([SINGLE, "fluorocarbon-thesis"], Use(speed=(1.0, 5.0, 9.0)))
     own = next(one for one in found.maps if one.design == SINGLE.name)
     assert own.grid.support_stiffness == (2214.0, 3745.0, math.inf)
     note = own.note[0, 1, 0, 0]
@@ -172,7 +173,7 @@ def test_notes_say_what_the_rule_does(support, interference):
 def test_a_fit_that_is_held_makes_the_same_noise_and_is_not_simulated_twice():
     fits = (0.1e-3, 0.178e-3, 0.5e-3, 0.6e-3)
     use = Use(speed=(2.0, 8.0), interference=fits, support_stiffness=(2214.0,))
-    (found,) = screen(["fluorocarbon"], use).maps
+    (found,) = quick_screen(["fluorocarbon"], use).maps
     assert rows_of(FLUOROCARBON, fits) == [1, 1, 2, 2]
     assert found.count("simulated") == 4
     assert (found.how[0, 0, (0, 3)] == "unchanged").all()
