@@ -21,6 +21,10 @@ from .kernels.lines import (
     Lines as Lines,
     find_lines as find_lines,
 )
+from .kernels.pitch import (
+    PitchTrack as PitchTrack,
+    pitch_track as pitch_track,
+)
 from .kernels.slips import (
     Pulses as Pulses,
     TorqueSlips as TorqueSlips,

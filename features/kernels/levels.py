@@ -639,7 +639,7 @@ def fast_levels(
 
 
 def _smoothed(
-    power: NDArray[np.float64], rate: float, state: NDArray[np.float64]
+    power: NDArray[np.floating], rate: float, state: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return a squared sound with the time weighting F on it, and where the meter stands then."""
     from scipy.signal import lfilter

@@ -98,4 +98,4 @@ def cluster(scheduler: str) -> Iterator[Callable[..., Generator[tuple[int, Any]]
 
 
 def _program() -> list[object]:
-    return [RESULTS_VERSION, *map(version, ("numpy", "scipy", "numba", "scikit-learn"))]
+    return [RESULTS_VERSION, *map(version, ("numpy", "scipy", "numba", "librosa", "scikit-learn"))]
