@@ -319,10 +319,15 @@ def differs(diagnosis: Diagnosis) -> bool:
 
 def _no_gap(diagnosis: Diagnosis) -> str:
     agreed = "Recordings and simulation differ no more than repeats do: there is nothing to explain"
-    if diagnosis.gap > diagnosis.floor or far_ones(diagnosis):
+    if diagnosis.gap > diagnosis.floor:
         agreed = (
             "Recordings and simulation differ by more than repeats do on average, which may be "
             "chance: nothing is to be explained"
+        )
+    elif far_ones(diagnosis):
+        agreed = (
+            "Taken together, recordings and simulation differ no more than repeats do: nothing is "
+            "to be explained"
         )
     if differs(diagnosis):
         agreed = (
