@@ -9,7 +9,7 @@ sure as another. How many false names that leaves is counted on sources that cho
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,7 @@ from scipy.optimize import minimize
 from scipy.stats import chi2
 
 from features.windows.table import HOP
-from noise.classifier.model import Calibration, at_sensitivity
+from noise.classifier.model import Calibration, Thresholds, at_sensitivity
 from noise.labels.segmentation import NOISES, clearest, labelled_stretches
 
 FALSE_NAMES_AN_HOUR = np.array([15.0, 8.0, 20.0])
@@ -158,20 +158,18 @@ class Background:
 
 def false_name_rates(
     backgrounds: Sequence[Background],
+    thresholds: Mapping[int, Thresholds],
     sensitivities: Sequence[float],
-    choosing: Sequence[Background] | None = None,
 ) -> dict[str, dict[str, float]]:
     """Count false names on sources that chose no threshold.
-
-    The thresholds that count a part's names are those of all other parts.
 
     Parameters
     ----------
     backgrounds : sequence of Background
+    thresholds : mapping of int to tuple of 3 floats
+        By part: chosen by other parts [-].
     sensitivities : sequence of float
         [ratio of odds]
-    choosing : sequence of Background, optional
-        Those by which thresholds are chosen; by default the same.
 
     Returns
     -------
@@ -183,16 +181,14 @@ def false_name_rates(
     --------
     >>> other = [0.0, 0.0, 0.0, 0.1, 0.9]
     >>> quiet = [Background(np.array([other] * 7200), part) for part in (0, 1)]
-    >>> false_name_rates(quiet, [1.0])
+    >>> false_name_rates(quiet, {0: (0.5, 0.5, 0.5), 1: (0.4, 0.5, 0.5)}, [1.0])
     {'1': {'names': 0, 'hours': 1.0, 'an_hour': 0.0, 'low': 0.0, 'high': 3.7}}
     """
     names = dict.fromkeys(sensitivities, 0)
-    for part in {background.part for background in backgrounds}:
+    for part, chosen in thresholds.items():
         own = [b.probabilities for b in backgrounds if b.part == part]
-        others = [b.probabilities for b in choosing or backgrounds if b.part != part]
-        thresholds = fit_thresholds(others)
         for sensitivity in sensitivities:
-            limits = at_sensitivity(thresholds, sensitivity)
+            limits = at_sensitivity(chosen, sensitivity)
             found = [labelled_stretches(p, limits)[1] for p in own]
             names[sensitivity] += int(sum(np.sum(labels < NOISES) for labels in found))
     hours = HOP * max(1, sum(len(b.probabilities) for b in backgrounds)) / 3600.0
