@@ -1,7 +1,7 @@
 // Level over time, and the levels of a stretch.
 import { facts } from "./sounds.js";
 import { ticks } from "../shared/player.js";
-import { caption, DEEP, LINE, SOFT, sheet } from "./timeline.js";
+import { caption, DEEP, drawAxis, LINE, sheet } from "./timeline.js";
 
 const LEAST_RANGE = 30; // of the level axis [dB]
 
@@ -40,17 +40,12 @@ export class LevelCourse {
 
   draw() {
     const { pen, width, height } = sheet(this.plot);
-    const axis = sheet(this.axis);
+    const marked = this.found ? ticks(this.low, this.high, 4).found : [];
+    const share = (level) => (this.high - level) / (this.high - this.low), y = (level) => share(level) * height;
+    drawAxis(this.axis, 6, marked.map((level) => [share(level), `${level}`]), height);
     if (!this.found) return;
-    const y = (level) => ((this.high - level) / (this.high - this.low)) * height;
-    axis.pen.fillStyle = SOFT;
-    axis.pen.textAlign = "right";
-    axis.pen.textBaseline = "middle";
-    for (const level of ticks(this.low, this.high, 4).found) {
-      pen.fillStyle = LINE;
-      pen.fillRect(0, Math.round(y(level)), width, 1);
-      axis.pen.fillText(`${level}`.replace("-", "−"), axis.width - 6, Math.min(height - 6, Math.max(6, y(level))));
-    }
+    pen.fillStyle = LINE;
+    for (const level of marked) pen.fillRect(0, Math.round(y(level)), width, 1);
     const { cell_s: cell, levels } = this.found;
     pen.strokeStyle = DEEP;
     pen.lineWidth = 1.5;

@@ -1,6 +1,6 @@
 // Outline of the samples over time.
 import { numbers } from "./sounds.js";
-import { caption, DEEP, LINE, SOFT, sheet } from "./timeline.js";
+import { caption, DEEP, drawAxis, LINE, sheet } from "./timeline.js";
 
 const FINER = 60; // after the view has come to rest [ms]
 
@@ -37,7 +37,8 @@ export class Outline {
     const { start, end } = this.timeline;
     const fine = this.parts[1];
     const part = fine && fine.start <= start + 1e-3 && fine.end >= end - 1e-3 ? fine : this.parts[0];
-    this.#drawAxis(part);
+    const largest = Number(this.most?.toPrecision(2));
+    drawAxis(this.axis, 4, part ? [[0.03, `${largest}`], [0.97, `${-largest}`], [0.5, part.unit]] : []);
     pen.fillStyle = LINE;
     pen.fillRect(0, height / 2, width, 1);
     if (!part) return;
@@ -52,18 +53,5 @@ export class Outline {
       pen.fillRect(x, high, Math.max(1, (step / this.timeline.span) * width), Math.max(1, low - high));
     }
     caption(pen, this.name, height);
-  }
-
-  #drawAxis(part) {
-    const { pen, width, height } = sheet(this.axis);
-    if (!part) return;
-    pen.fillStyle = SOFT;
-    pen.textAlign = "right";
-    pen.textBaseline = "middle";
-    const largest = Number(this.most.toPrecision(2));
-    for (const [value, at] of [[largest, 0.03], [-largest, 0.97]]) {
-      pen.fillText(`${value}`.replace("-", "−"), width - 4, Math.min(height - 6, Math.max(6, at * height)));
-    }
-    pen.fillText(part.unit, width - 4, height / 2);
   }
 }

@@ -3,6 +3,14 @@
 const STILL = 4; // a press that moves less is a click [px]
 const WHEEL = 0.0015; // of zoom for a pixel of the wheel
 
+// Follow a press until it ends, also outside of what is pressed.
+export function drag(node, { pointerId }, move, end) {
+  node.setPointerCapture(pointerId);
+  const over = new AbortController(), { signal } = over;
+  const last = (event) => { over.abort(); end(event); };
+  for (const [name, act] of Object.entries({ pointermove: move, pointerup: last, pointercancel: last })) node.addEventListener(name, act, { signal });
+}
+
 export function follow(page) {
   const { parts, timeline, spectrogram, levels } = page;
   const at = ({ clientX }) => {
@@ -18,19 +26,17 @@ export function follow(page) {
     lane.addEventListener("pointerdown", (event) => {
       if (event.button || !page.sound) return;
       const first = at(event);
-      lane.setPointerCapture(event.pointerId);
       let moved = false;
       const move = (now) => {
         moved ||= Math.abs(now.clientX - event.clientX) > STILL;
         if (moved) timeline.select(first, at(now));
       };
       const end = (last) => {
-        for (const [name, one] of Object.entries({ pointermove: move, pointerup: end, pointercancel: end })) lane.removeEventListener(name, one);
         if (last.type === "pointercancel") timeline.select(null);
         else if (moved) page.seek(timeline.selection.start);
         else { if (timeline.selection) timeline.select(null); page.seek(first); }
       };
-      for (const [name, one] of Object.entries({ pointermove: move, pointerup: end, pointercancel: end })) lane.addEventListener(name, one);
+      drag(lane, event, move, end);
     });
     lane.addEventListener("pointermove", (event) => {
       if (!page.sound || !spectrogram.whole) return;

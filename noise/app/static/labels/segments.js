@@ -1,6 +1,7 @@
 // Segments over the lanes: coloured regions, their names, borders that are dragged or moved by keys.
 import { borders, limits, moved } from "./edits.js";
 import { made } from "../dom.js";
+import { drag } from "./pointer.js";
 import { seconds } from "./timeline.js";
 
 const STEP = 0.01; // of an arrow key on a border [s]
@@ -119,7 +120,6 @@ export class Segments {
       if (event.button) return;
       event.preventDefault();
       handle.focus();
-      handle.setPointerCapture(event.pointerId);
       const { corrections } = this, { border } = handle, { id, track, shown: { length } } = corrections;
       const same = () => id === corrections.id && track === corrections.track && length === corrections.shown.length;
       let time = null;
@@ -130,18 +130,13 @@ export class Segments {
         if (same()) corrections.preview(moved(corrections.shown, border, time));
       };
       const end = (last) => {
-        handle.removeEventListener("pointermove", move);
-        handle.removeEventListener("pointerup", end);
-        handle.removeEventListener("pointercancel", end);
         if (time === null) return;
         corrections.inTurn(() => {
           if (last.type === "pointerup" && same()) corrections.write(moved(corrections.shown, border, time));
           else corrections.restore();
         });
       };
-      handle.addEventListener("pointermove", move);
-      handle.addEventListener("pointerup", end);
-      handle.addEventListener("pointercancel", end);
+      drag(handle, event, move, end);
     });
     return handle;
   }

@@ -1,7 +1,7 @@
 // Spectrogram: levels as colours, its axes, a cursor that reads them, harmonics of a frequency.
 import { colour, palette } from "./colours.js";
 import { numbers } from "./sounds.js";
-import { DEEP, INK, SOFT, sheet } from "./timeline.js";
+import { DEEP, drawAxis, INK, SOFT, sheet } from "./timeline.js";
 
 const FINER = 90; // after the view has come to rest [ms]
 const RANGE = 70; // from the darkest colour to white [dB]
@@ -94,17 +94,11 @@ export class Spectrogram {
   frequency(share) { return this.whole.high * (this.whole.low / this.whole.high) ** Math.min(1, Math.max(0, share)); }
 
   #drawAxis() {
-    const { pen, width, height } = sheet(this.axis);
+    const shown = FREQUENCIES.filter((one) => this.whole && one >= this.whole.low && one <= this.whole.high);
+    const rows = shown.map((one) => [this.share(one), one < 1000 ? `${one}` : `${one / 1000}k`]);
+    const { pen, width, height } = drawAxis(this.axis, 9, rows);
     if (!this.whole) return;
-    pen.textAlign = "right";
-    pen.textBaseline = "middle";
-    pen.fillStyle = pen.strokeStyle = SOFT;
-    for (const one of FREQUENCIES) {
-      if (one < this.whole.low || one > this.whole.high) continue;
-      const y = Math.min(height - 6, Math.max(6, this.share(one) * height));
-      pen.fillText(one < 1000 ? `${one}` : `${one / 1000}k`, width - 9, y);
-      pen.fillRect(width - 6, this.share(one) * height, 6, 1);
-    }
+    for (const [share] of rows) pen.fillRect(width - 6, share * height, 6, 1);
     pen.textAlign = "left";
     pen.fillText("Hz", 1, 6);
   }

@@ -91,6 +91,14 @@ export function caption(pen, text, height) {
   pen.fillText(text, 6, height - 8);
 }
 
+// Texts beside a lane of this height, [share from the top, text] of each.
+export function drawAxis(canvas, room, rows, height = canvas.clientHeight) {
+  const { pen, width } = sheet(canvas);
+  Object.assign(pen, { fillStyle: SOFT, textAlign: "right", textBaseline: "middle" });
+  for (const [share, text] of rows) pen.fillText(text.replace("-", "−"), width - room, Math.min(height - 6, Math.max(6, share * height)));
+  return { pen, width, height };
+}
+
 export function drawTimes(canvas, timeline) {
   const { pen, width } = sheet(canvas);
   pen.fillStyle = SOFT;
