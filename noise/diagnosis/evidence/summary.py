@@ -471,7 +471,17 @@ def summary(
 
 
 def signals_of(recording: Recording) -> dict[str, NDArray[np.float64]]:
-    """Return the first channel of each kind, by its kind [unit of the channel]."""
+    """Select the first channel of each kind.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n,)
+        By kind of channel [unit of the channel].
+    """
     return {
         kind: recording.samples[row]
         for kind in ("torque", *_OUTPUTS, "angle")
