@@ -326,8 +326,8 @@ def _no_gap(diagnosis: Diagnosis) -> str:
         )
     elif far_ones(diagnosis):
         agreed = (
-            "Taken together, recordings and simulation differ no more than repeats do: nothing is "
-            "to be explained"
+            "Single recordings deviate more than repeats do, which may be chance; taken together, "
+            "they differ as repeats do: nothing is to be explained"
         )
     if differs(diagnosis):
         agreed = (
