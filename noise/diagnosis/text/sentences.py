@@ -130,10 +130,7 @@ def _surer(diagnosis: Diagnosis) -> str:
         return f"{said}."
     if _explained(diagnosis):
         return f"{said}, which the fit explains as well."
-    return (
-        f"{said}, in which nothing acts that is named: beside what is named, something else may be "
-        "missing there."
-    )
+    return f"{said}, in which nothing acts that is named: something else may be missing there too."
 
 
 def closed_words(finding: EffectFinding | None, of: str = "", interval: str = "") -> str:
