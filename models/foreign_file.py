@@ -34,8 +34,6 @@ LARGEST_JSON = 64 << 20
 _ALLOWANCE, _MOST = 64 << 20, 100
 """An archive may inflate to so many bytes, or to so many times its size."""
 
-_DEEPEST = 100  # lists and tables within one another
-_MOST_DOTS = 200  # of a key of TOML: the time to read it grows with their square
 _LONGEST_REASON = 200  # letters
 
 _KINDS = {
@@ -207,7 +205,7 @@ def one_line(text: object) -> str:
 
 
 def parse_json(text: str | bytes) -> Any:
-    """Parse JSON that is not too deep.
+    """Parse JSON.
 
     Parameters
     ----------
@@ -225,55 +223,9 @@ def parse_json(text: str | bytes) -> Any:
     {'speed_rad_s': 5.0}
     """
     try:
-        return _not_too_deep(json.loads(text))
+        return json.loads(text)
     except RecursionError:
-        raise _too_deep() from None
-
-
-def parse_toml(text: str) -> dict[str, Any]:
-    """Parse TOML that is not too deep.
-
-    Parameters
-    ----------
-    text : str
-
-    Raises
-    ------
-    ValueError
-        It is no TOML, or too deep.
-
-    Examples
-    --------
-    >>> parse_toml("beams.length_m = 0.42")
-    {'beams': {'length_m': 0.42}}
-    """
-    import re
-    import tomllib
-
-    for line in text.splitlines():
-        if line.count(".") > _MOST_DOTS and not line.lstrip().startswith("#"):
-            parts = re.split(r"[=,{}\[\]]", line)
-            if max(part.count(".") for part in parts) > _MOST_DOTS:
-                raise _too_deep()
-    try:
-        content: dict[str, Any] = _not_too_deep(tomllib.loads(text))
-    except RecursionError:
-        raise _too_deep() from None
-    return content
-
-
-def _not_too_deep(value: Any) -> Any:
-    level = [value] if isinstance(value, dict | list) else []
-    for _ in range(_DEEPEST):
-        held = (item.values() if isinstance(item, dict) else item for item in level)
-        level = [each for group in held for each in group if isinstance(each, dict | list)]
-        if not level:
-            return value
-    raise _too_deep()
-
-
-def _too_deep() -> ExcessError:
-    return ExcessError(f"holds lists or tables more than {_DEEPEST} deep in one another")
+        raise ExcessError("holds lists or tables too deep in one another") from None
 
 
 def _reason(raised: Exception) -> str:

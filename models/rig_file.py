@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any
 from models.bench import refuse_plate
 from models.change import changed_rig
 from models.errors import ParameterError
-from models.foreign_file import LARGEST_TOML, parse_toml, reading, refusing
+from models.foreign_file import LARGEST_TOML, reading, refusing
 from models.rig import LawSpec, Rig
 from models.schema import (
     as_table,
@@ -162,7 +162,7 @@ def read_toml(path: Path, where: str) -> dict[str, Any]:
         If the file cannot be read or is not valid TOML.
     """
     with reading(path, "valid TOML file", where=where, largest=LARGEST_TOML):
-        return parse_toml(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8"))
 
 
 def rig_from(content: Mapping[str, Any], folder: Path, where: str) -> Rig:

@@ -171,6 +171,23 @@ def fill_between_lines(transfer: TransferFunction) -> TransferFunction:
     return replace(transfer, frequencies=table, response=rfft(fine), coherence=None)
 
 
+def share_before_cause(transfer: TransferFunction) -> float:
+    """Return the share of a transfer function, by its rms, that comes before its cause [-].
+
+    Examples
+    --------
+    >>> f = np.arange(0.0, 1001.0)
+    >>> delay = np.exp(-2j * np.pi * f * 0.01)
+    >>> shares = [share_before_cause(TransferFunction(f, h)) for h in (delay, delay.conj())]
+    >>> [round(share) for share in shares]
+    [0, 1]
+    """
+    end, step = float(transfer.frequencies[-1]), float(np.min(np.diff(transfer.frequencies)))
+    impulse = irfft(transfer.at(np.arange(0.0, end, step), falls_below=True))
+    power = np.square(impulse)
+    return float(np.sqrt(power[impulse.size // 2 :].sum() / power.sum()))
+
+
 def _continued(
     transfer: TransferFunction, frequencies: NDArray[np.float64]
 ) -> NDArray[np.complex128]:

@@ -6,17 +6,13 @@ volume, and moved over it in one step of the file system. The passing name start
 folder walks leave out, and ends as the target does, because many writers choose their format by
 that ending. A target that cannot be written is refused before the work whose result it is to hold.
 
-A process that is killed while it writes cannot remove what it wrote. So the passing name says whose
-it is, and who next writes into the folder removes what processes left there that are gone. A lock
-is freed by the system when a process ends, however it ends, so none is left behind.
+A process that is killed while it writes cannot remove what it wrote; who writes into the folder a
+day later does. A lock is freed by the system when a process ends, so none is left behind.
 """
 
 from __future__ import annotations
 
-import hashlib
-import os
-import platform
-import re
+import time
 import uuid
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -25,6 +21,9 @@ from functools import cache
 from pathlib import Path, PurePosixPath
 
 from models.errors import ParameterError
+
+_FORGOTTEN = 86_400.0
+"""Age of a file that nobody goes on writing [s]."""
 
 
 @contextmanager
@@ -58,20 +57,21 @@ def atomic(target: str | Path) -> Iterator[Path]:
     """
     target = Path(target)
     place = _behind_links(target)
-    temporary = place.parent / f".{_here()}-{os.getpid()}-{uuid.uuid4().hex}.part{target.suffix}"
+    temporary = place.parent / f".{uuid.uuid4().hex}.part{target.suffix}"
     try:
         if place.is_dir():
             raise ParameterError(f"{target}: is a folder; name a file to write")
         _refuse_device(place, target)
         place.parent.mkdir(parents=True, exist_ok=True)
-        _tidy(place.parent, os.getpid())
+        _tidy(place.parent)
         yield temporary
         temporary.replace(place)
     except OSError as error:
         reason = error.strerror or error
         raise ParameterError(f"{target}: cannot be written ({reason})") from error
     finally:
-        _remove(temporary)
+        with suppress(OSError):  # the folder cannot be used, as the error on its way says
+            temporary.unlink(missing_ok=True)
 
 
 def check_target(path: Path, option: str = "--out") -> None:
@@ -129,43 +129,12 @@ def _behind_links(target: Path, option: str = "") -> Path:
 
 
 @cache
-def _here() -> str:
-    """Name of what gives processes their numbers: this machine, or a container of it."""
-    numbers = ""
-    with suppress(OSError):  # where the system has no such thing
-        numbers = str(Path("/proc/self/ns/pid").readlink())
-    return hashlib.sha256(f"{platform.node()} {numbers}".encode()).hexdigest()[:12]
-
-
-@cache
-def _tidy(folder: Path, process: int) -> None:
-    """Remove what processes that are gone left in a folder; once a `process` and folder."""
-    if os.name == "nt":  # asking whether a process lives would end it
-        return
-    ours = re.compile(rf"\.{_here()}-(\d{{1,9}})-[0-9a-f]{{32}}\.part")
+def _tidy(folder: Path) -> None:
+    """Remove what processes that were killed left in a folder."""
     with suppress(OSError):  # a folder that may be written to but not listed
-        for path in folder.iterdir():
-            found = ours.match(path.name)
-            if found is not None and int(found[1]) != process and not _lives(int(found[1])):
-                _remove(path)
-
-
-def _lives(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:  # another user's
-        pass
-    return True
-
-
-def _remove(path: Path) -> None:
-    try:
-        path.unlink(missing_ok=True)
-    except OSError:
-        # The folder itself cannot be used; the error that says so is already on its way.
-        return
+        for path in folder.glob(".*.part*"):
+            if time.time() - path.stat().st_mtime > _FORGOTTEN:
+                path.unlink()
 
 
 @contextmanager

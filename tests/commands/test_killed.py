@@ -46,11 +46,11 @@ _TOOK = re.compile(rb'"seconds": [\d.]+|Screened in [\d.]+ s|Time taken</dt><dd>
 
 
 def contents(folder):
-    """All files of a folder, hidden ones as well, but for journals and their locks."""
+    """All files of a folder, hidden ones as well, but for journals and parts of a file."""
     return {
         path.relative_to(folder).as_posix(): _TOOK.sub(b"", path.read_bytes())
         for path in folder.rglob("*")
-        if path.is_file() and ".journal" not in path.name
+        if path.is_file() and ".journal" not in path.name and ".part" not in path.name
     }
 
 

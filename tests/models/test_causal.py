@@ -6,7 +6,7 @@ from scipy.signal import butter, sosfilt
 
 from models.structure.modal import ModalModel
 from models.transfer_functions.filtering import convolve
-from models.transfer_functions.measured import causal_impulse_response
+from models.transfer_functions.measured import measured_impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
 
 RATE = 96e3
@@ -43,9 +43,8 @@ def test_lines_with_noise_reproduce_it_within_the_noise():
     f = lines()
     scatter = np.random.default_rng(1).standard_normal((2, f.size))
     noisy = spectrum(f) * (1 + 0.03 * (scatter[0] + 1j * scatter[1]))
-    h, misfit = causal_impulse_response(TransferFunction(f, noisy), RATE, 20000)
+    h = measured_impulse_response(TransferFunction(f, noisy), RATE, 20000)
     assert difference(h) < 0.04
-    assert misfit < 0.04
 
 
 @settings(max_examples=15)
@@ -53,8 +52,7 @@ def test_lines_with_noise_reproduce_it_within_the_noise():
 def test_a_delay_stays_a_delay(delay, gain):
     f = lines(low=20.0, high=8000.0, spacing=20.0)
     pulse = gain * f**2 * np.exp(-((f / 2000) ** 2)) * np.exp(-2j * np.pi * f * delay / 32e3)
-    h, misfit = causal_impulse_response(TransferFunction(f, pulse), 32e3, 1000)
+    h = measured_impulse_response(TransferFunction(f, pulse), 32e3, 1000)
     assert abs(int(np.argmax(np.abs(h))) - delay) <= 1
     # Nothing comes before its cause: the pulse itself is a few samples wide.
     assert np.abs(h[: max(delay - 30, 0)]).max(initial=0.0) < 0.02 * np.abs(h).max()
-    assert misfit < 0.15

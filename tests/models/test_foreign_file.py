@@ -17,7 +17,6 @@ from models.errors import ParameterError, RecordingError
 from models.foreign_file import (
     check_plain_file,
     parse_json,
-    parse_toml,
     read_arrays,
     reading,
     refusing,
@@ -116,13 +115,7 @@ def test_a_member_that_is_no_array_is_refused(tmp_path, members):
     assert "damaged" in refusal(npz(tmp_path / "a.npz", members)) or members
 
 
-@pytest.mark.parametrize(("parse", "text"), [
-    (parse_json, "[" * 200 + "]" * 200), (parse_json, "[" * 100_000), (parse_json, '{"a":' * 5000),
-    (parse_toml, "a = " + "[" * 200 + "]" * 200), (parse_toml, "a = " + "[" * 20_000),
-    (parse_toml, ".".join("a" * 201) + " = 1"), (parse_toml, ".".join("a" * 50_000) + " = 1"),
-    (parse_toml, "[" + ".".join("a" * 50_000) + "]"),
-    (parse_toml, "x = {" + ".".join("a" * 50_000) + " = 1}"),
-])  # fmt: skip
-def test_what_is_too_deep_is_refused_at_once(parse, text):
-    with pytest.raises(ValueError, match="more than 100 deep in one another"):
-        parse(text)
+@pytest.mark.parametrize("text", ["[" * 100_000, '{"a":' * 5000])
+def test_what_is_too_deep_is_refused_at_once(text):
+    with pytest.raises(ValueError, match="too deep in one another"):
+        parse_json(text)

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from models.errors import ParameterError
-from models.foreign_file import parse_toml
 from models.rig_file import load_rig, rig_from
 from noise.app.design import design_of, save_rig
 from noise.app.design_controls import bases_of, controls_of
@@ -128,7 +127,9 @@ def test_each_control_acts_with_all_effects_on_and_what_is_saved_is_read_as_such
         before = design(on, base)
         for value in others(control, before.values[control.key]):
             changed = design(on | {control.key: value}, base)
-            read = rig_from(parse_toml(changed.text(tmp_path, "mine.toml")), tmp_path, "mine.toml")
+            read = rig_from(
+                tomllib.loads(changed.text(tmp_path, "mine.toml")), tmp_path, "mine.toml"
+            )
             assert read == changed.rig, control.key
             of_the_rig = control.key.startswith(("change.", "effect.", "law"))
             assert (changed.rig != before.rig) == of_the_rig, control.key
