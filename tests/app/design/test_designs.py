@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -127,9 +128,8 @@ def test_each_control_acts_with_all_effects_on_and_what_is_saved_is_read_as_such
         before = design(on, base)
         for value in others(control, before.values[control.key]):
             changed = design(on | {control.key: value}, base)
-            read = rig_from(
-                tomllib.loads(changed.text(tmp_path, "mine.toml")), tmp_path, "mine.toml"
-            )
+            content = tomllib.loads(changed.text(tmp_path, "mine.toml"))
+            read = rig_from(content, tmp_path, "mine.toml")
             assert read == changed.rig, control.key
             of_the_rig = control.key.startswith(("change.", "effect.", "law"))
             assert (changed.rig != before.rig) == of_the_rig, control.key
