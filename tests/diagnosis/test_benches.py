@@ -18,7 +18,7 @@ from noise.training.causes.cases.benches import (
     draw_start,
     scaled_law,
 )
-from noise.training.causes.cases.truth import Truth, seen_through
+from noise.training.causes.cases.draw import Truth, seen_through
 from sim.acquisition import Acquisition
 from sim.friction import LAWS, friction_law
 from sim.parameters import resolve

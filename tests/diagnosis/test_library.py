@@ -13,9 +13,8 @@ import pytest
 from noise.diagnosis.cases.strengths import drawn_effect
 from noise.diagnosis.simulated.model_runs import OFFSETS, with_offsets
 from noise.diagnosis.simulated.repeats import CHANNELS, Scatter
-from noise.training.causes.cases.draw import WEAKEST, draw_case
+from noise.training.causes.cases.draw import KINDS, WEAKEST, draw_case
 from noise.training.causes.cases.rigs import draw_setting
-from noise.training.causes.cases.truth import KINDS
 from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from noise.training.causes.store import known_cases_of_a_rig
 from sim.effects import EFFECTS

@@ -20,7 +20,7 @@ from noise.diagnosis.causes.verdict import (
     next_measurement,
 )
 from noise.diagnosis.gap.distance import Gap
-from noise.training.causes.cases.truth import Truth
+from noise.training.causes.cases.draw import Truth
 from noise.training.causes.fit import (
     Known,
     causes_of,

@@ -9,7 +9,7 @@ import numpy as np
 
 from noise.diagnosis.causes.location import learn_stage_nulls
 from noise.diagnosis.evidence.summary import scale_of
-from noise.training.causes.cases.truth import Truth
+from noise.training.causes.cases.draw import Truth
 from noise.training.causes.fit import Known, train_posterior
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import table_of

@@ -1,4 +1,4 @@
-"""Training cases in files: what was drawn comes back, and what is there is not drawn again."""
+"""Training cases in files: what was drawn comes back, and the command trains on it."""
 
 from __future__ import annotations
 
@@ -11,61 +11,46 @@ import pytest
 from models.errors import ParameterError
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.training.causes import __main__ as command, store
-from noise.training.causes.store import draw_into, load_cases, save_cases
+from noise.training.causes.store import draw_into, load_cases
 from tests.helpers.made_posteriors import made_cases, made_posterior
 
 
-def test_cases_come_back_from_their_file(tmp_path):
-    cases = made_cases(1, each=1)
-    save_cases(tmp_path / "cases-0-9.npz", cases)
-    for before, after in zip(cases, load_cases(tmp_path), strict=True):
-        assert after.truth == before.truth
-        assert (after.rig, after.departures) == (before.rig, before.departures)
-        assert after.table.conditions == before.table.conditions
-        place = [after.table.names.index(name) for name in before.table.names]
-        for part in ("measured", "nominal", "scatter"):
-            found = getattr(after.table, part)[:, place]
-            assert np.array_equal(found, getattr(before.table, part).astype(np.float32))
-
-
-def test_files_that_are_there_are_not_drawn_again(tmp_path, monkeypatch):
-    drawn = []
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Two files of cases that were made instead of simulated."""
 
     def of_a_rig(seeds):
-        drawn.append(seeds)
-        return made_cases(seeds.start, each=1)[:4]
+        made = made_cases(1, each=2)[: len(seeds)]
+        return [replace(case, seed=seed) for seed, case in zip(seeds, made, strict=True)]
 
     monkeypatch.setattr(store, "known_cases_of_a_rig", of_a_rig)
-    seeds = range(400_000, 400_000 + 2 * store.CHUNK)
-    paths = sorted(draw_into(tmp_path, seeds))
-    assert len(paths) == 2
-    assert len(drawn) == len(seeds) / 4
-    paths[0].unlink()
-    drawn.clear()
-    list(draw_into(tmp_path, seeds))
-    assert len(drawn) == store.CHUNK / 4
-    assert len(load_cases(tmp_path)) == len(seeds)
+    assert len(list(draw_into(tmp_path, range(400_000, 400_000 + 2 * store.CHUNK)))) == 2
+    return tmp_path
+
+
+def test_cases_come_back_from_their_files(folder):
+    cases = load_cases(folder)
+    assert [case.seed for case in cases] == list(range(400_000, 400_000 + 2 * store.CHUNK))
+    for before, after in zip(made_cases(1, each=2)[:4], cases[:4], strict=True):
+        assert after.truth == before.truth
+        assert after.table.conditions == before.table.conditions
+        assert np.array_equal(after.table.measured, before.table.measured)
 
 
 def test_a_folder_without_cases_and_a_damaged_file_are_refused(tmp_path):
     with pytest.raises(ParameterError, match="draw some first"):
         load_cases(tmp_path)
-    (tmp_path / "cases-0-4.npz").write_bytes(b"no archive")
-    with pytest.raises(ParameterError, match="no file of drawn cases"):
+    (tmp_path / "cases-0-4.joblib").write_bytes(b"no archive")
+    with pytest.raises(ParameterError, match="is damaged"):
         load_cases(tmp_path)
 
 
-def test_the_command_trains_on_files(tmp_path, monkeypatch):
-    save_cases(
-        tmp_path / "cases-0-9.npz",
-        [replace(case, seed=i) for i, case in enumerate(made_cases(3, each=2))],
-    )
-
+def test_the_command_trains_on_files(folder, monkeypatch):
     def quickly(cases, *, seed):
-        return replace(made_posterior(), card={"cases": len(cases)})
+        return replace(made_posterior(), card={"cases": len(cases), "seed": seed})
 
     monkeypatch.setattr(command, "train_posterior", quickly)
-    target = tmp_path / "causes.npz"
-    monkeypatch.setattr(sys, "argv", ["causes", "train", str(tmp_path), "--out", str(target)])
+    target = folder / "causes.npz"
+    monkeypatch.setattr(sys, "argv", ["causes", "train", str(folder), "--out", str(target)])
     assert command.main() == 0
-    assert load_posterior(target).card["cases"] == len(load_cases(tmp_path))
+    assert load_posterior(target).card["cases"] == 2 * store.CHUNK

@@ -28,7 +28,7 @@ from noise.base.trees import BoostedTrees
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
 from noise.diagnosis.evidence.summary import evidence, scale_of
 from noise.diagnosis.simulated.repeats import CHANNELS
-from noise.training.causes.cases.truth import Truth, seen_through
+from noise.training.causes.cases.draw import Truth, seen_through
 from noise.training.trees import as_arrays
 
 if TYPE_CHECKING:

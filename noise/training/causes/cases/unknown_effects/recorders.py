@@ -7,20 +7,17 @@ Each is a function of a run and the numbers that its row draws; a decorator make
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import wraps
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.signal import bilinear, fftconvolve, lfilter
 
-from noise.diagnosis.cases.draws import SENSED, Array, Rng, slowly
-from noise.training.causes.cases.unknown_effects.hooks import lagging, slewing
+from noise.diagnosis.cases.draws import SENSED, Rng, slowly
 from noise.training.causes.cases.unknown_effects.mechanics import normed
+from noise.training.causes.cases.variants.hooks import lagging, slewing
 from noise.training.causes.cases.variants.sensors import on_signals
 from sim.effects.effect import Signals
-
-Maker = Callable[..., dict[str, Any]]
 
 
 class _Run(NamedTuple):
@@ -31,25 +28,25 @@ class _Run(NamedTuple):
     rng: Rng
 
     @property
-    def times(self) -> Array:
+    def times(self):
         return np.arange(self.signals["torque"].size) / self.rate
 
 
-def _signals(function: Callable[..., Signals]) -> Maker:
+def _signals(function):
     """Change signals: ``function(run, a, **numbers)``."""
 
     @wraps(function)
-    def maker(a: float, **numbers: Any) -> dict[str, Any]:
+    def maker(a, **numbers):
         return on_signals(a, lambda *run: function(_Run(*run), a, **numbers))
 
     return maker
 
 
-def _channel(function: Callable[..., Array]) -> Maker:
+def _channel(function):
     """Change one channel, or all of them: ``function(x, rate, rng, a, **numbers)``."""
 
     @wraps(function)
-    def maker(a: float, channel: int, **numbers: Any) -> dict[str, Any]:
+    def maker(a, channel, **numbers):
         names = SENSED if channel == len(SENSED) else (SENSED[channel],)
         return on_signals(a, lambda signals, rate, rng: {
             name: np.asarray(function(x, rate, rng, a, **numbers)) if name in names else x
@@ -59,12 +56,12 @@ def _channel(function: Callable[..., Array]) -> Maker:
     return maker
 
 
-def _added(function: Callable[..., Array]) -> Maker:
+def _added(function):
     """Add ``function(run, **numbers)`` of rms 1, times levels, to what is sensed."""
 
     @wraps(function)
-    def maker(a: float, levels: Array, **numbers: Any) -> dict[str, Any]:
-        def change(signals: Signals, rate: float, rng: Rng) -> Signals:
+    def maker(a, levels, **numbers):
+        def change(signals, rate, rng):
             x = function(_Run(signals, rate, rng), **numbers)
             x = x / (float(np.sqrt(np.mean(x**2))) + 1e-30)
             parts = zip(SENSED, levels.tolist(), strict=True)
@@ -75,14 +72,14 @@ def _added(function: Callable[..., Array]) -> Maker:
     return maker
 
 
-def _ring(rng: Rng, rate: float, tones: Array, decay: float) -> Array:
+def _ring(rng, rate, tones, decay):
     since = np.arange(int(6.0 * decay * rate) + 2) / rate
     ringing = np.sin(2 * np.pi * np.outer(since, tones) + rng.uniform(0.0, 6.3, tones.size))
-    return np.asarray(ringing.sum(axis=1) * np.exp(-since / decay))
+    return ringing.sum(axis=1) * np.exp(-since / decay)
 
 
 @_signals
-def shocks(run: _Run, a: float, tones: Array, count: int, decay: float) -> Signals:
+def shocks(run, a, tones, count, decay):
     """Be struck from outside."""
     time = run.times
     shock = np.zeros(time.size)
@@ -94,7 +91,7 @@ def shocks(run: _Run, a: float, tones: Array, count: int, decay: float) -> Signa
 
 
 @_added
-def second_source(run: _Run, pace: float, jitter: float, tones: Array, decay: float) -> Array:
+def second_source(run, pace, jitter, tones, decay):
     """Hear another joint creak."""
     n = run.signals["torque"].size
     steps = np.maximum(
@@ -103,31 +100,31 @@ def second_source(run: _Run, pace: float, jitter: float, tones: Array, decay: fl
     at = ((np.cumsum(steps) - run.rng.random()) / pace * run.rate).astype(np.int64)
     clicks = np.zeros(n)
     clicks[at[at < n]] = 1.0
-    return np.asarray(fftconvolve(clicks, _ring(run.rng, run.rate, tones, decay))[:n])
+    return fftconvolve(clicks, _ring(run.rng, run.rate, tones, decay))[:n]
 
 
 @_added
-def gear_mesh(run: _Run, teeth: float, sizes: Array, depth: float, slow: int) -> Array:
+def gear_mesh(run, teeth, sizes, depth, slow):
     """Hear the teeth of the drive."""
     turns, phases = run.signals["angle"] / (2 * np.pi), run.rng.random(4)
     mesh = sum(
         s * np.sin(2 * np.pi * ((k + 1) * teeth * turns + phases[k]))
         for k, s in enumerate((sizes * np.array([1.0, 0.6, 0.3])).tolist())
     )
-    return np.asarray((1.0 + depth * np.sin(2 * np.pi * (slow * turns + phases[3]))) * mesh)
+    return (1.0 + depth * np.sin(2 * np.pi * (slow * turns + phases[3]))) * mesh
 
 
 @_added
-def rolling_bearing(run: _Run, order: float, tones: Array, decay: float) -> Array:
+def rolling_bearing(run, order, tones, decay):
     """Roll over a dent."""
     turns = run.signals["angle"] / (2 * np.pi)
     passed = np.floor(order * turns + run.rng.random())
     clicks = np.diff(passed, prepend=passed[0]) * run.rng.uniform(0.6, 1.4, turns.size)
-    return np.asarray(fftconvolve(clicks, _ring(run.rng, run.rate, tones, decay))[: turns.size])
+    return fftconvolve(clicks, _ring(run.rng, run.rate, tones, decay))[: turns.size]
 
 
 @_added
-def inverter_tone(run: _Run, carrier: float, apart: float, sides: Array) -> Array:
+def inverter_tone(run, carrier, apart, sides):
     """Hear the converter of a drive whistle."""
     time, phases = run.times, 6.3 * run.rng.random(5)
     tone = np.sin(2 * np.pi * carrier * time + phases[0])
@@ -135,29 +132,29 @@ def inverter_tone(run: _Run, carrier: float, apart: float, sides: Array) -> Arra
         for sign in (-1.0, 1.0):
             side = carrier + sign * (k + 1) * apart
             tone += size * np.sin(2 * np.pi * side * time + phases[k + 1])
-    return np.asarray(tone)
+    return tone
 
 
 @_added
-def radio_buzz(run: _Run, pace: float, duty: float, group: float, on: float) -> Array:
+def radio_buzz(run, pace, duty, group, on):
     """Pick up a telephone or a radio."""
     time = run.times
     pulses = np.where((pace * time + run.rng.random()) % 1.0 < duty, 1.0, 0.0)
-    return np.asarray(pulses * ((group * time + run.rng.random()) % 1.0 < on))
+    return pulses * ((group * time + run.rng.random()) % 1.0 < on)
 
 
 @_added
-def sweeping_tone(run: _Run, low: float, octaves: float, up: int, harmonics: int) -> Array:
+def sweeping_tone(run, low, octaves, up, harmonics):
     """Hear a machine run up or down nearby."""
     n = run.signals["torque"].size
     part = np.arange(n) / n
     turns = np.cumsum(low * 2.0 ** (octaves * (part if up else 1.0 - part))) / run.rate
     orders = range(1, harmonics + 1)
-    return np.asarray(sum(np.sin(2 * np.pi * (k * turns + run.rng.random())) / k for k in orders))
+    return sum(np.sin(2 * np.pi * (k * turns + run.rng.random())) / k for k in orders)
 
 
 @_signals
-def crosstalk(run: _Run, a: float, way: int, sign: float) -> Signals:
+def crosstalk(run, a, way, sign):
     """Leak from one channel into others."""
     source, into = (
         ("acceleration", ("torque", "pressure")),
@@ -169,7 +166,7 @@ def crosstalk(run: _Run, a: float, way: int, sign: float) -> Signals:
 
 
 @_signals
-def wow(run: _Run, a: float, slow: float, fast: float) -> Signals:
+def wow(run, a, slow, fast):
     """Play back at a speed that swings."""
     phases = run.rng.random(2)
     time = run.times
@@ -179,7 +176,7 @@ def wow(run: _Run, a: float, slow: float, fast: float) -> Signals:
 
 
 @_signals
-def wrong_rate(run: _Run, a: float, sign: float) -> Signals:
+def wrong_rate(run, a, sign):
     """Record all but the angle by a clock that is wrong."""
     n = run.signals["torque"].size
     at = np.arange(n) * (1.0 + 0.2 * a * sign)
@@ -191,7 +188,7 @@ def wrong_rate(run: _Run, a: float, sign: float) -> Signals:
 
 
 @_signals
-def lost_samples(run: _Run, a: float, often: float, long: float) -> Signals:
+def lost_samples(run, a, often, long):
     """Leave out samples in all channels."""
     n = run.signals["torque"].size
     gaps = run.rng.random(n) < often / run.rate
@@ -203,7 +200,7 @@ def lost_samples(run: _Run, a: float, often: float, long: float) -> Signals:
 
 
 @_channel
-def aliased(x: Array, rate: float, _rng: Rng, a: float, slow: float) -> Array:
+def aliased(x, rate, _rng, a, slow):
     """Sample too seldom without a filter."""
     at = np.arange(x.size)
     kept = at[:: max(2, round(rate / slow))]
@@ -211,9 +208,7 @@ def aliased(x: Array, rate: float, _rng: Rng, a: float, slow: float) -> Array:
 
 
 @_signals
-def fading_resonance(
-    run: _Run, a: float, frequency: float, damping: float, corner: float, peak: float, *, both: bool
-) -> Signals:
+def fading_resonance(run, a, frequency, damping, corner, peak, *, both):
     """Ring along at some times and not at others."""
     names = ("acceleration", "pressure") if both else ("pressure",)
     tuned = 0.5 / math.tan(math.pi * min(frequency / run.rate, 0.45))
@@ -225,7 +220,7 @@ def fading_resonance(
 
 
 @_channel
-def lost_bits(x: Array, _rate: float, _rng: Rng, a: float, *, coarse: bool) -> Array:
+def lost_bits(x, _rate, _rng, a, *, coarse):
     """Read with too few steps, or with a bit that is stuck."""
     step = 1.5 * a * float(x.std()) + 1e-12
     whole = np.floor(x / step)
@@ -233,17 +228,15 @@ def lost_bits(x: Array, _rate: float, _rng: Rng, a: float, *, coarse: bool) -> A
 
 
 @_channel
-def bit_errors(x: Array, rate: float, rng: Rng, a: float, often: float, bits: int) -> Array:
+def bit_errors(x, rate, rng, a, often, bits):
     """Read single samples far off."""
     hit = rng.random(x.size) < often / rate
     size = a * float(np.abs(x - x.mean()).max()) * 2.0 ** -rng.integers(0, bits, x.size)
-    return np.asarray(x + hit * size * rng.choice([-1.0, 1.0], x.size))
+    return x + hit * size * rng.choice([-1.0, 1.0], x.size)
 
 
 @_signals
-def loose_plug(
-    run: _Run, a: float, often: float, channel: int, hiss: float, jump: float
-) -> Signals:
+def loose_plug(run, a, often, channel, hiss, jump):
     """Lose contact now and then."""
     name = SENSED[channel % len(SENSED)]
     x = run.signals[name]
@@ -253,24 +246,23 @@ def loose_plug(
 
 
 @_channel
-def zero_jumps(x: Array, rate: float, rng: Rng, a: float, often: float, fading: float) -> Array:
+def zero_jumps(x, rate, rng, a, often, fading):
     """Move the zero of a channel in steps that fade."""
     steps = (rng.random(x.size) < often / rate) * rng.standard_normal(x.size)
     steps[int(rng.integers(x.size))] += 1.0
     moved = lfilter([1.0], [1.0, -math.exp(-1.0 / (fading * rate))], steps)
-    return np.asarray(x + 2.0 * a * x.std() * moved)
+    return x + 2.0 * a * x.std() * moved
 
 
 @_channel
-def slow_amplifier(x: Array, _rate: float, _rng: Rng, a: float, share: float) -> Array:
+def slow_amplifier(x, _rate, _rng, a, share):
     """Follow no faster than an amplifier's slew rate."""
     steepest = float(np.abs(np.diff(x)).max())
-    followed = slewing(np.ascontiguousarray(x), steepest * 10.0 ** (-3.0 * share * a))
-    return np.asarray(followed)
+    return slewing(np.ascontiguousarray(x), steepest * 10.0 ** (-3.0 * share * a))
 
 
 @_signals
-def play_in_the_cell(run: _Run, a: float, passed: float) -> Signals:
+def play_in_the_cell(run, a, passed):
     """Pass on a part of the torque with play."""
     x = run.signals["torque"]
     lost = lagging(x, 1.2 * a * float(x.std()))
@@ -278,7 +270,7 @@ def play_in_the_cell(run: _Run, a: float, passed: float) -> Signals:
 
 
 @_signals
-def encoder_error(run: _Run, a: float, order: float, size: float) -> Signals:
+def encoder_error(run, a, order, size):
     """Read the angle with an error that comes again."""
     angle, error = run.signals["angle"], a * (0.5 * size) / order
     return run.signals | {"angle": angle + error * np.sin(order * angle + run.rng.random())}

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from noise.diagnosis.cases.draws import draw_numbers
-from noise.training.causes.cases.variants import chain, contact, drive, pulses, sensors
+from noise.training.causes.cases.variants import chain, contact, drive, sensors
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect
 from sim.parameters import Parameter
@@ -29,7 +29,7 @@ Recipe = Callable[[float, np.random.Generator], Effect]
 """Of a strength from 0 to 1, and a generator."""
 
 _TABLE = tomllib.loads((resources.files(__package__) / "variants.toml").read_text("utf-8"))
-_MODULES = (chain, contact, drive, pulses, sensors)
+_MODULES = (chain, contact, drive, sensors)
 
 
 def made(

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from scipy.ndimage import map_coordinates
 from scipy.signal import butter, fftconvolve, lfilter
 
-from models.radiation.impulse_responses import ImpulseResponses
-from noise.diagnosis.cases.draws import Array, Rng
 from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
 
 _LONGEST = 0.25
@@ -20,31 +16,26 @@ _LONGEST = 0.25
 _BAND = (200.0, 6000.0)
 """In which a level is taken [Hz]."""
 
-Mode = tuple[float, float, float]
-"""Frequency [Hz], damping ratio, strength with its sense."""
 
-
-def _on_chain(
-    a: float, change: Callable[[ImpulseResponses, Rng], ImpulseResponses]
-) -> dict[str, Any]:
+def _on_chain(a, change):
     """Change impulse responses; neutral at strength 0."""
     return {"chain": lambda paths, _form, _values, rng: change(paths, rng) if a > 0.0 else paths}
 
 
-def _on_beams(a: float, change: Callable[[ImpulseResponses], ImpulseResponses]) -> dict[str, Any]:
+def _on_beams(a, change):
     """Change what beams do; a clamp that is bolted down has none."""
     return _on_chain(
         a, lambda paths, _rng: change(paths) if np.any(paths.pulse_to_acceleration) else paths
     )
 
 
-def _modes(frequency: Array, damping: Any, strengths: Array) -> list[Mode]:
-    """Pair up columns; one damping ratio may serve all."""
+def _modes(frequency, damping, strengths):
+    """Modes: frequency [Hz], damping ratio (one may serve all), strength with its sense."""
     dampings = np.broadcast_to(damping, frequency.shape)
     return list(zip(frequency.tolist(), dampings.tolist(), strengths.tolist(), strict=True))
 
 
-def waveguide(rate: float, first: float, reflection: float, dullness: float) -> Array:
+def waveguide(rate, first, reflection, dullness):
     """Impulse response of a way that a wave goes to and fro, its echoes without the first pass.
 
     Parameters
@@ -83,7 +74,7 @@ def waveguide(rate: float, first: float, reflection: float, dullness: float) -> 
     return echoes
 
 
-def rings(rate: float, modes: Iterable[Mode]) -> Array:
+def rings(rate, modes):
     """Sum of resonances of unit peak times their strength.
 
     Examples
@@ -101,7 +92,7 @@ def rings(rate: float, modes: Iterable[Mode]) -> Array:
     )
 
 
-def moved(way: str, response: Array, rate: float, amount: float) -> Array:
+def moved(way, response, rate, amount):
     """Shift all modes of an impulse response, damp them, or split each in two.
 
     Parameters
@@ -127,47 +118,42 @@ def moved(way: str, response: Array, rate: float, amount: float) -> Array:
     True
     """
     if way == "damped":
-        return np.asarray(response * np.exp(-amount / rate * np.arange(response.size)))
+        return response * np.exp(-amount / rate * np.arange(response.size))
     if way == "split":
-        return np.asarray(response * np.cos(np.pi * amount / rate * np.arange(response.size)))
+        return response * np.cos(np.pi * amount / rate * np.arange(response.size))
     factor = 2.0**amount
     if factor == 1.0 or response.size == 1:
         return response
     at = factor * np.arange(response.size)
-    return np.asarray(factor * map_coordinates(response, [at], order=3, mode="constant"))
+    return factor * map_coordinates(response, [at], order=3, mode="constant")
 
 
-def _both(paths: ImpulseResponses, of: str, change: Callable[[Array], Array]) -> ImpulseResponses:
+def _both(paths, of, change):
     """Change both ways to the acceleration, what is heard stays; or both to the pressure."""
     ways = (f"torque_to_{of}", f"pulse_to_{of}")
-    changed: dict[str, Any] = {way: change(getattr(paths, way)) for way in ways}
-    return replace(paths, **changed)
+    return replace(paths, **{way: change(getattr(paths, way)) for way in ways})
 
 
 def beams(
-    a: float, frequency: Array, damping: Any, signs: Array, mass: float, constant: float = 0.0,
-    sizes: Any = 1.0, dense: float = 0.0, *, heard: bool = True, **_drawn: float,
-) -> dict[str, Any]:  # fmt: skip
+    a, frequency, damping, signs, mass, constant=0.0, sizes=1.0, dense=0.0, *, heard=True, **_drawn
+):
     """Add modes of modal constants [1/(kg m)]; that of the first torsional mode is about 100."""
     n = frequency.size
     constants = dense / np.sqrt(n) * signs if dense else constant * signs * sizes
     return _with_modes(a, _modes(frequency, damping, constants), mass * heard)
 
 
-def beam_pair(
-    a: float, frequency: float, constant: float, damping: float, apart: float, second: float,
-    mass: float,
-) -> dict[str, Any]:  # fmt: skip
+def beam_pair(a, frequency, constant, damping, apart, second, mass):
     """Add two modes that lie close."""
     other = frequency * (1.0 + apart * damping)
     modes = [(frequency, damping, constant), (other, damping, constant * second)]
     return _with_modes(a, modes, mass)
 
 
-def _with_modes(a: float, modes: list[Mode], mass: float) -> dict[str, Any]:
+def _with_modes(a, modes, mass):
     """Add modes; the anchors feel so much of the mass that the accelerometer sees [kg]."""
 
-    def change(paths: ImpulseResponses) -> ImpulseResponses:
+    def change(paths):
         accelerations, forces = [paths.torque_to_acceleration], [np.zeros(1)]
         for frequency, damping, constant in modes:
             if frequency > HIGHEST_SHARE * paths.rate:
@@ -180,7 +166,7 @@ def _with_modes(a: float, modes: list[Mode], mass: float) -> dict[str, Any]:
     return _on_beams(a, change)
 
 
-def _with_force(paths: ImpulseResponses, acceleration: Array, force: Array) -> ImpulseResponses:
+def _with_force(paths, acceleration, force):
     pressure = fftconvolve(force, paths.pulse_to_pressure)
     return replace(
         paths,
@@ -189,79 +175,71 @@ def _with_force(paths: ImpulseResponses, acceleration: Array, force: Array) -> I
     )
 
 
-def beam_waveguide(
-    a: float, first: float, constant: float, sign: float, lost: float, dullness: float, mass: float
-) -> dict[str, Any]:
+def beam_waveguide(a, first, constant, sign, lost, dullness, mass):
     """Let a wave go to and fro in a beam."""
     reflection = sign * (1.0 - lost)
 
-    def change(paths: ImpulseResponses) -> ImpulseResponses:
+    def change(paths):
         echoes = waveguide(paths.rate, first, reflection, dullness)
         b, c = butter(2, 2.0 * 0.4 * first / paths.rate, "highpass")
-        acceleration = a * constant * np.asarray(lfilter(b, c, np.append(echoes, np.zeros(512))))
+        acceleration = a * constant * lfilter(b, c, np.append(echoes, np.zeros(512)))
         b, c = butter(2, 2.0 * min(6.0 * first, 0.4 * paths.rate) / paths.rate)
         both = padded_sum([paths.torque_to_acceleration, acceleration])
-        return _with_force(paths, both, mass * np.asarray(lfilter(b, c, acceleration)))
+        return _with_force(paths, both, mass * lfilter(b, c, acceleration))
 
     return _on_beams(a, change)
 
 
-def all_beams(a: float, way: str, amount: float, sign: float = 1.0) -> dict[str, Any]:
+def all_beams(a, way, amount, sign=1.0):
     """Change all modes of clamp and beams."""
     size = sign * amount * a
     return _on_beams(a, lambda paths: _both(
         paths, "acceleration", lambda h: moved(way, h, paths.rate, size)))  # fmt: skip
 
 
-def all_plates(a: float, way: str, amount: float, sign: float = 1.0) -> dict[str, Any]:
+def all_plates(a, way, amount, sign=1.0):
     """Change all modes of what radiates: another thickness, warmer, bolted; a mat on the plate."""
     size = sign * amount * a
     return _on_chain(a, lambda paths, _rng: _both(
         paths, "pressure", lambda h: moved(way, h, paths.rate, size)))  # fmt: skip
 
 
-def beam_filters(
-    a: float, frequency: Array, damping: Array, signs: Array, sizes: Array, most: float,
-    **_drawn: float,
-) -> dict[str, Any]:  # fmt: skip
+def beam_filters(a, frequency, damping, signs, sizes, most, **_drawn):
     """Let structures in the way amplify bands of all acceleration, or swallow them."""
     modes = _modes(frequency, damping, most * signs * sizes)
 
-    def change(paths: ImpulseResponses) -> ImpulseResponses:
+    def change(paths):
         taps = padded_sum([np.ones(1), a * rings(paths.rate, modes)])
         return _both(paths, "acceleration", lambda h: fftconvolve(h, taps))
 
     return _on_beams(a, change)
 
 
-def _plate_modes(
-    n: int, most: float, frequency: Any = None, signs: Any = 1.0, sizes: Any = None,
-    damping: Any = 0.0, first: float = 0.0, power: float = 0.0,
-) -> list[Mode]:  # fmt: skip
+def _plate_modes(n, most, frequency=None, signs=1.0, sizes=None, damping=0.0, first=0.0, power=0.0):
     """List modes: drawn ones, or ones that lie closer or wider the higher they are."""
     if frequency is None:
         frequency = first * np.arange(1.0, n + 1.0) ** power
     return _modes(frequency, damping, most * signs * (np.ones(n) if sizes is None else sizes))
 
 
-def plates(a: float, **numbers: Any) -> dict[str, Any]:
+def plates(a, **numbers):
     """Add to the direct sound what modes make of it; swallow bands where they are negative."""
     modes = _plate_modes(**numbers)
     return _echoing(a, lambda rate, _rng: rings(rate, modes))
 
 
-def beside(a: float, **numbers: Any) -> dict[str, Any]:
+def beside(a, **numbers):
     """Radiate by a part of its own that torque and pulses shake directly: a guard, a cover."""
     modes = _plate_modes(**numbers)
 
-    def change(paths: ImpulseResponses, _rng: Rng) -> ImpulseResponses:
+    def change(paths, _rng):
         own = a * rings(paths.rate, modes)
         return _both(paths, "pressure", lambda h: padded_sum([h, _band_level(h, paths.rate) * own]))
 
     return _on_chain(a, change)
 
 
-def _band_level(response: Array, rate: float) -> float:
+def _band_level(response, rate):
     """Root mean square of what an impulse response passes in the band."""
     n = max(response.size, 2048)
     frequency = np.fft.rfftfreq(n, 1.0 / rate)
@@ -269,45 +247,41 @@ def _band_level(response: Array, rate: float) -> float:
     return float(np.sqrt(np.mean(np.abs(np.fft.rfft(response, n))[inside] ** 2)))
 
 
-def louder_band(a: float, corner: float, kind: str, order: int, gain: float) -> dict[str, Any]:
+def louder_band(a, corner, kind, order, gain):
     """Radiate better above a coincidence, or below a cut."""
 
-    def change(h: Array, rate: float) -> Array:
+    def change(h, rate):
         b, c = butter(order, 2.0 * corner / rate, kind)
-        return np.asarray(h + a * gain * lfilter(b, c, h))
+        return h + a * gain * lfilter(b, c, h)
 
     return _on_chain(
         a, lambda paths, _rng: _both(paths, "pressure", lambda h: change(h, paths.rate))
     )
 
 
-def _echoing(a: float, taps: Callable[[float, Rng], Array]) -> dict[str, Any]:
+def _echoing(a, taps):
     """Add to the direct sound what ``taps(rate, rng)`` makes of it."""
     return _on_chain(a, lambda paths, rng: filter_pressure(
         paths, padded_sum([np.ones(1), a * taps(paths.rate, rng)])))  # fmt: skip
 
 
-def reflections(a: float, form: str, series: str = "", **numbers: Any) -> dict[str, Any]:
+def reflections(a, form, series="", **numbers):
     """Let the sound reach the microphone by further ways."""
     made = _TAPS[series or form]
     return _echoing(a, lambda rate, rng: made(rate, rng, **numbers))
 
 
-def _plate_wave(
-    rate: float, _rng: Rng, first: float, dullness: float, sign: float, reflection: float
-) -> Array:
+def _plate_wave(rate, _rng, first, dullness, sign, reflection):
     size = 5.0 * (1.0 - abs(sign * reflection)) / abs(sign * reflection)
     return size * waveguide(rate, first, sign * reflection, dullness)
 
 
-def _flutter(
-    rate: float, _rng: Rng, first: float, dullness: float, reflection: float, size: float
-) -> Array:
+def _flutter(rate, _rng, first, dullness, reflection, size):
     """Go to and fro between two hard walls, duller each time."""
     return size / reflection * waveguide(rate, first, reflection, dullness)
 
 
-def _spaced(times: Array, gains: Array, rate: float) -> Array:
+def _spaced(times, gains, rate):
     """Echoes after so many seconds, each shared between two samples."""
     place = times * rate
     taps = np.zeros(int(place.max()) + 3)
@@ -317,73 +291,63 @@ def _spaced(times: Array, gains: Array, rate: float) -> Array:
     return taps
 
 
-def _decay(rate: float, rng: Rng, lasting: float, start: float) -> Array:
+def _decay(rate, rng, lasting, start):
     """Tail of unit energy that decays by 60 dB in its time [s]."""
     n = round(lasting * rate)
     tail = rng.standard_normal(n) * np.exp(-6.9 * np.arange(n) / n)
     return np.concatenate([np.zeros(max(1, round(start * rate))), tail / np.sqrt((tail**2).sum())])
 
 
-def _diffuse(rate: float, rng: Rng, lasting: float, size: float) -> Array:
+def _diffuse(rate, rng, lasting, size):
     """Ring along as a whole field of modes that overlap."""
     n = round(lasting * rate)
     tail = rng.standard_normal(n) * np.exp(-6.9 * np.arange(n) / n)
-    return np.asarray(size * tail / np.sqrt((tail**2).sum()))
+    return size * tail / np.sqrt((tail**2).sum())
 
 
-def _corridor(rate: float, _rng: Rng, way: float, wall: float, side: float, apart: float) -> Array:
+def _corridor(rate, _rng, way, wall, side, apart):
     orders = np.arange(1.0, 1.0 + int(np.log(1e-3) / np.log(wall)))
     flutter = _spaced(orders * way, 3.0 * wall**orders / np.sqrt(orders), rate)
     few = np.arange(1.0, 4.0)
     return padded_sum([flutter, _spaced(few * (apart * way), 3.0 * side**few, rate)])
 
 
-def _few(rate: float, _rng: Rng, n: int, times: Array, signs: Array, sizes: Array) -> Array:
+def _few(rate, _rng, n, times, signs, sizes):
     return _spaced(times, 5.0 * signs * sizes / np.sqrt(n), rate)
 
 
-def _one(rate: float, _rng: Rng, time: float, gain: float, size: float, corner: float) -> Array:
+def _one(rate, _rng, time, gain, size, corner):
     """Reflect once, from a wall, a bench or the floor: a comb."""
     b, c = butter(1, min(2.0 * corner / rate, 0.95))
     echo = np.append(_spaced(np.array([time]), np.array([gain * size]), rate), np.zeros(256))
-    return np.asarray(lfilter(b, c, echo))
+    return lfilter(b, c, echo)
 
 
-def _standing(
-    rate: float, _rng: Rng, n: int, lowest: float, apart: Array, damping: float, signs: Array,
-    sizes: Array, delay: float,
-) -> Array:  # fmt: skip
+def _standing(rate, _rng, n, lowest, apart, damping, signs, sizes, delay):
     """Stand in the room at its lowest modes (Morse and Bolt 1944)."""
     modes = _modes(lowest * (1.0 + np.cumsum(apart)), damping, 8.0 * signs * sizes)[:n]
     return np.concatenate([np.zeros(round(delay * rate)), rings(rate, modes)])
 
 
-def _coupled(
-    rate: float, rng: Rng, fast: float, slow: float, starts: Array, share: float, size: float
-) -> Array:
+def _coupled(rate, rng, fast, slow, starts, share, size):
     """Decay twice: a room beside the room, or a booth with its door open (Eyring 1931)."""
     near, far = _decay(rate, rng, fast, starts[0]), _decay(rate, rng, slow, starts.sum())
     return size * padded_sum([(1.0 - share) * near, share * far])
 
 
-def _coloured(
-    rate: float, rng: Rng, lasting: float, start: float, corner: float, kind: str, size: float
-) -> Array:
+def _coloured(rate, rng, lasting, start, corner, kind, size):
     """Add a tail of which the high frequencies, or the low ones, are absorbed."""
     b, c = butter(1, 2.0 * corner / rate, kind)
-    return size * np.asarray(lfilter(b, c, _decay(rate, rng, lasting, start)))
+    return size * lfilter(b, c, _decay(rate, rng, lasting, start))
 
 
-def _early_and_late(
-    rate: float, rng: Rng, n: int, lasting: float, times: Array, gains: Array, late: float,
-    size: float,
-) -> Array:  # fmt: skip
+def _early_and_late(rate, rng, n, lasting, times, gains, late, size):
     """Reflect by single walls first, and as a tail after (Moorer 1979)."""
     early = _spaced(times[:n], gains * np.exp(-times / 0.03), rate)
     return size * padded_sum([early, late * _decay(rate, rng, lasting, 0.02)])
 
 
-_TAPS: dict[str, Callable[..., Array]] = {
+_TAPS = {
     "plate_wave": _plate_wave, "diffuse": _diffuse, "corridor": _corridor, "few": _few, "one": _one,
     "flutter": _flutter, "standing": _standing, "coupled": _coupled, "coloured": _coloured,
     "early_and_late": _early_and_late,
