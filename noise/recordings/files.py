@@ -229,7 +229,8 @@ def _to_units(
     with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
         for channel, curve, row in zip(meaning.channels, meaning.curves, samples, strict=True):
             if curve is None:
-                row *= channel.full_scale
+                if channel.full_scale != 1.0:
+                    row *= channel.full_scale
                 continue
             with naming(f"{path}: channel {channel.name!r} ", RecordingError):
                 out = curve.beyond(row)

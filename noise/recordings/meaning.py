@@ -179,9 +179,9 @@ def check_finite(
         Says which sample of which channel is none.
     """
     for channel, row in zip(channels, samples, strict=True):
-        possible = (row >= -_LARGEST) & (row <= _LARGEST)
-        if not possible.all():
-            first = int(np.argmin(possible))
+        # A value that is no number is the least and the most.
+        if not (row.min(initial=0.0) >= -_LARGEST and row.max(initial=0.0) <= _LARGEST):
+            first = int(np.argmin((row >= -_LARGEST) & (row <= _LARGEST)))
             raise RecordingError(
                 f"{path}: channel {channel.name!r} is {row[first]} at sample {start + first} "
                 f"({(start + first) / rate:.6g} s), expected finite numbers up to {_LARGEST:g}"
