@@ -9,6 +9,7 @@ what they are given are pointers to the first of so many numbers, which costs le
 # mypy: allow-untyped-calls
 # ruff: noqa: ANN001, ANN201
 
+from functools import cache
 from typing import Any
 
 from llvmlite import ir  # type: ignore[import-untyped]
@@ -122,6 +123,7 @@ def _address_of(function):  # noqa: ANN202
     return _address(function)
 
 
+@cache  # looking it up takes longer than many a run
 def address_of(function: Any) -> int:
     """Address of an effect's or a law's compiled function, for compiled code; 0 for None."""
     return 0 if function is None else _address_of(function)

@@ -1,6 +1,8 @@
 """Settings of the whole test run."""
 
+import gc
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,6 +12,10 @@ from hypothesis import settings
 # another by counting would cost several times what they compute.
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
+
+# Processes that tests start take the compiled modules of the first that needed them.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # On a server the same examples every time; at a desk new ones in each run. No example has a time
 # limit: how long one takes says how busy the machine is.
@@ -47,6 +53,17 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.maintenance)
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.browser)
+
+
+def pytest_collection(session):
+    """Keep what is collected, which stays, out of the search for garbage."""
+    gc.disable()
+
+
+def pytest_collection_finish(session):
+    gc.collect()
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="module")

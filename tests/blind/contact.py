@@ -11,6 +11,9 @@ import math
 
 from numba import njit
 
+PART = {"error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
+"""Of functions that only compiled functions call."""
+
 TRUE_STICK, BRISTLE, RATE_AND_STATE, MEMORY = range(4)
 LORENTZIAN, LUGRE, STATED_RATE_AND_STATE, STATED_MEMORY = BRISTLE, 4, 5, 6
 
@@ -29,7 +32,7 @@ RENEWAL_OF_REST = 4e-4
 """Sliding that renews what an effect of ageing has regained [rad]."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def strength(law, c, kinetic, drop, speed, age):
     """Torque that a contact of this age bears at this sliding speed."""
     drop = c[DROP] * drop
@@ -52,7 +55,7 @@ def strength(law, c, kinetic, drop, speed, age):
     return kinetic * (1.0 + fading) + drop * aged
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _renewed(age, rate, h):
     """Age after a step in which sliding takes it away at a rate."""
     if rate > 1e-9:
@@ -60,7 +63,7 @@ def _renewed(age, rate, h):
     return age + h
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def drag_of(law, c, stiff, kinetic, drop, v, h, b):
     """Advance the contact's state `b` by `h`; return its torque at the sliding speed `v`.
 

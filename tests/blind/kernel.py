@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numba import njit
 
-from .contact import REST, START, TRUE_STICK, drag_of
+from .contact import PART, REST, START, TRUE_STICK, drag_of
 
 # Scalars of a run
 (J_E, J_C, K_E, K_B, C_E, C_B, T_CRIT, T_KIN) = range(8)
@@ -39,7 +39,7 @@ TORQUE, CLAMP_ACCELERATION, X1, V1, X2, V2, FRICTION, SURFACE_SPEED, SURFACE_ANG
 N_COLUMNS = 9
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(**PART)
 def _look_up(table, position):
     """Straight line in a table over [0, 1]."""
     scaled = position * (table.size - 1)
@@ -51,7 +51,7 @@ def _look_up(table, position):
     return table[i] + (scaled - i) * (table[i + 1] - table[i])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _elastomer(x, v, k_now, p, z, branches, friction, softening, m):
     """Torque of the elastomer at twist x and its rate v; m: slow mean, peak, previous twist."""
     k = p[K_E] * k_now
@@ -67,7 +67,7 @@ def _elastomer(x, v, k_now, p, z, branches, friction, softening, m):
     return torque
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _support(x, v, p):
     """Torque of the beams on the clamp."""
     torque = p[K_B] * x + p[C_B] * v
@@ -80,7 +80,7 @@ def _support(x, v, p):
     return torque
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _shaft_torque(lag, rate, p):
     """Torque by which a compliant shaft drives its end, which lags by `lag`."""
     free = lag - min(max(lag, -p[SHAFT_GAP]), p[SHAFT_GAP])
@@ -89,7 +89,7 @@ def _shaft_torque(lag, rate, p):
     return spring / math.sqrt(1.0 + p[SHAFT_CUBIC] * spring * spring) + p[SHAFT_C] * rate + dry
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _step(y, h, way, t_kin, ratio_base, drive, k_now, p, z, tables, m, creeping, drop):
     """Advance the state by `h`; return the friction torque, the elastomer's, and the sliding.
 
@@ -161,7 +161,7 @@ def _step(y, h, way, t_kin, ratio_base, drive, k_now, p, z, tables, m, creeping,
     return drag, torque, vs - v1
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _slow_states(h, x, z, branches, friction, m, p):
     """Dashpots, dry-friction elements, slow mean and held peak of the elastomer."""
     for i in range(branches.shape[0]):
@@ -178,12 +178,12 @@ def _slow_states(h, x, z, branches, friction, m, p):
     m[1] = max(abs(x - m[0]), m[1] * (1.0 - h * p[PEAK_RATE]))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _age(t):
     return math.log10(max(t, LOWEST_AGE) / LOWEST_AGE) / AGE_DECADES
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)
 def integrate(
     steps, h, p, start, omega, torque_gain, film_noise, stiffness_gain,
     weakening, ageing, scatter, creep, angle_gain, film, heat, softening_by_heat,

@@ -150,16 +150,6 @@ def test_intervals_of_parameters_hold_nearly_as_often_as_they_say():
     assert 0.8 <= np.mean(inside) <= 1.0  # of 60, 90 % by design
 
 
-def test_a_weakening_is_fitted_in_some_form_and_closes_the_gap_held_out(weakening):
-    start = fit_parameters(weakening, [0, 2]).model
-    fitted = fit_effects(weakening, [0, 2], ["velocity_weakening"], start)
-    (spec,) = fitted.model.effects
-    assert spec.name == "velocity_weakening"
-    before, after = (_gap(weakening, m, [1]) for m in (Model(), fitted.model))
-    assert (before - max(after, 1.0)) / (before - 1.0) > 0.5
-    assert after < _gap(weakening, start, [1])
-
-
 @pytest.mark.slow
 def test_an_effect_leaves_hardly_more_than_the_parameters_where_these_are_what_is_off():
     stiff = with_offsets(RIG, {"elastomer_stiffness": 1.15})

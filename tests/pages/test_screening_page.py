@@ -17,21 +17,14 @@ from noise.pages.maps import cells_of, common_cells
 from noise.pages.screen_sounds import chosen_points, screen_maps, shared_points
 from noise.pages.screening import RANKING, ranking_rows, write_screening
 from noise.screening.design import Design, Use
-from noise.screening.screen import screen
-from tests.helpers.quick_screens import no_advice, quick_screen
+from tests.helpers.quick_screens import quick_screen
 
 QUICK = Use(speed=(1.0, 5.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
 
 
-def of(*names, use=QUICK, **changes):
-    rigs = [load_material_rig(name) for name in names]
-    rigs += [load_material_rig("fluorocarbon").changed(**changes)] if changes else []
-    return screen([Design(rig.material, rig) for rig in rigs], use)
-
-
 @pytest.fixture(scope="module")
 def two():
-    return of("fluorocarbon", "PDMS")
+    return quick_screen(["fluorocarbon", "PDMS"], QUICK)
 
 
 class Page(HTMLParser):
@@ -202,10 +195,10 @@ def test_maps_laid_over_each_other_keep_what_lies_where(first, second):
         assert area(laid) == pytest.approx(area(own))
 
 
-def test_the_loudest_of_each_noise_and_the_largest_difference_are_heard(two):
-    use = replace(QUICK, speed=tuple(np.linspace(0.5, 12.5, 25)))
-    with no_advice():
-        wide = of("fluorocarbon", use=use, damping="x2")
+def test_the_loudest_of_each_noise_is_heard():
+    use = replace(QUICK, speed=tuple(np.linspace(0.5, 12.5, 13)))
+    damped = Design("damped", load_material_rig("fluorocarbon").changed(damping="x2"))
+    wide = quick_screen(["fluorocarbon", damped], use)
     shared = shared_points(screen_maps(wide))
     chosen = chosen_points(shared, 10)
     for number in range(2):
