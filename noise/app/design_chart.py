@@ -14,7 +14,7 @@ import numpy as np
 
 from models.rig import Rig
 from noise.app.requests import number
-from noise.base.labels import NAMED
+from noise.base.labels import LABEL_LOOKS, MAP_LABELS, NAMED, PERSISTS
 from noise.pages.maps import MAP_SIZE, ConditionMap, areas_of, axis_of, cells_of
 from noise.pages.page import map_html
 from noise.screening.advice import advise
@@ -94,20 +94,21 @@ _SIMULATIONS = 100
 _HEIGHT = 200.0
 """Of its drawing [px]."""
 
+_MEANING = {PERSISTS: "quiet from rest, but a vibration goes on once it has started"}
 _FASTEST = 13.0
 """Of a chart of a bushing that states none [rad/s]."""
 
 
 def chart_of(asked: ChartRequest) -> dict[str, object]:
-    """Return the map of noises over speed and interference as a piece of a page, and labels.
+    """Return the map of noises over speed and interference as a piece of a page, and its legend.
 
     Examples
     --------
     >>> from models.rig_file import load_material_rig
     >>> from noise.app.design_chart import ChartRequest
     >>> found = chart_of(ChartRequest(load_material_rig("PDMS"), 2214.0, 23.0))
-    >>> found["labels"][0][0], 'data-label="none"' in found["html"]
-    ('none', True)
+    >>> found["legend"], 'data-label="none"' in found["html"]
+    ('Quiet everywhere', True)
     """
     rig = asked.rig
     low, high = rig.interference_range
@@ -127,7 +128,9 @@ def chart_of(asked: ChartRequest) -> dict[str, object]:
     up = axis_of(cells.interference_edges, edges=True)
     areas = areas_of(cells, labels.ravel().tolist(), across, up, (MAP_SIZE[0], _HEIGHT))
     noises = ConditionMap("Noise", across, up, areas, (), height=_HEIGHT, compared=True)
-    return {"labels": labels.tolist(), "html": map_html(noises)}
+    shown = [label for label in MAP_LABELS if label != "none" and label in labels]
+    legend = [f"{LABEL_LOOKS[label].mark} {_MEANING.get(label, label)}" for label in shown]
+    return {"legend": ", ".join(legend) or "Quiet everywhere", "html": map_html(noises)}
 
 
 def suggestions_of(asked: SuggestionRequest) -> dict[str, object]:

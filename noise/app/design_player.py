@@ -141,7 +141,7 @@ BLOCK = 960
 TORQUE_STEP = 4
 """Of every so many samples of the torque one is sent, to be drawn."""
 
-HEADER = struct.Struct("<4I2f")
+HEADER = struct.Struct("<4If")
 """Of a block."""
 
 REFUSED = 0xFFFFFFFF
@@ -203,8 +203,8 @@ class Player:
         Returns
         -------
         bytes
-            Sequence, serial, samples of pressure and of torque as unsigned integers; milliseconds
-            that it took and speed of the shaft [rad/s], then pressure [Pa] and torque [Nm] as
+            Sequence, serial, samples of pressure and of torque as unsigned integers; speed of the
+            shaft [rad/s], then pressure [Pa] and torque [Nm] as
             floating-point numbers; all of 32 bits, little-endian. Where the change that was to be
             heard could not be, or what carries it to the microphone cannot, `REFUSED` and why comes
             before it.
@@ -215,7 +215,6 @@ class Player:
             The run cannot go on.
         """
         run = self._runs[number]
-        started = time.perf_counter()
         why = b""
         change, run.change = run.change, None
         if change is None:
@@ -232,9 +231,8 @@ class Player:
             run.refused = run.serial
         pressure = made.samples["pressure"].astype("<f4")
         torque = made.samples["torque"][::TORQUE_STEP].astype("<f4")
-        took = 1e3 * (time.perf_counter() - started)
         sizes = pressure.size, torque.size
-        header = HEADER.pack(run.sequence, run.serial, *sizes, took, made.speed)
+        header = HEADER.pack(run.sequence, run.serial, *sizes, made.speed)
         run.sequence += 1
         return why + header + pressure.tobytes() + torque.tobytes()
 
@@ -242,7 +240,7 @@ class Player:
 def refusal(serial: int, error: ParameterError | str) -> bytes:
     """Return the message that a change could not be."""
     why = " ".join(str(error).split()).encode()
-    return HEADER.pack(REFUSED, serial, len(why), 0, 0.0, 0.0) + why
+    return HEADER.pack(REFUSED, serial, len(why), 0, 0.0) + why
 
 
 def warmed() -> Player:

@@ -61,7 +61,7 @@ class _Stream:
         """Hand on what the player made; an empty message ends the stream."""
         if message and HEADER.unpack_from(message)[0] != REFUSED:
             self.heard.append(message[HEADER.size : HEADER.size + 4 * BLOCK])
-            self.speed = HEADER.unpack_from(message)[5]
+            self.speed = HEADER.unpack_from(message)[4]
         given_up = not message or self.queue.qsize() > _UNREAD
         with suppress(RuntimeError):  # the loop has ended
             self.loop.call_soon_threadsafe(self.queue.put_nowait, None if given_up else message)

@@ -15,7 +15,6 @@ from noise.app.design_player import BLOCK, RATE, TORQUE_STEP
 from noise.app.design_sound import LiveSounds
 from noise.app.gate import body
 from noise.app.worker_process import WorkerProcess
-from sim.blocks import LOOKAHEAD
 
 if TYPE_CHECKING:
     from starlette.requests import Request
@@ -45,9 +44,8 @@ def routes(opened: Opened) -> list[BaseRoute]:
     def listed(_: Request) -> Response:
         sounds.get_ready()
         named = [{"id": key, "name": base.name, "heard": base.heard} for key, base in bases.items()]
-        steps = {"rate": RATE, "block": BLOCK, "torque_step": TORQUE_STEP}
-        about = {"bases": named, "lookahead_s": LOOKAHEAD}
-        return JSONResponse(about | steps)
+        about = {"bases": named, "rate": RATE, "block": BLOCK, "torque_step": TORQUE_STEP}
+        return JSONResponse(about)
 
     def controls(request: Request) -> Response:
         base = base_of(request.query_params.get("base"), bases)

@@ -85,7 +85,9 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
     def segments(request: Request) -> Response:
         job = opened.job(request.path_params["id"])
-        return JSONResponse(_segments(job.index, labels.rows(job.index)))
+        return JSONResponse(
+            _segments(_page(request.query_params), job.index, labels.rows(job.index))
+        )
 
     def corrected(request: Request, content: dict[str, Any]) -> Response:
         job = opened.job(request.path_params["id"])
@@ -93,12 +95,11 @@ def routes(opened: Opened) -> list[BaseRoute]:
         if not isinstance(of := content.get("version"), str):
             raise ParameterError("version: must be that of the segments which are corrected")
         rows = labels.correct(job.index, corrections, of, _page(content))
-        return JSONResponse(_segments(job.index, rows))
+        return JSONResponse(_segments(_page(content), job.index, rows))
 
     def undone(_: Request, content: dict[str, Any]) -> Response:
-        return JSONResponse(
-            _segments(*labels.undo(_page(content), redo=content.get("redo") is True))
-        )
+        page = _page(content)
+        return JSONResponse(_segments(page, *labels.undo(page, redo=content.get("redo") is True)))
 
     def labelled(_: Request, __: dict[str, Any]) -> Response:
         if not labelling.running:
@@ -107,11 +108,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
             labelling.start(["label", "--out", str(labels.path), "--", *paths])
         return JSONResponse(state())
 
-    def _segments(index: int, rows: Sequence[Row]) -> dict[str, object]:
+    def _segments(page: str, index: int, rows: Sequence[Row]) -> dict[str, object]:
         return {
             "id": index,
             "name": opened.jobs[index].name,
             "version": version(rows),
+            "history": labels.history(page),
             "rows": [
                 {name: _plain(name, value) for name, value in row.items()}
                 | {"row": number, "conditions": conditions(row)}
@@ -273,7 +275,7 @@ def _plain(name: str, value: object) -> object:
     return plain_cell(value)  # a date of a column of one's own is text
 
 
-def _page(content: dict[str, Any]) -> str:
+def _page(content: Mapping[str, Any]) -> str:
     """Return the page that a request comes from, as it calls itself."""
     return str(content.get("page", ""))[:_LONGEST_NAME]
 

@@ -482,6 +482,12 @@ class Labels:
             self._redo = [one for one in self._redo if one.by != by]
             return after
 
+    def history(self, by: str) -> dict[str, bool]:
+        """Return whether a page has a correction to undo, and one to redo."""
+        with self._lock:
+            lists = {"undo": self._undo, "redo": self._redo}
+            return {name: any(one.by == by for one in done) for name, done in lists.items()}
+
     def undo(self, by: str = "", *, redo: bool = False) -> tuple[int, list[Row]]:
         """Put back what the last correction of a page replaced, and write the table.
 

@@ -82,11 +82,10 @@ def plot_conditions(places: Sequence[Place], *, title: str) -> Figure:
         handles = [
             Patch(facecolor=LABEL_COLOURS[label], edgecolor="#444444", linewidth=0.6, label=label)
             for label in LABELS
+            if any(place.segments[label] for place in places)
         ]
-        figure.legend(
-            handles=handles, loc="outside lower center", ncols=len(LABELS),
-            title="Numbers are segments; ? is not known",
-        )  # fmt: skip
+        words = "Numbers of segments" + "; ?: not known" * (None in (*speeds, *fits))
+        figure.legend(handles=handles, loc="outside lower center", ncols=len(LABELS), title=words)
     return figure
 
 

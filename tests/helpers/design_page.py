@@ -50,7 +50,7 @@ class DesignPage:
 
     def blocks(self, n):
         """Wait until so many more blocks have come."""
-        self.until(f"{DESIGN}.sound.costs.length >= {self.sound('costs.length') + n}")
+        self.until(f"{DESIGN}.sound.blocks >= {self.sound('blocks') + n}")
 
     def slide(self, key, value):
         self.page.evaluate(
@@ -67,7 +67,7 @@ class DesignPage:
     def play(self):
         """Play, and wait until it is heard."""
         self.page.locator("#view-design .play").click()
-        self.until(f"{DESIGN}.sound.costs.length > 10", 6 * PATIENCE)  # it may be compiled first
+        self.until(f"{DESIGN}.sound.blocks > 10", 6 * PATIENCE)  # it may be compiled first
         self.until(f"{DESIGN}.sound.heardSerial !== undefined")
 
     def marked(self):

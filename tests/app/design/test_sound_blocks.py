@@ -38,7 +38,7 @@ def setting(design):
 
 
 def read(block):
-    sequence, serial, n, m, _, speed = HEADER.unpack(block[: HEADER.size])
+    sequence, serial, n, m, speed = HEADER.unpack(block[: HEADER.size])
     numbers = np.frombuffer(block[HEADER.size :], "<f4")
     assert numbers.size == n + m
     return {"sequence": sequence, "serial": serial, "pressure": numbers[:n], "speed": speed}

@@ -43,7 +43,7 @@ export class Chart {
     if (!answer) return;
     this.progress.hidden = true;
     this.took = Math.max(2, (performance.now() - began) / 1000);
-    this.said.textContent = answer.error || "Cr creak, Sk squawk, Sl squeal. At constant speed, for this support and temperature; partly simulated, partly from stability analysis.";
+    this.said.textContent = answer.error || `${answer.found.legend}. At constant speed, for this support and temperature; partly simulated, partly from stability analysis.`;
     if (!answer.found) return;
     this.known = true;
     this.box.classList.remove("old");

@@ -2,40 +2,37 @@
 import { DEEP, LINE, sheet, SOFT } from "../labels/timeline.js";
 import { ticks } from "../shared/player.js";
 
-const REFERENCE = 2e-5, SIZE = 8192, FLOOR = 0, TOP = 100; // Pa, samples, dB
+const TOP = 100; // of the spectrum, from 0 on [dB]
 const LOWEST = 50, HIGHEST = 20000; // Hz
 const SHOWN = 0.2; // of the torque [s]
 const EVERY = 120; // drawn anew [ms]
 
 export class Drawings extends EventTarget {
-  constructor({ rate, torque_step: step }, torque, spectrum) {
+  constructor({ rate, torque_step: step }, sound, torque, spectrum) {
     super();
-    this.rate = rate;
-    this.torqueRate = rate / step;
-    this.pressure = new Float32Array(SIZE);
-    this.torque = new Float32Array(Math.round(SHOWN * this.torqueRate));
-    this.screens = { torque, spectrum };
-    this.mean = null;
+    Object.assign(this, { rate, sound, screens: { torque, spectrum } });
+    this.torque = new Float32Array(Math.round((SHOWN * rate) / step));
     this.dirty = false;
   }
 
-  take({ pressure, torque }) {
-    push(this.pressure, pressure);
-    push(this.torque, torque);
+  take({ torque }) {
+    this.torque.copyWithin(0, torque.length);
+    this.torque.set(torque, this.torque.length - torque.length);
     if (this.dirty) return;
     this.dirty = true;
     setTimeout(() => requestAnimationFrame(() => { this.dirty = false; this.draw(); this.dispatchEvent(new Event("drawn")); }), EVERY);
   }
 
+  // Before anything is heard the diagrams are empty.
   draw() {
-    this.#torque();
-    this.#spectrum();
+    this.#torque(this.sound.blocks ? this.torque : []);
+    this.#spectrum(this.sound.spectrum());
   }
 
-  #torque() {
-    const of = this.torque;
+  #torque(of) {
     let low = Infinity, high = -Infinity;
     for (const one of of) { low = Math.min(low, one); high = Math.max(high, one); }
+    if (!of.length) [low, high] = [-10, 10];
     const centre = (low + high) / 2, half = Math.max((high - low) / 2, 0.05 * Math.abs(centre), 0.5) * 1.1;
     const rows = ticks(centre - half, centre + half, 3).found.map((value) => [(value - centre + half) / (2 * half), `${value}`]);
     const columns = [0, 50, 100, 150, 200].map((time) => [time / 1000 / SHOWN, `${time}`]);
@@ -43,29 +40,17 @@ export class Drawings extends EventTarget {
     curve(pen, Array.from(of, (value, i) => [x(i / (of.length - 1)), y((value - centre + half) / (2 * half))]));
   }
 
-  #spectrum() {
-    const power = powers(this.pressure);
-    this.mean ??= power.slice();
-    for (let i = 0; i < power.length; i++) this.mean[i] += 0.3 * (power[i] - this.mean[i]);
-    const rows = [0, 20, 40, 60, 80, 100].map((level) => [(level - FLOOR) / (TOP - FLOOR), `${level}`]);
+  // In each column of the screen the highest line.
+  #spectrum(levels) {
+    const rows = [0, 20, 40, 60, 80, 100].map((level) => [level / TOP, `${level}`]);
     const columns = [50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000].map((f) => [Math.log(f / LOWEST) / Math.log(HIGHEST / LOWEST), f < 1000 ? `${f}` : `${f / 1000}k`]);
     const { x, y, pen, width } = axes(this.screens.spectrum, rows, columns, "dB re 20 µPa", "Hz");
-    const points = [];
-    for (let column = 0; column < width; column++) {
-      const from = LOWEST * (HIGHEST / LOWEST) ** (column / width), to = LOWEST * (HIGHEST / LOWEST) ** ((column + 1) / width);
-      const first = Math.max(1, Math.round(from * SIZE / this.rate)), last = Math.max(first, Math.round(to * SIZE / this.rate) - 1);
-      let most = 0;
-      for (let i = first; i <= last && i < this.mean.length; i++) most = Math.max(most, this.mean[i]);
-      points.push([x(column / width), y(Math.max(0, (10 * Math.log10(most / REFERENCE ** 2 + 1e-30) - FLOOR) / (TOP - FLOOR)))]);
-    }
-    curve(pen, points);
+    const line = (share) => Math.round((LOWEST * (HIGHEST / LOWEST) ** share * 2 * levels.length) / this.rate);
+    curve(pen, Array.from({ length: levels.length ? Math.ceil(width) : 0 }, (_, column) => {
+      const first = line(column / width), last = Math.max(first + 1, line((column + 1) / width));
+      return [x(column / width), y(Math.max(0, ...levels.slice(first, last)) / TOP)];
+    }));
   }
-}
-
-function push(held, more) {
-  if (more.length >= held.length) { held.set(more.subarray(more.length - held.length)); return; }
-  held.copyWithin(0, more.length);
-  held.set(more, held.length - more.length);
 }
 
 const LEFT = 34, BELOW = 16, ABOVE = 14; // room for numbers and units [px]
@@ -95,32 +80,4 @@ function curve(pen, points) {
   for (const point of points) pen.lineTo(...point);
   Object.assign(pen, { strokeStyle: DEEP, lineWidth: 1.5 });
   pen.stroke();
-}
-
-const window_ = Float64Array.from({ length: SIZE }, (_, i) => 0.5 - 0.5 * Math.cos(2 * Math.PI * i / SIZE));
-
-// Mean square of each line under a Hann window [Pa^2].
-function powers(signal) {
-  const real = new Float64Array(SIZE), imaginary = new Float64Array(SIZE);
-  let bits = Math.log2(SIZE), mean = 0;
-  for (const one of signal) mean += one / SIZE;
-  for (let i = 0; i < SIZE; i++) {
-    let j = 0;
-    for (let bit = 0; bit < bits; bit++) j |= ((i >> bit) & 1) << (bits - 1 - bit);
-    real[j] = (signal[i] - mean) * window_[i];
-  }
-  for (let size = 2; size <= SIZE; size *= 2) {
-    const half = size / 2, turn = -2 * Math.PI / size;
-    for (let k = 0; k < half; k++) {
-      const c = Math.cos(turn * k), s = Math.sin(turn * k);
-      for (let i = k; i < SIZE; i += size) {
-        const j = i + half, re = real[j] * c - imaginary[j] * s, im = real[j] * s + imaginary[j] * c;
-        real[j] = real[i] - re; imaginary[j] = imaginary[i] - im;
-        real[i] += re; imaginary[i] += im;
-      }
-    }
-  }
-  const power = new Float64Array(SIZE / 2);
-  for (let i = 0; i < power.length; i++) power[i] = 8 * (real[i] ** 2 + imaginary[i] ** 2) / SIZE ** 2;
-  return power;
 }

@@ -1,5 +1,5 @@
 // Beside the page: reads the stream of blocks and hands them to the audio thread; tells the program what has changed.
-const HEADER = 24, HEADROOM = 1.12; // bytes; peaks between two samples are higher
+const HEADER = 20, HEADROOM = 1.12; // bytes; peaks between two samples are higher
 const STEPS = [1, 2, 5, 10];
 const REFUSED = 0xFFFFFFFF; // in place of a sequence: a reason follows
 
@@ -74,7 +74,7 @@ function sizeOf(bytes) {
 }
 
 function pass(bytes) {
-  const [sequence, serial, n, m] = new Uint32Array(bytes, 0, 4), [took, speed] = new Float32Array(bytes, 16, 2);
+  const [sequence, serial, n, m] = new Uint32Array(bytes, 0, 4), [speed] = new Float32Array(bytes, 16, 1);
   if (sequence === REFUSED) {
     refused(new TextDecoder().decode(new Uint8Array(bytes, HEADER, n)), serial);
     return;
@@ -86,6 +86,6 @@ function pass(bytes) {
     const ten = 10 ** Math.floor(Math.log10(HEADROOM * peak));
     fullScale = Number(STEPS.map((one) => one * ten).find((one) => one >= HEADROOM * peak * 0.9999).toPrecision(1));
   }
-  self.postMessage({ block: { sequence, serial, pressure, torque, took, speed, peak, fullScale } });
+  self.postMessage({ block: { sequence, serial, pressure, torque, speed, fullScale } });
   port.postMessage({ sequence, serial, pressure, gain: 1 / fullScale }, [pressure.buffer]);
 }

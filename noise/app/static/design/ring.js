@@ -1,4 +1,4 @@
-// In the audio thread: plays blocks of pressure one after the other at one gain, keeps a small reserve, counts what is missing.
+// In the audio thread: plays blocks of pressure one after the other at one gain, and keeps a small reserve.
 const FIRST = 0.12; // to be in reserve before it begins, when there is most to do besides [s]
 const LOW = 0.006, AIM = 0.014, HIGH = 0.02; // reserve as a block comes, below and above which blocks are to come sooner and later [s]
 const CALM = 2; // without less in reserve, before blocks are to come later [s]
@@ -12,14 +12,11 @@ class Ring extends AudioWorkletProcessor {
     this.block = block;
     this.blocks = [];
     this.at = 0; // sample of the first block
-    this.next = 0; // sequence that comes next
     this.gain = 0;
     this.aim = 0;
     this.begins = Infinity; // time at which it plays
     this.playing = false;
     this.stopped = false;
-    this.missing = 0;
-    this.doubled = 0;
     this.serial = -1;
     this.least = Infinity; // in reserve, since the pace was looked at
     this.calm = 0; // times at which the pace is looked at anew
@@ -40,13 +37,8 @@ class Ring extends AudioWorkletProcessor {
 
   take(block) {
     const reserve = this.reserve;
-    if (block.sequence < this.next) this.doubled += block.pressure.length;
-    else {
-      this.missing += (block.sequence - this.next) * this.block;
-      this.next = block.sequence + 1;
-      this.blocks.push(block);
-      this.aim = block.gain;
-    }
+    this.blocks.push(block);
+    this.aim = block.gain;
     if (this.playing) this.look(reserve);
     else if (this.begins === Infinity) this.begins = currentTime + FIRST;
   }
@@ -82,14 +74,10 @@ class Ring extends AudioWorkletProcessor {
     }
     while (this.playing && first < output.length) {
       const block = this.blocks[0];
-      if (!block) {
-        this.missing += output.length - first;
-        this.port.postMessage({ missing: this.missing, doubled: this.doubled, frame: currentFrame + first });
-        break;
-      }
+      if (!block) break; // it has not come in time
       if (this.at === 0 && block.serial !== this.serial) {
         this.serial = block.serial;
-        this.port.postMessage({ serial: block.serial, time: (currentFrame + first) / sampleRate, missing: this.missing, doubled: this.doubled });
+        this.port.postMessage(block.serial);
       }
       const n = Math.min(output.length - first, block.pressure.length - this.at);
       for (let i = 0; i < n; i++) {

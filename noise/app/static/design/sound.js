@@ -1,19 +1,16 @@
-// The sound of the design: a worker reads its blocks, the audio thread plays them; what is missing and how late it is are counted.
+// The sound of the design: a worker reads its blocks, the audio thread plays them, an analyser has their spectrum.
 const QUIETEST = 0.1; // nothing is amplified beyond this full scale [Pa]
-const LATENCIES = 5000; // that are kept
+const BLACKMAN = 0.42; // mean of the analyser's window
+const LINES = 4096; // of the spectrum
 
 export class Sound extends EventTarget {
-  constructor({ rate, block, lookahead_s: lookahead }) {
+  constructor({ rate, block }) {
     super();
     this.rate = rate;
     this.block = block;
-    this.lookahead = 1000 * lookahead; // by which the sound of a block lags behind its motion [ms]
     this.fullScale = QUIETEST;
-    this.missing = 0; // samples that were not there in time
-    this.doubled = 0;
-    this.latencies = []; // from a change to when it is heard [ms]
-    this.costs = []; // of blocks, at the server [ms]
-    this.waiting = []; // changes that are not heard yet
+    this.blocks = 0; // that have come
+    this.levels = new Float32Array(LINES); // of the spectrum [dB]
     this.serial = 0; // of the newest change
     this.refusedSerial = -1; // of the newest that could not be
     this.design = null;
@@ -25,9 +22,15 @@ export class Sound extends EventTarget {
   change(design) {
     this.design = design;
     this.serial += 1;
-    if (!this.node) return;
-    this.waiting.push({ serial: this.serial, at: performance.now() });
-    this.worker.postMessage({ design: { design, serial: this.serial } });
+    this.worker?.postMessage({ design: { design, serial: this.serial } });
+  }
+
+  // Levels of the lines of what is heard, as a tone of that frequency would have them [dB re 20 uPa]; none before it is played.
+  spectrum() {
+    if (!this.analyser) return [];
+    this.analyser.getFloatFrequencyData(this.levels);
+    const full = 20 * Math.log10((this.fullScale * Math.SQRT2) / (BLACKMAN * 2e-5));
+    return this.levels.map((level) => level + full);
   }
 
   async start() {
@@ -38,6 +41,7 @@ export class Sound extends EventTarget {
       if (this.context.state === "suspended") this.context.resume();
       this.added ??= this.context.audioWorklet.addModule(new URL("./ring.js", import.meta.url));
       await this.added;
+      this.analyser ??= new AnalyserNode(this.context, { fftSize: 2 * LINES, smoothingTimeConstant: 0.7 });
     } finally { this.starting = false; }
     this.refusedSerial = -1;
     this.run = crypto.getRandomValues(new Uint32Array(1))[0];
@@ -46,13 +50,16 @@ export class Sound extends EventTarget {
     this.node = new AudioWorkletNode(this.context, "ring", {
       numberOfInputs: 0, outputChannelCount: [1], processorOptions: { block: this.block },
     });
-    this.node.port.onmessage = ({ data }) => this.#played(data);
+    this.node.port.onmessage = ({ data: serial }) => {
+      this.heardSerial = serial;
+      this.#tell("heard");
+    };
     const { port1, port2 } = new MessageChannel();
-    this.waiting = [];
     const address = new URL("api/design/", document.baseURI).href;
     this.worker.postMessage({ start: { address, run: this.run, fullScale: this.fullScale }, design: { design: this.design, serial: this.serial }, port: port1 }, [port1]);
     this.node.port.postMessage({ feed: port2 }, [port2]);
     this.node.connect(this.context.destination);
+    this.node.connect(this.analyser);
     this.#tell("change");
   }
 
@@ -73,37 +80,19 @@ export class Sound extends EventTarget {
   }
 
   #fed(data) {
-    if (data.refused !== undefined) {
-      this.waiting = this.waiting.filter(({ serial }) => serial > data.serial);
-      this.#refuse(data.serial, data.refused);
-    }
+    if (data.refused !== undefined) this.#refuse(data.serial, data.refused);
     if (data.ended !== undefined) {
       if (data.ended) this.#refuse(this.serial, data.ended);
       this.stop();
     }
     if (data.block) {
-      this.costs.push(data.block.took);
-      if (this.costs.length > LATENCIES) this.costs.shift();
+      this.blocks += 1;
       if (data.block.fullScale !== this.fullScale) {
         this.fullScale = data.block.fullScale;
         this.#tell("change");
       }
       this.dispatchEvent(new CustomEvent("block", { detail: data.block }));
     }
-  }
-
-  #played({ serial, time, missing, doubled }) {
-    this.missing = missing;
-    this.doubled = doubled;
-    if (serial === undefined) return;
-    const { contextTime, performanceTime } = this.context.getOutputTimestamp();
-    const heard = contextTime ? performanceTime + 1000 * (time - contextTime)
-      : performance.now() + 1000 * (time - this.context.currentTime + (this.context.outputLatency || this.context.baseLatency));
-    for (const one of this.waiting) if (one.serial <= serial) this.latencies.push(heard + this.lookahead - one.at);
-    this.waiting = this.waiting.filter((one) => one.serial > serial);
-    if (this.latencies.length > LATENCIES) this.latencies.splice(0, this.latencies.length - LATENCIES);
-    this.heardSerial = serial;
-    this.#tell("heard");
   }
 
   #refuse(serial, reason) {

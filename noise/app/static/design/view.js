@@ -39,7 +39,7 @@ export async function mount(panel) {
   view.append(left, right);
   panel.replaceChildren(view);
 
-  const controls = new Controls(rows), sound = new Sound(about), drawings = new Drawings(about, torque, spectrum);
+  const controls = new Controls(rows), sound = new Sound(about), drawings = new Drawings(about, sound, torque, spectrum);
   const design = { sound, controls, drawings, about };
   panel.design = design;
   const baseOf = (id) => about.bases.find((one) => one.id === id);
@@ -189,6 +189,7 @@ export async function mount(panel) {
     level.textContent = "Press Play to hear the design and to see its name and level.";
   }
   silent();
+  new ResizeObserver(() => drawings.draw()).observe(right);
   await put({ base: about.bases[0].id, values: {} });
   play.disabled = false;
   design.ready = true;

@@ -13,6 +13,7 @@ export class Corrections extends EventTarget {
     this.rows = [];
     this.track = "all";
     this.saved = null; // rows as the table has them; none is known before they have come
+    this.history = { undo: false, redo: false }; // what there is to undo and redo
     this.versions = new Map(); // of the rows of each recording, which a change of them is based on
     this.taken = 0; // how often rows of the table came
     this.queue = []; // what is still to be done: { id, name, rows, kind } is written, { undone } undoes
@@ -41,7 +42,7 @@ export class Corrections extends EventTarget {
     do {
       await this.working;
       ({ taken } = this);
-      answer = await api(`recordings/${id}/segments`);
+      answer = await api(`recordings/${id}/segments?page=${PAGE}`);
     } while (id === this.id && (this.working || taken !== this.taken));
     const isOther = id === this.id && answer.version !== this.versions.get(id);
     this.#take(answer);
@@ -74,8 +75,9 @@ export class Corrections extends EventTarget {
   }
 
   // What is still to be written of it stays shown.
-  #take({ id, rows, version }) {
+  #take({ id, rows, version, history }) {
     this.versions.set(id, version);
+    this.history = history;
     if (id !== this.id) return;
     this.taken += 1;
     const known = rows.filter((row) => row.label);
@@ -189,7 +191,7 @@ export class Corrections extends EventTarget {
   }
 
   // Rows as the table has them; null where it cannot be asked.
-  #now(id) { return api(`recordings/${id}/segments`).catch(() => null); }
+  #now(id) { return api(`recordings/${id}/segments?page=${PAGE}`).catch(() => null); }
 
   #again(id, now) {
     if (now) this.#take(now);

@@ -22,7 +22,10 @@ export class Outline {
     const found = await numbers(this.id, "outline", { channel: this.channel, start, end, width }, Float32Array);
     if (turn !== this.turn) return;
     this.parts[place] = found;
-    if (!place) this.most = found.values.reduce((most, one) => Math.max(most, Math.abs(one)), 0) || 1;
+    if (!place) {
+      this.high = found.values.reduce((most, one) => Math.max(most, one), -Infinity);
+      this.low = found.values.reduce((least, one) => Math.min(least, one), Infinity);
+    }
     this.draw();
   }
 
@@ -37,14 +40,14 @@ export class Outline {
     const { start, end } = this.timeline;
     const fine = this.parts[1];
     const part = fine && fine.start <= start + 1e-3 && fine.end >= end - 1e-3 ? fine : this.parts[0];
-    const largest = Number(this.most?.toPrecision(2));
-    drawAxis(this.axis, 4, part ? [[0.03, `${largest}`], [0.97, `${-largest}`], [0.5, part.unit]] : []);
-    pen.fillStyle = LINE;
-    pen.fillRect(0, height / 2, width, 1);
+    const written = (value) => `${Number(value.toPrecision(3))}`;
+    drawAxis(this.axis, 4, part ? [[0.03, written(this.high)], [0.97, written(this.low)], [0.5, part.unit]] : []);
     if (!part) return;
+    const y = (value) => (0.03 + (0.94 * (this.high - value)) / (this.high - this.low || 1)) * height;
+    pen.fillStyle = LINE;
+    pen.fillRect(0, y(0), width, 1);
     const columns = part.values.length / 2, step = (part.end - part.start) / columns;
     pen.fillStyle = DEEP;
-    const y = (value) => (0.5 - (0.47 * value) / this.most) * height;
     const from = Math.max(0, Math.floor((start - part.start) / step));
     const to = Math.min(columns, Math.ceil((end - part.start) / step));
     for (let column = from; column < to; column++) {

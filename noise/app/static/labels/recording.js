@@ -189,7 +189,12 @@ export class RecordingPage {
 
   #rows() {
     showSegment(this.parts, this.segments.chosen);
-    this.parts.agree.disabled = this.corrections.rows.every((row) => row.label_source === "human");
+    const { rows, shown, history, queue } = this.corrections, { parts } = this;
+    parts.agree.disabled = rows.every((row) => row.label_source === "human");
+    parts.split.disabled = !rows.length;
+    parts.join.disabled = shown.length < 2;
+    parts.undo.disabled = !history.undo && !queue.length;
+    parts.redo.disabled = !history.redo;
   }
 
   #chosen() {

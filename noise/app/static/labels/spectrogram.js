@@ -96,11 +96,10 @@ export class Spectrogram {
   #drawAxis() {
     const shown = FREQUENCIES.filter((one) => this.whole && one >= this.whole.low && one <= this.whole.high);
     const rows = shown.map((one) => [this.share(one), one < 1000 ? `${one}` : `${one / 1000}k`]);
+    if (rows.length) rows.at(-1)[1] += " Hz";
     const { pen, width, height } = drawAxis(this.axis, 9, rows);
     if (!this.whole) return;
     for (const [share] of rows) pen.fillRect(width - 6, share * height, 6, 1);
-    pen.textAlign = "left";
-    pen.fillText("Hz", 1, 6);
   }
 
   #drawLegend() {
