@@ -41,7 +41,7 @@ from models.condition import Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import REFERENCE_PRESSURE, Channel
 from noise.recordings.formats import RawRecording
-from noise.recordings.sidecar import Sidecar, find_sidecar, sidecar_of
+from noise.recordings.sidecar import Sidecar, SidecarChannel, find_sidecar, sidecar_of
 
 PascalPerFullScale = float | tuple[float, ...]
 """Pressure of a full-scale sample [Pa], of all tracks or of each."""
@@ -124,7 +124,7 @@ def describe(
         raise RecordingError(
             f"{sidecar_path}: names {len(sidecar.channels)} channels, {path.name} has {n_channels}"
         )
-    if not raw.fractional and any(scale is not None for scale in sidecar.scales):
+    if not raw.fractional and any(one.scale is not None for one in sidecar.channels or ()):
         raise RecordingError(
             f"{sidecar_path}: gives a scale, but {path.name} holds floating-point samples, which "
             f"are in the channel's unit; remove the scale"
@@ -199,17 +199,17 @@ def _interpret(
     """Channels with the value of their full scale, and curves; none where a channel lacks both."""
     texts = (raw.description, path.name, raw.comment)
     stated = next((found for text in texts if (found := stated_full_scale(text))), None)
-    channels = sidecar.channels or raw.channels or ()
+    channels = tuple(one.channel for one in sidecar.channels or ()) or raw.channels or ()
     if not channels:
         kind = "pressure" if stated is None or any(options) else stated.kind
         numbers = range(1, raw.n_channels + 1)
         channels = tuple(Channel(kind if i == 1 else f"{kind}_{i}") for i in numbers)
     named = sidecar.channels is not None or raw.channels is not None
     in_units = not raw.fractional and (named or sidecar.calibrated is True)
-    scales = sidecar.scales or (None,) * len(channels)
-    readings = sidecar.readings or ("",) * len(channels)
+    said = sidecar.channels or [SidecarChannel(one.name) for one in channels]
     pairs: list[tuple[Channel, Calibration | None]] = []
-    for channel, scale, reading, option in zip(channels, scales, readings, options, strict=True):
+    for channel, one, option in zip(channels, said, options, strict=True):
+        scale, reading = one.scale, one.reading
         in_unit = sidecar.calibrated is not False and not reading
         if channel.kind == "pressure" and option is not None:
             if not (in_units and in_unit):

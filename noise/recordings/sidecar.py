@@ -18,8 +18,6 @@ into place before its samples, and a program that is killed between the two must
 description beside old samples.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import zlib
@@ -29,18 +27,28 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from reprlib import repr as show
-from typing import Any
+from typing import Annotated, Any, TypeVar
 
 from models.calibration import READING_UNITS
 from models.condition import CONDITION, FIXED, Condition
 from models.errors import ParameterError, RecordingError, naming
 from models.foreign_file import LARGEST_JSON, one_line, parse_json, reading
 from models.recording import Channel, Recording
-from models.schema import Flag, Quantity, Text, Vector
+from models.schema import (
+    Flag,
+    Quantity,
+    ReadBy,
+    Text,
+    Vector,
+    as_table,
+    as_text,
+    declared,
+    read_table,
+    table_of,
+)
 from models.units import CHANNEL_UNITS
 
-_SCALE, _CALIBRATED, _MATERIAL = Quantity("scale"), Flag("calibrated"), Text("material")
-_POSITION, _DIRECTION = Vector("position_m", 3), Vector("direction", 3)
+_Kind = TypeVar("_Kind")
 _SUPPORT = CONDITION["support_stiffness"].key
 _QUANTITIES = {
     **CONDITION,
@@ -51,39 +59,146 @@ _CHECKSUM = "wav_crc32"
 _OURS = ("channels", "conditions", "calibrated", "notes", _CHECKSUM)
 
 
+def _name(value: Any, key: str, where: str) -> str:
+    try:
+        return Channel(as_text(value, key, where)).name
+    except ValueError:  # of a number too long to be one as well
+        known = ", ".join(CHANNEL_UNITS)
+        raise ParameterError(
+            f"{where}: {key} = {show(value)} must be one of {known} (or ..._2, _3)"
+        ) from None
+
+
+def _direction(value: Any, key: str, where: str) -> Any:
+    """Read a vector of any length as one of length 1."""
+    direction = Vector(key, 3).read(value, where)
+    length = math.hypot(*direction)
+    if not 0.0 < length < math.inf:
+        raise ParameterError(f"{where}: {key} = {show(value)} must have a length above 0")
+    if math.isclose(length, 1.0, rel_tol=1e-9):
+        return direction
+    return tuple(part / length for part in direction)
+
+
+@dataclass(frozen=True)
+class SidecarChannel:
+    """What a sidecar says of a channel.
+
+    Parameters
+    ----------
+    name : str
+    unit : str, optional
+        As spelled: the channel's own, or one of `models.calibration.READING_UNITS`.
+    scale : float, optional
+        [unit per full scale]
+    position, direction : tuple of float, optional
+        As of `models.recording.Channel`.
+    """
+
+    name: Annotated[str, ReadBy("name", _name)]
+    unit: Annotated[str | None, Text("unit")] = None
+    scale: Annotated[float | None, Quantity("scale")] = None
+    position: Annotated[tuple[float, float, float] | None, Vector("position_m", 3)] = None
+    direction: Annotated[
+        tuple[float, float, float] | None, ReadBy("direction", _direction, list)
+    ] = None
+
+    def __post_init__(self) -> None:
+        own = self.channel.unit
+        if not (self.unit is None or self.reading or _spelling(self.unit) == _spelling(own)):
+            raise ParameterError(f"unit = {show(self.unit)} must be {own!r}")
+
+    @property
+    def channel(self) -> Channel:
+        """The channel."""
+        return Channel(self.name, self.position, self.direction)
+
+    @property
+    def reading(self) -> str:
+        """Unit of what the measurement chain read, empty where samples are in the channel's own."""
+        return self.unit if self.unit in READING_UNITS else ""
+
+
+def _channels(value: Any, key: str, where: str) -> tuple[SidecarChannel, ...]:
+    if not isinstance(value, list):
+        raise ParameterError(f"{where}: {key} = {show(value)} must be a list")
+    found = []
+    for number, entry in enumerate(value, start=1):
+        table = as_table(entry, f"channel {number} = {show(entry)}", where)
+        place = f"{where}: channel {show(table.get('name', number))}"
+        found.append(_read(SidecarChannel, table, place))
+    for name, times in Counter(one.name for one in found).items():
+        if times > 1:
+            raise ParameterError(f"{where}: channel {name!r} is named {times} times; name it once")
+    return tuple(found)
+
+
+def read_condition(value: Any, key: str, where: str) -> Condition:
+    """Read an operating condition from a table of a file, by the keys of a sidecar.
+
+    Raises
+    ------
+    ParameterError
+        A value cannot be used, or a quantity is stated in another unit.
+
+    Examples
+    --------
+    >>> read_condition({"speed_rad_s": 5.0}, "conditions", "run07.json").speed
+    5.0
+    """
+    table = as_table(value, key, where)
+    keys = {one.key for one in CONDITION.values()}
+    for name, stated in table.items():
+        if name not in keys and _stem(name) != name and isinstance(stated, int | float):
+            ours = next(one for one in keys if _stem(one) == _stem(name))
+            raise ParameterError(
+                f"{where}: {key} has {show(name)}, which is not read; state {ours}"
+            )
+    found: dict[str, Any] = {
+        name: one.read(table[one.key], where)
+        for name, one in _QUANTITIES.items()
+        if table.get(one.key) is not None
+    }
+    if _SUPPORT in table and table[_SUPPORT] is None:
+        found["support_stiffness"] = FIXED
+    if (material := table.get("material")) is not None:
+        if not as_text(material, "material", where).strip():
+            raise ParameterError(f"{where}: material = {show(material)} must be a name")
+        found["material"] = material
+    return Condition(**found)
+
+
 @dataclass(frozen=True)
 class Sidecar:
     """What a sidecar says.
 
     Parameters
     ----------
-    channels : tuple of Channel, optional
+    channels : tuple of SidecarChannel, optional
         In the order of the file; None where the sidecar names none.
-    scales : tuple of float or None
-        One a channel [unit of the channel, or of its readings, per full scale]; None where not
-        given.
     condition : Condition
     calibrated : bool, optional
         None where the sidecar does not say.
-    readings : tuple of str
-        One a channel: the unit of what its chain read, one of `models.calibration.READING_UNITS`;
-        empty where the samples are in the channel's own.
-    units : tuple of str
-        One a channel, as spelled; empty where not given.
     checksum : str
         Of the WAV file that it was written with; empty where it does not say.
     note : str
         What should be known of it.
     """
 
-    channels: tuple[Channel, ...] | None = None
-    scales: tuple[float | None, ...] = ()
-    condition: Condition = field(default_factory=Condition)
-    calibrated: bool | None = None
-    readings: tuple[str, ...] = ()
-    units: tuple[str, ...] = ()
-    checksum: str = ""
+    channels: Annotated[tuple[SidecarChannel, ...] | None, ReadBy("channels", _channels)] = None
+    condition: Annotated[Condition, ReadBy("conditions", read_condition)] = field(
+        default_factory=Condition
+    )
+    calibrated: Annotated[bool | None, Flag("calibrated")] = None
+    checksum: Annotated[str, Text(_CHECKSUM)] = ""
     note: str = ""
+
+
+def _read(kind: type[_Kind], table: Mapping[str, Any], where: str) -> _Kind:
+    """Read what is declared, and stated, of a table in which other keys may stand."""
+    keys = {entry.key for entry in declared(kind).values()}
+    stated = {key: each for key, each in table.items() if key in keys and each is not None}
+    return read_table(kind, stated, where)
 
 
 def find_sidecar(recording: Path) -> Path | None:
@@ -116,7 +231,7 @@ def sidecar_of(recording: Path) -> Sidecar:
         return Sidecar()
     with reading(path, "sidecar", error=RecordingError, largest=LARGEST_JSON):
         sidecar = parse_sidecar(path.read_bytes(), str(path))
-    if sidecar.checksum and sidecar.checksum != _checksum(recording):
+    if sidecar.checksum and sidecar.checksum != _checksum(recording, recording.stat().st_mtime_ns):
         raise RecordingError(
             f"{path}: was written with other samples than those of {recording.name} (an "
             f"interrupted call, or {recording.name} was changed); write both again, or take "
@@ -125,17 +240,8 @@ def sidecar_of(recording: Path) -> Sidecar:
     return sidecar
 
 
-def _checksum(recording: Path) -> str:
-    try:
-        status = recording.stat()
-        return _checksum_of(recording, status.st_mtime_ns, status.st_size)
-    except OSError as error:
-        reason = error.strerror or error
-        raise RecordingError(f"{recording}: cannot be read ({reason})") from error
-
-
 @lru_cache(maxsize=64)
-def _checksum_of(recording: Path, _changed: int, _size: int) -> str:
+def _checksum(recording: Path, _changed: int) -> str:
     found = 0
     with recording.open("rb") as file:
         while block := file.read(1 << 20):
@@ -162,7 +268,7 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
     --------
     >>> parse_sidecar('{"channels": [{"name": "torque", "unit": "kN m"}]}', "run07.json")
     Traceback (most recent call last):
-    models.errors.RecordingError: run07.json: channel 'torque' has unit 'kN m', expected 'N m'
+    models.errors.RecordingError: run07.json: channel 'torque': unit = 'kN m' must be 'N m'
     """
     try:
         content = parse_json(data)
@@ -174,7 +280,7 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
             "conditions; passed over"
         )
     with naming("", RecordingError):
-        return _sidecar({key: value for key, value in content.items() if value is not None}, where)
+        return _read(Sidecar, content, where)
 
 
 def _is_sidecar(content: Any) -> bool:
@@ -191,89 +297,6 @@ def _is_sidecar(content: Any) -> bool:
         or (isinstance(conditions, dict) and any(_stem(key) != key for key in conditions))
         or isinstance(content.get("calibrated"), bool)
     )
-
-
-def _sidecar(content: Mapping[str, Any], where: str) -> Sidecar:
-    calibrated = content.get("calibrated")
-    entries = content.get("channels")
-    checksum = content.get(_CHECKSUM, "")
-    if not isinstance(checksum, str):
-        raise ParameterError(f"{where}: {_CHECKSUM} = {show(checksum)} must be a text in quotes")
-    known = Sidecar(
-        condition=_condition(content.get("conditions"), where),
-        calibrated=None if calibrated is None else _CALIBRATED.read(calibrated, where),
-        checksum=checksum,
-    )
-    if entries is None:
-        return known
-    if not isinstance(entries, list):
-        raise ParameterError(f"{where}: channels is {show(entries)}, expected a list")
-    found = [_channel(entry, number, where) for number, entry in enumerate(entries, start=1)]
-    channels, scales, readings, units = zip(*found, strict=True) if found else ((), (), (), ())
-    name, times = (
-        Counter(channel.name for channel in channels).most_common(1)[0] if found else ("", 0)
-    )
-    if times > 1:
-        raise ParameterError(f"{where}: channel {name!r} is named {times} times, expected once")
-    return replace(known, channels=channels, scales=scales, readings=readings, units=units)
-
-
-def _channel(entry: object, number: int, where: str) -> tuple[Channel, float | None, str, str]:
-    if not isinstance(entry, dict):
-        raise ParameterError(
-            f"{where}: channel {number} is {show(entry)}, expected an object {{...}}"
-        )
-    name = entry.get("name")
-    try:
-        plain = Channel(name if isinstance(name, str) else "")
-    except ValueError:
-        known = ", ".join(CHANNEL_UNITS)
-        raise ParameterError(
-            f"{where}: channel {number} has name {show(name)}, expected {known} (or ..._2, _3)"
-        ) from None
-    place = f"{where}: channel {plain.name!r}"
-    unit = entry.get("unit", plain.unit)
-    reading = unit if isinstance(unit, str) and unit in READING_UNITS else ""
-    if not isinstance(unit, str) or not (reading or _spelling(unit) == _spelling(plain.unit)):
-        raise ParameterError(f"{place} has unit {show(unit)}, expected {plain.unit!r}")
-    scale, position, direction = (
-        None if entry.get(one.key) is None else one.read(entry[one.key], place)
-        for one in (_SCALE, _POSITION, _DIRECTION)
-    )
-    if direction is not None:
-        length = math.hypot(*direction)
-        if not 0 < length < math.inf:
-            raise ParameterError(f"{place}: direction is {show(direction)}, expected some length")
-        if not math.isclose(length, 1.0, rel_tol=1e-9):
-            direction = tuple(part / length for part in direction)
-    channel = Channel(plain.name, position, direction)
-    return channel, scale, reading, str(entry.get("unit", ""))
-
-
-def _condition(entry: object, where: str) -> Condition:
-    if entry is None:
-        return Condition()
-    if not isinstance(entry, dict):
-        raise ParameterError(f"{where}: conditions is {show(entry)}, expected an object {{...}}")
-    keys = {one.key for one in CONDITION.values()}
-    for key, value in entry.items():
-        if key not in keys and _stem(key) != key and isinstance(value, int | float):
-            ours = next(one for one in keys if _stem(one) == _stem(key))
-            raise ParameterError(
-                f"{where}: conditions has {show(key)}, which is not read; state {ours}"
-            )
-    found: dict[str, Any] = {
-        name: one.read(entry[one.key], where)
-        for name, one in _QUANTITIES.items()
-        if entry.get(one.key) is not None
-    }
-    if _SUPPORT in entry and entry[_SUPPORT] is None:
-        found["support_stiffness"] = FIXED
-    if entry.get("material") is not None:
-        found["material"] = _MATERIAL.read(entry["material"], where)
-        if not found["material"].strip():
-            raise ParameterError(f"{where}: material is {show(entry['material'])}, expected a name")
-    return Condition(**found)
 
 
 def _stem(key: str) -> str:
@@ -314,9 +337,16 @@ def sidecar_text(recording: Recording, checksum: str = "") -> str:
     >>> json.loads(sidecar_text(tone))["conditions"]
     {'speed_rad_s': 5.0}
     """
+    channels = (
+        SidecarChannel(one.name, one.unit, None, one.position, one.direction)
+        for one in recording.channels
+    )
+    conditions = table_of(recording.condition)
+    if _SUPPORT in conditions and recording.condition.support_stiffness == FIXED:
+        conditions[_SUPPORT] = None
     content: dict[str, object] = {
-        "channels": [_channel_entry(channel) for channel in recording.channels],
-        "conditions": _conditions_entry(recording.condition),
+        "channels": [*map(table_of, channels)],
+        "conditions": conditions,
         "calibrated": recording.calibrated,
     }
     if recording.notes:
@@ -329,25 +359,3 @@ def sidecar_text(recording: Recording, checksum: str = "") -> str:
     except RecordingError as error:
         raise ParameterError(str(error)) from error
     return text
-
-
-def _channel_entry(channel: Channel) -> dict[str, object]:
-    entry: dict[str, object] = {"name": channel.name, "unit": channel.unit}
-    if channel.position is not None:
-        entry["position_m"] = list(channel.position)
-    if channel.direction is not None:
-        entry["direction"] = list(channel.direction)
-    return entry
-
-
-def _conditions_entry(condition: Condition) -> dict[str, float | str | None]:
-    entry: dict[str, float | str | None] = {
-        one.key: one.of(value)
-        for name, one in CONDITION.items()
-        if (value := getattr(condition, name)) is not None
-    }
-    if condition.support_stiffness == FIXED:
-        entry[_SUPPORT] = None
-    if condition.material is not None:
-        entry["material"] = condition.material
-    return entry

@@ -206,7 +206,7 @@ def test_readings_just_outside_are_noted(tmp_path):
         (0.1, volts("torque", "counts"), "FLOAT", "is in counts, and cell.csv in mV"),
         (0.1, volts("torque"), "PCM_16", "holds fractions of full scale"),
         (0.1, {"name": "torque"}, "PCM_16", "state its unit, 'mV', and scale"),
-        (0.1, volts("torque", "kV"), "FLOAT", "has unit 'kV', expected 'N m'"),
+        (0.1, volts("torque", "kV"), "FLOAT", "unit = 'kV' must be 'N m'"),
     ],
 )
 def test_what_cannot_be_calibrated_is_refused_in_one_line(tmp_path, last, channel, subtype, reason):

@@ -17,7 +17,6 @@ Only channels that are taken are read, one after the other.
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -33,7 +32,7 @@ from models.recording import Channel
 from models.units import CHANNEL_UNITS, kind_of_unit, known_units, split_unit
 from noise.recordings.formats import RawRecording, check_rate
 from noise.recordings.formats.time_axis import SAME_RATE, Axis, start_and_rate
-from noise.recordings.sidecar import Sidecar, parse_sidecar, sidecar_of
+from noise.recordings.sidecar import Sidecar, read_condition, sidecar_of
 
 CONDITIONS = (*(one.key for one in CONDITION.values()), "material")
 """Properties of a file that are its operating condition, named as in a sidecar."""
@@ -200,10 +199,10 @@ def convert(
         notes.append(f"left out: {_listed(reasons)}; a sidecar that names them makes them count")
     if sidecar.channels is not None and len(rows) == len(sidecar.channels):
         rows = [
-            _as_named(row, channel, unit, notes)
-            for row, channel, unit in zip(rows, sidecar.channels, sidecar.units, strict=True)
+            _as_named(row, one.channel, one.unit or "", notes)
+            for row, one in zip(rows, sidecar.channels, strict=True)
         ]
-        channels = sidecar.channels
+        channels = tuple(one.channel for one in sidecar.channels)
     else:
         channels = _names(rows)
     notes += [
@@ -432,7 +431,8 @@ def stated_condition(properties: Mapping[str, object], where: str) -> Condition:
             fixed = value.strip().lower() in ("fixed", "null")
             value = None if fixed else _number(value)
         entry[key] = value
-    return parse_sidecar(json.dumps({"conditions": entry}, default=str), where).condition
+    with naming("", RecordingError):
+        return read_condition(entry, "conditions", where)
 
 
 def _number(text: str) -> float | str:
