@@ -19,7 +19,7 @@ from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses
 from models.rig_file import load_material_rig
 from noise.app.worker_process import WorkerProcess
-from noise.batch import one_thread
+from noise.batch.work import one_thread
 from sim.blocks import BlockEngine, Setting, paths_key, paths_of
 from sim.shaft import ConstantSpeed
 

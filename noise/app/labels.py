@@ -20,7 +20,8 @@ from models.recording import REFERENCE_PRESSURE
 from noise.app.requests import number
 from noise.base.files import locked
 from noise.base.labels import LABELS
-from noise.batch import Done, Job, JournalReader
+from noise.batch.journal import JournalReader
+from noise.batch.work import Done, Job
 from noise.labels.corrections import common_time, place, track, version, with_corrected_rows
 from noise.labels.human_rows import human_rows
 from noise.labels.labelling import Labelling

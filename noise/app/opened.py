@@ -14,7 +14,8 @@ from models.errors import ParameterError
 from models.foreign_file import check_plain_file
 from noise.base.files import check_target
 from noise.base.tables import TABLE_ENDINGS, check_table_path
-from noise.batch import Job, find_jobs, journal_path
+from noise.batch.journal import journal_path
+from noise.batch.work import Job, find_jobs
 
 _TABLE = "labels.csv"
 """Beside the folder of recordings with the folder's name before it; in it where it is there."""

@@ -18,7 +18,7 @@ from typing import Any, Generic, TypeVar
 
 from models.errors import BushingNoiseError
 from noise.base.processes import Worker
-from noise.batch import one_thread
+from noise.batch.work import one_thread
 
 _REST = 0.5
 """Longest rest between answers, as long as one took: half a processor is left to the sound [s]."""

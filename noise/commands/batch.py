@@ -22,7 +22,8 @@ from noise.base.tables import check_table_path, write_table
 from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_number
 
 if TYPE_CHECKING:
-    from noise.batch import BatchRows, Done, Job, Journal, Work
+    from noise.batch.journal import Journal
+    from noise.batch.work import BatchRows, Done, Job, Work
     from noise.recordings.meaning import PascalPerFullScale
 
     Rows = Iterable[dict[str, object]]
@@ -85,7 +86,8 @@ def run_batch(
     ParameterError
         The table cannot be written, or the cluster not be used.
     """
-    from noise.batch import BatchRows, open_journal
+    from noise.batch.journal import open_journal
+    from noise.batch.work import BatchRows
 
     out = options.out
     # Nobody reads a table of forty columns on a terminal; whoever wants it pipes or names it.
@@ -133,7 +135,7 @@ def _progress(
     options: Namespace, work: Work, jobs: Sequence[Job], journal: Journal
 ) -> Iterator[tuple[Job, Done]]:
     """First what earlier calls did, then the rest as it is done."""
-    from noise.batch import perform_all
+    from noise.batch.work import perform_all
 
     left = []
     for job in jobs:

@@ -30,7 +30,7 @@ OPTIONS = (
 def run(options: Namespace) -> int:
     """Compute the features and write the table."""
     check_batch(options)
-    from noise.batch import find_jobs
+    from noise.batch.work import find_jobs
 
     work = Featuring(full_scale_of(options), options.windows)
     jobs = find_jobs(options.paths)

@@ -21,7 +21,7 @@ from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_rec
 from noise.commands.options import CALIBRATION, SEED, Option, full_scale_of, number, one_of
 
 if TYPE_CHECKING:
-    from noise.batch import BatchRows
+    from noise.batch.work import BatchRows
     from noise.labels.labelling import Labelling
 
 
@@ -46,7 +46,7 @@ def run(options: Namespace) -> int:
     _check_exports(options)
     if all(path.suffix.lower() in TABLE_ENDINGS for path in options.paths):
         return _from_tables(options)
-    from noise.batch import find_jobs
+    from noise.batch.work import find_jobs
 
     jobs = find_jobs(options.paths)
     if options.audacity is not None:

@@ -25,7 +25,7 @@ from noise.commands.options import (
 )
 
 if TYPE_CHECKING:
-    from noise.batch import Journal
+    from noise.batch.journal import Journal
     from noise.screening.design import Swinging, Use
     from noise.screening.screen import Screening
 
@@ -73,7 +73,7 @@ def run(options: Namespace) -> int:
     """Screen; print the ranking, write tables and pictures."""
     if options.out is not None:
         check_folder(options.out, file="map.csv")
-    from noise.batch import call_identity, kept_results
+    from noise.batch.journal import call_identity, kept_results
     from noise.screening.design import load_designs
     from noise.screening.environments import environment
 

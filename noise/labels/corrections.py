@@ -14,7 +14,7 @@ from models.errors import ParameterError, RecordingError
 from noise.base.files import locked
 from noise.base.labels import LABELS
 from noise.base.progress import readable
-from noise.batch import written_rows
+from noise.batch.journal import written_rows
 from noise.labels.table import (
     CLASSIFIER,
     COLUMNS,

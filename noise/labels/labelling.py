@@ -14,7 +14,8 @@ from noise.base.files import locked
 from noise.base.labels import SURROUNDINGS
 from noise.base.model_file import model_digest
 from noise.base.tables import check_table_path
-from noise.batch import BatchRows, Done, find_jobs, open_journal, perform_all
+from noise.batch.journal import open_journal
+from noise.batch.work import BatchRows, Done, find_jobs, perform_all
 from noise.classifier import Classifier, load_classifier
 from noise.classifier.model import CLASSIFIER
 from noise.inference import Inference, load_inference

@@ -25,7 +25,7 @@ from models.rig import Rig
 from noise.audio.sound import audible
 from noise.base.labels import LABELS, PERSISTS
 from noise.base.progress import track
-from noise.batch import one_thread
+from noise.batch.work import one_thread
 from noise.pages.clips import RATE, Entry
 from noise.pictures.figure import support_words
 from noise.pictures.recording import recorded_levels

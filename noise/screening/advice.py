@@ -20,7 +20,7 @@ from joblib import Parallel, delayed
 from models.errors import ParameterError
 from models.rig import Rig
 from noise.base.labels import PERSISTS
-from noise.batch import one_thread
+from noise.batch.work import one_thread
 from noise.screening.environments import FIT_PARAMETERS
 from noise.screening.tolerances import PARAMETERS, nominal_values
 from noise.screening.vibration import (

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 
 from models.errors import BushingNoiseError, ParameterError
 from models.rig import Rig
-from noise.batch import Journal, one_thread
 from noise.batch.cluster import cluster
+from noise.batch.journal import Journal
+from noise.batch.work import one_thread
 from noise.screening.point import REGIMES, evaluate_point
 from noise.screening.vibration import Condition
 

@@ -26,7 +26,7 @@ from scipy import stats
 
 from models.rig import Rig
 from models.show import short_repr
-from noise.batch import one_thread
+from noise.batch.work import one_thread
 from noise.screening.design import Design
 from noise.screening.grid import grid_of
 from noise.screening.point import is_noisy

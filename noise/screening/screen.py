@@ -28,7 +28,7 @@ from models.errors import BushingNoiseError, ParameterError
 from models.rig import Rig, effective_stiffness
 from models.show import short_repr
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
-from noise.batch import Journal
+from noise.batch.journal import Journal
 from noise.screening.advice import advise
 from noise.screening.batches import Evaluator, batch_evaluator, keeping
 from noise.screening.design import Design, Swinging, Use, load_designs

@@ -9,8 +9,8 @@ from threading import Event, Thread
 import numpy as np
 import pytest
 
-from noise.batch import file_identity, find_jobs, open_journal
-from noise.batch.work import Done
+from noise.batch.journal import open_journal
+from noise.batch.work import Done, file_identity, find_jobs
 from noise.labels.labelling import Labelling, label
 from noise.labels.table import read_label_table
 from tests.helpers.labelled_folder import made_row, write_folder

@@ -8,7 +8,7 @@ import soundfile
 
 from noise.app.labels import Correction, Labels
 from noise.base.tables import write_table
-from noise.batch import find_jobs
+from noise.batch.work import find_jobs
 from noise.labels.corrections import version
 from noise.labels.labelling import Labelling
 from noise.labels.table import COLUMNS

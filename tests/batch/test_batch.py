@@ -12,17 +12,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 
 from models.errors import ParameterError
-from noise.batch import (
-    DIED,
-    Done,
-    Journal,
-    JournalReader,
-    file_identity,
-    journal_path,
-    kept_results,
-    open_journal,
-    perform_all,
-)
+from noise.batch.journal import Journal, JournalReader, journal_path, kept_results, open_journal
+from noise.batch.work import DIED, Done, file_identity, perform_all
 from tests.helpers.batch_work import Counting, in_order, make_jobs
 
 NAMES = ("a", "bad", "c", "d", "e", "f")

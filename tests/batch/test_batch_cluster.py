@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from models.errors import ParameterError
-from noise.batch import Journal, perform_all
+from noise.batch.journal import Journal
+from noise.batch.work import perform_all
 from noise.cli import main
 from tests.helpers.batch_work import Counting, in_order, make_jobs, make_recordings
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import noise
-from noise.batch import journal_path
+from noise.batch.journal import journal_path
 from noise.cli import main
 from tests.helpers import dying_command
 from tests.helpers.batch_work import make_recordings

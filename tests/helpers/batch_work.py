@@ -12,7 +12,7 @@ import numpy as np
 import soundfile
 
 from models.errors import RecordingError
-from noise.batch import Job
+from noise.batch.work import Job
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from noise.app.labels import Labels
-from noise.batch import find_jobs
+from noise.batch.work import find_jobs
 from noise.labels.corrections import version
 from noise.labels.labelling import Labelling
 from noise.labels.table import read_label_table

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sqlite3
 from contextlib import closing, contextmanager
 
-from noise.batch import Journal, journal_path
+from noise.batch.journal import Journal, journal_path
 
 
 @contextmanager

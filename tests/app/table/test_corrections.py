@@ -10,8 +10,8 @@ import pytest
 from models.errors import ParameterError, RecordingError
 from noise.app.labels import Correction, read_corrections
 from noise.base.tables import write_table
-from noise.batch import file_identity, find_jobs, open_journal
-from noise.batch.work import Done
+from noise.batch.journal import open_journal
+from noise.batch.work import Done, file_identity, find_jobs
 from noise.labels.corrections import version, with_corrections
 from noise.labels.labelling import Labelling
 from noise.labels.table import COLUMNS
