@@ -6,20 +6,22 @@ effect and the line, not as a defect of the program.
 
 from __future__ import annotations
 
+import sys
 import traceback
 from collections import ChainMap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import wraps
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.errors import BushingNoiseError, ParameterError
+from models.foreign_file import one_line
 
 if TYPE_CHECKING:  # compiled functions take a second to load
     from sim.effects.effect import Effect
-
-_LONGEST_MESSAGE = 300  # letters: those of compilers go on for pages
 
 
 def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
@@ -28,7 +30,7 @@ def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
     Parameters
     ----------
     paths : Path or sequence of Path, optional
-        Python files that define effects. They are run.
+        Python files, which are run; every `Effect` among their global names is taken.
 
     Returns
     -------
@@ -37,73 +39,111 @@ def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
     Raises
     ------
     ParameterError
-        A file cannot be run, what it defines cannot be used as an effect, or two files define one
-        of the same name.
+        A file cannot be run or defines no effect, what it defines cannot be used as one, or has the
+        name of a shipped one or of one in another file.
 
     Examples
     --------
     >>> "slip_pulse" in effect_library(None)
     True
     """
-    from sim.effects import EFFECTS, load_effects
+    from sim.effects import EFFECTS
 
     own: dict[str, Effect] = {}
     for path in [paths] if isinstance(paths, Path) else paths or ():
-        try:
-            library = load_effects(path)
-        except (ParameterError, SystemExit) as error:
-            text = _one_line(error).removeprefix(f"effects {path}: ") or "stops the program"
-            raise ParameterError(f"--effects {path}: {text}") from None
-        for name in library.keys() - EFFECTS.keys():
-            if name in own:
-                raise ParameterError(
-                    f"--effects {path}: effect {name!r} is defined in another file as well"
-                )
-            own[name] = _checked_effect(library[name], path)
+        for effect in _defined(path):
+            where = f"--effects {path}: effect {str(effect.name)[:40]!r}"
+            with _blaming(f"{where} is not declared as Effect asks"):
+                checked = _checked_effect(effect, path)
+            if effect.name in EFFECTS or effect.name in own:
+                other = "a shipped effect" if effect.name in EFFECTS else "defined in another file"
+                raise ParameterError(f"{where} is {other} as well; choose a new name")
+            own[effect.name] = checked
     return ChainMap(own, EFFECTS) if own else EFFECTS  # type: ignore[arg-type]  # only read
 
 
+def _defined(path: Path) -> list[Effect]:
+    """Effects that a file defines."""
+    from sim.effects import EFFECTS, Effect
+
+    spec = spec_from_file_location(f"_effects_of_{path.stem}", path)
+    if spec is None or spec.loader is None or not path.is_file():
+        raise ParameterError(f"--effects {path}: no Python file")
+    module = module_from_spec(spec)
+    sys.modules[spec.name] = module  # dataclasses look their module up there
+    with _blaming(f"--effects {path}: cannot be run"):
+        spec.loader.exec_module(module)
+    found = {str(one.name): one for one in vars(module).values() if isinstance(one, Effect)}
+    own = [one for name, one in found.items() if one is not EFFECTS.get(name)]
+    if not own:
+        raise ParameterError(f"--effects {path}: defines no Effect; see the README for an example")
+    return own
+
+
+@contextmanager
+def _blaming(where: str) -> Iterator[None]:
+    """Let what the user's code raises name its place."""
+    try:
+        yield
+    except BushingNoiseError as error:
+        raise ParameterError(f"{where}: {error}") from None
+    except (Exception, SystemExit) as error:
+        raise ParameterError(f"{where}: {type(error).__name__}: {one_line(error)}") from error
+
+
 def _checked_effect(effect: Effect, path: Path) -> Effect:
-    """Return the effect with its functions checked."""
+    """Return the effect with its functions checked, or raise what is wrong with its declaration."""
+    from sim.effects.effect import Stage
+
     where = f"--effects {path}: effect {effect.name!r}"
+    if not (effect.name.strip() and effect.forms):
+        raise ValueError("name or forms is empty")
+    Stage(effect.stage)
+    effect.active({})
+    hooks = {name: getattr(effect, name) for name in _HOOKS}
+    for name, function in hooks.items():
+        if function is not None and not callable(function):
+            raise TypeError(f"{name} = {function!r} is no function")
     if effect.strength not in effect.parameters:
-        raise ParameterError(f"{where}: strength = {effect.strength!r} is none of its parameters")
-    if not any((effect.drive, effect.contact, effect.force, effect.sensors)):
-        raise ParameterError(f"{where}: needs one of drive, contact, force and sensors")
+        raise ValueError(f"strength = {effect.strength!r} is none of its parameters")
+    if not any(hooks[name] for name in ("drive", "contact", "force", "sensors")):
+        raise ValueError("needs one of drive, contact, force and sensors")
     if effect.contact is not None:
-        _compile(effect.contact, where)
-    like: dict[str, Callable[[Any], Any]] = {
-        "drive": lambda angle: angle,
-        "force": lambda motion: motion.torque,
-        "sensors": lambda signals: signals,
-        "pack": lambda _: None,
+        _compile(effect.contact)
+    checked: dict[str, Any] = {
+        name: _checked(hooks[name], f"{where}: {name}", path, like)
+        for name, like in _HOOKS.items()
+        if like is not None and hooks[name] is not None
     }
-    hooks: dict[str, Any] = {
-        hook: _checked(function, f"{where}: {hook}", path, like[hook])
-        for hook in like
-        if (function := getattr(effect, hook)) is not None
-    }
-    return replace(effect, **hooks)
+    return replace(effect, **checked)
 
 
-def _compile(contact: Any, where: str) -> None:
+_HOOKS: dict[str, Callable[[Any], Any] | None] = {
+    "drive": lambda angle: angle,
+    "force": lambda motion: motion.torque,
+    "sensors": lambda signals: signals,
+    "pack": lambda _: None,
+    "contact": None,
+    "chain": None,
+}
+"""What the result of each function of an effect is like, made of its first argument."""
+
+
+def _compile(contact: Any) -> None:
     from numba.extending import is_jitted
 
     from sim.contact import HOOK_SIGNATURE
 
     if not is_jitted(contact):
-        raise ParameterError(
-            f"{where}: contact is not compiled; write @numba.njit(sim.contact.HOOK_SIGNATURE) "
-            "above the function"
+        raise ValueError(
+            "contact is not compiled; write @numba.njit(sim.contact.HOOK_SIGNATURE) above it"
         )
     if HOOK_SIGNATURE.args in contact.signatures:
         return
     if contact.signatures:
-        raise ParameterError(f"{where}: contact has another signature than HOOK_SIGNATURE")
-    try:
+        raise ValueError("contact has another signature than HOOK_SIGNATURE")
+    with _blaming("contact cannot be compiled"):
         contact.compile(HOOK_SIGNATURE)
-    except Exception as error:
-        raise ParameterError(f"{where}: contact cannot be compiled: {_one_line(error)}") from None
 
 
 def _checked(
@@ -122,7 +162,7 @@ def _checked(
             own = [frame for frame in frames if Path(frame.filename).name == path.name]
             place = f"{Path((own or frames)[-1].filename).name}, line {(own or frames)[-1].lineno}"
             raise ParameterError(
-                f"{where}: {type(error).__name__}: {_one_line(error)} ({place})"
+                f"{where}: {type(error).__name__}: {one_line(error)} ({place})"
             ) from error
         if wrong := _fault(result, like(first)):
             raise ParameterError(f"{where} {wrong}")
@@ -147,8 +187,3 @@ def _fault(result: Any, like: Any) -> str:
     if result.dtype != np.float64 or not np.isfinite(result).all():
         return "must return finite numbers of type float64"
     return ""
-
-
-def _one_line(error: BaseException) -> str:
-    text = " ".join(str(error).split())
-    return text if len(text) <= _LONGEST_MESSAGE else text[:_LONGEST_MESSAGE] + " ..."

@@ -111,7 +111,7 @@ def test_a_rig_file_may_name_the_users_effect(effects_file, tmp_path, capsys):
     [
         ("EFFECT =", "SyntaxError"),
         ("import no_such_module", "No module named 'no_such_module'"),
-        ("raise SystemExit", "stops the program"),
+        ("raise SystemExit", "cannot be run: SystemExit"),
         ("x = 1", "defines no Effect"),
         (OFFSET.replace("zero_offset", "slip_pulse"), "'slip_pulse' is a shipped effect"),
         (OFFSET.replace('strength="offset"', 'strength="size"'), "'size' is none of its param"),
