@@ -26,8 +26,7 @@ from noise.base import SURE_90
 from noise.diagnosis.bench.check import unit_findings
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers, read_again, torque_levels
-from noise.identification.evidence import with_evidence
-from noise.identification.law_choice import MARGIN, Choice, choose_law
+from noise.identification.law_fit import MARGIN, Choice, choose_law
 from noise.identification.law_model import LOCAL, fitted_evidence
 from noise.identification.measured import (
     Beforehand,
@@ -36,7 +35,7 @@ from noise.identification.measured import (
     read_measurements,
 )
 from noise.identification.outcome import Identification, Number, Seen, as_json, values_of
-from noise.identification.static_test import static_evidence, static_notes
+from noise.identification.static_test import static_evidence, static_notes, with_evidence
 from noise.identification.subjects import subjects_of
 from sim.effects import EFFECTS
 from sim.friction import friction_law

@@ -11,9 +11,11 @@ Excerpts begin where the recording has them, and what recordings scatter by is k
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
+from importlib import resources
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,7 +35,7 @@ from sim.solvers.contact_solver import ContactRun, Hook
 
 if TYPE_CHECKING:
     from noise.identification.bushing_fit import Known
-    from noise.identification.evidence import Evidence
+    from noise.identification.static_test import Evidence
     from noise.identification.subjects import Excerpts, Subject
     from sim.friction.law import FrictionLaw
 
@@ -153,11 +155,11 @@ class Candidate:
         Of `sim.friction`.
     effect : str, optional
         Of `sim.effects`; then it is what the searched parameters belong to.
-    free : mapping of str to tuple of float
+    free : mapping of str to (float, float, sequence of float)
         Parameters that are searched: lowest, highest and some starts [the law's units].
     fixed : mapping of str to float
         Others that differ from the law's own [the law's units].
-    drops : tuple of float
+    drops : sequence of float
         What the critical torque exceeds the kinetic one by where a search begins, over what the
         levels differ by [-].
     """
@@ -166,9 +168,9 @@ class Candidate:
     words: str
     law: str
     effect: str | None = None
-    free: Mapping[str, tuple[float, float, tuple[float, ...]]] = field(default_factory=dict)
+    free: Mapping[str, tuple[float, float, Sequence[float]]] = field(default_factory=dict)
     fixed: Mapping[str, float] = field(default_factory=dict)
-    drops: tuple[float, ...] = (1.0,)
+    drops: Sequence[float] = (1.0,)
 
     @property
     def sticks(self) -> bool:
@@ -181,50 +183,12 @@ class Candidate:
         return len(self.free)
 
 
-_STIFFNESS = {"contact_stiffness_per_torque": (400.0, 9e3, (1500.0, 3500.0))}
-_DAMPING = {"contact_damping_per_torque": 6e-5}
-"""Next to the elastomer's damping it hardly counts."""
-
-CANDIDATES = (
-    Candidate("constant", "constant torques", "coulomb"),
-    Candidate(
-        "ageing", "static torque grows while it sticks", "coulomb", "static_ageing",
-        {"ageing_time": (5e-5, 0.1, (4e-4, 3e-3))},
-        drops=(1.0, 1.5),
-    ),
-    Candidate(
-        "stribeck", "torque falls with sliding speed", "coulomb", "velocity_weakening",
-        {"share": (0.005, 0.6, (0.05, 0.25)), "speed": (0.3, 40.0, (1.5, 5.0))},
-        drops=(0.05, 0.7),
-    ),
-    Candidate(
-        "bristle", "elastic contact, torque falls with speed", "stribeck_lorentzian", None,
-        {**_STIFFNESS, "first_speed": (0.2, 30.0, (1.2, 4.0))},
-        _DAMPING, (1.0, 2.0),
-    ),
-    Candidate(
-        "rate_and_state", "elastic contact, strength by age and slip", "rate_and_state", None,
-        {
-            **_STIFFNESS,
-            "ageing_time": (2e-5, 0.02, (1e-4, 1e-3)),
-            "renewal_angle": (6e-5, 5e-3, (2e-4,)),
-        },
-        _DAMPING, (1.0, 2.0),
-    ),
-    Candidate(
-        "memory", "elastic contact with memory, torque falls with speed", "contact_with_memory",
-        None,
-        {
-            "contact_stiffness_per_torque": (400.0, 4.9e3, (1200.0, 2400.0)),
-            "ageing_time": (2e-5, 0.02, (3e-4, 1.5e-3)),
-            "renewal_angle": (6e-5, 5e-3, (2e-4,)),
-            "weakening_share": (0.005, 1.0, (0.08,)),
-            "weakening_speed": (1.0, 60.0, (8.0,)),
-            "weakening_exponent": (1.0, 2.5, (1.4,)),
-        },
-        _DAMPING, (1.0, 2.0),
-    ),
-)  # fmt: skip
+CANDIDATES = tuple(
+    Candidate(name, free={key: tuple(range_) for key, range_ in row.pop("free", {}).items()}, **row)
+    for name, row in tomllib.loads(
+        (resources.files(__package__) / "candidates.toml").read_text("utf-8")
+    ).items()
+)
 """By rising number of parameters."""
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from models.condition import FIXED
+from models.condition import FIXED, KnownCondition
 from models.show import short_repr
 
 if TYPE_CHECKING:
@@ -220,16 +220,7 @@ def as_json(found: Identification) -> dict[str, Any]:
     return {
         "law": found.law,
         "numbers": [_number(one) for one in found.numbers],
-        "laws": [
-            {
-                "law": one.law,
-                "held_out": _rounded(one.held_out),
-                "trained": _rounded(one.trained),
-                "missed": _rounded(one.missed),
-                "parameters": {name: _rounded(value) for name, value in one.parameters.items()},
-            }
-            for one in found.laws
-        ],
+        "laws": [_rounded(asdict(one)) for one in found.laws],
         "margin": found.margin,
         "held_out": list(found.held_out),
         "recordings": [_recording(one) for one in found.seen],
@@ -242,56 +233,49 @@ def as_json(found: Identification) -> dict[str, Any]:
     }
 
 
-def _number(one: Number) -> dict[str, Any]:
-    row: dict[str, Any] = {"name": one.name, "unit": one.unit}
+def _rounded(value: Any) -> Any:
+    """Round numbers of plain data to five digits."""
+    if isinstance(value, Mapping):
+        return {key: _rounded(one) for key, one in value.items()}
+    return float(f"{value:.5g}") if isinstance(value, float) else value
+
+
+def _place(one: Number | StaticTest | KnownCondition) -> dict[str, Any]:
+    """Interference and support of what has them."""
+    row: dict[str, Any] = {}
     if one.interference is not None:
-        row["interference_mm"] = _rounded(1e3 * one.interference)
-    if one.support_stiffness is not None:
-        row["support_stiffness_Nm_rad"] = _support(one.support_stiffness)
-    return row | {
-        "value": _rounded(one.value),
-        "low": _rounded(one.low),
-        "high": _rounded(one.high),
-        "recordings": one.n_recordings,
-    }
-
-
-def _static(one: StaticTest) -> dict[str, Any]:
-    row: dict[str, Any] = {
-        "file": one.name,
-        "interference_mm": _rounded(1e3 * one.interference),
-        "support_stiffness_Nm_rad": _support(one.support_stiffness),
-        "effective_stiffness_Nm_rad": _rounded(one.effective_stiffness),
-        "without_contact_Nm_rad": _rounded(one.held_stiffness),
-        "elastic": one.elastic,
-        "parting": round(one.parting, 4),
-    }
-    if one.ring_down is not None:
-        row["ring_down_hz"] = _rounded(one.ring_down.frequency)
-        row["ring_down_decay_1_s"] = _rounded(one.ring_down.decay)
+        row["interference_mm"] = 1e3 * one.interference
+    if (support := one.support_stiffness) is not None:
+        row["support_stiffness_Nm_rad"] = "fixed" if support == FIXED else support
     return row
 
 
+def _number(one: Number) -> dict[str, Any]:
+    row = {"name": one.name, "unit": one.unit, **_place(one)}
+    row |= {"value": one.value, "low": one.low, "high": one.high, "recordings": one.n_recordings}
+    return dict(_rounded(row))
+
+
+def _static(one: StaticTest) -> dict[str, Any]:
+    row = {
+        "file": one.name, **_place(one),
+        "effective_stiffness_Nm_rad": one.effective_stiffness,
+        "without_contact_Nm_rad": one.held_stiffness,
+        "elastic": one.elastic, "parting": round(one.parting, 4),
+    }  # fmt: skip
+    if ring := one.ring_down:
+        row |= {"ring_down_hz": ring.frequency, "ring_down_decay_1_s": ring.decay}
+    return dict(_rounded(row))
+
+
 def _recording(one: Seen) -> dict[str, Any]:
-    c = one.measured.condition
-    return {
-        "file": one.measured.name,
-        "speed_rad_s": one.measured.written_speed,
-        "interference_mm": _rounded(1e3 * c.interference),
-        "support_stiffness_Nm_rad": _support(c.support_stiffness),
-        "elastomer_stiffness_Nm_rad": _rounded(one.values["elastomer_stiffness"]),
-        "damping_Nms_rad": _rounded(one.values["damping"]),
-        "mean_torque_Nm": _rounded(one.levels.mean),
-        "critical_torque_Nm": _rounded(one.values["critical_torque"]),
-        "kinetic_torque_Nm": _rounded(one.values["kinetic_torque"]),
-        "slips": one.levels.slips,
-        "stuck_share": round(one.fit.stuck_share, 3),
-    }
-
-
-def _support(stiffness: float) -> float | str:
-    return "fixed" if stiffness == FIXED else _rounded(stiffness)
-
-
-def _rounded(value: float) -> float:
-    return float(f"{value:.5g}")
+    speed = {"speed_rad_s": one.measured.written_speed}
+    row = _place(one.measured.condition) | {
+        "elastomer_stiffness_Nm_rad": one.values["elastomer_stiffness"],
+        "damping_Nms_rad": one.values["damping"],
+        "mean_torque_Nm": one.levels.mean,
+        "critical_torque_Nm": one.values["critical_torque"],
+        "kinetic_torque_Nm": one.values["kinetic_torque"],
+        "slips": one.levels.slips, "stuck_share": round(one.fit.stuck_share, 3),
+    }  # fmt: skip
+    return {"file": one.measured.name, **speed, **_rounded(row)}

@@ -15,14 +15,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from noise.identification.motion import TorqueSpectrum, torque_spectrum
+from noise.identification.bushing_fit import TorqueSpectrum, torque_spectrum
 from sim.bushing import LumpedBushing
 
 if TYPE_CHECKING:
     from noise.identification.bushing_fit import Known
     from noise.identification.measured import Measured
     from noise.identification.outcome import Seen
-    from sim.bushing import LumpedBushing
 
 
 _LOOKED_AT = 0.42

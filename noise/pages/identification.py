@@ -20,8 +20,7 @@ from noise.pages.figures import Line, Panel, lines_panel
 from noise.pages.page import page_html, write_page
 
 if TYPE_CHECKING:
-    from noise.identification.ring_down import RingDown
-    from noise.identification.static_test import StaticTest
+    from noise.identification.static_test import RingDown, StaticTest
 
 
 _SHOWN = 0.03

@@ -11,7 +11,7 @@ import pytest
 import noise
 from models.rig_file import load_rig
 from noise.cli import main
-from noise.identification import law_choice
+from noise.identification import law_fit
 from noise.identification.law_model import CANDIDATES
 from tests.blind.identify.rigs import make_rig, write_rig
 from tests.blind.identify.static import record_static, to_and_fro, write_static
@@ -21,7 +21,7 @@ from tests.blind.identify.static import record_static, to_and_fro, write_static
 def few_laws():
     """Try two laws: what is asked here does not depend on how many there are."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(law_choice, "CANDIDATES", CANDIDATES[:2])
+        patch.setattr(law_fit, "CANDIDATES", CANDIDATES[:2])
         yield
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from models.rig_file import load_material_rig
 from noise.cli import main
-from noise.identification import law_choice
+from noise.identification import law_fit
 from noise.identification.law_model import CANDIDATES
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.review import review
@@ -82,7 +82,7 @@ def identification(folder):
     write_rig(make_rig(1, 0, recordings=3), folder / "data")
     known = str(folder / "data" / "known.toml")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(law_choice, "CANDIDATES", CANDIDATES[:2])
+        patch.setattr(law_fit, "CANDIDATES", CANDIDATES[:2])
         assert main(["identify", str(folder / "data"), "--rig", known, "--out", str(folder)]) == 0
 
 

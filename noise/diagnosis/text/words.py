@@ -9,7 +9,9 @@ which number a word stands for; the number always follows the word.
 from __future__ import annotations
 
 import math
+import tomllib
 from dataclasses import dataclass
+from importlib import resources
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
@@ -89,57 +91,10 @@ class Cause:
 
 
 CAUSES = {
-    "amplitude_softening": Cause(
-        "amplitude softening", "the elastomer softens the further it is deformed to and fro"
-    ),
-    "background_noise": Cause(
-        "background noise", "the room and the amplifiers add random noise to the channels"
-    ),
-    "beam_modes": Cause(
-        "further beam modes", "clamp, beams and anchors ring in modes that the model leaves out"
-    ),
-    "channel_delay": Cause("channel delay", "the channels do not share one clock"),
-    "clipping": Cause("clipping", "an amplifier cuts off the peaks of a channel"),
-    "critical_torque_scatter": Cause(
-        "critical torque scatter", "no two sticks break at the same torque"
-    ),
-    "frictional_heating": Cause(
-        "frictional heating", "friction heats the surface, and a warmer contact carries less torque"
-    ),
-    "gain_error": Cause("gain error", "the sensitivity of a channel is not what it is taken for"),
-    "mains_hum": Cause("mains hum", "cables pick up the mains and its harmonics"),
-    "mount_resonance": Cause("mount resonance", "a sensor moves by itself on its mount"),
-    "partial_slip": Cause(
-        "partial slip", "the contact creeps before it slips, and so lets go gradually"
-    ),
-    "plate_modes": Cause(
-        "further plate modes", "what radiates the sound has resonances that the model leaves out"
-    ),
-    "room_reflections": Cause(
-        "room reflections", "sound reaches the microphone by way of the room as well"
-    ),
-    "shaft_compliance": Cause(
-        "shaft compliance", "the shaft twists under the torque and is no rigid drive"
-    ),
-    "slip_pulse": Cause("slip pulse", "a large slip sets off a blow between beam and anchor"),
-    "speed_fluctuation": Cause("speed fluctuation", "the shaft does not turn evenly"),
-    "static_ageing": Cause("static ageing", "the contact grows stronger the longer it sticks"),
-    "transfer_film": Cause(
-        "transfer film",
-        "rubber comes off onto the shaft, which raises the torque and lessens its drops",
-    ),
-    "velocity_strengthening": Cause(
-        "velocity strengthening", "the kinetic torque rises with the sliding speed"
-    ),
-    "velocity_weakening": Cause(
-        "velocity weakening", "the kinetic torque falls with the sliding speed"
-    ),
-    "viscoelastic_stiffness": Cause(
-        "viscoelastic stiffness", "the elastomer is stiffer, and damps, the faster it is deformed"
-    ),
-    "none": Cause("no gap", "recordings and simulation differ as repeats do"),
-    "parameters": Cause("parameters", "values of the rig file are off; no effect is missing"),
-    "unknown": Cause("unknown", "something that is in no library of effects"),
+    name: Cause(*words)
+    for name, words in tomllib.loads(
+        (resources.files(__package__) / "causes.toml").read_text("utf-8")
+    ).items()
 }
 """Every shipped effect, and what a verdict can be beside effects, by name."""
 
