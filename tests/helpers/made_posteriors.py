@@ -67,4 +67,4 @@ def made_nulls(seed=0, n=300):
 @cache
 def made_posterior(seed=0):
     """Train on them; the same one for all that only look at it."""
-    return train_posterior(made_cases(seed, each=20), seed=seed, n_rounds=40)
+    return train_posterior(made_cases(seed, each=12), seed=seed, n_rounds=30)

@@ -12,7 +12,7 @@ from tests.helpers.quick_screens import quick_screen
 @pytest.fixture(scope="module")
 def found():
     use = Use(
-        speed=tuple(np.arange(1.0, 16.0, 2.0)),
+        speed=tuple(np.linspace(1.0, 15.0, 6)),
         interference=(0.279e-3,),
         support_stiffness=(2214.0, 3000.0),
     )

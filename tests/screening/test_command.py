@@ -113,7 +113,7 @@ def test_a_design_with_tolerances_tells_what_its_parts_do(tmp_path, capsys, few)
     given = tmp_path / "given.toml"
     given.write_text(STATED, encoding="utf-8")
     out = tmp_path / "out"
-    assert main(["screen", str(given), "PDMS", "--speed", "5,7,9", "--out", str(out)]) == 0
+    assert main(["screen", str(given), "PDMS", "--speed", "7,9", "--out", str(out)]) == 0
     told = {row["design"]: row for row in rows(out / "designs.csv")}
     assert told["PDMS"]["tolerances"] == told["PDMS"]["p_noisy_part"] == ""
     mine = told["mine"]
@@ -132,7 +132,8 @@ def test_tolerances_can_be_assumed_or_left_out(tmp_path, few):
     given.write_text(STATED, encoding="utf-8")
     assert main(["screen", str(given), *QUICK, "--no-tolerances", "--out", str(tmp_path)]) == 0
     assert rows(tmp_path / "designs.csv")[0]["p_noisy_part"] == ""
-    assert main(["screen", "PDMS", *QUICK, "--tolerances", "--out", str(tmp_path)]) == 0
+    one = ["PDMS", "--speed", "1,9", "--interference", "0.279", "--support-stiffness", "2214"]
+    assert main(["screen", *one, "--tolerances", "--out", str(tmp_path)]) == 0
     assert rows(tmp_path / "designs.csv")[0]["tolerances"] == "assumed"
     scattering = {row["parameter"] for row in rows(tmp_path / "sensitivities.csv")}
     assert scattering >= {"damping", "kinetic_torque"}
@@ -185,13 +186,14 @@ def test_loudness_without_its_extra_is_refused_before_the_work(monkeypatch, caps
 
 
 def test_a_map_is_the_same_bytes_whatever_the_number_of_workers(tmp_path):
-    for workers in ("1", "3"):
+    for workers in ("1", "2"):
         out = tmp_path / workers
-        given = ["--speed", "0.5..12/24", "--interference", "0.279", "--support-stiffness", "2214"]
+        given = ["--speed", "1..12/12", "--interference", "0.279", "--support-stiffness", "2214"]
         given += ["--workers", workers, "--sounds", "0", "--out", str(out)]
-        assert main(["screen", "fluorocarbon-thesis", *given]) == 0
+        with no_advice():
+            assert main(["screen", "fluorocarbon-thesis", *given]) == 0
     for name in ("map.csv", "critical_speeds.csv", "designs.csv", "map.png"):
-        assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "3" / name).read_bytes()
+        assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "2" / name).read_bytes()
 
 
 @pytest.mark.slow

@@ -22,6 +22,7 @@ from tests.helpers.quick_screens import quick_screen
 from tests.screening.long_runs import label_after
 
 SUPPORTS = (2214.0, 3745.0, math.inf)
+ENDS = (2214.0, math.inf)
 FLUOROCARBON = load_material_rig("fluorocarbon")
 
 
@@ -33,7 +34,7 @@ def mapped(material, use, **more):
 
 def test_pdms_is_silent_everywhere():
     speed = tuple(np.arange(0.25, 17.01, 0.125))
-    use = Use(speed=speed, interference=(0.254e-3, 0.381e-3), support_stiffness=SUPPORTS)
+    use = Use(speed=speed, interference=(0.254e-3, 0.381e-3), support_stiffness=ENDS)
     found = mapped("PDMS", use)
     assert (found.label == "none").all()
     assert (found.regime == "steady sliding").all()
@@ -109,7 +110,7 @@ def test_a_constant_torque_sticks_and_slips_where_stability_sees_nothing():
 def test_a_refined_map_is_the_whole_map_but_for_few_points(material):
     use = Use(
         speed=tuple(np.arange(4.0, 9.01, 0.25)),
-        interference=tuple(np.linspace(0.200e-3, 0.300e-3, 9)),
+        interference=tuple(np.linspace(0.200e-3, 0.300e-3, 5)),
         support_stiffness=(2214.0,),
     )
     whole, refined = mapped(material, use, stride=1), mapped(material, use)
