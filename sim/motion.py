@@ -73,10 +73,10 @@ class Motion:
         """Return the motion from sample `first` on."""
         return self.part(first)
 
-    def followed_by(self, later: Motion) -> Motion:
+    def followed_by(self, *later: Motion) -> Motion:
         """Return the motion with what comes after it."""
-        pairs = zip(self.arrays, later.arrays, strict=True)
-        return Motion(self.rate, *(np.concatenate(pair) for pair in pairs))
+        parts = zip(self.arrays, *(one.arrays for one in later), strict=True)
+        return Motion(self.rate, *(np.concatenate(part) for part in parts))
 
     @property
     def arrays(self) -> list[NDArray[np.float64]]:

@@ -25,7 +25,6 @@ from noise.screening.environments import FIT_PARAMETERS
 from noise.screening.tolerances import PARAMETERS, nominal_values
 from noise.screening.vibration import (
     BREAKS_OUT,
-    LONGEST,
     Condition,
     Course,
     growth_at,
@@ -166,7 +165,7 @@ def advise(
     ()
     """
     noise = vibration_at(rig, at).course
-    if not noise.lasts:
+    if noise is None:
         return ()
     names = [*FIT_PARAMETERS, "support_stiffness", "interference"]
     if math.isinf(at.support_stiffness):
@@ -229,12 +228,12 @@ def _offer(rig: Rig, at: Condition, noise: Course, name: str, way: int) -> Offer
 
 def _state(rig: Rig, at: Condition, noise: Course | None = None) -> str:
     """State of a vibration from every start, also from that of another rig."""
-    growth = growth_at(rig, at)
+    growth = float(growth_at(rig, at))
     if growth > 0.0:  # which the least disturbance follows
         return BREAKS_OUT
     state = vibration_at(rig, at, from_rest=True).state
     if state == "none" and noise is not None:
-        goes_on = running(rig, at, growth, started=noise, longest=LONGEST).lasts
+        goes_on = running(rig, at, growth, started=noise).lasts
         return PERSISTS if goes_on else state
     return state
 
@@ -244,6 +243,6 @@ def _ends_at(rig: Rig, at: Condition, offer: Offer) -> bool:
     noise = vibration_at(rig, at).course
     try:
         there = changed(rig, at, offer.name, offer.percent)
-        return _state(*there, noise if noise.lasts else None) == "none"
+        return _state(*there, noise) == "none"
     except ParameterError:
         return False

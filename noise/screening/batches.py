@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from joblib import Parallel, delayed, hash as digest
@@ -21,16 +21,14 @@ from models.rig import Rig
 from noise.batch.cluster import cluster
 from noise.batch.journal import Journal
 from noise.batch.work import one_thread
-from noise.screening.point import REGIMES, evaluate_point
+from noise.screening.point import REGIMES, evaluate_point, evaluate_row
 from noise.screening.vibration import Condition
 
 LABELS = ("none", "creak", "squawk", "squeal")
 """Of a point, in the order of their codes."""
 
-_PIECE = 8
-"""Points that are handed out at once; on a cluster `_FAR_PIECE`."""
-
-_FAR_PIECE = 32
+_PIECE = 32
+"""Points of a row that are handed out at once."""
 
 _DIED = "the workers of the cluster that simulated it died; do they have enough memory?"
 
@@ -113,7 +111,7 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
     with cluster(scheduler) as spread:
 
         def on_cluster(batch: Batch) -> NDArray[np.float64]:
-            pieces = _pieces(batch, _FAR_PIECE)
+            pieces = _pieces(batch, _PIECE)
             calls = [(batch.part(piece),) for piece in pieces]
             found: dict[int, NDArray[np.float64] | str | None] = dict(
                 spread(_evaluate_on_cluster, calls)
@@ -155,8 +153,14 @@ def keeping(evaluate: Evaluator, lines: Journal) -> Evaluator:
 
 
 def _pieces(batch: Batch, size: int) -> list[NDArray[np.int64]]:
-    order = np.lexsort((batch.speed, batch.interference, batch.support_stiffness))
-    return np.array_split(order, math.ceil(order.size / size))
+    """Rows of constant speed as they are, cut where they are long; other points in tens."""
+    order = np.lexsort(
+        (batch.speed, batch.interference, batch.support_stiffness, batch.temperature)
+    )
+    axes = np.stack([batch.interference, batch.support_stiffness, batch.temperature])[:, order]
+    ends = np.flatnonzero(np.any(axes[:, 1:] != axes[:, :-1], axis=0)) + 1
+    rows = np.split(order, ends)
+    return [piece for row in rows for piece in np.array_split(row, math.ceil(row.size / size))]
 
 
 def _joined(
@@ -177,18 +181,22 @@ def _evaluate_on_cluster(batch: Batch) -> NDArray[np.float64] | str:
 
 
 def _evaluate(batch: Batch) -> NDArray[np.float64]:
-    rows = np.empty((batch.speed.size, 6))
-    for i in range(batch.speed.size):
-        frequency = float(batch.frequency[i])
-        at = Condition(
-            float(batch.speed[i]),
-            float(batch.interference[i]),
-            float(batch.support_stiffness[i]),
-            float(batch.temperature[i]),
-            frequency if math.isfinite(frequency) else None,
-        )
-        found = evaluate_point(batch.rig, at)
-        codes = REGIMES.index(found.regime), LABELS.index(found.label)
-        physics = LABELS.index(found.physics)
-        rows[i] = *codes, found.persists, physics, found.level, found.level_max
-    return rows
+    first, *_ = zip(batch.interference, batch.support_stiffness, batch.temperature, strict=True)
+    at = Condition(0.0, *(float(value) for value in first))
+    if np.isnan(batch.frequency).all():
+        found = evaluate_row(batch.rig, at, batch.speed.tolist())
+    else:
+        swings = zip(batch.speed.tolist(), batch.frequency.tolist(), strict=True)
+        found = [
+            evaluate_point(batch.rig, replace(at, speed=speed, frequency=frequency))
+            for speed, frequency in swings
+        ]
+    return np.array(
+        [
+            (
+                REGIMES.index(one.regime), LABELS.index(one.label), one.persists,
+                LABELS.index(one.physics), one.level, one.level_max,
+            )
+            for one in found
+        ]
+    )  # fmt: skip

@@ -7,8 +7,9 @@ agrees is taken to be alike, and its level is interpolated among simulated point
 Boundaries of silence are followed first, then those between noises, then those of regimes.
 
 Linear stability is asked of every point, which costs next to nothing. Where it says that steady
-sliding cannot last while every point simulated about it was quiet, the cell is cut. It is not
-trusted further: a vibration may persist where sliding is stable (`noise.screening.vibration`).
+sliding cannot last while every point simulated about it was quiet, the cell is cut. Where sliding
+is stable a vibration may persist (`noise.screening.vibration`), from where it is unstable up to
+some speed; beyond a speed at which it has died there is nothing to simulate.
 
 Where the material does not say how temperature acts the map of one temperature is that of all, and
 where the properties of the nearest fit are held so is the row of that fit; the copies say so.
@@ -321,10 +322,15 @@ def refined_map(
         for left, right in _intervals(columns, stride[1])
     ]
     settled: list[Cell] = []
-    spent = 0
+    implied, spent = np.zeros(shape, dtype=bool), 0
     while cells:
         wanted = np.unique(np.concatenate([_corners(cell) for cell in cells]), axis=0)
         wanted = wanted[codes[tuple(wanted.T)] < 0]
+        if grows is not None:
+            silent = np.array([_dies_before(codes, grows, *point) for point in wanted], dtype=bool)
+            codes[tuple(wanted[silent].T)] = 0
+            implied[tuple(wanted[silent].T)] = True
+            wanted = wanted[~silent]
         if wanted.size:
             codes[tuple(wanted.T)] = simulate(wanted)
             spent += len(wanted)
@@ -338,7 +344,7 @@ def refined_map(
         taken = set(cut)
         settled = [cell for _, cell in ranked if cell not in taken]
         cells = [part for cell in cut for part in _halves(cell)]
-    simulated = codes >= 0
+    simulated = (codes >= 0) & ~implied
     for cell in settled:
         if not _urgency(codes, grows, cell):
             inside = _inside(cell)
@@ -350,6 +356,19 @@ def refined_map(
         if holes.size:
             plane[tuple(holes.T)] = plane[tuple(known[cKDTree(known).query(holes)[1]].T)]
     return Refined(codes, simulated, n_open)
+
+
+def _dies_before(
+    codes: NDArray[np.int64], grows: NDArray[np.bool_], plane: int, row: int, column: int
+) -> bool:
+    """Whether a vibration has died between each speed of unstable sliding and a point."""
+    code, unstable = codes[plane, row], np.flatnonzero(grows[plane, row])
+    if not unstable.size or grows[plane, row, column]:
+        return False
+    below, above = unstable[unstable < column], unstable[unstable > column]
+    between = [code[below[-1] + 1 : column]] if below.size else []
+    between += [code[column + 1 : above[0]]] if above.size else []
+    return all((one == 0).any() for one in between)
 
 
 def _urgency(

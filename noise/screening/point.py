@@ -14,6 +14,7 @@ livelier. Every turning sticks, which by itself is neither regime nor noise.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from features.kernels.levels import weighted_levels
 from models.condition import Condition as Stated
+from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
 from models.recording import Recording
@@ -30,7 +32,14 @@ from noise.base.labels import PERSISTS
 from noise.classifier import Classifier, load_classifier
 from noise.labels.segments import file_label, label_recording
 from noise.noise_definition import LEAST_LEVEL, NoiseCriteria, noise_criteria
-from noise.screening.vibration import RATE, Condition, gone_on, oscillation, vibration_at
+from noise.screening.vibration import (
+    RATE,
+    Condition,
+    gone_on,
+    oscillation,
+    vibration_at,
+    vibrations_at,
+)
 from sim.acquisition import Acquisition, sample
 from sim.analysis.regime import Regime
 from sim.analysis.slips import motion_slips
@@ -51,8 +60,8 @@ from sim.temperature import at_temperature
 REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 """In the order of their codes."""
 
-JUDGED = 0.75
-"""Last part of a run that is heard: two windows of the classifier [s]."""
+JUDGED = 0.5
+"""Last part of a run that is heard: a window of the classifier [s]."""
 
 _LONGER = 3.0
 """Where that has no name though it vibrates [s]."""
@@ -143,28 +152,54 @@ def evaluate_point(rig: Rig, at: Condition) -> PointResult:
     >>> evaluate_point(rig, Condition(10.0, 0.279e-3, 3745.0)).label
     'squeal'
     """
-    if at.frequency is None:
-        found = vibration_at(rig, at)
-        if not found.course.lasts:
-            return SILENT
-        persists = found.state == PERSISTS
-        heard = heard_of(rig, at, found.course.motion, persists=persists)
-        if heard.label == "none":
-            longer = gone_on(found.course, at.speed, _LONGER)
-            heard = heard_of(rig, at, longer, persists=persists, judged=_LONGER)
-        return heard
-    return heard_of(rig, at, _motion(rig, at, at.frequency))
+    if at.frequency is not None:
+        return heard_of(rig, at, _motion(rig, at, at.frequency))
+    return evaluate_row(rig, at, [at.speed])[0]
 
 
-def is_noisy(rig: Rig, at: Condition) -> bool:
-    """Whether a vibration lasts at a condition, and is heard; costs half of what its name does."""
-    course = vibration_at(rig, at).course
-    if not course.lasts:
-        return False
-    sound = _sound(at_temperature(rig, at.temperature), at, _last_part(course.motion))
-    heard = sound.pressure[-round(JUDGED * RATE) :]
-    levels = weighted_levels(lambda first, last: heard[first:last], heard.size, RATE)
-    return levels.level_a >= LEAST_LEVEL
+def evaluate_row(rig: Rig, at: Condition, speeds: Sequence[float]) -> list[PointResult]:
+    """Simulate points of constant speed that are alike but for it, which is cheaper together.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+        Of which the speed does not matter.
+    speeds : sequence of float
+        [rad/s]
+
+    Returns
+    -------
+    list of PointResult
+    """
+    found = [SILENT] * len(speeds)
+    for i, one in vibrations_at(rig, at, speeds):
+        if one.course is None:
+            continue
+        here, persists = replace(at, speed=float(speeds[i])), one.state == PERSISTS
+        found[i] = heard_of(rig, here, one.course.motion, persists=persists)
+        if found[i].label == "none":
+            longer = gone_on(one.course, _LONGER)
+            found[i] = heard_of(rig, here, longer, persists=persists, judged=_LONGER)
+    return found
+
+
+def is_noisy(rig: Rig, at: Condition, speeds: Sequence[float]) -> bool:
+    """Whether a vibration lasts at any of some speeds [rad/s], and is heard.
+
+    Costs half of what the name of the noise does.
+    """
+    hot = at_temperature(rig, at.temperature)
+    for i, one in vibrations_at(rig, at, speeds):
+        if one.course is None:
+            continue
+        motion = _last_part(one.course.motion)
+        sound = _sound(hot, replace(at, speed=float(speeds[i])), motion)
+        heard = sound.pressure[-round(JUDGED * RATE) :]
+        levels = weighted_levels(lambda first, last, p=heard: p[first:last], heard.size, RATE)
+        if levels.level_a >= LEAST_LEVEL:
+            return True
+    return False
 
 
 def _last_part(motion: Motion, judged: float = JUDGED) -> Motion:
@@ -267,9 +302,14 @@ def point_sound(rig: Rig, at: Condition) -> tuple[float, NDArray[np.float64]]:
     pressure : ndarray, shape (n,)
         [Pa]
     """
-    motion = _motion(rig, at, at.frequency) if at.frequency else vibration_at(rig, at).course.motion
+    if at.frequency:
+        motion, start = _motion(rig, at, at.frequency), 0.25 / at.frequency
+    elif (course := vibration_at(rig, at).course) is not None:
+        motion, start = gone_on(course, 1.0), _RINGING
+    else:
+        raise ParameterError(f"nothing vibrates at {at}")
     sound = _sound(at_temperature(rig, at.temperature), at, motion)
-    return RATE, sound.pressure[round((0.25 / at.frequency if at.frequency else 0.5) * RATE) :]
+    return RATE, sound.pressure[round(start * RATE) :]
 
 
 def _motion(rig: Rig, at: Condition, frequency: float) -> Motion:

@@ -14,15 +14,20 @@ A run ends when growth or decay of the torque's oscillation, measured over block
 certain, and after `LONGEST` at most. An irregular vibration beside stable sliding may be a
 transient that ends suddenly after seconds, which no decay announces; it is followed for longer.
 What dies is started once more from a speed at which it is large.
+
+Speeds of one row are asked together: from where sliding is unstable outwards a vibration persists
+up to some speed and dies beyond, which is bisected, and runs go on from each other.
 """
 
 from __future__ import annotations
 
 import math
+from collections import deque
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.signal import detrend
 
 from models.rig import Rig
@@ -58,6 +63,13 @@ _LARGE = (0.5, 1.0, 0.5)
 """A share of the speed at which a vibration is large, and the same times [s]: what is small at the
 nearest unstable speed, or takes a second to grow, may die on the way from there."""
 
+_RAMP, _LEAST_RAMP = 5.0, 0.2
+"""In which time the speed is brought from that of a vibration to the next, over their relative
+distance, and at least [s]."""
+
+_AROUND = np.concatenate([np.arange(0.22, 1.0, 0.04), np.arange(1.04, 1.6, 0.06)])
+"""Shares of a speed among which unstable ones are sought [-]."""
+
 _STARTS = (
     (0.97, 0.4, 0.0), (0.85, 0.4, 0.0), (0.7, 0.4, 0.0), (0.5, 0.4, 0.0), (0.25, 0.4, 0.0),
     (0.75, 0.4, 0.6), (0.5, 0.4, 0.6),
@@ -81,8 +93,11 @@ _STEADY = 1.02
 _REGULAR = 0.003
 """Relative scatter of a vibration's size over blocks, up to which it repeats itself [-]."""
 
-_IRREGULAR = 5.0
+IRREGULAR = 5.0
 """How long one that does not is followed beside stable sliding [s]."""
+
+_KEPT = 10
+"""Blocks of a motion that are kept."""
 
 _DEAD = 0.1
 """Share of the least oscillation below which a vibration in stable sliding is over [-]."""
@@ -124,15 +139,18 @@ class Course:
     seconds : float
         After which that was certain [s].
     motion : Motion
-        All of the run.
+        The last two seconds.
     solver : MotionSolver
         From which the run goes on.
+    speed : float
+        Of the shaft [rad/s].
     """
 
     lasts: bool
     seconds: float
     motion: Motion
     solver: MotionSolver
+    speed: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,18 +164,16 @@ class Vibration:
         from rest, ``breaks out`` elsewhere.
     growth : float
         Of a small vibration about steady sliding [1/s].
-    course : Course
-        Of the vibration where there is one, else of how it died.
+    course : Course, optional
+        Of the vibration; None where there is none.
     """
 
     state: str
     growth: float
-    course: Course
+    course: Course | None
 
 
-def vibration_at(
-    rig: Rig, at: Condition, *, from_rest: bool = False, longest: float = LONGEST
-) -> Vibration:
+def vibration_at(rig: Rig, at: Condition, *, from_rest: bool = False) -> Vibration:
     """Tell what becomes of a vibration at a condition of constant speed.
 
     Parameters
@@ -166,8 +182,6 @@ def vibration_at(
     at : Condition
     from_rest : bool
         Whether to run from rest as well where a vibration that runs dies, which is harder to kill.
-    longest : float
-        A run lasts no longer [s].
 
     Returns
     -------
@@ -186,30 +200,121 @@ def vibration_at(
     >>> states
     ['breaks out', 'none']
     """
-    growth = growth_at(rig, at)
-    if growth > 0.0:
-        course = _followed(_solver(rig, at), at, growth, longest=longest)
-        if not course.lasts:  # it grows so slowly that only what runs already shows where it ends
-            course = running(rig, at, growth, longest=longest)
-        return Vibration(BREAKS_OUT if course.lasts else "none", growth, course)
-    course = running(rig, at, growth, longest=longest)
-    # A contact that is stuck at rest may vibrate though no speed makes its sliding unstable.
-    if not course.lasts and not from_rest and _unstable_speed(rig, at) is not None:
-        return Vibration("none", growth, course)
-    rested = _followed(_solver(rig, at), at, growth, longest=longest)
-    if rested.lasts:
-        return Vibration(BREAKS_OUT, growth, rested)
-    return Vibration(PERSISTS if course.lasts else "none", growth, course)
+    [(_, found)] = vibrations_at(rig, at, [at.speed], from_rest=from_rest)
+    return found
 
 
-def growth_at(rig: Rig, at: Condition) -> float:
-    """Growth of a small vibration about steady sliding [1/s]."""
+def vibrations_at(
+    rig: Rig, at: Condition, speeds: Sequence[float], *, from_rest: bool = False
+) -> Iterator[tuple[int, Vibration]]:
+    """Tell what becomes of a vibration at several speeds, all else alike, in any order.
+
+    From where sliding is unstable outwards a vibration persists up to some speed and dies beyond,
+    so that speed is bisected; each run goes on from the nearest that lasts.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+        Of which the speed does not matter.
+    speeds : sequence of float
+        [rad/s]
+    from_rest : bool
+        As for `vibration_at`.
+
+    Yields
+    ------
+    (int, Vibration)
+        Which of the speeds it is, and what becomes of it there.
+    """
+    speed = np.array(speeds, dtype=np.float64)
+    growth = growth_at(rig, at, np.concatenate([speed[:, None], speed[:, None] * _AROUND], axis=1))
+    unstable = [_nearest_unstable(v, row) for v, row in zip(speed, growth[:, 1:], strict=True)]
+    own = growth[:, 0].tolist()
+    points = [replace(at, speed=float(v)) for v in speed]
+    sides: dict[tuple[bool, int], list[int]] = {}
+    for i in np.argsort(speed).tolist():
+        if own[i] > 0.0:
+            yield i, Vibration(*_unstable(rig, points[i], own[i], unstable[i]))
+        elif (start := unstable[i]) is None:
+            course = running(rig, points[i], own[i])
+            # A contact stuck at rest may vibrate though no speed makes its sliding unstable.
+            yield i, _beside_rest(rig, points[i], own[i], course, from_rest=True)
+        else:
+            between = int(np.sum((speed < speed[i]) & (growth[:, 0] > 0.0)))
+            sides.setdefault((start > speed[i], between), []).append(i)
+    for (above, _), side in sides.items():
+        side = side[::-1] if above else side
+        reached = _outwards(rig, [(points[i], own[i], unstable[i]) for i in side])
+        for i, course in zip(side, reached, strict=True):
+            yield i, _beside_rest(rig, points[i], own[i], course, from_rest=from_rest)
+
+
+def _unstable(
+    rig: Rig, at: Condition, growth: float, start: float | None
+) -> tuple[str, float, Course | None]:
+    course = _followed(_solver(rig, at), at, growth)
+    if not course.lasts:  # it grows so slowly that only what runs already shows where it ends
+        course = running(rig, at, growth, start)
+    return (BREAKS_OUT, growth, course) if course.lasts else ("none", growth, None)
+
+
+def _beside_rest(
+    rig: Rig, at: Condition, growth: float, course: Course | None, *, from_rest: bool
+) -> Vibration:
+    """Tell from a vibration that runs, or from none, whether one breaks out from rest."""
+    lasts = course is not None and course.lasts
+    if lasts or from_rest:
+        rested = _followed(_solver(rig, at), at, growth)
+        if rested.lasts:
+            return Vibration(BREAKS_OUT, growth, rested)
+    return Vibration(PERSISTS, growth, course) if lasts else Vibration("none", growth, None)
+
+
+def _outwards(
+    rig: Rig, side: list[tuple[Condition, float, float | None]]
+) -> Iterator[Course | None]:
+    """Yield courses outwards from where sliding is unstable; None where they have died before."""
+    lasting: dict[int, Course] = {}
+    dead: dict[int, int] = {}  # by where the vibration came from
+    last, first_dead = -1, len(side)
+    while first_dead - last > 1 or dead.get(first_dead, last) != last:
+        k = (last + first_dead) // 2 if first_dead - last > 1 else first_dead
+        at, growth, start = side[k]
+        course = running(rig, at, growth, start, started=lasting.get(last), again=k == 0)
+        if course.lasts:
+            lasting[k], last = course, k
+            dead.pop(k, None)
+        else:
+            dead[k] = last
+        first_dead = min((one for one in dead if one > last), default=len(side))
+    for k, (at, growth, start) in enumerate(side):
+        if k > last:
+            yield None
+        elif k in lasting:
+            yield lasting[k]
+        else:
+            near = lasting[min(lasting, key=lambda one: abs(one - k))]
+            course = running(rig, at, growth, start, started=near, patience=0.0)
+            yield course if course.lasts else running(rig, at, growth, start)
+
+
+def growth_at(rig: Rig, at: Condition, speed: ArrayLike | None = None) -> NDArray[np.float64]:
+    """Growth of a small vibration about steady sliding [1/s], at other speeds [rad/s] if given."""
     rig = at_temperature(rig, at.temperature)
-    return float(sliding_growth(rig, at.speed, at.interference, at.support_stiffness))
+    speed = at.speed if speed is None else speed
+    return sliding_growth(rig, speed, at.interference, at.support_stiffness)
 
 
 def running(
-    rig: Rig, at: Condition, growth: float, *, started: Course | None = None, longest: float
+    rig: Rig,
+    at: Condition,
+    growth: float,
+    unstable: float | None = None,
+    *,
+    started: Course | None = None,
+    again: bool = True,
+    patience: float = IRREGULAR,
 ) -> Course:
     """Follow a vibration that already runs when a condition is reached.
 
@@ -219,11 +324,14 @@ def running(
     at : Condition
     growth : float
         Of a small vibration there [1/s].
+    unstable : float, optional
+        Nearest speed at which sliding is unstable, where the rig runs before [rad/s].
     started : Course, optional
-        Vibration of another rig at the same speed, which goes on in this one; by default the
-        rig's own at the nearest speed at which sliding is unstable.
-    longest : float
-        The run lasts no longer [s].
+        Vibration at another speed or of another rig, which goes on instead.
+    again : bool
+        Whether what dies is started once more, where it is large.
+    patience : float
+        How long one that is irregular is followed beside stable sliding [s].
 
     Returns
     -------
@@ -231,30 +339,29 @@ def running(
     """
     if started is not None:
         solver = _solver(rig, at)
-        solver.go_on_from(started.solver, at.speed)
-        return _followed(solver, at, growth, longest=longest)
-    unstable = _unstable_speed(rig, at)
+        solver.go_on_from(started.solver, started.speed)
+        apart = abs(at.speed - started.speed) / at.speed
+        seconds = max(_LEAST_RAMP, _RAMP * apart) if apart else 0.0
+        ramp = np.linspace(started.speed, at.speed, round(seconds * RATE))
+        return _followed(solver, at, growth, approach=ramp, patience=patience)
     starts = _STARTS if unstable is None else ((unstable / at.speed, *_NEAREST), _LARGE)
     for share, held, seconds in starts:
         start = share * at.speed
         solver = _solver(rig, replace(at, speed=start))
         ramp = np.linspace(start, at.speed, round(seconds * RATE))
         approach = np.concatenate([np.full(round(held * RATE), start), ramp])
-        course = _followed(solver, at, growth, longest=longest, approach=approach, held=held)
-        if course.lasts or (unstable is not None and growth < _DAMPED):
+        course = _followed(solver, at, growth, approach=approach, held=held, patience=patience)
+        if course.lasts or (unstable is not None and (growth < _DAMPED or not again)):
             break
     return course
 
 
-def _unstable_speed(rig: Rig, at: Condition) -> float | None:
+def _nearest_unstable(speed: float, growth: NDArray[np.float64]) -> float | None:
     """Nearest speed at which sliding is unstable [rad/s], surely so if there is one."""
-    speed = at.speed * np.concatenate([np.arange(0.98, 0.2, -0.04), np.arange(1.04, 1.6, 0.06)])
-    hot = at_temperature(rig, at.temperature)
-    growth = sliding_growth(hot, speed, at.interference, at.support_stiffness)
     near = np.flatnonzero(growth > _SURE)
     if near.size:
-        return float(speed[near[np.argmin(np.abs(speed[near] - at.speed))]])
-    return float(speed[growth.argmax()]) if growth.max() > 0.0 else None
+        return float(speed * _AROUND[near[np.argmin(np.abs(_AROUND[near] - 1.0))]])
+    return float(speed * _AROUND[growth.argmax()]) if growth.max() > 0.0 else None
 
 
 def _solver(rig: Rig, at: Condition) -> MotionSolver:
@@ -270,9 +377,9 @@ def _followed(
     at: Condition,
     growth: float,
     *,
-    longest: float,
     approach: NDArray[np.float64] | None = None,
     held: float = 0.0,
+    patience: float = IRREGULAR,
 ) -> Course:
     """Run in blocks until it is certain whether the vibration dies or lasts.
 
@@ -281,9 +388,9 @@ def _followed(
     """
     n = round(BLOCK * RATE)
     before = np.empty(0) if approach is None else approach
-    first, last = before.size // n, before.size // n + round(longest / BLOCK)
+    first, last = before.size // n, before.size // n + round(LONGEST / BLOCK)
     drive = np.concatenate([before, np.full((last - first) * n + steps_beyond(RATE), at.speed)])
-    parts: list[Motion] = []
+    parts: deque[Motion] = deque(maxlen=_KEPT)
     sizes: list[float] = []
     certain = None
     for block in range(last):
@@ -292,7 +399,7 @@ def _followed(
         torque = parts[-1].torque
         if block >= first:
             sizes.append(oscillation(torque))
-            certain = _outcome(np.array(sizes), growth)
+            certain = _outcome(np.array(sizes), growth, patience)
         elif block * BLOCK >= held and growth <= 0.0:
             # Without the trend that the torque has with the speed.
             late = torque[-torque.size // 4 :]
@@ -300,10 +407,11 @@ def _followed(
         if certain is not None:
             break
     lasts = sizes[-1] > 1.0 if certain is None else certain
-    return Course(lasts, len(sizes) * BLOCK, _joined(parts), solver)
+    motion = parts[0].followed_by(*list(parts)[1:])
+    return Course(lasts, len(sizes) * BLOCK, motion, solver, at.speed)
 
 
-def _outcome(sizes: NDArray[np.float64], growth: float) -> bool | None:
+def _outcome(sizes: NDArray[np.float64], growth: float, patience: float) -> bool | None:
     """Whether a vibration lasts, by the size of its blocks so far; None where that is open."""
     if growth <= 0.0 and sizes[-1] < _DEAD:
         return False
@@ -315,16 +423,16 @@ def _outcome(sizes: NDArray[np.float64], growth: float) -> bool | None:
         return False if growth > 0.0 and late < _STEADY * early else None
     lately = sizes[-2 * _FOLLOWED :]
     irregular = np.std(lately) > _REGULAR * np.mean(lately)
-    if growth <= 0.0 and irregular and sizes.size * BLOCK < _IRREGULAR:
+    if growth <= 0.0 and irregular and sizes.size * BLOCK < patience:
         return None
     seconds = 0.75 * half * BLOCK
     return True if late - 1.0 > (early - late) / seconds * _HORIZON else None
 
 
-def gone_on(course: Course, speed: float, seconds: float) -> Motion:
-    """Return the motion of a course that goes on at its speed [rad/s] for some seconds."""
+def gone_on(course: Course, seconds: float) -> Motion:
+    """Return the motion of a course that goes on at its speed for some seconds."""
     n = round(seconds * RATE)
-    drive = np.full(n + steps_beyond(RATE), float(speed))
+    drive = np.full(n + steps_beyond(RATE), course.speed)
     return course.motion.followed_by(course.solver.advance(drive, n))
 
 
@@ -343,10 +451,3 @@ def oscillation(torque: NDArray[np.float64]) -> float:
     """
     mean = abs(float(np.mean(torque)))
     return float(np.std(torque)) / (LEAST_OSCILLATION * mean) if mean > 0.0 else math.inf
-
-
-def _joined(parts: list[Motion]) -> Motion:
-    whole = parts[0]
-    for part in parts[1:]:
-        whole = whole.followed_by(part)
-    return whole

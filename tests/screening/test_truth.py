@@ -2,8 +2,8 @@
 
 The benchmark of screening: 200 designs by default, ``SCREEN_DRAWS`` for another number, other ones
 by ``SCREEN_SEED``, and a file of all results by ``SCREEN_RESULTS``. Of each design one condition is
-drawn, and two of its boundary of silence: the last speed that sounds and the first that does not,
-0.125 rad/s apart.
+drawn, and two of its boundary of silence on the map of its speeds: the last that sounds and the
+first that does not, 0.125 rad/s apart.
 """
 
 import json
@@ -18,7 +18,9 @@ import pytest
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
 from noise.screening.advice import advise, changed
-from noise.screening.point import evaluate_point
+from noise.screening.batches import batch_evaluator
+from noise.screening.grid import Grid
+from noise.screening.mapping import map_design
 from noise.screening.vibration import Condition
 from tests.screening.long_runs import label_after, vibrates_after
 
@@ -50,16 +52,20 @@ def drawn(rng):
         return rig, Condition(STEP * int(rng.integers(4, 100)), fit, support)
 
 
-def boundary(rig, at):
-    """The last speed that sounds and the first that does not, or nothing."""
-    noisy, silent = STEP * 8, STEP * 104
-    sounds = lambda speed: evaluate_point(rig, replace(at, speed=speed)).label != "none"  # noqa: E731
-    if not sounds(noisy) or sounds(silent):
-        return []
-    while silent - noisy > 1.5 * STEP:
-        middle = STEP * round(0.5 * (noisy + silent) / STEP)
-        noisy, silent = (middle, silent) if sounds(middle) else (noisy, middle)
-    return [replace(at, speed=speed) for speed in (noisy, silent)]
+def mapped(rig, at):
+    """The drawn condition on the map of its speeds, and the two beside the boundary of silence."""
+    speeds = tuple(STEP * n for n in range(2, 105))
+    one = (at.interference,), (at.support_stiffness,), (at.temperature,)
+    grid = Grid(speeds, (), *one, (speeds[0], speeds[-1]))
+    with batch_evaluator(workers=1) as evaluate:
+        found = map_design(rig, grid, evaluate, design="drawn")
+    noisy = np.flatnonzero(found.label[0, 0, 0] != "none")
+    beside = [noisy[-1], noisy[-1] + 1] if noisy.size and noisy[-1] + 1 < len(speeds) else []
+
+    def said(i):
+        return tuple(str(part[0, 0, 0, i]) for part in (found.label, found.sound, found.physics))
+
+    return [(replace(at, speed=speeds[i]), *said(i)) for i in (speeds.index(at.speed), *beside)]
 
 
 def ends_of(rig, at, seconds):
@@ -72,15 +78,13 @@ def ends_of(rig, at, seconds):
     )
 
 
-def judged(rig, at):
+def judged(rig, at, said, sound, physics):
     """What the screen says and what long runs do."""
-    found = evaluate_point(rig, at)
     rest, running = ends_of(rig, at, SECONDS)
     heard = label_after(rig, at, [at.speed], seconds=0.5 * SECONDS) if rest else "none"
     return {
         "material": rig.material, "at": str(at), "rest": rest, "running": running,
-        "said": "persists" if found.persists else found.label, "sound": found.label,
-        "physics": found.physics, "heard": heard,
+        "said": said, "sound": sound, "physics": physics, "heard": heard,
     }  # fmt: skip
 
 
@@ -113,8 +117,9 @@ def test_labels_of_drawn_designs_hold_beside_boundaries_and_away_from_them():
     away, beside = [], []
     for _ in range(DRAWS):
         rig, at = drawn(rng)
-        away.append(judged(rig, at))
-        beside += [judged(rig, one) for one in boundary(rig, at)]
+        here, *others = (judged(rig, *one) for one in mapped(rig, at))
+        away.append(here)
+        beside += others
     scores = {"away": score(away), "beside": score(beside)}
     recorded("labels", {"scores": scores, "points": [*away, *beside]})
     edge = scores["beside"]
