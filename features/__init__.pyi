@@ -57,11 +57,9 @@ from .sound_quality import (
 )
 from .table import (
     FEATURES as FEATURES,
+    WINDOW_FEATURES as WINDOW_FEATURES,
     Feature as Feature,
     feature_names as feature_names,
     features_of as features_of,
     recording_feature_names as recording_feature_names,
-)
-from .window_table import (
-    WINDOW_FEATURES as WINDOW_FEATURES,
 )

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -30,8 +31,11 @@ from features.kernels.conditioning import (
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
 from features.kernels.levels import (
     LEAST_SHARE_DB,
+    NOMINAL_THIRD_OCTAVES,
+    REFERENCES,
     THESIS_BANDS,
     THIRD_OCTAVE_RESOLUTION,
+    a_weighted_level,
     band_power,
     relative_db,
     third_octave_levels,
@@ -55,6 +59,9 @@ ACOUSTIC_KINDS = ("pressure", "acceleration")
 
 TOP_BANDS = ((7_000.0, 13_000.0), (13_000.0, 19_000.0))
 """Bands above the common limit [Hz]: reached by rates from 29.8 kHz and from 43.5 kHz on."""
+
+_BAND_EDGES = (150, 500, 1000, 2000, 5000, 7000)
+"""Edges of the bands in which shares are told [Hz]."""
 
 _LEAST_IN_BAND = 1e-5
 """Power of the band described, relative to the whole, below which it holds leakage only."""
@@ -217,52 +224,90 @@ class Prepared:
         return torque_slips(self.samples, self.rate)
 
     @cached_property
-    def fine_spectrum(self) -> Spectrum:
-        """Of the signal divided by its rms value, over all that the rate holds, in finest bins."""
-        return whole_spectrum(self.transform)
+    def third_octave_levels(self) -> dict[str, float]:
+        """Levels in one-third octaves [dB], by nominal mid-band frequency; at least -80 re all."""
+        if self.rms == 0.0:
+            return dict.fromkeys(NOMINAL_THIRD_OCTAVES, math.nan)
+        spectrum = welch(self.samples, self.rate, THIRD_OCTAVE_RESOLUTION)
+        levels = third_octave_levels(spectrum, reference=1.0)
+        least = 20.0 * math.log10(self.rms) + LEAST_SHARE_DB
+        unit = 20.0 * math.log10(REFERENCES[self.kind])
+        # A band that is not measured stays so.
+        return {
+            name: level if math.isnan(level) else max(level, least) - unit
+            for name, level in levels.items()
+        }
 
     @cached_property
-    def third_octaves(self) -> dict[str, float]:
-        """Levels of the samples as they are [dB re 1 unit], by nominal mid-band frequency."""
-        spectrum = welch(self.samples, self.rate, THIRD_OCTAVE_RESOLUTION)
-        return third_octave_levels(spectrum, reference=1.0)
+    def band_levels(self) -> dict[str, float]:
+        """Levels of bands [dB re the band described], by their limits in Hz.
 
-    def thesis_band(self, number: int) -> float:
-        """Level of one of the thesis's bands relative to the band described.
-
-        Parameters
-        ----------
-        number : int
-            In `features.kernels.levels.THESIS_BANDS`, from 0.
-
-        Returns
-        -------
-        float
-            [dB]; NaN where the rate does not reach it.
+        The thesis's own bands, which hold hum or reach beyond that band, are of the spectrum of all
+        that the rate holds. NaN where the rate does not reach one.
         """
-        low, high = THESIS_BANDS[number]
-        if high > usable_limit(self.rate):
-            return math.nan
-        part, whole = band_power(self.fine_spectrum, [low, self.low], [high, self.limit])
+        levels = {
+            f"{low}_{high}": self._share_db(self.spectrum, low, high)
+            if high <= 1.001 * self.limit
+            else math.nan
+            for low, high in pairwise(_BAND_EDGES)
+        }
+        whole = whole_spectrum(self.transform)
+        for low, high in (THESIS_BANDS[0], THESIS_BANDS[2]):
+            reached = high <= usable_limit(self.rate)
+            levels[f"{low:.0f}_{high:.0f}"] = (
+                self._share_db(whole, low, high) if reached else math.nan
+            )
+        return levels
+
+    def _share_db(self, spectrum: Spectrum, low: float, high: float) -> float:
+        part, whole = band_power(spectrum, [low, self.low], [high, self.limit])
         return relative_db(float(part), float(whole))
 
-    def share_db(self, low: float, high: float) -> float:
-        """Level of a part of the band relative to the whole of it.
+    @property
+    def level(self) -> float:
+        """Level about the mean [dB]; NaN where nothing varies."""
+        reference = REFERENCES[self.kind]
+        return 20.0 * math.log10(self.rms / reference) if self.rms > 0.0 else math.nan
 
-        Parameters
-        ----------
-        low, high : float
-            Limits of the part [Hz].
-
-        Returns
-        -------
-        float
-            [dB]; NaN where it is not reached.
-        """
-        if high > 1.001 * self.limit:
+    @property
+    def level_a(self) -> float:
+        """A-weighted level [dB]; NaN likewise."""
+        if self.rms == 0.0:
             return math.nan
-        part, whole = band_power(self.spectrum, [low, self.low], [high, self.limit])
-        return relative_db(float(part), float(whole))
+        return a_weighted_level(self.samples, self.rate, reference=REFERENCES[self.kind])
+
+    @property
+    def hum_share(self) -> float:
+        """Share of the power below the limit that lies below the band described [-]."""
+        described = self.rms > 0.0 and self.low < self.limit
+        return 1.0 - min(1.0, self.in_band_share) if described else math.nan
+
+    @property
+    def line_order(self) -> float:
+        """Frequency of the strongest line over the fundamental [-]."""
+        return self.lines.strongest / self.harmonics.fundamental
+
+    @property
+    def crest(self) -> float:
+        """Peak of the envelope over the rms value [dB]."""
+        return 20.0 * math.log10(self.pulses.crest_factor)
+
+    @property
+    def relative_oscillation(self) -> float:
+        """Rms value about the mean over the mean's magnitude [-]."""
+        return self.rms / abs(self.mean) if self.mean != 0.0 else math.nan
+
+    @property
+    def high_band(self) -> float:
+        """Level of what a torque has little of, above 2 kHz (thesis, 5.2.3) [dB]."""
+        if usable_limit(self.rate) <= THESIS_BANDS[1][0]:
+            return math.nan
+        return self._share_db(self.spectrum, THESIS_BANDS[1][0], self.limit)
+
+    @property
+    def slope_ratio(self) -> float:
+        """Slope of the rising torque over that in true stick [-]."""
+        return self.slips.stick_slope / self.stick_rate
 
     @cached_property
     def top_bands(self) -> tuple[TopBand, ...]:

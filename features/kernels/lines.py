@@ -45,6 +45,10 @@ _LEAST_FLOOR = 1e-12
 """Lowest floor relative to the strongest bin: what rounding leaves of an exact zero."""
 
 
+_NO_SECOND_LINE = 1e-4
+"""Power of a second line that is not there re the first: below all that count."""
+
+
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Lines:
@@ -68,6 +72,11 @@ class Lines:
     total: float
 
     @property
+    def count(self) -> int:
+        """Number of lines."""
+        return self.frequency.size
+
+    @property
     def strongest(self) -> float:
         """Frequency of the strongest line [Hz], NaN if there is none."""
         return float(self.frequency[0]) if self.frequency.size else math.nan
@@ -76,6 +85,14 @@ class Lines:
     def strongest_share(self) -> float:
         """Share of the band's power in the strongest line, 0 if there is none."""
         return float(self.power[0] / self.total) if self.power.size else 0.0
+
+    @property
+    def second_level(self) -> float:
+        """Level of the second line re the strongest [dB], at least -40; NaN without any."""
+        if self.power.size == 0:
+            return math.nan
+        ratio = float(self.power[1] / self.power[0]) if self.power.size > 1 else 0.0
+        return 10.0 * math.log10(max(ratio, _NO_SECOND_LINE))
 
     @property
     def share(self) -> float:

@@ -199,14 +199,14 @@ def _sums(p, last):
     return total, moment, highest
 
 
-MOST_DB = 60.0
+_MOST_DB = 60.0
 """Range beyond which levels count as silence [dB]."""
 
 _QUIETEST_BAND_DB = -70.0
 
 
 class Course:
-    """Course of the frames of windows of one length, which `features.window_table` describes.
+    """Course of the frames of windows of one length, which `features.table` describes.
 
     Parameters
     ----------
@@ -225,23 +225,28 @@ class Course:
     """
 
     def __init__(self, values: NDArray[np.float32], bands: NDArray[np.float32]) -> None:
-        level, self.flatness, centroid, peak, share, second, flux, pitch, periodicity = values
-        self.n = n = len(level)
+        level, flatness, centroid, peak, share, second, flux, pitch, periodicity = values
+        n = len(level)
         relative = (level - level.max(axis=0)).astype(np.float64)
-        self.weight = weight = 10.0 ** (0.1 * relative)
-        self.above = above = np.maximum(relative, -MOST_DB)
+        weight = 10.0 ** (0.1 * relative)
+        above = np.maximum(relative, -_MOST_DB)
+        self.loud_share = (above > -10.0).sum(axis=0) / n
         mean, square = ordered_sum(np.stack([above, above * above]), axis=1) / n
         self.fluctuation = np.sqrt(np.maximum(square - mean**2, 0.0))
         x = (np.arange(n) - 0.5 * (n - 1))[:, None]
         self.trend = 100.0 * ordered_sum(x * above) / ordered_sum(x * x)
         ordered = np.sort(level, axis=0)
-        self.quiet, self.median, self.loud = ordered[
-            [int(0.1 * (n - 1)), n // 2, int(0.95 * (n - 1))]
-        ]
-        self.change = np.diff(level, axis=0)
+        quiet, median, loud = ordered[[int(0.1 * (n - 1)), n // 2, int(0.95 * (n - 1))]]
+        self.range = np.minimum(loud - quiet, _MOST_DB)
+        self.peak_above_median = np.minimum(loud - median, _MOST_DB)
+        change = np.diff(level, axis=0)
+        self.steepest_rise = np.clip(change.max(axis=0), 0.0, _MOST_DB)
+        self.steepest_fall = np.clip(0.0 - change.min(axis=0), 0.0, _MOST_DB)
         voiced = periodicity.astype(np.float64)
-        averaged = self.flatness, share, share > 0.5, second, flux, voiced, voiced > 0.6
+        averaged = flatness, share, share > 0.5, second, flux, voiced, voiced > 0.6
         self.means = ordered_sum(weight * np.stack(averaged), axis=1) / ordered_sum(weight)
+        self.tone_second = np.maximum(self.means[3], -40.0)
+        self.flatness_lowest = np.where(weight > 0.01, flatness, 0.0).min(axis=0, initial=0.0)
         periodic = np.where(np.isnan(pitch), 0.0, weight * np.maximum(voiced, 0.0) ** 2)
         (
             (self.centroid, self.peak_frequency, self.pitch),
@@ -254,7 +259,13 @@ class Course:
                 np.concatenate([weight, weight * share, periodic], axis=1),
             )
         )
-        self.jump = np.abs(np.diff(peak, axis=0)).astype(np.float64)
+        jump = np.abs(np.diff(peak, axis=0)).astype(np.float64)
+        self.peak_jump = np.median(jump, axis=0)
+        # Most frames in a row of which each has its maximum where the one before has it.
+        step = np.arange(n - 1)[:, None]
+        steady = (jump < 0.02) & (weight[1:] > 0.003)
+        broken = np.maximum.accumulate(np.where(steady, -1, step), axis=0)
+        self.tone_steady = ((step - broken).max(axis=0) + 1) / n
         self._describe_bands(bands, level)
 
     def _describe_bands(self, bands: NDArray[np.float32], level: NDArray[np.float32]) -> None:
@@ -266,22 +277,16 @@ class Course:
         height = np.maximum(relative, _QUIETEST_BAND_DB)
         high = int(0.95 * (n - 1))
         ordered = np.partition(height, (n // 2, high), axis=1)
-        self.band_rises = ordered[:, high] - ordered[:, n // 2]
-        self.onsets = ordered_sum(np.maximum(np.diff(height, axis=1), 0.0)) / m
+        rises = ordered[:, high] - ordered[:, n // 2]
+        self.band_rise, self.band_rising = rises.max(axis=0), rises.argmax(axis=0) + 1
+        onsets = ordered_sum(np.maximum(np.diff(height, axis=1), 0.0)) / m
+        self.onset, self.onset_mean = onsets.max(axis=0), ordered_sum(onsets) / (n - 1)
         # One less the mean variance of what is left once the common rise and fall is taken out.
         height -= ordered_sum(height / n, axis=1)[:, None]
         mean = ordered_sum(height / m)
         common = ordered_sum(mean * mean)
         own = ordered_sum((height**2 / m).swapaxes(0, 1).reshape(n * m, windows))
         self.together = np.divide(common, own, out=np.zeros(windows), where=own > 0.0)
-
-    @property
-    def longest_tone(self) -> NDArray[np.int64]:
-        """Most frames in a row of which each has its maximum where the one before has it."""
-        steady = (self.jump < 0.02) & (self.weight[1:] > 0.003)
-        step = np.arange(len(steady))[:, None]
-        broken = np.maximum.accumulate(np.where(steady, -1, step), axis=0)
-        return np.asarray((step - broken).max(axis=0) + 1)
 
 
 def _wander(

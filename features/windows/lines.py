@@ -82,7 +82,7 @@ _WINDOW = np.hanning(_SEGMENT + 2)[1:-1].astype(np.float32)
 
 
 class Lines:
-    """Spectra and lines of windows, which `features.window_table` describes.
+    """Spectra and lines of windows, which `features.table` describes.
 
     Parameters
     ----------
@@ -119,7 +119,13 @@ class Lines:
         sums = np.zeros((9, len(at)), dtype=np.float32)
         bins = np.empty((3, len(at)), dtype=np.int64)
         _measure(power, end, level, sums, bins)
-        self.total, self.line, self.below, self.flatness, self.slope, *self.octaves = sums
+        self.total, line, below, self.flatness, self.slope, *octaves = sums
+        self.line_share = line / self.total
+        self.below_line = _decibel(below / line, 1e-5)
+        above = (self.total - (line + below)) / line.astype(np.float64)
+        self.above_line = _decibel(above, 1e-5)
+        # Above 1, 2 and 4 kHz.
+        self.octaves_above = [_decibel(sum(octaves[i:]) / self.total, 1e-6) for i in (1, 2, 3)]
         self.top, low, high = bins
         self.width = (high - low) * SPACING
         self._describe_lines()
@@ -204,6 +210,10 @@ class Lines:
             self.fundamental, self.harmonic_share, self.harmonic_count, self.inharmonicity,
             self.harmonic_gain,
         ) = found  # fmt: skip
+
+
+def _decibel(share: NDArray[np.floating], least: float) -> NDArray[np.float64]:
+    return 10.0 * np.log10(np.maximum(share.astype(np.float64), least))
 
 
 @njit(fastmath={"reassoc", "contract", "nsz", "nnan"}, cache=True, **PART)

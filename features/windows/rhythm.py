@@ -96,7 +96,7 @@ def rhythm_of(power: NDArray[np.float32], size: int) -> dict[str, NDArray[np.flo
     Returns
     -------
     dict of str to ndarray, shape (n_windows,)
-        By name, as `features.window_table` has them, in their units [dB, octave, 1/s or -]; what
+        By name, as `features.table` has them, in their units [dB, octave, 1/s or -]; what
         needs 32 samples and sound in them is NaN without.
 
     Examples

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from features.window_table import WINDOW_FEATURES
+from features.table import WINDOW_FEATURES
 from features.windows.blocks import FRAME_RATE, RATE
 from features.windows.events import events_within, prolonged
 from features.windows.frames import FRAME_COLUMNS, Course, Frames, describe_frames
@@ -31,7 +31,7 @@ HOP = 0.25
 _LEAST_FRAMES = 3
 
 WINDOW_NAMES = tuple(feature.name for feature in WINDOW_FEATURES)
-"""Of the columns of `WindowTable.features`, by `features.window_table.WINDOW_FEATURES`."""
+"""Of the columns of `WindowTable.features`, by `features.table.WINDOW_FEATURES`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +139,7 @@ def _parts(
     hops: tuple[int, int, int, int],
     limit: float,
 ) -> dict[str, Any]:
-    """Return what is computed of windows of one length, by the names in `features.window_table`.
+    """Return what is computed of windows of one length, by the names in `features.table`.
 
     Frames and power are those of the sound; the windows are counted by `numbers`.
     """
@@ -171,7 +171,7 @@ def _columns(parts: dict[str, Any], count: int) -> NDArray[np.float32]:
     """Return the features of `count` windows side by side."""
     out = np.empty((count, len(WINDOW_FEATURES)), dtype=np.float32)
     for column, feature in enumerate(WINDOW_FEATURES):
-        out[:, column] = feature.compute(parts)
+        out[:, column] = feature.of(parts)
     return out
 
 
@@ -186,7 +186,7 @@ def _above(
 
 
 class Top:
-    """Power above 7 kHz in windows, which `features.window_table` describes.
+    """Power above 7 kHz in windows, which `features.table` describes.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.prepared import ACOUSTIC_KINDS
-from features.window_table import WINDOW_FEATURES
+from features.table import WINDOW_FEATURES
 from features.windows.table import HOP, LENGTH
 from models.blocks import RecordingBlocks
 from models.recording import REFERENCE_PRESSURE

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 from features.prepared import ACOUSTIC_KINDS, prepare
-from features.table import TORQUE_FEATURES
+from features.table import feature_names, features_of
 from features.windows.blocks import FRAME_RATE, MARGIN, RATE, Block, block_length, resampled_block
 from features.windows.table import (
     HOP,
@@ -34,7 +34,7 @@ from noise.labels.levels import CellLevels
 
 FEATURE_NAMES = (
     *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in WINDOW_NAMES),
-    *(f"torque_{feature.name}" for feature in TORQUE_FEATURES),
+    *(f"torque_{name}" for name in feature_names("torque")),
 )
 """Of a window of a recording; NaN for the kinds of channel that it does not have."""
 
@@ -301,7 +301,8 @@ def _torque(
     blocks: RecordingBlocks, row: int | None, first: int, windows: int
 ) -> NDArray[np.float32]:
     """Features of the torque in the windows of a page."""
-    out = np.full((windows, len(TORQUE_FEATURES)), np.nan, dtype=np.float32)
+    features = features_of("torque")
+    out = np.full((windows, len(features)), np.nan, dtype=np.float32)
     if row is None:
         return out
     for i in range(windows):
@@ -309,7 +310,7 @@ def _torque(
         end = min(start + round(LENGTH * blocks.rate), blocks.n_samples)
         try:
             signal = prepare(blocks.read(start, end)[row], blocks.rate, "torque")
-            out[i] = [feature(signal) for feature in TORQUE_FEATURES]
+            out[i] = [feature(signal) for feature in features]
         except ParameterError:  # too short to be described
             continue
     return out

@@ -5,7 +5,7 @@ import pytest
 import soundfile
 from scipy.signal import resample_poly
 
-from features.window_table import WINDOW_FEATURES
+from features.table import WINDOW_FEATURES
 from features.windows.table import WINDOW_NAMES, window_count
 from models.blocks import RecordingBlocks
 from models.recording import Channel, Recording
