@@ -4,19 +4,15 @@ Quantities are in SI units; the keys of rig files, their units and bounds are de
 fields (`models.schema`).
 """
 
-import itertools
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
 from models.errors import ParameterError
 from models.schema import (
     Flag,
     Quantity,
-    ReadBy,
     Vector,
-    number,
     refuse_impossible,
 )
 from models.show import short_repr
@@ -84,26 +80,6 @@ class Beams:
     clamp_width: Annotated[float, Quantity("clamp_width_m", high=1.0)] = 0.04
 
 
-def _loss_factor(value: Any, key: str, where: str) -> Any:
-    """Read a loss factor, or a table of them by frequency in Hz."""
-    if not isinstance(value, Mapping):
-        return number({key: value}, key, where, high=1.0)
-    found = []
-    for frequency in value:
-        try:
-            hertz = number({frequency: float(frequency)}, frequency, where)
-        except ValueError:
-            raise ParameterError(
-                f"{where}: {key} has the entry {frequency!r}; entries are frequencies in Hz above 0"
-            ) from None
-        found.append((hertz, number(value, frequency, f"{where}, {key}", high=1.0)))
-    return tuple(sorted(found))
-
-
-def _written_losses(value: Any) -> Any:
-    return {f"{f:.6g}": loss for f, loss in value} if isinstance(value, tuple) else value
-
-
 @short_repr
 @dataclass(frozen=True)
 class Plate:
@@ -119,9 +95,8 @@ class Plate:
         [kg/m3]
     poisson_ratio : float
         [-]
-    loss_factor : float, or tuple of (float, float)
-        Of all modes; or by frequency [Hz], in rising order: a power law between the entries, held
-        outside them.
+    loss_factor : float
+        Of all modes [-].
     clamp_position : tuple of 2 floats
         Where the middle of the clamp stands over the plate, x and y [m]; the beams lie along x.
 
@@ -137,28 +112,11 @@ class Plate:
     youngs_modulus: Annotated[float, Quantity("youngs_modulus_Pa", unit="Pa")]
     density: Annotated[float, Quantity("density_kgm3", unit="kg/m3")]
     poisson_ratio: Annotated[float, Quantity("poisson_ratio", high=0.5)]
-    loss_factor: Annotated[
-        float | tuple[tuple[float, float], ...],
-        ReadBy("loss_factor", _loss_factor, _written_losses),
-    ]
+    loss_factor: Annotated[float, Quantity("loss_factor", high=1.0)]
     clamp_position: Annotated[tuple[float, float], Vector("clamp_position_m", 2)]
 
     def __post_init__(self) -> None:
         refuse_impossible(self, "plate")
-        table = self.loss_table
-        if not table or not all(0.0 < loss <= 1.0 for _, loss in table):
-            raise ParameterError(
-                f"plate: loss_factor = {self.loss_factor} must be above 0 and at most 1"
-            )
-        if any(b <= a for (a, _), (b, _) in itertools.pairwise(((0.0, 0.0), *table))):
-            raise ParameterError("plate: loss_factor must be given for rising frequencies")
-
-    @property
-    def loss_table(self) -> tuple[tuple[float, float], ...]:
-        """Loss factor by frequency [Hz]; a single entry holds for all."""
-        if isinstance(self.loss_factor, tuple):
-            return self.loss_factor
-        return ((1.0, self.loss_factor),)
 
     @property
     def mass_per_area(self) -> float:

@@ -197,15 +197,8 @@ def plate_modes(plate: Plate, highest_frequency: float) -> PlateModes:
         SineBasis(side, int(count.max(initial=1)))
         for side, count in zip(sides, (m, n), strict=True)
     )
-    return PlateModes(plate, frequencies, _damping_ratios(plate, frequencies), along, across, m, n)
-
-
-def _damping_ratios(plate: Plate, frequencies: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Half the loss factor, which between two entries of its table is a power of the frequency."""
-    if len(plate.loss_table) == 1:
-        return np.full(frequencies.size, plate.loss_table[0][1] / 2)
-    given, loss = np.log(plate.loss_table).T
-    return np.asarray(np.exp(np.interp(np.log(frequencies), given, loss)) / 2)
+    damping_ratios = np.full(frequencies.size, plate.loss_factor / 2)
+    return PlateModes(plate, frequencies, damping_ratios, along, across, m, n)
 
 
 def acceleration_model(

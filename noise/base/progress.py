@@ -14,7 +14,6 @@ from __future__ import annotations
 import os
 import re
 import sys
-import threading
 import time
 from collections.abc import Iterable, Iterator, Sized
 from contextlib import contextmanager
@@ -33,9 +32,6 @@ _LONG = 5.0
 """From which on work is told how long it will take [s]; a bar always tells it."""
 
 _Item = TypeVar("_Item")
-
-_TICK = 0.5
-"""After which a bar shows anew how long it has taken [s]."""
 
 
 def set_verbosity(*, quiet: bool = False, verbose: bool = False) -> None:
@@ -172,13 +168,7 @@ def track(
     from tqdm import tqdm
 
     # The bar goes away at the end: the line that says what came of the work follows.
-    with (
-        tqdm(
-            items, desc=doing, total=total, unit=f" {unit}", leave=False, file=sys.stderr
-        ) as advancing,
-        _ticking(advancing),
-    ):
-        yield from advancing
+    yield from tqdm(items, desc=doing, total=total, unit=f" {unit}", leave=False, file=sys.stderr)
 
 
 class Steps:
@@ -236,29 +226,8 @@ def steps(doing: str, number: int) -> Iterator[Steps]:
         return
     from tqdm import tqdm
 
-    with (
-        tqdm(desc=doing, total=number, unit=" step", leave=False, file=sys.stderr) as bar,
-        _ticking(bar),
-    ):
+    with tqdm(desc=doing, total=number, unit=" step", leave=False, file=sys.stderr) as bar:
         yield Steps(bar)
-
-
-@contextmanager
-def _ticking(bar: tqdm[object]) -> Iterator[None]:
-    """Let the time of a bar go on while one item takes long."""
-    ended = threading.Event()
-
-    def tick() -> None:
-        while not ended.wait(_TICK):
-            bar.refresh()
-
-    ticking = threading.Thread(target=tick, daemon=True)
-    ticking.start()
-    try:
-        yield
-    finally:
-        ended.set()
-        ticking.join()
 
 
 def _on_terminal() -> bool:
