@@ -4,20 +4,15 @@ import fcntl
 import io
 import os
 import pty
-import re
 import struct
 import sys
 import termios
 import threading
-import time
 from contextlib import suppress
 
 import pytest
 
 from noise.base.progress import say, steps
-
-PATIENCE = 30.0
-"""Nothing that a test waits for takes longer [s]."""
 
 
 class Terminal:
@@ -38,13 +33,6 @@ class Terminal:
         reading.join()
         os.close(ours)
         return self._shown.decode()
-
-    def until_times(self, number):
-        """Wait until it has shown so many different times that something takes."""
-        end = time.monotonic() + PATIENCE
-        while len(set(re.findall(rb"\[(\d\d:\d\d)<", self._shown))) < number:
-            assert time.monotonic() < end
-            time.sleep(0.05)
 
     def _read(self, ours):
         with suppress(OSError):  # so it ends on Linux
@@ -76,15 +64,6 @@ def test_a_terminal_shows_how_many_steps_are_done_and_left_and_keeps_the_lines(t
         assert f"{done}/3 " in shown
     assert "screening" in shown
     assert "grading goes well\r\n" in shown
-
-
-def test_the_bar_of_a_long_step_goes_on_showing_how_long_it_takes(terminal):
-    def long():
-        with steps("screening", 2) as tell:
-            tell("mapping")
-            terminal.until_times(3)
-
-    terminal.shows(long)
 
 
 def test_an_error_ends_the_bar(terminal):
