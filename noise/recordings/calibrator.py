@@ -1,11 +1,11 @@
 """A sound calibrator's recorded tone: what a full-scale sample is worth in pascals.
 
 Calibrators sound at 250 Hz or 1 kHz with a stated level, most often 94 or 114 dB re 20 uPa
-(IEC 60942). The tone is fitted in blocks of a tenth of a second together with its harmonics; what
-is not one stable tone is refused, with the reason: a frequency of no calibrator, a level that
-drifts (a microphone not yet seated, or taken out), distortion beyond what the standard allows a
-calibrator of class 2, tops cut off, other sound within 20 dB of the tone. The level is that of the
-fundamental alone, so that rumble and hiss do not count.
+(IEC 60942). The tone is fitted in blocks of a tenth of a second; what is not one stable tone is
+refused, with the reason: a frequency of no calibrator, a level that drifts (a microphone not yet
+seated, or taken out), or anything beside the tone beyond the distortion that the standard allows a
+calibrator of class 2. The level is that of the fundamental alone, so that rumble and hiss do not
+count.
 """
 
 from __future__ import annotations
@@ -37,22 +37,12 @@ _BLOCK = 0.1
 _DRIFT = 0.3
 """Between the loudest and the quietest block [dB]."""
 
-_DISTORTION = 0.04
-"""Of the harmonics over the fundamental (IEC 60942, class 2)."""
-
-_HARMONICS = 9
-
-_OTHER = 0.1
-"""Rms of what is neither tone nor harmonic, over that of the tone."""
-
-_TOP = 2e-3
-"""Of the peak, in which samples count as being at the top."""
+_BESIDE = 0.04
+"""Rms of what is not the tone, over that of the tone (IEC 60942, class 2): harmonics of overload or
+of tops cut off, other sound."""
 
 _STEP = 2.0**-15
 """Of integer samples, over full scale; finer ones have no need of it."""
-
-_CROWDED = 2.5
-"""Times the samples of a sine that lie at its top, beyond which it is cut off."""
 
 
 @dataclass(frozen=True)
@@ -135,9 +125,12 @@ def _tone(samples: NDArray[np.float64], rate: float, *, fractional: bool) -> tup
         )
     if fractional and float(np.abs(samples).max()) >= 1.0 - _STEP:
         raise ParameterError("it reaches full scale, where it is cut off; turn the gain down")
-    _refuse_clipped(x, frequency, rate, _STEP if fractional else 0.0)
-    amplitudes, rest = _harmonics(x / peak, frequency, rate)
-    tone = amplitudes[:, 0]
+    n = round(_BLOCK * rate)
+    blocks = x[: x.size // n * n].reshape(-1, n).T
+    phase = 2.0 * np.pi * frequency / rate * np.arange(n)
+    basis = np.column_stack([np.cos(phase), np.sin(phase), np.ones(n)])
+    found = np.linalg.lstsq(basis, blocks, rcond=None)[0]
+    tone = np.hypot(found[0], found[1])
     if not tone.min() > 0.0:
         raise ParameterError("its tone is not there all the time")
     levels = 20.0 * np.log10(tone)
@@ -148,20 +141,14 @@ def _tone(samples: NDArray[np.float64], rate: float, *, fractional: bool) -> tup
             f"its level changes by {drift:.2g} dB between {low:.3g} and {high:.3g} s, and may by "
             f"{_DRIFT:g}; cut it to where it is steady"
         )
-    power = float(np.mean(tone**2))
-    distortion = math.sqrt(float(np.mean(np.sum(amplitudes[:, 1:] ** 2, axis=1))) / power)
-    if distortion > _DISTORTION:
+    amplitude = math.sqrt(float(np.mean(tone**2)))
+    beside = math.sqrt(2.0 * float(np.mean((blocks - basis @ found) ** 2))) / amplitude
+    if beside > _BESIDE:
         raise ParameterError(
-            f"its harmonics are {distortion:.1%} of the tone, and may be {_DISTORTION:.0%}; it is "
-            "overloaded or badly seated"
+            f"what is not the tone is {beside:.1%} of it, and may be {_BESIDE:.0%}: it is "
+            "overloaded, badly seated, its tops are cut off, or there is other sound"
         )
-    other = rest / math.sqrt(0.5 * power)
-    if other > _OTHER:
-        raise ParameterError(
-            f"other sound lies only {-20.0 * math.log10(other):.0f} dB below the tone; "
-            f"{-20.0 * math.log10(_OTHER):.0f} dB at least"
-        )
-    return frequency, peak * math.sqrt(power)
+    return frequency, amplitude
 
 
 def _strongest(x: NDArray[np.float64], rate: float) -> float:
@@ -171,30 +158,3 @@ def _strongest(x: NDArray[np.float64], rate: float) -> float:
     left, middle, right = np.log(spectrum[k - 1 : k + 2] + 1e-300)
     shift = 0.5 * (left - right) / (left - 2.0 * middle + right) if middle > left else 0.0
     return float((k + shift) * rate / x.size)
-
-
-def _harmonics(
-    x: NDArray[np.float64], frequency: float, rate: float
-) -> tuple[NDArray[np.float64], float]:
-    """Amplitudes of tone and harmonics by block, and the rms of the rest."""
-    n = round(_BLOCK * rate)
-    blocks = x[: x.size // n * n].reshape(-1, n)
-    orders = [k for k in range(1, _HARMONICS + 2) if k * frequency < 0.45 * rate]
-    phase = 2.0 * np.pi * frequency / rate * np.outer(np.arange(n), orders)
-    basis = np.hstack([np.cos(phase), np.sin(phase), np.ones((n, 1))])
-    found = np.linalg.lstsq(basis, blocks.T, rcond=None)[0]
-    rest = blocks.T - basis @ found
-    m = len(orders)
-    return np.hypot(found[:m], found[m : 2 * m]).T, float(np.sqrt(np.mean(rest**2)))
-
-
-def _refuse_clipped(x: NDArray[np.float64], frequency: float, rate: float, step: float) -> None:
-    """Refuse a tone whose tops are cut off: more samples lie there than of a sine."""
-    for side in (x, -x):
-        peak = float(side.max())
-        top = max(_TOP, 1.5 * step / peak)
-        usual = math.acos(max(-1.0, 1.0 - top)) / math.pi
-        # Sampled a whole number of times a period, the same places are met in each.
-        most = _CROWDED * usual + 2.0 * frequency / rate
-        if float(np.mean(side >= (1.0 - top) * peak)) > most:
-            raise ParameterError("its tops are cut off; turn the gain down")

@@ -196,7 +196,7 @@ class Sidecar:
 
 def _read(kind: type[_Kind], table: Mapping[str, Any], where: str) -> _Kind:
     """Read what is declared, and stated, of a table in which other keys may stand."""
-    keys = {entry.key for entry in declared(kind).values()}
+    keys = {entry.key for entry in declared(kind).values()}  # type: ignore[arg-type]
     stated = {key: each for key, each in table.items() if key in keys and each is not None}
     return read_table(kind, stated, where)
 
