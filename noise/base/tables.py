@@ -41,18 +41,6 @@ _LONGEST_LINE = 1 << 20
 """Characters of a line of JSON that are looked at for the columns."""
 
 
-def table_endings(*more: str) -> str:
-    """Return the endings of tables in words, with those that something else has as well.
-
-    Examples
-    --------
-    >>> table_endings()
-    '.csv, .xlsx, .jsonl or .parquet'
-    """
-    *first, last = (*TABLE_ENDINGS, *more)
-    return f"{', '.join(first)} or {last}"
-
-
 def check_table_path(path: str | Path | None, columns: Collection[str] = (_OF_LABELS,)) -> None:
     """Refuse a path that no table can be written to, before the work is done.
 
@@ -95,7 +83,7 @@ def check_table_path(path: str | Path | None, columns: Collection[str] = (_OF_LA
 def _check_format(path: Path) -> None:
     ending = path.suffix.lower()
     if ending not in TABLE_ENDINGS:
-        raise ParameterError(f"{path}: tables end in {table_endings()}")
+        raise ParameterError(f"{path}: tables end in .csv, .xlsx, .jsonl or .parquet")
     if path.is_dir():
         raise ParameterError(f"{path}: is a folder; name a file to write")
     if ending in _LIBRARIES:

@@ -6,12 +6,10 @@ where the last one ended, however it ended; without, there is nowhere to keep it
 
 from __future__ import annotations
 
-import signal
 import sys
-import threading
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager, nullcontext
+from contextlib import closing, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -96,7 +94,7 @@ def run_batch(
     work.prepare()
     outcomes: dict[int, Done] = {}
     stopped = 0
-    with open_journal(out, work, fresh=options.fresh) as journal, _termination_as_interrupt():
+    with open_journal(out, work, fresh=options.fresh) as journal:
         try:
             for job, done in _progress(options, work, jobs, journal):
                 if done.error is not None:
@@ -104,17 +102,13 @@ def run_batch(
                     outcomes[job.index] = done
                 else:  # rows are in the journal, of which there may be many
                     outcomes[job.index] = done._replace(rows=[])
-        except KeyboardInterrupt as interrupt:
-            stopped = getattr(interrupt, "code", _INTERRUPTED)
+        except KeyboardInterrupt:
+            stopped = _INTERRUPTED
         _note_uncalibrated(outcomes.values())
         refused = {index: done for index, done in outcomes.items() if done.error is not None}
         there = [job for job in jobs if job.index in outcomes]
         made = BatchRows(work.columns, journal, there, refused)
-        try:
-            rows, written = _write(options, work, made, also, keep, table=not to_read)
-        except KeyboardInterrupt as interrupt:
-            stopped = getattr(interrupt, "code", _INTERRUPTED)
-            rows, written = _write(options, work, made, also, keep, table=not to_read)
+        rows, written = _write(options, work, made, also, keep, table=not to_read)
         journal.note_table()
     read = f"{len(outcomes)} of " * bool(stopped) + counted(len(jobs), "recording")
     say(f"{'interrupted: ' * bool(stopped)}{read}, {len(refused)} refused")
@@ -181,27 +175,6 @@ def _note_uncalibrated(outcomes: Iterable[Done]) -> None:
             f"{counted(number, 'recording')} without calibration: levels in dBFS only "
             "(--full-scale gives one)"
         )
-
-
-class _Terminated(KeyboardInterrupt):
-    """Told to end, as a batch system or a shutdown does: the same as Ctrl-C."""
-
-    code = 143  # 128 + SIGTERM
-
-
-@contextmanager
-def _termination_as_interrupt() -> Iterator[None]:
-    def end(*_: object) -> None:
-        raise _Terminated
-
-    if threading.current_thread() is not threading.main_thread():  # signals are not for us
-        yield
-        return
-    before = signal.signal(signal.SIGTERM, end)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 _LONGEST = 600.0

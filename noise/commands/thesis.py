@@ -5,10 +5,9 @@ from __future__ import annotations
 from argparse import Namespace
 from pathlib import Path
 
-from models.errors import ParameterError
 from noise.base.files import atomic, check_target
 from noise.base.progress import report, say, track
-from noise.base.tables import TABLE_ENDINGS, check_table_path, table_endings, write_table
+from noise.base.tables import check_table_path, write_table
 from noise.commands.options import SEED, Option, check_folder
 
 _PAGE_ENDING = ".md"
@@ -70,11 +69,6 @@ def _check(out: Path | None, *, is_page: bool) -> None:
     """Refuse a file that the table cannot be written to."""
     if out is None:
         return
-    if is_page:
-        if out.is_dir():
-            raise ParameterError(f"{out}: is a folder; name a file to write")
-    elif out.suffix.lower() not in TABLE_ENDINGS:
-        raise ParameterError(f"{out}: this table ends in {table_endings(_PAGE_ENDING)}")
-    else:
+    if not is_page:
         check_table_path(out)
     check_target(out)

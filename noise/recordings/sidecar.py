@@ -341,7 +341,8 @@ def sidecar_text(recording: Recording, checksum: str = "") -> str:
         SidecarChannel(one.name, one.unit, None, one.position, one.direction)
         for one in recording.channels
     )
-    conditions = table_of(recording.condition)
+    # A condition of which more is known declares less.
+    conditions = table_of(Condition(**vars(recording.condition)))
     if _SUPPORT in conditions and recording.condition.support_stiffness == FIXED:
         conditions[_SUPPORT] = None
     content: dict[str, object] = {

@@ -11,7 +11,7 @@ import pytest
 import soundfile
 from hypothesis import given, settings, strategies as st
 
-from models.condition import FIXED, Condition
+from models.condition import FIXED, Condition, KnownCondition
 from models.errors import RecordingError
 from models.recording import Channel, Recording
 from models.units import CHANNEL_UNITS
@@ -199,6 +199,13 @@ def test_what_is_written_is_read_back(names, condition, position):
     assert fit == (condition.interference and pytest.approx(condition.interference, rel=1e-11))
     for key in ("speed", "support_stiffness", "material", "temperature"):
         assert getattr(found.condition, key) == getattr(condition, key)
+
+
+def test_a_condition_that_is_known_is_written_as_any_other():
+    condition = KnownCondition(5.0, 0.279e-3, 2214.0, "PDMS", 23.0)
+    recording = Recording(np.zeros((1, 16)), 30e3, (Channel("pressure"),), condition)
+    found = parse_sidecar(sidecar_text(recording)).condition
+    assert [*vars(found).values()] == [5.0, pytest.approx(0.279e-3), 2214.0, "PDMS", 23.0]
 
 
 json_values = st.recursive(
