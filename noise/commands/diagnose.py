@@ -48,7 +48,7 @@ def run(options: Namespace) -> int:
     if options.out is None:
         import json
 
-        from noise.diagnosis.outcome_json import as_json
+        from noise.diagnosis.outcome import as_json
 
         print(json.dumps(as_json(diagnosis), indent=2))
     else:

@@ -22,7 +22,7 @@ from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.recording import Recording
 from models.rig import Rig
 from noise.diagnosis.bench.channels import length_unit, misplaced_torque
-from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
+from noise.diagnosis.bench.check import clipped_channels, without_dead_channels
 from noise.diagnosis.preparation.prepare import measured_speed, prepared
 from noise.diagnosis.preparation.settled_part import shortest
 from noise.recordings import find_recordings, read_recording

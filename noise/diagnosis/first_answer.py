@@ -10,7 +10,7 @@ its errors look like those of a sensor's gain or of the plate.
 
 Channels whose peaks are flat, as an overload leaves them and as no vibration has them.
 
-A range that is reached in all recordings is told by `noise.diagnosis.bench.faults`; an amplifier
+A range that is reached in all recordings is told by `noise.diagnosis.bench.check`; an amplifier
 that overloads before the anti-alias filter leaves no single largest value, but samples that pile up
 at the ends of the signal. Whatever swings smoothly passes its peak as a parabola does: within a
 small distance w of the end it is 1 / (sqrt(2) - 1) = 2.4 times as long as between w and 2 w, and
@@ -25,11 +25,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.rig import Rig
 from models.sensors import Sensors
 from models.units import CHANNEL_UNITS
+from noise.base.arrays import Array
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, as_seldom, null_log_odds
 from noise.diagnosis.causes.verdict import (
     UNUSUAL,
@@ -52,7 +52,6 @@ from sim.rig_effects import constant_version
 
 if TYPE_CHECKING:
     from models.recording import Recording
-    from models.rig import Rig
     from noise.diagnosis.case import Case
 
 _KINDS = ("torque", "acceleration", "pressure")
@@ -129,7 +128,7 @@ def _flatness(recordings: Sequence[Recording], kind: str) -> float:
     return float(max(middle.min(axis=0).max() / _BOTH, middle.max() / _ONE))
 
 
-def pile_ups(signal: NDArray[np.float64]) -> NDArray[np.float64]:
+def pile_ups(signal: Array) -> Array:
     """How many times as many samples lie at either end of a signal as just below it.
 
     Parameters

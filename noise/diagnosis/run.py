@@ -11,8 +11,7 @@ from models.rig_file import load_rig
 from noise.base.user_effects import effect_library
 from noise.diagnosis.case import read_case
 from noise.diagnosis.diagnose import diagnose_case
-from noise.diagnosis.outcome import Diagnosis
-from noise.diagnosis.outcome_json import as_json
+from noise.diagnosis.outcome import Diagnosis, as_json
 
 
 def diagnose(

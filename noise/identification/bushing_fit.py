@@ -26,6 +26,7 @@ from scipy.ndimage import binary_erosion, uniform_filter1d
 from scipy.optimize import least_squares
 
 from models.show import short_repr
+from noise.base.arrays import Array
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 from sim.bushing import LumpedBushing
 
@@ -56,8 +57,8 @@ class Contact:
         [rad/s]
     """
 
-    torque: NDArray[np.float64]
-    sliding_speed: NDArray[np.float64]
+    torque: Array
+    sliding_speed: Array
 
 
 @short_repr
@@ -90,8 +91,8 @@ class TorqueSpectrum:
     n: int
     kept: slice
     mean: float
-    torque: NDArray[np.float64]
-    shaft_speed: NDArray[np.float64]
+    torque: Array
+    shaft_speed: Array
     rate: float
 
     def contact(self, bushing: LumpedBushing) -> Contact:
@@ -104,7 +105,7 @@ class TorqueSpectrum:
             self.shaft_speed - self._in_time(turning),
         )
 
-    def states(self, bushing: LumpedBushing) -> NDArray[np.float64]:
+    def states(self, bushing: LumpedBushing) -> Array:
         """Rebuild the motion for a guess of the bushing.
 
         Returns
@@ -135,7 +136,7 @@ class TorqueSpectrum:
         )
         return twist, clamp
 
-    def _in_time(self, spectrum: NDArray[np.complex128]) -> NDArray[np.float64]:
+    def _in_time(self, spectrum: NDArray[np.complex128]) -> Array:
         return np.asarray(irfft(spectrum, self.n)[self.kept])
 
 
@@ -171,9 +172,7 @@ def torque_spectrum(measured: Measured, seconds: float | None = None) -> TorqueS
     )  # fmt: skip
 
 
-def _above_noise(
-    lines: NDArray[np.complex128], frequency: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _above_noise(lines: NDArray[np.complex128], frequency: Array) -> Array:
     """Share of each line that is no noise of the cell (Wiener 1949), which is taken for white.
 
     What differentiation would make of it looks like sliding where the contact sticks.
@@ -283,7 +282,7 @@ class BushingFit:
         return self.bushing.elastomer_damping + self.bushing.support_damping
 
 
-def phases_of(contact: Contact, shaft_speed: NDArray[np.float64], rate: float) -> Phases:
+def phases_of(contact: Contact, shaft_speed: Array, rate: float) -> Phases:
     """Tell stick from slip by the sliding speed.
 
     Parameters
@@ -333,7 +332,7 @@ def fit_bushing(measured: Measured, known: Known) -> BushingFit:
     )  # fmt: skip
 
 
-def _bushing(values: NDArray[np.float64], support: float, known: Known) -> LumpedBushing:
+def _bushing(values: Array, support: float, known: Known) -> LumpedBushing:
     stiffness, damping, elastomer, clamp = np.exp(values).tolist()
     share = known.damping_share
     return LumpedBushing(
@@ -351,7 +350,7 @@ def _static_stiffness(spectrum: TorqueSpectrum, support: float, step: int) -> fl
     return 1.0 / max(flexible, 0.2 / k_eff)
 
 
-def _start(measured: Measured, known: Known) -> NDArray[np.float64]:
+def _start(measured: Measured, known: Known) -> Array:
     """Try stiffness and damping, and inertias where they are not known, on a coarse grid."""
     support = measured.condition.support_stiffness
     spectrum = torque_spectrum(measured, _EXCERPT)
@@ -374,9 +373,7 @@ def _start(measured: Measured, known: Known) -> NDArray[np.float64]:
     ])  # fmt: skip
 
 
-def _likeliest(
-    spectrum: TorqueSpectrum, support: float, known: Known, tried: list[NDArray[np.float64]]
-) -> NDArray[np.float64]:
+def _likeliest(spectrum: TorqueSpectrum, support: float, known: Known, tried: list[Array]) -> Array:
     costs = [_implausibility(spectrum, _bushing(values, support, known)) for values in tried]
     return tried[int(np.argmin(costs))]
 
@@ -394,8 +391,8 @@ def _thin(mask: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def _refined(
-    spectrum: TorqueSpectrum, support: float, known: Known, start: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    spectrum: TorqueSpectrum, support: float, known: Known, start: Array
+) -> tuple[Array, Array]:
     """One round of least squares with phases as the start has them."""
     contact = spectrum.contact(_bushing(start, support, known))
     phases = phases_of(contact, spectrum.shaft_speed, spectrum.rate)
@@ -404,7 +401,7 @@ def _refined(
     prior[:2] = start[0], math.log(0.09)
     width = np.array([0.5, 1.0, known.inertia_error, known.inertia_error])
 
-    def parts(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def parts(values: Array) -> tuple[Array, Array]:
         found = spectrum.contact(_bushing(values, support, known))
         in_stick = found.sliding_speed[stuck] if stuck.size > _LEAST else np.zeros(0)
         in_slip = np.zeros(0)
@@ -416,7 +413,7 @@ def _refined(
             in_slip = torque - torque.mean() - x * float(x @ torque) / spread
         return in_stick, in_slip
 
-    def sigma(rest: NDArray[np.float64], least: float) -> float:
+    def sigma(rest: Array, least: float) -> float:
         return max(1.4826 * float(np.median(np.abs(rest))), least) if rest.size else 1.0
 
     first, second = parts(start)
@@ -425,10 +422,10 @@ def _refined(
     # neighbouring samples say the same: so many a millisecond count
     count = 1e-3 * spectrum.rate
 
-    def weight(rest: NDArray[np.float64], mask: NDArray[np.bool_]) -> float:
+    def weight(rest: Array, mask: NDArray[np.bool_]) -> float:
         return math.sqrt(mask.sum() / count / rest.size) if rest.size else 0.0
 
-    def residuals(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def residuals(values: Array) -> Array:
         in_stick, in_slip = parts(values)
         return np.concatenate([
             _bent(in_stick / scale_v) * weight(in_stick, phases.stuck),
@@ -441,7 +438,7 @@ def _refined(
     return np.clip(fit.x, start - 0.7, start + 0.7), np.sqrt(np.diag(covariance))
 
 
-def _bent(x: NDArray[np.float64]) -> NDArray[np.float64]:
+def _bent(x: Array) -> Array:
     """Residuals whose squares are Huber's."""
     size = np.abs(x)
     large = np.sign(x) * np.sqrt(_BEND * np.maximum(2.0 * size - _BEND, 0.0))

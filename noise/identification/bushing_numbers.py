@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from noise.base import SURE_90
+from noise.base.arrays import Array
 from noise.identification.bushing_fit import phases_of
 from noise.identification.law_model import LOCAL, fitted_evidence
 from noise.identification.outcome import Forecast, Number, Seen, values_of
@@ -86,7 +87,7 @@ def torque_levels(fit: BushingFit) -> Levels:
     )  # fmt: skip
 
 
-def _slips(v: NDArray[np.float64], shaft_speed: NDArray[np.float64]) -> NDArray[np.int64]:
+def _slips(v: Array, shaft_speed: Array) -> NDArray[np.int64]:
     """Find the samples at which the contact begins to slide, having been slow before."""
     state = np.where(v > shaft_speed, 1, np.where(v < _SLOW * shaft_speed, -1, 0))
     told = np.flatnonzero(state)

@@ -180,8 +180,7 @@ def identify_rig(
 
 
 def identify(
-    data: str | Path | Sequence[str | Path],
-    rig: str | Path | None = None,
+    data: str | Path | Sequence[str | Path], rig: str | Path | None = None
 ) -> Identification:
     """Identify a rig from recordings.
 

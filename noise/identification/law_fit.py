@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from noise.base.arrays import Array
 from noise.identification.law_model import (
     CANDIDATES,
     LOCAL,
@@ -64,7 +65,7 @@ class Misfit:
         Factor on what recordings may differ by [-].
     """
 
-    def __init__(self, model: LawModel, start: NDArray[np.float64], *, loose: float = 1.0) -> None:
+    def __init__(self, model: LawModel, start: Array, *, loose: float = 1.0) -> None:
         self._model = model
         self._low, self._high = model.limits(start)
         self._matrix, self._target = priors(model, loose)
@@ -73,7 +74,7 @@ class Misfit:
             for one in model.subjects
         ]
 
-    def within(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def within(self, x: Array) -> Array:
         """Return a vector within its limits.
 
         Parameters
@@ -88,7 +89,7 @@ class Misfit:
         """
         return np.clip(x, self._low, self._high)
 
-    def away(self, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    def away(self, x: Array) -> list[Array]:
         """Tell how far each recording is from what a vector foretells.
 
         Parameters
@@ -111,7 +112,7 @@ class Misfit:
             found.append(np.clip(away, -_HOPELESS, _HOPELESS).ravel())
         return found
 
-    def by_recording(self, away: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    def by_recording(self, away: list[Array]) -> Array:
         """Mean size of each recording's deviations, large ones cut.
 
         Parameters
@@ -126,7 +127,7 @@ class Misfit:
         """
         return np.array([np.mean(np.minimum(np.abs(one), _FAR)) for one in away])
 
-    def missed(self, away: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    def missed(self, away: list[Array]) -> Array:
         """Share of each recording's oscillation that is not foretold.
 
         Parameters
@@ -146,7 +147,7 @@ class Misfit:
             shares.append(np.sqrt(np.median(error.mean(axis=1)) / e.torque.var(axis=1).mean()))
         return np.array(shares)
 
-    def usual(self, away: list[NDArray[np.float64]]) -> float:
+    def usual(self, away: list[Array]) -> float:
         """Return the usual size of deviations, 1 where the model is good.
 
         Parameters
@@ -156,7 +157,7 @@ class Misfit:
         """
         return max(1.0, 1.4826 * float(np.median(np.abs(np.concatenate(away)))))
 
-    def cost(self, x: NDArray[np.float64], away: list[NDArray[np.float64]], usual: float) -> float:
+    def cost(self, x: Array, away: list[Array], usual: float) -> float:
         """Sum of squares, of Huber's kind.
 
         Parameters
@@ -174,12 +175,8 @@ class Misfit:
         return float(bent @ np.concatenate(self._weights) ** 2 + prior @ prior)
 
     def curvature(
-        self,
-        x: NDArray[np.float64],
-        away: list[NDArray[np.float64]],
-        usual: float,
-        free: NDArray[np.bool_],
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        self, x: Array, away: list[Array], usual: float, free: NDArray[np.bool_]
+    ) -> tuple[Array, Array]:
         """Return curvature and slope of the cost.
 
         Parameters
@@ -211,9 +208,7 @@ class Misfit:
             slope += weighted.T @ deviations
         return normal, slope
 
-    def _slopes(
-        self, x: NDArray[np.float64], away: list[NDArray[np.float64]], free: NDArray[np.bool_]
-    ) -> list[NDArray[np.float64]]:
+    def _slopes(self, x: Array, away: list[Array], free: NDArray[np.bool_]) -> list[Array]:
         """Slopes of each recording's deviations: a number of its own is moved in all at once."""
         model = self._model
         slopes = [np.zeros((one.size, x.size)) for one in away]
@@ -242,7 +237,7 @@ _SHARED = (1.0, 0.45)
 """And on the elastomer's share of it, where that is not known [-]; assumed."""
 
 
-def starts(model: LawModel) -> Iterator[tuple[NDArray[np.float64], list[NDArray[np.float64]]]]:
+def starts(model: LawModel) -> Iterator[tuple[Array, list[Array]]]:
     """Give places to begin at.
 
     Parameters
@@ -273,9 +268,7 @@ def starts(model: LawModel) -> Iterator[tuple[NDArray[np.float64], list[NDArray[
         )
 
 
-def _begun(
-    candidate: Candidate, local: NDArray[np.float64], chosen: tuple[float, ...]
-) -> NDArray[np.float64]:
+def _begun(candidate: Candidate, local: Array, chosen: tuple[float, ...]) -> Array:
     """Let a torque that fades with speed take the place of the step between two torques."""
     if "share" not in candidate.free:
         return local
@@ -323,7 +316,7 @@ class Sketch:
     """
 
     model: LawModel
-    vectors: tuple[NDArray[np.float64], ...]
+    vectors: tuple[Array, ...]
     away: float
 
 
@@ -343,9 +336,9 @@ class LawFit:
     """
 
     model: LawModel
-    vector: NDArray[np.float64]
-    missed: NDArray[np.float64]
-    covariance: NDArray[np.float64]
+    vector: Array
+    missed: Array
+    covariance: Array
 
 
 def sketch_law(model: LawModel, earlier: Sequence[Sketch] = ()) -> Sketch:
@@ -411,7 +404,7 @@ def fit_law(sketch: Sketch, *, hopeless: bool = False) -> LawFit:
     return LawFit(sketch.model, vector, missed, _inverse(normal))
 
 
-def fit_some(model: LawModel, vector: NDArray[np.float64], free: NDArray[np.bool_]) -> LawFit:
+def fit_some(model: LawModel, vector: Array, free: NDArray[np.bool_]) -> LawFit:
     """Fit some numbers of a law, the others being known.
 
     Parameters
@@ -432,8 +425,8 @@ def fit_some(model: LawModel, vector: NDArray[np.float64], free: NDArray[np.bool
 
 
 def _searched(
-    misfit: Misfit, x: NDArray[np.float64], iterations: int, free: NDArray[np.bool_] | None = None
-) -> tuple[NDArray[np.float64], list[NDArray[np.float64]], NDArray[np.float64]]:
+    misfit: Misfit, x: Array, iterations: int, free: NDArray[np.bool_] | None = None
+) -> tuple[Array, list[Array], Array]:
     """Return the vector found, deviations there, and the curvature of the misfit."""
     free = np.ones(x.size, dtype=bool) if free is None else free
     away = misfit.away(x)
@@ -461,7 +454,7 @@ def _searched(
     return x, away, normal
 
 
-def _inverse(normal: NDArray[np.float64]) -> NDArray[np.float64]:
+def _inverse(normal: Array) -> Array:
     return np.asarray(np.linalg.pinv(normal), dtype=np.float64)
 
 
@@ -573,7 +566,7 @@ def choose_law(
     return Choice(fit, tuple(scores), tuple(recordings[i].name for i in held))
 
 
-def _mean(shares: NDArray[np.float64]) -> float:
+def _mean(shares: Array) -> float:
     return float(np.exp(np.mean(np.log(shares))))
 
 

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.rig import Fit, LawSpec, Rig
+from noise.base.arrays import Array
 from sim.bushing import LumpedBushing
 from sim.contact import CRITICAL, KINETIC, N_CONTACT, address_of, call_law_at
 from sim.effects import EFFECTS
@@ -95,7 +96,7 @@ def fitted_evidence(model: LawModel) -> dict[Evidence, int]:
     return found
 
 
-def priors(model: LawModel, loose: float = 1.0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def priors(model: LawModel, loose: float = 1.0) -> tuple[Array, Array]:
     """Return what is known of a vector x: matrix @ x - target is away by one each.
 
     Parameters
@@ -204,7 +205,7 @@ class Friction:
     """A law of friction ready to be solved."""
 
     law: FrictionLaw
-    coefficients: NDArray[np.float64]
+    coefficients: Array
     hooks: tuple[Hook, ...]
 
 
@@ -241,7 +242,7 @@ def _driven(law, speed, step, substeps, c, contact, state) -> None:  # type: ign
 
 def foretold(
     excerpts: Excerpts, bushing: LumpedBushing, friction: Friction, critical: float, kinetic: float
-) -> NDArray[np.float64]:
+) -> Array:
     """Foretell the torque of the cell in each excerpt.
 
     Parameters
@@ -290,7 +291,7 @@ def foretold(
 def _begun(
     excerpts: Excerpts, stiffness: float, damping: float, support: float, support_damping: float,
     clamp_inertia: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
+) -> tuple[Array, Array, Array]:  # fmt: skip
     """Motion where each excerpt begins, sliding speed before it, and the shaft's speed in it.
 
     Kept, since a search moves the bushing less often than the rest.
@@ -365,15 +366,15 @@ class LawModel:
         """Numbers that any law has."""
         return self.n_local + len(self.groups)
 
-    def local(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def local(self, x: Array) -> Array:
         """Numbers of the recordings' own, shape (n_recordings, 7), of a vector of shape (n,)."""
         return x[: self.n_local].reshape(-1, len(LOCAL))
 
-    def means(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def means(self, x: Array) -> Array:
         """Means of the groups, shape (n_groups,), of a vector of shape (n,)."""
         return x[self.n_local : self.n_common]
 
-    def vector(self, local: NDArray[np.float64], law: NDArray[np.float64]) -> NDArray[np.float64]:
+    def vector(self, local: Array, law: Array) -> Array:
         """Put a vector together, each group with the median of its recordings.
 
         Parameters
@@ -392,7 +393,7 @@ class LawModel:
         means = [np.median(flat[group == g]) for g in range(len(self.groups))]
         return np.concatenate([flat, means, law])
 
-    def law_like(self, other: LawModel, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def law_like(self, other: LawModel, x: Array) -> Array:
         """Take the law's own parameters from another law's vector, as far as both have them.
 
         Parameters
@@ -412,7 +413,7 @@ class LawModel:
             for name, (low, high, some) in self.candidate.free.items()
         ])  # fmt: skip
 
-    def limits(self, start: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def limits(self, start: Array) -> tuple[Array, Array]:
         """Return the lowest and highest vectors, shape (n,)."""
         low = np.log([low for low, _, _ in self.candidate.free.values()])
         high = np.log([high for _, high, _ in self.candidate.free.values()])
@@ -423,7 +424,7 @@ class LawModel:
         ])  # fmt: skip
         return np.concatenate([common - width, low]), np.concatenate([common + width, high])
 
-    def specs(self, x: NDArray[np.float64]) -> tuple[LawSpec, tuple[LawSpec, ...]]:
+    def specs(self, x: Array) -> tuple[LawSpec, tuple[LawSpec, ...]]:
         """Return law and effects at a vector, shape (n,)."""
         own = np.exp(x[self.n_common :]).tolist()
         values = {**self.candidate.fixed, **dict(zip(self.candidate.free, own, strict=True))}
@@ -431,7 +432,7 @@ class LawModel:
             return LawSpec(self.candidate.law, values), ()
         return LawSpec(self.candidate.law), (LawSpec(self.candidate.effect, values),)
 
-    def foretell(self, x: NDArray[np.float64]) -> list[NDArray[np.float64] | None]:
+    def foretell(self, x: Array) -> list[Array | None]:
         """Foretell the excerpts of each recording at a vector, shape (n,).
 
         Returns
@@ -440,7 +441,7 @@ class LawModel:
             Torque of the cell [Nm]; None where it cannot be solved.
         """
         friction = friction_of(*self.specs(x))
-        found: list[NDArray[np.float64] | None] = []
+        found: list[Array | None] = []
         for one, own in zip(self.subjects, np.exp(self.local(x)).tolist(), strict=True):
             _, kinetic, drop, *_ = own
             critical = kinetic + max(drop, _LEAST_DROP * kinetic)
@@ -460,9 +461,7 @@ class LawModel:
             inertia, clamp, stiffness, one.support, share * damping, (1.0 - share) * damping
         )
 
-    def extended(
-        self, part: LawModel, x: NDArray[np.float64], places: Sequence[int]
-    ) -> NDArray[np.float64]:
+    def extended(self, part: LawModel, x: Array, places: Sequence[int]) -> Array:
         """Take over the vector of a model of some recordings, at these places among all.
 
         The others begin at the means, or where they are by themselves if there is none.
@@ -488,7 +487,7 @@ class LawModel:
         local[list(places)] = part.local(x)
         return np.concatenate([local.ravel(), means, x[part.n_common :]])
 
-    def rig(self, x: NDArray[np.float64], base: Rig, material: str) -> Rig:
+    def rig(self, x: Array, base: Rig, material: str) -> Rig:
         """Return the rig at a vector, shape (n,); damping where nothing slid is the support's."""
         values = dict(zip(self.groups, np.exp(self.means(x)).tolist(), strict=True))
         cells = {

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 
 from models.calibration import Calibration
@@ -22,7 +21,8 @@ from models.recording import Recording
 from models.rig import Rig
 from models.rig_file import read_toml, rig_from, shipped_name
 from models.show import short_repr
-from noise.diagnosis.bench.faults import speed_words
+from noise.base.arrays import Array
+from noise.diagnosis.bench.check import speed_words
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 from noise.identification.bushing_fit import Known
 from noise.identification.static_test import StaticTest, static_test
@@ -157,8 +157,8 @@ class Measured:
 
     name: str
     recording: Recording
-    torque: NDArray[np.float64]
-    shaft_speed: NDArray[np.float64]
+    torque: Array
+    shaft_speed: Array
     logged_speed: float | None = None
 
     @property
@@ -315,7 +315,7 @@ def measured(recording: Recording, name: str) -> Measured:
     return Measured(name, replace(recording, condition=known), torque, speed, c.speed)
 
 
-def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+def shaft_speed(angle: Array, rate: float) -> Array:
     """Speed of the shaft from its angle, as far as it changes slowly.
 
     Parameters

@@ -10,10 +10,9 @@ from models.condition import FIXED, KnownCondition
 from models.show import short_repr
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
     from pandas import DataFrame
 
+    from noise.base.arrays import Array
     from noise.identification.bushing_fit import BushingFit
     from noise.identification.bushing_numbers import Levels
     from noise.identification.measured import Measured
@@ -109,8 +108,8 @@ class Forecast:
     """
 
     rate: float
-    recorded: NDArray[np.float64]
-    foretold: NDArray[np.float64]
+    recorded: Array
+    foretold: Array
 
 
 _NUMBER_COLUMNS = (

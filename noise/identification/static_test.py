@@ -34,6 +34,7 @@ from models.condition import Condition
 from models.errors import ParameterError
 from models.show import short_repr
 from noise.base import SURE_90
+from noise.base.arrays import Array
 from noise.identification.outcome import Number
 
 if TYPE_CHECKING:
@@ -218,14 +219,12 @@ class RingDown:
     decay: float
     frequency_error: float
     decay_error: float
-    time: NDArray[np.float64]
-    torque: NDArray[np.float64]
-    fitted: NDArray[np.float64]
+    time: Array
+    torque: Array
+    fitted: Array
 
 
-def find_ring_down(
-    torque: NDArray[np.float64], angle: NDArray[np.float64], rate: float
-) -> RingDown | None:
+def find_ring_down(torque: Array, angle: Array, rate: float) -> RingDown | None:
     """Find and fit the ring-down after the shaft's last motion.
 
     Parameters
@@ -270,7 +269,7 @@ def find_ring_down(
     band = (frequency > _BAND[0]) & (frequency < min(_BAND[1], 0.4 * rate))
     top = float(frequency[band][np.argmax(power[band])])
 
-    def parts(x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def parts(x: Array) -> tuple[Array, Array]:
         turn, fall = 2.0 * np.pi * np.exp(x[0]) * time, np.exp(-np.exp(x[1]) * time)
         columns = np.column_stack(
             [fall * np.cos(turn), fall * np.sin(turn), np.ones_like(time), time]
@@ -278,7 +277,7 @@ def find_ring_down(
         amplitude, *_ = np.linalg.lstsq(columns, ring, rcond=None)
         return columns @ amplitude, ring
 
-    def residuals(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def residuals(x: Array) -> Array:
         fitted, measured = parts(x)
         return np.asarray(fitted - measured)
 
@@ -422,14 +421,14 @@ class StaticTest:
     held_stiffness: float
     held_error: float
     branches: int
-    angle: NDArray[np.float64]
-    torque: NDArray[np.float64]
-    fitted_angle: NDArray[np.float64]
+    angle: Array
+    torque: Array
+    fitted_angle: Array
     ring_down: RingDown | None = None
 
 
 def static_test(
-    torque: NDArray[np.float64], angle: NDArray[np.float64], rate: float, condition: Condition,
+    torque: Array, angle: Array, rate: float, condition: Condition,
     name: str,
 ) -> StaticTest | None:  # fmt: skip
     """Read a recording as a static test.
@@ -499,17 +498,15 @@ def static_test(
 
 
 def _regression(
-    t: NDArray[np.float64], a: NDArray[np.float64], way: NDArray[np.float64],
+    t: Array, a: Array, way: Array,
     branch: NDArray[np.intp],
-) -> tuple[bool, float, float, float, float, float, NDArray[np.float64]] | None:  # fmt: skip
+) -> tuple[bool, float, float, float, float, float, Array] | None:  # fmt: skip
     """Regress the angle: elastic, parting, both compliances with errors, fitted angle."""
     # each run begins at an angle of its own, which drift and what yielded before decide
     own = np.eye(int(branch.max()) + 1)[branch]
     rest, highest = a - a.mean(), float(np.abs(t).max())
 
-    def solved(
-        columns: list[NDArray[np.float64]],
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], float, NDArray[np.float64]]:
+    def solved(columns: list[Array]) -> tuple[Array, Array, float, Array]:
         matrix = np.column_stack([*columns, own])
         scale = np.abs(matrix).max(axis=0)
         x, *_ = np.linalg.lstsq(matrix / scale, a, rcond=None)
@@ -541,7 +538,7 @@ def _regression(
                        for one in found])  # fmt: skip
     weight /= weight.sum()
 
-    def averaged(direction: NDArray[np.float64]) -> tuple[float, float]:
+    def averaged(direction: Array) -> tuple[float, float]:
         values = np.array([one[1][:2] @ direction for one in found])
         own_error = np.array([direction @ one[3][:2, :2] @ direction * one[0] / n for one in found])
         mean = float(weight @ values)

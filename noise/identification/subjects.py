@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from noise.base.arrays import Array
 from noise.identification.bushing_fit import TorqueSpectrum, torque_spectrum
 from sim.bushing import LumpedBushing
 
@@ -69,8 +70,8 @@ class Excerpts:
     starts: NDArray[np.int64]
     length: int
     run_in: int
-    torque: NDArray[np.float64]
-    scale: NDArray[np.float64]
+    torque: Array
+    scale: Array
 
     @property
     def rate(self) -> float:
@@ -154,7 +155,7 @@ class Subject:
 
     measured: Measured
     excerpts: Excerpts
-    start: NDArray[np.float64]
+    start: Array
 
     @property
     def interference(self) -> float:

@@ -16,15 +16,14 @@ from pathlib import Path
 
 from noise.base.files import atomic
 from noise.diagnosis.fit.closing import CLOSABLE
-from noise.diagnosis.gap.distance import closed_fraction
-from noise.diagnosis.gap.signature import KINDS
+from noise.diagnosis.gap.distance import KINDS, closed_fraction
 from noise.diagnosis.improved_file import NAME, improved_sentence
 from noise.diagnosis.outcome import (
     Agreement,
     Diagnosis,
     EffectFinding,
+    as_json,
 )
-from noise.diagnosis.outcome_json import as_json
 from noise.diagnosis.text.sentences import answer, closed_sentence, closed_words
 from noise.diagnosis.text.verdict_sentences import agreement_sentence, headline, is_named
 from noise.diagnosis.text.words import (

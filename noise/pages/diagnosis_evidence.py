@@ -33,7 +33,7 @@ from noise.pictures.figure import KINDS
 from noise.pictures.recording import recorded_levels, recorded_orders
 
 if TYPE_CHECKING:
-    from noise.diagnosis.evidence.friction_curves import FrictionCurves
+    from noise.diagnosis.evidence.contact_summary import FrictionCurves
     from noise.diagnosis.outcome import Diagnosis
 
 

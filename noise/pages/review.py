@@ -22,7 +22,7 @@ from models.show import short_repr
 from noise.base.labels import LABELS, MAP_LABELS, PERSISTS
 from noise.base.progress import counted
 from noise.base.tables import read_table
-from noise.diagnosis.outcome_json import from_json
+from noise.diagnosis.outcome import from_json
 from noise.diagnosis.text.sentences import answer
 from noise.diagnosis.text.verdict_sentences import headline
 from noise.labels.table import cell_number, cell_truth, check_name

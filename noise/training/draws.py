@@ -9,27 +9,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal import lfilter
 
-
-def log_uniform(low: float, high: float, rng: np.random.Generator) -> float:
-    """Draw evenly in the logarithm.
-
-    Parameters
-    ----------
-    low, high : float
-        Limits, above 0 [any one unit].
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    float
-        [unit of the limits]
-
-    Examples
-    --------
-    >>> 1.0 <= log_uniform(1.0, 100.0, np.random.default_rng(0)) <= 100.0
-    True
-    """
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
+from noise.base import log_uniform as log_uniform
 
 
 def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:

@@ -12,7 +12,7 @@ from models.rig_file import load_material_rig, load_rig
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.case import Case, read_case
 from noise.diagnosis.diagnose import diagnose_case
-from noise.diagnosis.outcome_json import as_json, from_json
+from noise.diagnosis.outcome import as_json, from_json
 from noise.diagnosis.run import diagnose
 from noise.diagnosis.text.sentences import answer
 from noise.diagnosis.text.verdict_sentences import headline

@@ -15,7 +15,7 @@ from models.errors import ParameterError
 from noise.base.user_effects import effect_library
 from noise.cli import main
 from noise.diagnosis.causes.posterior import load_posterior
-from noise.diagnosis.outcome_json import as_json
+from noise.diagnosis.outcome import as_json
 from noise.diagnosis.run import diagnose
 from sim.effects import EFFECTS
 from tests.helpers.answered_diagnoses import as_the_contract_has_it

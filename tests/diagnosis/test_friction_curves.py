@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models.condition import FIXED
-from noise.diagnosis.evidence.friction_curves import friction_curves
+from noise.diagnosis.evidence.contact_summary import friction_curves
 from noise.pages.diagnosis_evidence import contact_panels
 from tests.helpers.small_rigs import RIG, at, only, run
 

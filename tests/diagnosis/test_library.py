@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from noise.diagnosis.cases.strengths import drawn_effect
+from noise.diagnosis.cases.draws import drawn_effect
 from noise.diagnosis.simulated.model_runs import OFFSETS, with_offsets
 from noise.diagnosis.simulated.repeats import CHANNELS, Scatter
 from noise.training.causes.cases.draw import KINDS, WEAKEST, draw_case

@@ -11,9 +11,15 @@ from scipy.stats import binomtest, kstest
 from models.condition import Condition
 from models.rig_file import load_material_rig, load_rig
 from noise.diagnosis.case import read_case
-from noise.diagnosis.gap.distance import gap_of, reference
+from noise.diagnosis.gap.distance import (
+    GROUPS,
+    NAMES,
+    block_signatures,
+    gap_of,
+    reference,
+    signature,
+)
 from noise.diagnosis.gap.floor import floor_widening, repeat_gap
-from noise.diagnosis.gap.signature import GROUPS, NAMES, block_signatures, signature
 from noise.diagnosis.simulated.repeats import Scatter, condition_key, nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.blind.cases import run_case, write_case

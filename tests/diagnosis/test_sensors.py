@@ -17,8 +17,7 @@ from noise.cli import main
 from noise.diagnosis.case import read_case
 from noise.diagnosis.causes.verdict import needs_explaining
 from noise.diagnosis.first_answer import poor_responses, unlearned_sensors
-from noise.diagnosis.gap.distance import Gap
-from noise.diagnosis.gap.signature import NAMES
+from noise.diagnosis.gap.distance import NAMES, Gap
 from noise.diagnosis.preparation.prepare import estimated_noise, with_seen_sensors
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.repeats import Scatter, nominal_recordings

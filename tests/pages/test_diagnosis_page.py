@@ -12,8 +12,7 @@ import pytest
 
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.diagnosis.outcome import Diagnosis, Illustration, StageFinding
-from noise.diagnosis.outcome_json import as_json
+from noise.diagnosis.outcome import Diagnosis, Illustration, StageFinding, as_json
 from noise.diagnosis.text.verdict_sentences import verdict_sentence
 from noise.pages.diagnosis import (
     parameter_rows,

@@ -16,22 +16,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from features.kernels.spectra import segment_spectra
 from models.condition import known_condition
+from models.recording import Recording
 from models.rig import Rig
 from models.units import CHANNEL_UNITS
+from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import USABLE
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
-
-if TYPE_CHECKING:
-    from models.recording import Recording
-    from models.rig import Rig
-
 
 _EXACT = 0.16
 """Difference of logarithms up to which a factor is that of a unit [-]; gains err by as much;
@@ -232,7 +227,7 @@ def levels_of(recording: Recording, rig: Rig, transfer_functions: TransferFuncti
     )  # fmt: skip
 
 
-def path_fit(predicted: NDArray[np.float64], measured: NDArray[np.float64], rate: float) -> PathFit:
+def path_fit(predicted: Array, measured: Array, rate: float) -> PathFit:
     """Say how a signal follows from its prediction.
 
     Parameters
@@ -264,7 +259,7 @@ def path_fit(predicted: NDArray[np.float64], measured: NDArray[np.float64], rate
     return PathFit(gain, coherent / (float(mm.sum()) + tiny), _alike(p, m, rate), strength)
 
 
-def _alike(p: NDArray[np.float64], m: NDArray[np.float64], rate: float) -> float:
+def _alike(p: Array, m: Array, rate: float) -> float:
     n = p.size
     size = 2 * n
     frequency = np.fft.rfftfreq(size, 1.0 / rate)
@@ -279,7 +274,7 @@ def _alike(p: NDArray[np.float64], m: NDArray[np.float64], rate: float) -> float
     return float(near[np.argmax(np.abs(near))])
 
 
-def _turning(angle: NDArray[np.float64], rate: float) -> tuple[float, float]:
+def _turning(angle: Array, rate: float) -> tuple[float, float]:
     time = np.arange(angle.size) / rate
     time -= time.mean()
     slope = float(time @ (angle - angle.mean())) / float(time @ time)
@@ -287,7 +282,7 @@ def _turning(angle: NDArray[np.float64], rate: float) -> tuple[float, float]:
     return slope, rest / (abs(slope) * angle.size / rate + 1e-300)
 
 
-def _falling(torque: NDArray[np.float64], rate: float) -> float:
+def _falling(torque: Array, rate: float) -> float:
     """Skewness of the torque's rate over a third of a millisecond [-]."""
     block = max(1, int(3e-4 * rate))
     smooth = torque[: torque.size // block * block].reshape(-1, block).mean(axis=1)

@@ -7,25 +7,25 @@ learnt a hundred such curves has learnt the effect rather than a formula of it.
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Callable, Mapping
+from importlib import resources
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.signal import butter, lfilter
 
-Array = NDArray[np.float64]
+from models.rig import LawSpec
+from noise.base import log_uniform
+from noise.base.arrays import Array
+from sim.effects import EFFECTS
+
 Rng = np.random.Generator
 
 SENSED = ("torque", "acceleration", "pressure")
 
 _N_CURVE = 129
-
-
-def log_uniform(rng: Rng, low: float, high: float) -> float:
-    """Draw a number whose logarithm is uniform."""
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
 def log_uniforms(rng: Rng, low: float, high: float, n: int) -> Array:
@@ -80,7 +80,7 @@ def _drawn(spec: Any, rng: Rng, names: Mapping[str, Any]) -> Any:
     n = value(spec["n"]) if "n" in spec else None
     if kind == "log":
         low, high = given
-        return log_uniform(rng, low, high) if n is None else log_uniforms(rng, low, high, n)
+        return log_uniform(low, high, rng) if n is None else log_uniforms(rng, low, high, n)
     if kind == "when":
         return value(spec["yes" if names[given] else "no"])
     if kind == "shares":
@@ -133,7 +133,7 @@ def _levels(rng: Rng, most: list[float]) -> Array:
 
 def _levels_beside(rng: Rng, most: list[float]) -> Array:
     """Draw levels of what sounds beside the rig; the torque has some of it in half of them."""
-    levels = np.array([level * log_uniform(rng, 0.1, 1.0) for level in most])
+    levels = np.array([level * log_uniform(0.1, 1.0, rng) for level in most])
     levels[0] *= rng.random() < 0.5
     return levels
 
@@ -155,7 +155,7 @@ def _partials(rng: Rng, orders_below: int) -> tuple[Any, Any, Any]:
 def _doubled(rng: Rng, orders_below: int) -> tuple[Any, Any, Any]:
     """Draw the same of even harmonics."""
     even = 2 * np.arange(1, int(rng.integers(2, orders_below)))
-    return even, even ** -log_uniform(rng, 0.3, 3.0), rng.random(even.size)
+    return even, even ** -log_uniform(0.3, 3.0, rng), rng.random(even.size)
 
 
 def curve(shape: Callable[[Array], Array]) -> Array:
@@ -170,7 +170,7 @@ def far_curve(shape: Callable[[Array], Array]) -> Array:
 
 def drawn_curve(rng: Rng) -> Array:
     """Draw a monotone shape from 0 to 1, with few steep parts or many even ones."""
-    n, evenness = int(rng.integers(4, 9)), log_uniform(rng, 0.6, 4.0)
+    n, evenness = int(rng.integers(4, 9)), log_uniform(0.6, 4.0, rng)
     steps = np.cumsum(rng.dirichlet(np.full(n, evenness)))
     knots = np.linspace(0.0, 1.0, n + 1)
     return curve(PchipInterpolator(knots, np.concatenate([[0.0], steps])))
@@ -296,3 +296,55 @@ def slowly(rng: Rng, n: int, rate: float, corner: float) -> Array:
 def telegraph(rng: Rng, n: int, rate: float, often: float) -> Array:
     """Draw a time series that switches between -1 and 1, so often a second [Hz]."""
     return np.where(np.cumsum(rng.random(n) < often / rate) % 2 == int(rng.integers(2)), 1.0, -1.0)
+
+
+_OWN_FORMS = tomllib.loads((resources.files(__package__) / "own_forms.toml").read_text("utf-8"))
+
+_ON_CHANNELS = ("channel_delay", "clipping", "gain_error", "mount_resonance")
+"""Effects that have a share of each channel as well."""
+
+
+def drawn_effect(name: str, strength: float, rng: np.random.Generator) -> LawSpec:
+    """Draw an effect of a strength.
+
+    Parameters
+    ----------
+    name : str
+        Of `sim.effects.EFFECTS`.
+    strength : float
+        From 0 to 1 [-].
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    LawSpec
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> drawn_effect("critical_torque_scatter", 0.5, np.random.default_rng(0)).parameters["scatter"]
+    0.4
+    """
+    values: dict[str, float | str] = {"form": str(rng.choice(EFFECTS[name].forms))}
+    # A mount is mostly that of the accelerometer; this is drawn before its resonance.
+    alone = name == "mount_resonance" and rng.random() < 0.7
+    values |= draw_numbers(_OWN_FORMS[name], rng, strength)
+    if name in _ON_CHANNELS:
+        names = ("acceleration",) if alone else SENSED
+        values |= _own_shares(rng, names, signed=name == "channel_delay")
+    return LawSpec(name, values)
+
+
+def _own_shares(
+    rng: np.random.Generator, names: tuple[str, ...] = SENSED, *, signed: bool = False
+) -> dict[str, float]:
+    """Shares of a fault: mostly of one channel alone."""
+    if rng.random() < 0.65:
+        chosen = [str(rng.choice(names))]
+    else:
+        chosen = [name for name in names if rng.random() < 0.7] or [str(rng.choice(names))]
+    shares = dict.fromkeys(SENSED, 0.0)
+    for name in chosen:
+        size = float(rng.uniform(0.5, 1.0)) if len(chosen) > 1 else 1.0
+        shares[name] = size * (float(rng.choice([-1.0, 1.0])) if signed else 1.0)
+    return shares

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.fft import rfft
 
 from features.kernels.spectra import segment_spectra
+from noise.base.arrays import Array
 
 BAND_EDGES = np.array([
     30.0, 60.0, 120.0, 180.0, 260.0, 350.0, 500.0, 700.0, 1000.0, 1400.0, 2000.0, 2800.0, 4000.0,
@@ -25,7 +26,7 @@ USABLE = 0.42
 """Share of the sampling rate up to which a band counts [-], below what filters fade; assumed."""
 
 
-def band_levels(x: NDArray[np.float64], rate: float) -> dict[str, float]:
+def band_levels(x: Array, rate: float) -> dict[str, float]:
     """Summarise how loud a signal is in each band.
 
     Parameters
@@ -57,7 +58,7 @@ def band_levels(x: NDArray[np.float64], rate: float) -> dict[str, float]:
 
 
 @lru_cache(maxsize=8)
-def segment_frequency(rate: float) -> tuple[int, NDArray[np.float64]]:
+def segment_frequency(rate: float) -> tuple[int, Array]:
     """Length of the segments in which bands are resolved, and the frequency of their bins.
 
     Parameters
@@ -81,7 +82,7 @@ def segment_frequency(rate: float) -> tuple[int, NDArray[np.float64]]:
     return length, np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64)
 
 
-def powers(spectra: NDArray[np.complex128]) -> NDArray[np.float64]:
+def powers(spectra: NDArray[np.complex128]) -> Array:
     """Power of each line of spectra.
 
     Parameters
@@ -102,9 +103,7 @@ def powers(spectra: NDArray[np.complex128]) -> NDArray[np.float64]:
     return np.asarray(spectra.real**2 + spectra.imag**2)
 
 
-def band_sums(
-    values: NDArray[np.float64], first: NDArray[np.int64], last: NDArray[np.int64]
-) -> NDArray[np.float64]:
+def band_sums(values: Array, first: NDArray[np.int64], last: NDArray[np.int64]) -> Array:
     """Sum the last axis over bands.
 
     Parameters
@@ -169,7 +168,7 @@ def band_bins(rate: float) -> Bands:
     return Bands(numbers, edges[:-1][reached], edges[1:][reached])
 
 
-def bins_between(frequency: NDArray[np.float64], band: tuple[float, float]) -> slice:
+def bins_between(frequency: Array, band: tuple[float, float]) -> slice:
     """Find the bins between two frequencies.
 
     Parameters
@@ -210,7 +209,7 @@ _HUM_RATE = 4e3
 """Sampling rate at which their harmonics are looked for, at least [Hz]."""
 
 
-def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
+def channel_summary(x: Array, rate: float) -> Numbers:
     """Summarise a signal's distribution and its noise floor.
 
     Parameters
@@ -263,7 +262,7 @@ def _floor_bins(rate: float) -> tuple[slice, ...]:
     return whole, *(bins_between(frequency[whole], band) for band in _FLOOR_BANDS)
 
 
-def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
+def hum_summary(x: Array, rate: float) -> Numbers:
     """Summarise how far the mains' harmonics stand out of what lies beside them.
 
     Parameters
@@ -303,20 +302,20 @@ def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     return numbers
 
 
-def _thinned(x: NDArray[np.float64], every: int) -> NDArray[np.float64]:
+def _thinned(x: Array, every: int) -> Array:
     """Average a signal over triangles that overlap by half."""
     blocks = x[: x.size // every * every].reshape(-1, every)
     rise = (np.arange(every) + 0.5) / every**2
     return np.asarray((blocks @ rise)[:-1] + (blocks @ rise[::-1])[1:])
 
 
-def _detrended(x: NDArray[np.float64]) -> NDArray[np.float64]:
+def _detrended(x: Array) -> Array:
     away = np.arange(x.size) - 0.5 * (x.size - 1)
     centred = x - x.mean()
     return np.asarray(centred - away * float(away @ centred) / max(float(away @ away), 1e-300))
 
 
-def _line_ratio(power: NDArray[np.float64], line: int) -> float:
+def _line_ratio(power: Array, line: int) -> float:
     """Power of a line over the median of what lies 5 to 12 bins beside it [-].
 
     The line is the largest of five; 1 where the spectrum ends before.
@@ -337,7 +336,7 @@ def _hum_lines(spacing: float) -> tuple[NDArray[np.int64], int, int]:
 
 
 @lru_cache(maxsize=16)
-def hanning(n: int) -> NDArray[np.float64]:
+def hanning(n: int) -> Array:
     """Hann window of a length, made once.
 
     Parameters
@@ -370,7 +369,7 @@ def _dwell(there: NDArray[np.bool_]) -> float:
     return math.log(max(int(np.count_nonzero(there)), 1) / max(entries, 1))
 
 
-def quantile(x: NDArray[np.float64], share: float) -> NDArray[np.float64]:
+def quantile(x: Array, share: float) -> Array:
     """Quantile along the first axis, as of `numpy.quantile` without its checks.
 
     Parameters

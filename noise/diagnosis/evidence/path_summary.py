@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from features.kernels.spectra import segment_spectra
+from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import (
     USABLE,
     band_bins,
@@ -51,11 +52,8 @@ _CROSS_BANDS = ((100.0, 600.0), (600.0, 2000.0), (2000.0, 6000.0))
 
 
 def path_summary(
-    predicted: NDArray[np.float64],
-    measured: NDArray[np.float64],
-    rate: float,
-    slips: NDArray[np.float64],
-) -> tuple[Numbers, NDArray[np.float64]]:
+    predicted: Array, measured: Array, rate: float, slips: Array
+) -> tuple[Numbers, Array]:
     """Compare a channel with its prediction.
 
     Parameters
@@ -99,7 +97,7 @@ def path_summary(
     return numbers, residual
 
 
-def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: float) -> Numbers:
+def common_residual(one: Array, other: Array, rate: float) -> Numbers:
     """Coherence, by band, of what two channels have too much.
 
     Parameters
@@ -139,13 +137,7 @@ def _bins(band: tuple[float, float], length: int, rate: float) -> slice:
     return bins_between(np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64), band)
 
 
-def _by_band(
-    pp: NDArray[np.float64],
-    mm: NDArray[np.float64],
-    pm: NDArray[np.complex128],
-    left: NDArray[np.float64],
-    rate: float,
-) -> Numbers:
+def _by_band(pp: Array, mm: Array, pm: NDArray[np.complex128], left: Array, rate: float) -> Numbers:
     coherent = np.abs(pm) ** 2 / (pp * mm + 1e-30) * mm
     bands = band_bins(rate)
     rows = np.stack([pp, mm, coherent, left, pm.real, pm.imag])[:, : bands.last[-1]]
@@ -165,13 +157,7 @@ def _by_band(
     return numbers
 
 
-def _transfer(
-    size: int,
-    pp: NDArray[np.float64],
-    mm: NDArray[np.float64],
-    pm: NDArray[np.complex128],
-    rate: float,
-) -> Numbers:
+def _transfer(size: int, pp: Array, mm: Array, pm: NDArray[np.complex128], rate: float) -> Numbers:
     """Gain, tilt, delay and decay of the transfer function from predicted to measured."""
     inside, n_bins = _bins(_REFERENCE_BAND, size, rate), size // 2 + 1
     octaves, taper = _weights(size, rate)
@@ -235,13 +221,13 @@ def _turns(size: int, first: int, last: int) -> NDArray[np.complex128]:
 
 
 @lru_cache(maxsize=8)
-def _weights(size: int, rate: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _weights(size: int, rate: float) -> tuple[Array, Array]:
     """Octaves from the middle of the reference band [-], and a taper towards its ends [-]."""
     frequency = np.fft.rfftfreq(size, 1.0 / rate)[_bins(_REFERENCE_BAND, size, rate)]
     return np.log2(frequency / 700.0), np.hanning(frequency.size) ** 0.25
 
 
-def _echo(answer: NDArray[np.float64], rate: float) -> Numbers:
+def _echo(answer: Array, rate: float) -> Numbers:
     """Tell what comes back at certain times from what rings at certain frequencies."""
     first = int(_ECHO[0] * rate)
     late = answer[first : int(_ECHO[1] * rate)]
@@ -259,9 +245,7 @@ def _echo(answer: NDArray[np.float64], rate: float) -> Numbers:
     }
 
 
-def _by_time(
-    p: NDArray[np.float64], m: NDArray[np.float64], residual: NDArray[np.float64]
-) -> Numbers:
+def _by_time(p: Array, m: Array, residual: Array) -> Numbers:
     """Size of the residual, and how unevenly it comes."""
     return {
         "residual": math.log(float(residual.std()) / (float(m.std()) + 1e-12) + 1e-9),
@@ -270,7 +254,7 @@ def _by_time(
     }
 
 
-def _impacts(residual: NDArray[np.float64], rate: float, slips: NDArray[np.float64]) -> Numbers:
+def _impacts(residual: Array, rate: float, slips: Array) -> Numbers:
     """Level of the residual in short segments above and below 2.5 kHz, and after slips."""
     spectra = segment_spectra(residual, _SHORT)
     bins = [_bins(band, _SHORT, rate) for band in (_LOW, (_LOW[1], min(_HIGHEST, USABLE * rate)))]
@@ -294,7 +278,7 @@ def _impacts(residual: NDArray[np.float64], rate: float, slips: NDArray[np.float
     return numbers
 
 
-def _kurtosis(x: NDArray[np.float64]) -> float:
+def _kurtosis(x: Array) -> float:
     square = (x - x.mean()) ** 2
     return float(square @ square) / x.size / (float(square.mean()) ** 2 + 1e-30) + 1e-9
 

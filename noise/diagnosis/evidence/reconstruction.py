@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
+from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import hanning
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ _SPEED_LIMIT = 60.0
 """The shaft's speed follows its angle up to so many hertz, half as much again fading."""
 
 
-def angle_summary(angle: NDArray[np.float64], speed: float, rate: float) -> dict[str, float]:
+def angle_summary(angle: Array, speed: float, rate: float) -> dict[str, float]:
     """Summarise how evenly the shaft turns.
 
     Parameters
@@ -79,7 +80,7 @@ def angle_summary(angle: NDArray[np.float64], speed: float, rate: float) -> dict
     }
 
 
-def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+def shaft_speed(angle: Array, rate: float) -> Array:
     """Speed of the shaft from its angle, below 60 Hz.
 
     Parameters
@@ -126,7 +127,7 @@ def _slow_derivative(length: int, rate: float) -> NDArray[np.complex128]:
     return np.asarray(found)
 
 
-def _about_line(angle: NDArray[np.float64], rate: float) -> tuple[float, NDArray[np.float64]]:
+def _about_line(angle: Array, rate: float) -> tuple[float, Array]:
     """Mean speed [rad/s], and what the angle has besides [rad]."""
     time = _centred_time(angle.size, rate)
     left = angle - angle.mean()
@@ -136,7 +137,7 @@ def _about_line(angle: NDArray[np.float64], rate: float) -> tuple[float, NDArray
 
 
 @lru_cache(maxsize=8)
-def _centred_time(n: int, rate: float) -> NDArray[np.float64]:
+def _centred_time(n: int, rate: float) -> Array:
     time = (np.arange(n, dtype=np.float64) - 0.5 * (n - 1)) / rate
     time.setflags(write=False)
     return time
@@ -184,20 +185,20 @@ class Reconstruction:
 
     rate: float
     start: float
-    torque: NDArray[np.float64]
-    friction_torque: NDArray[np.float64]
-    torque_rate: NDArray[np.float64]
-    shaft_speed: NDArray[np.float64]
-    sliding_speed: NDArray[np.float64]
-    clamp_speed: NDArray[np.float64]
-    by_stiffness: NDArray[np.float64]
-    by_damping: NDArray[np.float64]
-    by_clamp: NDArray[np.float64]
+    torque: Array
+    friction_torque: Array
+    torque_rate: Array
+    shaft_speed: Array
+    sliding_speed: Array
+    clamp_speed: Array
+    by_stiffness: Array
+    by_damping: Array
+    by_clamp: Array
 
 
 def reconstruct(
-    torque: NDArray[np.float64],
-    shaft_speed: NDArray[np.float64],
+    torque: Array,
+    shaft_speed: Array,
     rate: float,
     bushing: LumpedBushing,
     spectrum: NDArray[np.complex128] | None = None,
@@ -302,7 +303,7 @@ def _filters(length: int, rate: float, bushing: LumpedBushing) -> NDArray[np.com
     return found
 
 
-def closed_spectrum(signal: NDArray[np.float64], rate: float) -> NDArray[np.complex128]:
+def closed_spectrum(signal: Array, rate: float) -> NDArray[np.complex128]:
     """Transform of a signal that `closed_loop` has led back to its start.
 
     Parameters
@@ -336,7 +337,7 @@ def closed_length(n: int, rate: float) -> int:
     return int(next_fast_len(n + round(_WAY_BACK * rate), real=True))
 
 
-def closed_loop(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+def closed_loop(signal: Array, rate: float) -> Array:
     """Lead a signal back to its start along half a cosine, so that a transform sees no step.
 
     Parameters
@@ -362,11 +363,11 @@ def closed_loop(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]
 
 
 @lru_cache(maxsize=8)
-def _turn(n: int) -> NDArray[np.float64]:
+def _turn(n: int) -> Array:
     return np.asarray(0.5 + 0.5 * np.cos(np.linspace(0.0, np.pi, n)))
 
 
-def _low_pass(frequency: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+def _low_pass(frequency: Array, rate: float) -> Array:
     low = min(LIMIT, rate / 3.0)
     x = np.clip((frequency - low) / (low / 3.0), 0.0, 1.0)
     return np.asarray(0.5 + 0.5 * np.cos(np.pi * x))

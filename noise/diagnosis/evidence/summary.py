@@ -22,7 +22,6 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +30,7 @@ from models.condition import Condition, known_condition, same_support
 from models.recording import Recording
 from models.rig import Rig
 from models.transfer_functions.transfer_function import TransferFunction
+from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import band_levels, channel_summary, hum_summary
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
 from noise.diagnosis.evidence.path_summary import common_residual, path_summary
@@ -45,11 +45,6 @@ from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, 
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
 from sim.effects.effect import Effect
-
-if TYPE_CHECKING:
-    from models.recording import Recording
-    from models.rig import Rig
-
 
 _KINDS = ("torque", "acceleration", "pressure", "angle")
 
@@ -181,7 +176,7 @@ def evidence_names(names: Sequence[str]) -> tuple[str, ...]:
     return (*parts, *_COUNTS, *CONTEXT, *(f"typical:{name}" for name in names))
 
 
-def aligned(table: CaseTable, names: Sequence[str]) -> tuple[NDArray[np.float64], ...]:
+def aligned(table: CaseTable, names: Sequence[str]) -> tuple[Array, ...]:
     """Numbers of a case in the order of names.
 
     Parameters
@@ -206,7 +201,7 @@ def aligned(table: CaseTable, names: Sequence[str]) -> tuple[NDArray[np.float64]
     columns = _columns(table.names, tuple(names))
     known = columns >= 0
 
-    def chosen(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    def chosen(rows: Array) -> Array:
         filled = np.full((len(rows), columns.size), np.nan)
         filled[:, known] = rows[:, columns[known]]
         return filled
@@ -221,7 +216,7 @@ def _columns(of_table: tuple[str, ...], names: tuple[str, ...]) -> NDArray[np.in
     return np.array([place.get(name, -1) for name in names], dtype=np.int64)
 
 
-def scale_of(tables: Sequence[CaseTable], names: Sequence[str]) -> NDArray[np.float64]:
+def scale_of(tables: Sequence[CaseTable], names: Sequence[str]) -> Array:
     """Scatter of each number about its nominal value that simulated repeats do not have.
 
     Parameters
@@ -250,9 +245,7 @@ def scale_of(tables: Sequence[CaseTable], names: Sequence[str]) -> NDArray[np.fl
     return np.asarray(np.maximum(np.nan_to_num(np.sqrt(beyond), nan=1.0), least))
 
 
-def evidence(
-    table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
-) -> NDArray[np.float32]:
+def evidence(table: CaseTable, names: Sequence[str], scale: Array) -> NDArray[np.float32]:
     """Return a case as one row.
 
     Parameters
@@ -296,9 +289,7 @@ def evidence(
     return np.asarray(np.clip(row, -LARGEST, LARGEST * 100.0), dtype=np.float32)
 
 
-def deviations(
-    table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def deviations(table: CaseTable, names: Sequence[str], scale: Array) -> Array:
     """Differences of a case from its nominal numbers, over what they scatter by.
 
     Parameters
@@ -318,7 +309,7 @@ def deviations(
     return np.asarray((measured - nominal) / np.sqrt(_pooled(scatter) ** 2 + scale**2))
 
 
-def standard_errors(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
+def standard_errors(deviation: Array) -> Array:
     """Mean over recordings, in units of its standard error.
 
     Parameters
@@ -340,7 +331,7 @@ def standard_errors(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.nansum(deviation, axis=0) / np.sqrt(np.maximum(count, 1)))
 
 
-def _pooled(scatter: NDArray[np.float64]) -> NDArray[np.float64]:
+def _pooled(scatter: Array) -> Array:
     """Scatter of repeats, drawn towards that over all recordings of a case; 0 where unknown."""
     square = np.square(scatter)
     everywhere = np.nan_to_num(_mean(square))
@@ -348,7 +339,7 @@ def _pooled(scatter: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.sqrt(_OWN * own + (1.0 - _OWN) * everywhere))
 
 
-def _mean(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+def _mean(rows: Array) -> Array:
     """Mean of each column over what is known; NaN where nothing is."""
     known = ~np.isnan(rows)
     count = known.sum(axis=0)
@@ -356,7 +347,7 @@ def _mean(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
-def _middle(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+def _middle(rows: Array) -> Array:
     """Median of each column over what is known; NaN where nothing is."""
     ordered = np.sort(rows, axis=0)  # what is unknown comes last
     count = (~np.isnan(rows)).sum(axis=0)
@@ -374,9 +365,7 @@ def _conditions(table: CaseTable) -> list[list[int]]:
     return list(groups.values())
 
 
-def _between_repeats(
-    groups: Sequence[Sequence[int]], values: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _between_repeats(groups: Sequence[Sequence[int]], values: Array) -> Array:
     """Root mean square difference of recordings of one condition."""
     pairs = [pair for group in groups for pair in itertools.combinations(group, 2)]
     if not pairs:
@@ -412,9 +401,9 @@ class CaseTable:
     """
 
     names: tuple[str, ...]
-    measured: NDArray[np.float64]
-    nominal: NDArray[np.float64]
-    scatter: NDArray[np.float64]
+    measured: Array
+    nominal: Array
+    scatter: Array
     conditions: tuple[Condition, ...]
     rate: float
     bench: Mapping[str, float] = field(default_factory=dict)
@@ -470,7 +459,7 @@ def summary(
     return numbers
 
 
-def signals_of(recording: Recording) -> dict[str, NDArray[np.float64]]:
+def signals_of(recording: Recording) -> dict[str, Array]:
     """Select the first channel of each kind.
 
     Parameters
@@ -490,12 +479,12 @@ def signals_of(recording: Recording) -> dict[str, NDArray[np.float64]]:
 
 
 def path_numbers(
-    signal: Mapping[str, NDArray[np.float64]],
+    signal: Mapping[str, Array],
     spectrum: NDArray[np.complex128],
     rate: float,
     transfer_functions: Mapping[str, TransferFunction],
-    slips: NDArray[np.float64],
-) -> tuple[Numbers, dict[str, NDArray[np.float64]]]:
+    slips: Array,
+) -> tuple[Numbers, dict[str, Array]]:
     """Compare acceleration and sound with what the torque should have made of them.
 
     Parameters
@@ -598,7 +587,7 @@ def case_table(
     means, spreads = zip(*(nominal.moments(recording) for recording in recordings), strict=True)
     names = tuple(sorted({name for row in (*rows, *means) for name in row}))
 
-    def table(numbers: Sequence[Numbers]) -> NDArray[np.float64]:
+    def table(numbers: Sequence[Numbers]) -> Array:
         return np.array([[row.get(name, math.nan) for name in names] for row in numbers])
 
     return CaseTable(
@@ -642,9 +631,7 @@ def _moments(repeats: Sequence[Numbers]) -> tuple[Numbers, Numbers]:
     )
 
 
-def column_moments(
-    values: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def column_moments(values: Array) -> tuple[Array, Array]:
     """Return mean and standard deviation of each column over what is known of it.
 
     Parameters

@@ -29,9 +29,8 @@ from noise.diagnosis.evidence.summary import (
     same_channels,
     signals_of,
 )
-from noise.diagnosis.gap.distance import Gap, Reference, group_costs
+from noise.diagnosis.gap.distance import Gap, Reference, group_costs, signature
 from noise.diagnosis.gap.floor import references_of, repeat_gap
-from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.repeats import Scatter, condition_key
 from sim.effects import EFFECTS

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from models.condition import Condition
 from models.errors import ParameterError
 from models.rig import LawSpec
-from noise.diagnosis.cases.strengths import drawn_effect
+from noise.diagnosis.cases.draws import drawn_effect
 from noise.diagnosis.evidence.summary import CaseTable
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.estimated_forms import ESTIMATED, estimated_forms

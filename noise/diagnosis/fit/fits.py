@@ -18,7 +18,7 @@ from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import LawSpec
 from noise.base import SURE_90
-from noise.diagnosis.evidence.friction_curves import friction_curves
+from noise.diagnosis.evidence.contact_summary import friction_curves
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit import Fitted

@@ -1,5 +1,9 @@
 """Distance of a recording from repeats, in units of what repeats differ by.
 
+Stick-slip is chaotic: two runs of one rig agree in no waveform, but in what they are made of. So a
+recording has a signature, the levels of each channel in sixth octaves and the statistics of the
+torque's slips.
+
 Each value of a signature is compared with its mean over the repeats and divided by its standard
 deviation; a group's share is the mean over its values, and all groups weigh alike. Large
 deviations count linearly (Huber 1964, Ann. Math. Statist. 35, 73), so that a single line of hum
@@ -17,8 +21,8 @@ of their distances says.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import TypeVar
 
@@ -26,9 +30,183 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as students_t
 
-from noise.diagnosis.gap.signature import GROUPS, KINDS, group_of
+from features.kernels.levels import band_power
+from features.kernels.spectra import welch
+from models.recording import Recording
+from noise.base.arrays import Array
 
-_Distance = TypeVar("_Distance", float, "NDArray[np.float64]")
+KINDS = ("torque", "acceleration", "pressure")
+"""Kinds of channel that have a signature; of each the first channel counts."""
+
+_PER_OCTAVE = 6
+_LOWEST, _HIGHEST = 50.0, 8000.0
+_RESOLUTION = 12.0
+"""Of the spectra [Hz]; the lowest bands share their lines with their neighbours; assumed."""
+
+_USABLE = 0.42
+"""Share of the sampling rate up to which a band counts; as of `channel_summary`."""
+
+_SENSOR_NOISE = {"torque": 0.025, "acceleration": 0.1, "pressure": 4e-3}
+"""White noise from 0 to 15 kHz, rms in the channel's unit, five times that of good sensors: added
+to all bands, so that what lies below it does not count; assumed."""
+
+_NOISE_BAND = 15e3
+
+_CORNER = 500.0
+"""Below which that noise rises as 1/f, as amplifiers' and rooms' does [Hz]; assumed."""
+
+_N_BANDS = math.floor(_PER_OCTAVE * math.log2(_HIGHEST / _LOWEST))
+EDGES = _LOWEST * 2.0 ** (np.arange(_N_BANDS + 1) / _PER_OCTAVE)
+"""Of the bands, shape (n_bands + 1,) [Hz]."""
+
+_STATISTICS = ("mean", "spread", "slow", "skewness", "highest", "lowest", "steepest_fall")
+"""Of the torque: logarithm of its mean, its standard deviation and that of its slow part over the
+mean, skewness, its highest and lowest thousandth over the mean, and the steepest fall."""
+
+GROUPS = (*KINDS, "cycle")
+"""Parts of a signature that weigh alike in a distance: three spectra, and the torque's cycle."""
+
+NAMES = (
+    *(f"{kind}_{round(low)}" for kind in KINDS for low in EDGES[:-1].tolist()),
+    *(f"cycle_{name}" for name in _STATISTICS),
+)
+"""Of the values of a signature."""
+
+
+def group_of() -> NDArray[np.int64]:
+    """Index into `GROUPS` of each value of a signature.
+
+    Examples
+    --------
+    >>> [GROUPS[i] for i in group_of()[[0, -1]]]
+    ['torque', 'cycle']
+    """
+    return np.array([GROUPS.index(name.split("_")[0]) for name in NAMES])
+
+
+def signature(recording: Recording) -> Array:
+    """Describe a recording by what does not depend on phases.
+
+    Parameters
+    ----------
+    recording : Recording
+        In physical units.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        By `NAMES`: levels in nepers (a tenth is 0.87 dB), so that they compare with relative
+        errors; NaN where a channel is missing or its rate does not reach a band.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> run = simulate(load_material_rig("fluorocarbon-thesis"), 2.5, seconds=0.4)
+    >>> values = signature(run.recording)
+    >>> values.shape == (len(NAMES),), bool(np.isfinite(values).all())
+    (True, True)
+    """
+    parts = {
+        kind: channel_signature(recording.samples[row], recording.rate, kind)
+        for kind in KINDS
+        if (row := recording.first(kind)) is not None
+    }
+    return joined_signature(parts)
+
+
+def channel_signature(signal: Array, rate: float, kind: str) -> Array:
+    """Describe one channel: its levels, and of a torque what its slips are like.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        [unit of the channel]
+    rate : float
+        [Hz]
+    kind : str
+        Of `KINDS`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Levels [Np], and of a torque ratios of its cycle [-].
+    """
+    levels = _levels(signal, rate, kind)
+    return np.concatenate([levels, _cycle(signal, rate)]) if kind == "torque" else levels
+
+
+def joined_signature(parts: Mapping[str, Array]) -> Array:
+    """Join what `channel_signature` gave of the channels of a recording; NaN where one is missing.
+
+    Examples
+    --------
+    >>> joined_signature({}).shape == (len(NAMES),)
+    True
+    """
+    values = np.full(len(NAMES), np.nan)
+    for i, kind in enumerate(KINDS):
+        if kind in parts:
+            values[i * _N_BANDS : (i + 1) * _N_BANDS] = parts[kind][:_N_BANDS]
+    if "torque" in parts:
+        values[len(KINDS) * _N_BANDS :] = parts["torque"][_N_BANDS:]
+    return values
+
+
+def _levels(signal: Array, rate: float, kind: str) -> Array:
+    spectrum = welch(signal - signal.mean(), rate, _RESOLUTION)
+    power = band_power(spectrum, EDGES[:-1], EDGES[1:])
+    power[EDGES[1:] > _USABLE * rate] = np.nan
+    lines = np.diff(EDGES) + _CORNER * np.diff(np.log(EDGES))
+    noise = _SENSOR_NOISE[kind] ** 2 * lines / _NOISE_BAND
+    return np.asarray(0.5 * np.log(power + noise))
+
+
+def _cycle(torque: Array, rate: float) -> Array:
+    mean, spread = float(torque.mean()), float(torque.std())
+    scale = abs(mean) + 1e-9
+    block = max(1, round(0.02 * rate))
+    slow = torque[: torque.size // block * block].reshape(-1, block).mean(axis=1)
+    low, high = np.quantile(torque, (0.001, 0.999))
+    step = max(1, round(2e-4 * rate))
+    fall = float(np.min(torque[step:] - torque[:-step]))
+    skewness = float(np.mean((torque - mean) ** 3)) / (spread**3 + 1e-12)
+    return np.array([
+        math.log(scale), spread / scale, float(slow.std()) / scale, skewness,
+        float(high) / scale, float(low) / scale, fall / scale,
+    ])  # fmt: skip
+
+
+_BLOCK = 0.25
+"""Shortest block of a recording that has a signature of its own [s]; assumed."""
+
+_MOST_BLOCKS = 16
+_FEWEST_BLOCKS = 3
+
+
+def block_signatures(recording: Recording) -> Array | None:
+    """Describe each block of a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Returns
+    -------
+    ndarray, shape (n_blocks, n_values), or None
+        None where the recording is too short for three As of `signature`.
+    """
+    count = min(int(recording.duration / _BLOCK + 1e-6), _MOST_BLOCKS)
+    if count < _FEWEST_BLOCKS:
+        return None
+    n = recording.samples.shape[1] // count
+    return np.array([
+        signature(replace(recording, samples=recording.samples[:, i * n : (i + 1) * n]))
+        for i in range(count)
+    ])  # fmt: skip
+
+
+_Distance = TypeVar("_Distance", float, Array)
 
 _BEND = 3.0
 """Deviations beyond so many standard deviations count linearly; assumed."""
@@ -64,18 +242,18 @@ class Reference:
         Their signatures, as they are exchanged [Np], or [-] of the cycle.
     """
 
-    mean: NDArray[np.float64]
-    scale: NDArray[np.float64]
-    null: NDArray[np.float64]
-    repeats: NDArray[np.float64]
+    mean: Array
+    scale: Array
+    null: Array
+    repeats: Array
 
-    def deviation(self, signature: NDArray[np.float64]) -> NDArray[np.float64]:
+    def deviation(self, signature: Array) -> Array:
         """How many standard deviations each value lies from the mean.
 
         Parameters
         ----------
         signature : ndarray, shape (n_values,)
-            As of `noise.diagnosis.gap.signature.signature`.
+            As of `noise.diagnosis.gap.distance.signature`.
 
         Returns
         -------
@@ -84,13 +262,13 @@ class Reference:
         """
         return np.asarray((signature - self.mean) / self.scale)
 
-    def squared(self, signature: NDArray[np.float64]) -> float:
+    def squared(self, signature: Array) -> float:
         """Squared distance of a signature, 1 on average for a repeat.
 
         Parameters
         ----------
         signature : ndarray, shape (n_values,)
-            As of `noise.diagnosis.gap.signature.signature`.
+            As of `noise.diagnosis.gap.distance.signature`.
 
         Returns
         -------
@@ -99,7 +277,7 @@ class Reference:
         """
         return self.squared_of(self.deviation(signature))
 
-    def squared_of(self, deviation: NDArray[np.float64]) -> float:
+    def squared_of(self, deviation: Array) -> float:
         """Squared distance of deviations, 1 on average for those of a repeat.
 
         Parameters
@@ -142,20 +320,20 @@ class Gap:
 
     distance: float
     p_value: float
-    of_recordings: NDArray[np.float64]
+    of_recordings: Array
     widened: float = 1.0
-    of_channels: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, len(KINDS))))
+    of_channels: Array = field(default_factory=lambda: np.empty((0, len(KINDS))))
 
 
 def reference(
-    signatures: Sequence[NDArray[np.float64]], *, least: float = LEAST_SCALE, seed: int = 0
+    signatures: Sequence[Array], *, least: float = LEAST_SCALE, seed: int = 0
 ) -> Reference:
     """Make a reference of the signatures of at least three repeats.
 
     Parameters
     ----------
     signatures : sequence of ndarray, shape (n_values,)
-        One a repeat As of `noise.diagnosis.gap.signature.signature`.
+        One a repeat As of `noise.diagnosis.gap.distance.signature`.
     least : float
         Relative scatter of whole spectra that is known to be there whatever these repeats say; 0
         where they scatter as they should. It is for p-values: in a distance, 3 % is the least.
@@ -164,7 +342,7 @@ def reference(
 
     Examples
     --------
-    >>> from noise.diagnosis.gap.signature import NAMES
+    >>> from noise.diagnosis.gap.distance import NAMES
     >>> rng = np.random.default_rng(0)
     >>> repeats = reference(list(rng.normal(size=(8, len(NAMES)))))
     >>> repeats.null.shape, 0.5 < repeats.squared(rng.normal(size=len(NAMES))) < 2.0
@@ -181,7 +359,7 @@ def reference(
 
 
 def gap_of(
-    signatures: Sequence[NDArray[np.float64]],
+    signatures: Sequence[Array],
     references: Sequence[Reference],
     *,
     seed: int = 0,
@@ -192,7 +370,7 @@ def gap_of(
     Parameters
     ----------
     signatures : sequence of ndarray, shape (n_values,)
-        One a recording As of `noise.diagnosis.gap.signature.signature`.
+        One a recording As of `noise.diagnosis.gap.distance.signature`.
     references : sequence of Reference
         One a recording; recordings of one condition share one.
     seed, n_draws : int
@@ -204,7 +382,7 @@ def gap_of(
 
     Examples
     --------
-    >>> from noise.diagnosis.gap.signature import NAMES
+    >>> from noise.diagnosis.gap.distance import NAMES
     >>> runs = np.random.default_rng(0).normal(size=(20, len(NAMES)))
     >>> repeats = reference(list(runs[:12]))
     >>> gap_of(list(runs[12:14] + 4.0), [repeats] * 2).p_value < 0.05
@@ -227,7 +405,7 @@ def gap_of(
     return Gap(float(np.sqrt(np.mean(squared))), p_value, np.sqrt(squared))
 
 
-def _tail(squared: NDArray[np.float64], references: Sequence[Reference]) -> float:
+def _tail(squared: Array, references: Sequence[Reference]) -> float:
     """Probability of so large distances by the scatter of those that the repeats have [-].
 
     Distances of repeats are about log-normal; recordings of a condition share its error.
@@ -243,15 +421,13 @@ def _tail(squared: NDArray[np.float64], references: Sequence[Reference]) -> floa
     return float(students_t.sf(away / math.sqrt(variance + 1e-12), freedom))
 
 
-def with_least_scatter(
-    signatures: NDArray[np.float64], least: float = LEAST_SCALE, seed: int = 0
-) -> NDArray[np.float64]:
+def with_least_scatter(signatures: Array, least: float = LEAST_SCALE, seed: int = 0) -> Array:
     """Shift whole spectra of repeats so that none scatters by less than repeats always do.
 
     Parameters
     ----------
     signatures : ndarray, shape (n_repeats, n_values)
-        As of `noise.diagnosis.gap.signature.signature`.
+        As of `noise.diagnosis.gap.distance.signature`.
     least : float
         Relative standard deviation.
     seed : int
@@ -278,7 +454,7 @@ def with_least_scatter(
     return s
 
 
-def group_costs(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
+def group_costs(deviation: Array) -> Array:
     """Mean square of the deviations in each of `GROUPS`, large ones bent; NaN where unknown.
 
     Parameters
@@ -305,14 +481,12 @@ def group_costs(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
     return shares
 
 
-def _bent(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
+def _bent(deviation: Array) -> Array:
     size = np.abs(deviation)
     return np.where(size <= _BEND, size**2, _BEND * (2.0 * size - _BEND))
 
 
-def _exchanged(
-    own: NDArray[np.float64], repeats: NDArray[np.float64], rng: np.random.Generator
-) -> NDArray[np.float64]:
+def _exchanged(own: Array, repeats: Array, rng: np.random.Generator) -> Array:
     """Sum of distances from the rest with the recordings, and then others, as the odd ones."""
     pool = np.concatenate([own, repeats])
     size, m = len(pool), len(own)
@@ -328,7 +502,7 @@ def _exchanged(
     return sums
 
 
-def _moments(s: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _moments(s: Array) -> tuple[Array, Array]:
     variance = s.var(axis=0, ddof=1)
     kernel = np.ones(2 * _NEIGHBOURS + 1)
     known = np.isfinite(variance)
@@ -346,7 +520,7 @@ def _moments(s: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.fl
     return s.mean(axis=0), scale * np.sqrt(1.0 + 1.0 / len(s))
 
 
-def _squared(deviation: NDArray[np.float64]) -> float:
+def _squared(deviation: Array) -> float:
     return float(np.nanmean(group_costs(deviation)))
 
 

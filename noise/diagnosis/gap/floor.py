@@ -15,25 +15,23 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.recording import Recording
+from noise.base.arrays import Array
 from noise.diagnosis.gap.distance import (
-    LEAST_SCALE,
-    Gap,
-    Reference,
-    gap_of,
-    group_costs,
-    reference,
-    with_least_scatter,
-)
-from noise.diagnosis.gap.signature import (
     EDGES,
     GROUPS,
     KINDS,
+    LEAST_SCALE,
+    Gap,
+    Reference,
     block_signatures,
+    gap_of,
+    group_costs,
     group_of,
+    reference,
     signature,
+    with_least_scatter,
 )
 from noise.diagnosis.simulated.repeats import condition_key
 
@@ -41,9 +39,7 @@ _LIKE_THE_MOST = 0.5
 """Share of the largest deviation from which on others are as large; assumed."""
 
 
-def channel_distances(
-    signatures: Sequence[NDArray[np.float64]], references: Sequence[Reference]
-) -> NDArray[np.float64]:
+def channel_distances(signatures: Sequence[Array], references: Sequence[Reference]) -> Array:
     """Distance of each recording from its repeats, channel by channel.
 
     The torque's cycle counts as torque.
@@ -51,7 +47,7 @@ def channel_distances(
     Parameters
     ----------
     signatures : sequence of ndarray, shape (n_values,)
-        One a recording As of `noise.diagnosis.gap.signature.signature`.
+        One a recording As of `noise.diagnosis.gap.distance.signature`.
     references : sequence of Reference
         One a recording.
 
@@ -63,14 +59,14 @@ def channel_distances(
     Examples
     --------
     >>> from noise.diagnosis.gap.distance import reference
-    >>> from noise.diagnosis.gap.signature import NAMES
+    >>> from noise.diagnosis.gap.distance import NAMES
     >>> runs = np.random.default_rng(0).normal(size=(13, len(NAMES)))
     >>> runs[12, : len(NAMES) // 4] += 8.0
     >>> torque, *others = channel_distances([runs[12]], [reference(list(runs[:12]))])[0]
     >>> bool(torque > 2.0), bool(max(others) < 1.5)
     (True, True)
     """
-    floors: dict[int, NDArray[np.float64]] = {}
+    floors: dict[int, Array] = {}
     rows = []
     for values, one in zip(signatures, references, strict=True):
         if id(one) not in floors:
@@ -82,9 +78,7 @@ def channel_distances(
     return np.array(rows)
 
 
-def worst_places(
-    deviations: NDArray[np.float64],
-) -> tuple[tuple[str, ...], tuple[float, float]]:
+def worst_places(deviations: Array) -> tuple[tuple[str, ...], tuple[float, float]]:
     """Tell in which channels and band deviations are largest.
 
     Parameters
@@ -100,7 +94,7 @@ def worst_places(
 
     Examples
     --------
-    >>> from noise.diagnosis.gap.signature import NAMES
+    >>> from noise.diagnosis.gap.distance import NAMES
     >>> off = np.ones((2, len(NAMES)))
     >>> off[:, [NAMES.index(f"pressure_{f}") for f in (400, 449, 504)]] = 30.0
     >>> channels, (low, high) = worst_places(off)
@@ -121,7 +115,7 @@ def worst_places(
     return channels, (float(EDGES[bands[0]]), float(EDGES[bands[-1] + 1]))
 
 
-def _costs(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
+def _costs(deviation: Array) -> Array:
     """Mean cost of each of `KINDS`, the torque's with that of its cycle."""
     *channels, cycle = group_costs(deviation)
     torque = KINDS.index("torque")
@@ -143,7 +137,7 @@ _N_SETS, _N_DRAWS = 60, 400
 
 def repeat_gap(
     recordings: Sequence[Recording],
-    repeats: Mapping[tuple[float, ...], Sequence[NDArray[np.float64]]],
+    repeats: Mapping[tuple[float, ...], Sequence[Array]],
     *,
     least: float = LEAST_SCALE,
     seed: int = 0,
@@ -176,8 +170,8 @@ def repeat_gap(
 
 def references_of(
     recordings: Sequence[Recording],
-    signatures: Sequence[NDArray[np.float64]],
-    repeats: Mapping[tuple[float, ...], Sequence[NDArray[np.float64]]],
+    signatures: Sequence[Array],
+    repeats: Mapping[tuple[float, ...], Sequence[Array]],
     *,
     least: float = LEAST_SCALE,
     seed: int = 0,
@@ -188,7 +182,7 @@ def references_of(
     ----------
     recordings : sequence of Recording
     signatures : sequence of ndarray, shape (n_values,)
-        Of the recordings As of `noise.diagnosis.gap.signature.signature`.
+        Of the recordings As of `noise.diagnosis.gap.distance.signature`.
     repeats, least, seed
         As of `repeat_gap`.
 
@@ -199,7 +193,7 @@ def references_of(
     widened : float
         By how much the floor is wider than the repeats alone have it [-].
     """
-    own: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
+    own: dict[tuple[float, ...], list[Array]] = {}
     for recording, values in zip(recordings, signatures, strict=True):
         own.setdefault(condition_key(recording), []).append(values)
     pairs = [(own[key], repeats[key]) for key in own if len(own[key]) > 1]
@@ -217,9 +211,7 @@ def references_of(
     return [references[condition_key(r)] for r in recordings], float(np.sqrt(np.mean(wider**2)))
 
 
-def floor_widening(
-    repeated: Sequence[tuple[Sequence[NDArray[np.float64]], Sequence[NDArray[np.float64]]]],
-) -> NDArray[np.float64]:
+def floor_widening(repeated: Sequence[tuple[Sequence[Array], Sequence[Array]]]) -> Array:
     """By how much the floor is wider than simulated repeats have it.
 
     Parameters
@@ -231,7 +223,7 @@ def floor_widening(
     Returns
     -------
     ndarray, shape (n_groups,)
-        One for each of `noise.diagnosis.gap.signature.GROUPS`, at least 1; all 1 where recorded
+        One for each of `noise.diagnosis.gap.distance.GROUPS`, at least 1; all 1 where recorded
         repeats differ by no more than simulated ones do 99 times out of 100.
     """
     rng = np.random.default_rng(0)
@@ -239,9 +231,7 @@ def floor_widening(
     return _beyond(np.array([one[0] for one in sets]), np.array([one[1:] for one in sets]))
 
 
-def _block_widening(
-    alone: Sequence[tuple[Recording, Sequence[NDArray[np.float64]]]],
-) -> NDArray[np.float64]:
+def _block_widening(alone: Sequence[tuple[Recording, Sequence[Array]]]) -> Array:
     """As `floor_widening`, were runs as unsteady as the blocks of a recording are."""
     recorded, simulated = [], []
     for recording, others in alone:
@@ -258,9 +248,7 @@ def _block_widening(
     return _beyond(np.array(recorded), np.array(simulated))
 
 
-def _sets(
-    own: NDArray[np.float64], simulated: NDArray[np.float64], rng: np.random.Generator
-) -> NDArray[np.float64]:
+def _sets(own: Array, simulated: Array, rng: np.random.Generator) -> Array:
     """How far the recordings differ by group, and after them as many drawn from all.
 
     Each set is measured by the scatter of those outside it, so that any might be the recordings.
@@ -277,7 +265,7 @@ def _sets(
     return costs
 
 
-def _beyond(recorded: NDArray[np.float64], simulated: NDArray[np.float64]) -> NDArray[np.float64]:
+def _beyond(recorded: Array, simulated: Array) -> Array:
     """Ratio of what is recorded to what is simulated, root mean square, where that is unusual."""
     rng = np.random.default_rng(0)
     n_conditions, n_sets = simulated.shape[:2]
@@ -289,7 +277,7 @@ def _beyond(recorded: NDArray[np.float64], simulated: NDArray[np.float64]) -> ND
     return np.fmax(ratio, 1.0)
 
 
-def _mean(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+def _mean(rows: Array) -> Array:
     """Mean of the columns, NaN where nothing is known."""
     known = np.isfinite(rows)
     with np.errstate(invalid="ignore"):

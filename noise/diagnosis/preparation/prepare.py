@@ -32,13 +32,13 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import gamma
 
 from features.kernels.spectra import segment_spectra
 from models.condition import known_condition
 from models.sensors import Sensor
 from models.units import CHANNEL_UNITS
+from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import USABLE
 from noise.diagnosis.preparation.settled_part import settled_parts
 from sim.acquisition import Acquisition, decimate
@@ -121,7 +121,7 @@ def estimated_noise(recordings: Sequence[Recording], kind: str, step: float = 0.
     return float(np.sqrt(max(level**2 - step**2 / 12.0, 0.0)))
 
 
-def _floors(x: NDArray[np.float64], rate: float) -> tuple[float, float] | None:
+def _floors(x: Array, rate: float) -> tuple[float, float] | None:
     """Power of the two quietest bands of a signal [unit^2]."""
     t = np.arange(x.size)
     x = x - (x[0] + (x[-1] - x[0]) / max(x.size - 1, 1) * t)  # a shaft turns all the time
@@ -147,7 +147,7 @@ _OFF = 0.005
 assumed."""
 
 
-def measured_speed(angle: NDArray[np.float64], rate: float) -> float:
+def measured_speed(angle: Array, rate: float) -> float:
     """Mean speed of a shaft [rad/s].
 
     Parameters
@@ -279,7 +279,7 @@ def converter_step(recordings: Sequence[Recording], kind: str) -> float:
     return middle if np.allclose(told, middle, rtol=_SAME, atol=0.0) else 0.0
 
 
-def _step(x: NDArray[np.float64]) -> float:
+def _step(x: Array) -> float:
     """Greatest common divisor of what samples differ by; 0 if none, NaN if they say nothing."""
     values = np.unique(x[:: max(1, x.size // _LOOKED_AT)])
     if values.size < _FEWEST:

@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
 from models.condition import known_condition
+from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import segment_frequency
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.diagnosis.text.words import joined
@@ -86,7 +86,7 @@ def start_of(recording: Recording) -> float:
     return max(starts)
 
 
-def _start_by_angle(angle: NDArray[np.float64], rate: float) -> float:
+def _start_by_angle(angle: Array, rate: float) -> float:
     block = max(1, round(_BLOCK * rate))
     n = angle.size // block
     turned = angle * (1.0 if angle[-1] >= angle[0] else -1.0)
@@ -100,7 +100,7 @@ def _start_by_angle(angle: NDArray[np.float64], rate: float) -> float:
     return min((settled + _LAG) * block, angle.size) / rate if settled else 0.0
 
 
-def _start_by_sticking(torque: NDArray[np.float64], rate: float) -> float:
+def _start_by_sticking(torque: Array, rate: float) -> float:
     """When a torque has come to rise as fast as it does later: while it sticks, as the shaft turns.
 
     What is seldom exceeded is the rate of rise in the stick phase, whatever falls in between.
@@ -115,9 +115,7 @@ def _start_by_sticking(torque: NDArray[np.float64], rate: float) -> float:
     return min(settled * hop + length, torque.size) / rate if settled else 0.0
 
 
-def _settled(
-    values: NDArray[np.float64], n_early: int, over: float, smallest: float, larger: float
-) -> int:
+def _settled(values: Array, n_early: int, over: float, smallest: float, larger: float) -> int:
     """Return from where on values are what they are late; 0 where they do not begin otherwise."""
     first_late = round(_LATE * values.size)
     late = values[first_late:].mean()
@@ -132,7 +130,7 @@ def _settled(
     return settled
 
 
-def _continuous(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+def _continuous(angle: Array) -> Array:
     """Angle between the steps of its converter: straight from where it crosses one to the next.
 
     How many samples lie below a step is when it is crossed, however often noise makes it be.
@@ -150,7 +148,7 @@ def _continuous(angle: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(found)
 
 
-def _start_from_zero(torque: NDArray[np.float64], rate: float) -> float:
+def _start_from_zero(torque: Array, rate: float) -> float:
     """When a torque that begins at zero has come to where it stays."""
     turned = torque * (1.0 if torque.mean() >= 0.0 else -1.0)
     late = turned[round(_LATE * turned.size) :]

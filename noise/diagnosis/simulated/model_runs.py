@@ -22,7 +22,8 @@ from models.radiation.impulse_responses import ImpulseResponses
 from models.recording import Recording
 from models.rig import Fit, LawSpec, Rig
 from models.sensors import Sensor
-from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
+from noise.base.arrays import Array
+from noise.diagnosis.gap.distance import KINDS, channel_signature, joined_signature
 from noise.diagnosis.simulated.repeats import (
     Scatter,
     chain_changes,
@@ -151,9 +152,7 @@ class ModelRuns:
     _changed: _Cache[Changed] = field(init=False, default_factory=lambda: _Cache())
     _motions: _Cache[Motion] = field(init=False, default_factory=lambda: _Cache())
     _signals: _Cache[Signals] = field(init=False, default_factory=lambda: _Cache())
-    _parts: _Cache[NDArray[np.float64]] = field(
-        init=False, default_factory=lambda: _Cache(_SIGNATURES)
-    )
+    _parts: _Cache[Array] = field(init=False, default_factory=lambda: _Cache(_SIGNATURES))
 
     def __post_init__(self) -> None:
         self.transfer_functions = TransferFunctionCache(self.rig, self.library)
@@ -187,9 +186,7 @@ class ModelRuns:
             decimation=DIAGNOSIS.decimation(template.rate), sensors=self.rig.sensors,
         )  # fmt: skip
 
-    def noise_free_signature(
-        self, model: Model, template: Recording, seed: int
-    ) -> NDArray[np.float64]:
+    def noise_free_signature(self, model: Model, template: Recording, seed: int) -> Array:
         """Return the signature of a run without scatter, and without noise of ideal sensors.
 
         Parameters
@@ -202,7 +199,7 @@ class ModelRuns:
         Returns
         -------
         ndarray, shape (n_values,)
-            As of `noise.diagnosis.gap.signature.signature`.
+            As of `noise.diagnosis.gap.distance.signature`.
 
         Raises
         ------
@@ -214,7 +211,7 @@ class ModelRuns:
         key, signals = self._radiated(model, effects, template, fine, seed, _EXACT)
         read = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
 
-        def part(kind: str) -> NDArray[np.float64]:
+        def part(kind: str) -> Array:
             sensor = through.sensors.of(kind)
             decimation = DIAGNOSIS.decimation(template.rate)
             sampled = decimate_sensed(read[kind], decimation, fine, sensor)

@@ -32,6 +32,7 @@ from models.recording import Channel, Recording
 from models.rig import Fit, Rig
 from models.sensors import Sensor, Sensors
 from models.transfer_functions.transfer_function import TransferFunction
+from noise.base.arrays import Array
 from noise.diagnosis.evidence.reconstruction import closed_length, closed_spectrum
 from noise.diagnosis.simulated.transfer_functions import (
     TransferFunctionCache,
@@ -152,7 +153,7 @@ def heard_of(
     return Sound(acceleration, pressure, pulses)
 
 
-def faded(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+def faded(signal: Array, rate: float) -> Array:
     """Fade in and out.
 
     Errors of a measured response have it ring before and after whatever is sudden, for as long as
@@ -252,7 +253,7 @@ def nominal_recordings(
         }
         angle = decimate_sensed(motion.shaft_angle, decimation, plan.rate, rig.sensors.of("angle"))
         lumped = lumped_bushing(once, *at)
-        outputs: dict[str, NDArray[np.float64]] = {}
+        outputs: dict[str, Array] = {}
         for corner in {corners[name] for name in _OUTPUTS}:
             paths = {n: transfer_functions[n] for n in _OUTPUTS if corners[n] == corner}
             torque = _steadied(by_filter[corner], kept, rate)
@@ -346,7 +347,7 @@ def _with_effects(
     )  # fmt: skip
 
 
-def _steadied(torque: NDArray[np.float64], kept: slice, rate: float) -> NDArray[np.float64]:
+def _steadied(torque: Array, kept: slice, rate: float) -> Array:
     mean = torque[kept].mean()
     return np.asarray(mean + faded(torque - mean, rate))
 
@@ -526,7 +527,7 @@ def repeat_motion(plan: Plan, rng: np.random.Generator, tolerance: float | None 
 
 
 def record(
-    signals: Mapping[str, NDArray[np.float64]],
+    signals: Mapping[str, Array],
     rate: float,
     condition: Condition,
     rng: np.random.Generator,

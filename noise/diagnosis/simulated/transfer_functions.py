@@ -27,6 +27,7 @@ from models.transfer_functions.filtering import (
 )
 from models.transfer_functions.measured import measured_with
 from models.transfer_functions.transfer_function import TransferFunction
+from noise.base.arrays import Array
 from noise.diagnosis.evidence.reconstruction import closed_length, closed_spectrum
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
@@ -175,9 +176,7 @@ def with_chain_effects(
     return found
 
 
-def predict(
-    torque: NDArray[np.float64], rate: float, transfer: TransferFunction
-) -> NDArray[np.float64]:
+def predict(torque: Array, rate: float, transfer: TransferFunction) -> Array:
     """Send a torque through a transfer function.
 
     Parameters
@@ -212,7 +211,7 @@ def predict_outputs(
     rate: float,
     transfer_functions: Mapping[str, TransferFunction],
     changes: Mapping[str, NDArray[np.complex128]] | None = None,
-) -> dict[str, NDArray[np.float64]]:
+) -> dict[str, Array]:
     """Send a torque through several transfer functions, as `predict` does through one.
 
     Parameters
@@ -323,7 +322,7 @@ def with_clamp_shifted(
 
 
 def _clamp_shift(
-    frequencies: NDArray[np.float64], nominal: LumpedBushing, scattered: LumpedBushing
+    frequencies: Array, nominal: LumpedBushing, scattered: LumpedBushing
 ) -> NDArray[np.complex128]:
     s = 2j * np.pi * frequencies
     of_nominal, of_scattered = (

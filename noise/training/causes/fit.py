@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from noise.base.arrays import Array
 from noise.base.trees import BoostedTrees
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
 from noise.diagnosis.evidence.summary import evidence, scale_of
@@ -232,7 +233,7 @@ def train_posterior(
     )
 
 
-def null_scale(cases: Sequence[Known], names: Sequence[str]) -> NDArray[np.float64]:
+def null_scale(cases: Sequence[Known], names: Sequence[str]) -> Array:
     """Scatter of each number in cases without a cause, of quiet benches where there are enough.
 
     Returns
@@ -283,7 +284,7 @@ def with_channels(case: Known, channels: Sequence[str]) -> Known:
     table, truth = case.table, case.truth
     kept = np.array([_is_known(name, channels) for name in table.names])
 
-    def without(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    def without(rows: Array) -> Array:
         return np.where(kept, rows, np.nan)
 
     lost = {f"{kind}_{what}" for kind in CHANNELS for what in ("noise", "step")} - {
@@ -307,9 +308,7 @@ def with_fewer(case: Known, rng: np.random.Generator) -> Known:
     return replace(case, table=replace(changed, conditions=conditions))
 
 
-def with_rows(
-    table: CaseTable, change: Callable[[NDArray[np.float64]], NDArray[np.float64]]
-) -> CaseTable:
+def with_rows(table: CaseTable, change: Callable[[Array], Array]) -> CaseTable:
     """Return a table with the same change of all numbers, arrays of shape (..., n_numbers)."""
     return replace(
         table,
@@ -337,7 +336,7 @@ def _is_known(name: str, channels: Sequence[str]) -> bool:
     return kind in ("torque", "angle") or "torque" in channels or what.startswith(_OWN)
 
 
-def _fitted_weights(odds: NDArray[np.float64], y: NDArray[np.int64]) -> NDArray[np.float64]:
+def _fitted_weights(odds: Array, y: NDArray[np.int64]) -> Array:
     """Logistic regression for each cause, drawn to that of all causes together."""
     x = odds_features(odds)
     common = _logistic(x.reshape(-1, x.shape[2]), y.reshape(-1), np.zeros(x.shape[2]), 1e-6)
@@ -346,9 +345,7 @@ def _fitted_weights(odds: NDArray[np.float64], y: NDArray[np.int64]) -> NDArray[
     )
 
 
-def _logistic(
-    x: NDArray[np.float64], y: NDArray[np.int64], prior: NDArray[np.float64], stiffness: float
-) -> NDArray[np.float64]:
+def _logistic(x: Array, y: NDArray[np.int64], prior: Array, stiffness: float) -> Array:
     """Newton's method; the ridge pulls towards `prior`."""
     w = prior.copy()
     for _ in range(40):

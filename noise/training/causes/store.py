@@ -19,13 +19,13 @@ from pickle import UnpicklingError
 
 import joblib
 import numpy as np
-from numpy.typing import NDArray
 
 from models.condition import known_condition
 from models.errors import BushingNoiseError, ParameterError
 from models.recording import Recording
 from models.rig import Rig
 from models.sensors import Sensors
+from noise.base.arrays import Array
 from noise.base.files import atomic, check_target
 from noise.diagnosis.evidence.summary import CaseTable, NominalNumbers, Numbers, case_table
 from noise.diagnosis.preparation.prepare import prepared
@@ -112,7 +112,7 @@ def _alike(one: Sensors, other: Sensors) -> bool:
     return True
 
 
-def _single(x: NDArray[np.float64]) -> NDArray[np.float64]:
+def _single(x: Array) -> Array:
     """Round to single precision: cases stored in half the space are still the same ones."""
     return x.astype(np.float32).astype(np.float64)
 

@@ -23,19 +23,19 @@ from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.rig import LawSpec
 from models.sensors import Sensor, Sensors
-from noise.diagnosis.cases.draws import draw_numbers, log_uniform
-from noise.diagnosis.cases.strengths import drawn_effect
+from noise.base import log_uniform
+from noise.base.arrays import Array
+from noise.diagnosis.cases.draws import draw_numbers, drawn_effect
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects import EFFECTS
 from sim.friction import friction_law
 from sim.shaft import LoggedSpeed
 
 if TYPE_CHECKING:
-    Course = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+    Course = Callable[[Array], Array]
 
 
 _STEP = 5e-4
@@ -80,7 +80,7 @@ def draw_start(
 
 
 def _rest(seconds: float, rng: np.random.Generator) -> Course:
-    ramp = log_uniform(rng, 3e-3, 0.25 * seconds)
+    ramp = log_uniform(3e-3, 0.25 * seconds, rng)
     power = float(rng.uniform(0.6, 1.6))
     return lambda t: np.minimum(t / ramp, 1.0) ** power
 
@@ -89,7 +89,7 @@ def _run_up(seconds: float, rng: np.random.Generator) -> Course:
     low, ramp = float(rng.uniform(0.2, 0.85)), float(rng.uniform(0.1, _LATEST)) * seconds
     smooth = bool(rng.random() < 0.5)
 
-    def course(t: NDArray[np.float64]) -> NDArray[np.float64]:
+    def course(t: Array) -> Array:
         x = np.minimum(t / ramp, 1.0)
         return low + (1.0 - low) * (x * x * (3.0 - 2.0 * x) if smooth else x)
 
@@ -97,7 +97,7 @@ def _run_up(seconds: float, rng: np.random.Generator) -> Course:
 
 
 def _swing(seconds: float, rng: np.random.Generator) -> Course:
-    depth, frequency = float(rng.uniform(0.08, 0.5)), log_uniform(rng, 3.0, 25.0)
+    depth, frequency = float(rng.uniform(0.08, 0.5)), log_uniform(3.0, 25.0, rng)
     decay = float(rng.uniform(0.02, _LATEST / math.log(1e3))) * seconds
     phase = float(rng.uniform(0.0, 2.0 * math.pi))
     return lambda t: 1.0 + depth * np.exp(-t / decay) * np.sin(2 * np.pi * frequency * t + phase)
@@ -329,9 +329,9 @@ def draw_bench(rng: np.random.Generator) -> Bench:
 
 def _sensors(rng: np.random.Generator) -> dict[str, Any]:
     return {
-        "noise": {k: x * log_uniform(rng, *_NOISE) for k, x in Acquisition().noise.items()},
+        "noise": {k: x * log_uniform(*_NOISE, rng) for k, x in Acquisition().noise.items()},
         "bits": int(rng.integers(_BITS[0], _BITS[1] + 1)) if rng.random() < 0.55 else 0,
-        "ranges": log_uniform(rng, 0.5, 2.0),
+        "ranges": log_uniform(0.5, 2.0, rng),
     }
 
 
@@ -341,12 +341,12 @@ def _records(rng: np.random.Generator) -> dict[str, Any]:
 
 
 def _sizes(rng: np.random.Generator) -> dict[str, Any]:
-    return {"sizes": {name: log_uniform(rng, 1.0 / _LARGEST, _LARGEST) for name in SIZES}}
+    return {"sizes": {name: log_uniform(1.0 / _LARGEST, _LARGEST, rng) for name in SIZES}}
 
 
 def _listed(rng: np.random.Generator) -> dict[str, Any]:
     names = rng.choice(sorted(EFFECTS), int(rng.integers(1, 3)), replace=False).tolist()
-    drawn = (drawn_effect(name, log_uniform(rng, *_LISTED), rng) for name in names)
+    drawn = (drawn_effect(name, log_uniform(*_LISTED, rng), rng) for name in names)
     return {"listed": tuple(drawn)}
 
 

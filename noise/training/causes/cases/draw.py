@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from models.radiation.impulse_responses import ImpulseResponses
@@ -21,7 +20,8 @@ from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
 from models.rig import Fit, Rig
 from models.sensors import Sensors
-from noise.diagnosis.cases.strengths import drawn_effect
+from noise.base.arrays import Array
+from noise.diagnosis.cases.draws import drawn_effect
 from noise.diagnosis.simulated.model_runs import OFFSETS, with_offsets
 from noise.diagnosis.simulated.repeats import (
     CHANNELS,
@@ -366,12 +366,8 @@ def _heard_in(effect: ActiveEffect, before: ImpulseResponses, after: ImpulseResp
 
 
 def _sampled(
-    signal: NDArray[np.float64],
-    decimation: int,
-    kind: str,
-    sensors: Sensors,
-    rng: np.random.Generator,
-) -> NDArray[np.float64]:
+    signal: Array, decimation: int, kind: str, sensors: Sensors, rng: np.random.Generator
+) -> Array:
     """Decimate, add white noise, a coloured one and a drift, and convert."""
     x = decimate(signal, decimation)
     sensor = sensors.of(kind)
@@ -391,7 +387,7 @@ def _sampled(
 
 
 @lru_cache(maxsize=4)
-def _unsteady(n: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _unsteady(n: int) -> tuple[Array, Array]:
     """By what white noise of `n` samples is divided to be coloured, and a drift [-]."""
     return np.sqrt(1.0 + np.fft.rfftfreq(n) / 1e-3), np.linspace(-1.0, 1.0, n)
 

@@ -13,7 +13,9 @@ from scipy.fft import irfft
 from models.radiation.impulse_responses import ImpulseResponses
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.cases.draws import log_uniform, log_uniforms
+from noise.base import log_uniform
+from noise.base.arrays import Array
+from noise.diagnosis.cases.draws import log_uniforms
 
 if TYPE_CHECKING:
     from sim.bushing import LumpedBushing
@@ -86,15 +88,15 @@ class Structure:
     """
 
     bushing: LumpedBushing
-    beams: NDArray[np.float64]
-    plate: NDArray[np.float64]
-    anchors: NDArray[np.float64]
+    beams: Array
+    plate: Array
+    anchors: Array
     lever: float
     clamp_to_pressure: float
     distance: float
 
     def from_torque(
-        self, frequency: NDArray[np.float64]
+        self, frequency: Array
     ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Responses of acceleration and pressure to the torque.
 
@@ -141,7 +143,7 @@ class Structure:
         struck = _modes(frequency, self.anchors)
         late = np.exp(-2j * np.pi * frequency * self.distance / _SOUND_SPEED)
 
-        def impulse(response: NDArray[np.complex128]) -> NDArray[np.float64]:
+        def impulse(response: NDArray[np.complex128]) -> Array:
             return np.asarray(irfft(response * taper, 2 * n)[:n])
 
         return ImpulseResponses(
@@ -171,7 +173,7 @@ def draw_structure(
         n = int(rng.integers(2, 6))
         low, damping = log_uniforms(rng, 110.0, 900.0, n), rng.uniform(0.01, 0.03, n)
         beams = np.concatenate([beams, [low, damping, rng.uniform(0.4, 2.5, n)]], axis=1)
-    loud = 0.012 * trade.loud * log_uniform(rng, 0.4, 2.5)
+    loud = 0.012 * trade.loud * log_uniform(0.4, 2.5, rng)
     plate = [
         log_uniforms(rng, 110.0, 12e3, n_plate),
         rng.uniform(*trade.damping_ratios, n_plate),
@@ -193,7 +195,7 @@ def draw_structure(
     )
 
 
-def _modes(frequency: NDArray[np.float64], modes: NDArray[np.float64]) -> NDArray[np.complex128]:
+def _modes(frequency: Array, modes: Array) -> NDArray[np.complex128]:
     total = np.zeros(frequency.size, dtype=complex)
     for f, damping, constant in modes.T.tolist():
         x = frequency / f
@@ -203,7 +205,7 @@ def _modes(frequency: NDArray[np.float64], modes: NDArray[np.float64]) -> NDArra
 
 def _as_measured(
     response: NDArray[np.complex128], rng: np.random.Generator, poor: bool
-) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+) -> tuple[NDArray[np.complex128], Array]:
     """Add the scatter of an average over impacts, whose coherence falls with what is passed."""
     size = np.abs(response)
     floor = 0.006 * float(np.median(size)) * (1.0 + (30.0 / _LINES) ** 2)
