@@ -51,19 +51,46 @@ def grow_boosted_trees(
     >>> trees.probabilities(np.array([[0.0, 0.0], [8.0, np.nan]])).argmax(axis=1).tolist()
     [0, 2]
     """
+    # Shallow trees that see a third of the features each: what is learned from made-up sound has to
+    # hold for other sound.
+    rounds, base = boosted_nodes(
+        x, y, weight=weight, max_iter=n_rounds, learning_rate=0.1, max_leaf_nodes=16,
+        min_samples_leaf=10, max_features=0.3, random_state=seed,
+    )  # fmt: skip
+    return as_arrays([(k, tree) for trees in rounds for k, tree in enumerate(trees)], base)
+
+
+def boosted_nodes(
+    x: NDArray[np.floating[Any]],
+    y: NDArray[np.int64],
+    *,
+    weight: NDArray[np.float64] | None = None,
+    **settings: Any,
+) -> tuple[list[list[NDArray[Any]]], NDArray[np.float64]]:
+    """Boost trees by scikit-learn, which keeps them where only its estimator looks.
+
+    Parameters
+    ----------
+    x, y, weight
+        As of `grow_boosted_trees`; two classes may be enough, and weights even.
+    **settings
+        Of `sklearn.ensemble.HistGradientBoostingClassifier`.
+
+    Returns
+    -------
+    rounds : list of list of structured ndarray, shape (n_nodes,)
+        Nodes of the trees of each round: one a class, one in all for two classes.
+    base : ndarray, shape (n_trees_a_round,)
+        Scores before any tree [-].
+    """
     from sklearn.ensemble import HistGradientBoostingClassifier
     from threadpoolctl import threadpool_limits
 
-    # Shallow trees that see a third of the features each: what is learned from made-up sound has to
-    # hold for other sound.
-    model = HistGradientBoostingClassifier(
-        max_iter=n_rounds, learning_rate=0.1, max_leaf_nodes=16, min_samples_leaf=10,
-        max_features=0.3, l2_regularization=1.0, early_stopping=False, random_state=seed,
-    )  # fmt: skip
+    model = HistGradientBoostingClassifier(l2_regularization=1.0, early_stopping=False, **settings)
     with threadpool_limits(1):  # sums are the same on every machine
         model.fit(x, y, sample_weight=weight)
-    grown = [(k, tree.nodes) for trees in model._predictors for k, tree in enumerate(trees)]
-    return as_arrays(grown, np.asarray(model._baseline_prediction).reshape(-1))
+    rounds = [[tree.nodes for tree in trees] for trees in model._predictors]
+    return rounds, np.asarray(model._baseline_prediction).reshape(-1)
 
 
 def as_arrays(grown: Sequence[tuple[int, NDArray[Any]]], base: NDArray[np.float64]) -> BoostedTrees:

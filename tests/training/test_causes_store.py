@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import ast
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import noise
 from models.errors import ParameterError
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.training.causes import __main__ as command, store
@@ -54,3 +57,14 @@ def test_the_command_trains_on_files(folder, monkeypatch):
     monkeypatch.setattr(sys, "argv", ["causes", "train", str(folder), "--out", str(target)])
     assert command.main() == 0
     assert load_posterior(target).card["cases"] == 2 * store.CHUNK
+
+
+def test_no_private_module_of_scikit_learn_is_imported():
+    private = {
+        node.module
+        for path in Path(noise.__file__).parent.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("sklearn.")
+        if any(part.startswith("_") for part in (node.module or "").split("."))
+    }
+    assert not private  # they move with any release

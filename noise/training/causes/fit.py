@@ -7,22 +7,20 @@ what is true of all of them is true of fewer, and what the trees make of the one
 left out is chance. A part is learned with channels taken away, so that fewer signals are answered
 less surely rather than wrongly.
 
-Boosted trees of one cause, each of which is offered a few of many columns.
-
-A tree that is offered a twelfth of the columns learns as much as one that is offered all, and takes
-a twelfth of the time: what is learned from few cases is limited by these, not by the columns.
-scikit-learn's estimator counts histograms of all columns for each tree, whatever share of them a
-split may use; so its trees are grown here one by one.
+A split is offered a few of many columns: what is learned from few cases is limited by these, not
+by the columns.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize
+from scipy.special import expit
 
 from noise.base.arrays import Array
 from noise.base.trees import BoostedTrees
@@ -30,21 +28,18 @@ from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds
 from noise.diagnosis.evidence.summary import evidence, scale_of
 from noise.diagnosis.simulated.repeats import CHANNELS
 from noise.training.causes.cases.draw import Truth, seen_through
-from noise.training.trees import as_arrays
+from noise.training.trees import as_arrays, boosted_nodes
 
 if TYPE_CHECKING:
     from noise.diagnosis.evidence.summary import CaseTable
 
 _OFFERED = 80
-"""Columns that a tree is offered."""
+"""Columns that a split is offered."""
 
 _LEARNING_RATE = 0.05
 _LEAVES, _FEWEST_IN_A_LEAF = 14, 8
-_RIDGE = 1.0
-"""Of the values of leaves, in units of their curvature [-]."""
-
-_BINS = 64
-"""Of a column's values, the last being for missing ones."""
+_BINS = 63
+"""Of a column's values."""
 
 _CERTAIN = 6.0
 """Logarithmic odds of a cause that no case has, or all have."""
@@ -78,63 +73,17 @@ def grow_cause_trees(
     >>> (trees.scores(np.array([[4.0, 0.0, 0.0], [0.0, 4.0, 4.0]])) > 0.0).tolist()
     [[True, False], [False, True]]
     """
-    from joblib import Parallel, delayed
-    from sklearn.ensemble._hist_gradient_boosting.binning import _BinMapper
-
-    mapper = _BinMapper(n_bins=_BINS, random_state=seed, n_threads=1)
-    binned = np.ascontiguousarray(mapper.fit_transform(x.astype(np.float64)).T)
     # A cause that no case has, or all have, needs no trees.
-    met = [k for k in range(y.shape[1]) if 0 < y[:, k].sum() < len(y)]
-    grown = Parallel(n_jobs=-1, prefer="threads")(
-        delayed(_grow)(binned, mapper, y[:, k], n_rounds, np.random.default_rng([seed, k]))
-        for k in met
-    )
     base = np.where(y.any(axis=0), _CERTAIN, -_CERTAIN)
-    base[met] = [_log_odds(y[:, k]) for k in met]
-    return as_arrays([(k, t) for k, trees in zip(met, grown, strict=True) for t in trees], base)
-
-
-def _grow(
-    binned: NDArray[np.uint8],
-    mapper: Any,
-    y: NDArray[np.int64],
-    n_rounds: int,
-    rng: np.random.Generator,
-) -> list[NDArray[Any]]:
-    """Return the nodes of each tree, of columns in rows of `binned`."""
-    from sklearn.ensemble._hist_gradient_boosting.grower import TreeGrower
-
-    odds = np.full(y.size, _log_odds(y))
-    counts = np.asarray(mapper.n_bins_non_missing_)
-    trees = []
-    for _ in range(n_rounds):
-        chosen = np.sort(rng.permutation(len(binned))[:_OFFERED])
-        offered = binned[chosen].T
-        p = 1.0 / (1.0 + np.exp(-odds))
-        grower = TreeGrower(
-            offered,
-            (p - y).astype(np.float32),
-            (p * (1.0 - p)).astype(np.float32),
-            max_leaf_nodes=_LEAVES,
-            min_samples_leaf=_FEWEST_IN_A_LEAF,
-            n_bins=_BINS,
-            n_bins_non_missing=counts[chosen],
-            l2_regularization=_RIDGE,
-            shrinkage=_LEARNING_RATE,
-            n_threads=1,  # sums are the same on every machine
-        )
-        grower.grow()
-        tree = grower.make_predictor([mapper.bin_thresholds_[j] for j in chosen])
-        odds += tree.predict_binned(offered, _BINS - 1, 1)
-        nodes = tree.nodes.copy()
-        nodes["feature_idx"] = chosen[nodes["feature_idx"]]
-        trees.append(nodes)
-    return trees
-
-
-def _log_odds(y: NDArray[np.int64]) -> float:
-    share = float(y.mean())
-    return float(np.log(share / (1.0 - share)))
+    grown = []
+    for k in (k for k in range(y.shape[1]) if 0 < y[:, k].sum() < len(y)):
+        rounds, (base[k],) = boosted_nodes(
+            x, y[:, k], max_iter=n_rounds, learning_rate=_LEARNING_RATE, max_leaf_nodes=_LEAVES,
+            min_samples_leaf=_FEWEST_IN_A_LEAF, max_bins=_BINS,
+            max_features=min(_OFFERED / x.shape[1], 1.0), random_state=seed + k,
+        )  # fmt: skip
+        grown += [(k, tree) for (tree,) in rounds]
+    return as_arrays(grown, base)
 
 
 N_ROUNDS = 450
@@ -346,14 +295,13 @@ def _fitted_weights(odds: Array, y: NDArray[np.int64]) -> Array:
 
 
 def _logistic(x: Array, y: NDArray[np.int64], prior: Array, stiffness: float) -> Array:
-    """Newton's method; the ridge pulls towards `prior`."""
-    w = prior.copy()
-    for _ in range(40):
-        p = 1.0 / (1.0 + np.exp(-np.clip(x @ w, -30.0, 30.0)))
-        gradient = x.T @ (p - y) + stiffness * (w - prior)
-        curvature = (x * (p * (1.0 - p))[:, None]).T @ x + (stiffness + 1e-6) * np.eye(len(w))
-        step = np.linalg.solve(curvature, gradient)
-        w -= step * min(1.0, 4.0 / (float(np.abs(step).max()) + 1e-12))
-        if float(np.abs(step).max()) < 1e-8:
-            break
-    return np.asarray(w)
+    """Logistic regression whose weights a ridge pulls towards `prior`."""
+
+    def cost(w: Array) -> tuple[float, Array]:
+        odds = np.clip(x @ w, -30.0, 30.0)
+        loss = float(np.sum(np.logaddexp(0.0, odds) - y * odds))
+        away = w - prior
+        gradient = x.T @ (expit(odds) - y) + stiffness * away
+        return loss + 0.5 * stiffness * float(away @ away), gradient
+
+    return np.asarray(minimize(cost, prior, jac=True, method="BFGS", tol=1e-8).x)
