@@ -34,12 +34,6 @@ class PitchTrack:
     time: NDArray[np.float64]
     frequency: NDArray[np.float64]
 
-    @property
-    def median(self) -> float:
-        """Median pitch [Hz]; NaN without one."""
-        voiced = self.frequency[np.isfinite(self.frequency)]
-        return float(np.median(voiced)) if voiced.size else float("nan")
-
 
 def pitch_track(
     signal: ArrayLike, rate: float, *, lowest: float = 60.0, highest: float = 3000.0

@@ -32,7 +32,6 @@ OPTIONS = (
     Option("--out FILE.npz", Path, required=True),
     Option("--add DIR|TABLE", Path, repeated=True),
     Option("--samples N", whole_number(1)),
-    Option("--keep FILE.npz", Path),
     Option("--inference FILE.npz", Path),
     SEED,
 )
@@ -42,7 +41,6 @@ def run(options: Namespace) -> int:
     """Train, save, and tell the score."""
     for path, option, what in (
         (options.out, "--out", "a classifier"),
-        (options.keep, "--keep", "what was simulated"),
         (options.inference, "--inference", "a model"),
     ):
         if path is not None and (path.suffix.lower() != ".npz" or path.is_dir()):
@@ -84,7 +82,6 @@ def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Cla
         n_training=n or N_TRAINING,
         n_test=max(1, n // _PART_TO_SCORE) if n else N_TEST,
         added=added,
-        keep=options.keep,
         progress=_simulating,
         growing=partial(_growing, tell),
     )

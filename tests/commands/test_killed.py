@@ -38,7 +38,7 @@ CALLS = {
     "screen": ["screen", "PDMS", *MAP, "--simulations", "4", "--no-tolerances", "--sounds", "1",
                "--out", "screen"],
     "diagnose": ["diagnose", "bench", "--rig", "rig.toml", "--quick", "--out", "diagnosis"],
-    "train": ["train", "--samples", "20", "--keep", "kept.npz", "--out", "mine.npz"],
+    "train": ["train", "--samples", "20", "--out", "mine.npz"],
 }  # fmt: skip
 
 _TOOK = re.compile(rb'"seconds": [\d.]+|Screened in [\d.]+ s|Time taken</dt><dd>[\d.]+ s')

@@ -6,9 +6,7 @@ calibrates, and what is scored, was left out of what the trees were grown of
 (`noise.training.classifier.cross_fitting`). Another set of samples, of kinds that are known, is
 scored by the classifier itself.
 
-Simulated samples kept in a file: to simulate them takes longer than to learn from them.
-
-Real sounds that the classifier learns beside simulated ones; they say what it takes for a noise.
+Real sounds are learned beside simulated ones: they say what it takes for a noise.
 
 Stored are the features of their windows, not the sounds (``data/real_sounds.npz``), and their
 sources and licences, none of which forbids it: CC0, CC BY and MIT. After a change of the features
@@ -21,16 +19,12 @@ the columns ``file, class, source, licence``::
 from __future__ import annotations
 
 import csv
-import hashlib
-import json
 import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from importlib import resources
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -40,9 +34,7 @@ from numpy.typing import NDArray
 
 from models.blocks import RecordingBlocks
 from models.errors import ParameterError
-from models.foreign_file import read_arrays, reading
 from models.recording import Channel, Recording
-from noise.base.files import atomic
 from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.processes import ending_with_this
@@ -65,7 +57,6 @@ from noise.training.classifier.masked_rows import (
     columns_of_labels,
     mask,
     masked,
-    windows_of,
 )
 from noise.training.classifier.operating_point import scores
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, own_card
@@ -248,81 +239,6 @@ if __name__ == "__main__":
     _store(describe_folder(Path(sys.argv[1])), Path(str(target)))
 
 
-_PACKAGES = ("models", "sim", "features", "noise")
-_LIBRARIES = ("numba", "numpy", "scikit-learn", "scipy", "soundfile")
-"""What the samples come from."""
-
-
-def save_samples(path: Path, call: Sequence[object], samples: Sequence[Sample]) -> None:
-    """Keep samples.
-
-    Parameters
-    ----------
-    path : Path
-        Ends in .npz.
-    call : sequence
-        What decides the samples beside the program, as JSON can hold it.
-    samples : sequence of Sample
-
-    Raises
-    ------
-    ParameterError
-        The file cannot be written.
-    """
-    with atomic(path) as temporary:
-        np.savez_compressed(
-            temporary,
-            said=np.array(_said(call)),
-            features=np.concatenate([sample.features for sample in samples]),
-            windows=np.array([len(sample.features) for sample in samples]),
-            label=np.array([sample.label for sample in samples]),
-            ambiguous=np.array([sample.ambiguous for sample in samples]),
-            name=np.array([sample.name for sample in samples]),
-        )
-
-
-def load_samples(path: Path, call: Sequence[object]) -> list[Sample] | None:
-    """Return the samples of a call; None where the file has not those, or is none.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> one = Sample(np.zeros((2, 3), dtype=np.float32), "creak", False, "bushing")
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     save_samples(Path(folder) / "kept.npz", (0, 1), [one])
-    ...     (found,) = load_samples(Path(folder) / "kept.npz", (0, 1))
-    ...     found.features.shape, found.label, load_samples(Path(folder) / "kept.npz", (0, 2))
-    ((2, 3), 'creak', None)
-    """
-    try:
-        with reading(path, "file of samples"):
-            kept = read_arrays(path)
-            if str(kept["said"]) != _said(call):
-                return None
-            parts = np.split(kept["features"], np.cumsum(kept["windows"])[:-1])
-            told = (kept[name].tolist() for name in ("label", "ambiguous", "name"))
-            return [Sample(*one) for one in zip(parts, *told, strict=True)]
-    except ParameterError:  # none, or damaged
-        return None
-
-
-def _said(call: Sequence[object]) -> str:
-    return json.dumps([_program(), *call])
-
-
-@cache  # a process goes on with the program that it has loaded
-def _program() -> str:
-    """Digest of the program's sources and models, and of the libraries' versions."""
-    digest, root = hashlib.sha256(), Path(__file__).parents[3]
-    for library in _LIBRARIES:
-        digest.update(f"{library} {version(library)}\n".encode())
-    for path in sorted(one for package in _PACKAGES for one in (root / package).rglob("*")):
-        if path.is_file() and path.parent.name != "__pycache__":
-            digest.update(path.relative_to(root).as_posix().encode() + path.read_bytes())
-    return digest.hexdigest()
-
-
 N_TRAINING = 4300
 """Samples that are learned from."""
 
@@ -339,7 +255,6 @@ def train(
     n_training: int = N_TRAINING,
     n_test: int = N_TEST,
     added: Sequence[OwnSample] = (),
-    keep: Path | None = None,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
     growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
@@ -353,9 +268,6 @@ def train(
     added : sequence of OwnSample
         Of the user's own recordings, to learn from as well
         (`noise.training.classifier.own_samples`).
-    keep : Path, optional
-        File that keeps the simulated samples (`noise.training.classifier.fit`): they are
-        taken from it where it holds those of the same call by the same program.
     progress : callable, optional
         ``progress(samples, total)`` passes the samples on and shows how far it is.
     growing : callable, optional
@@ -379,12 +291,12 @@ def train(
     """
     n_made_up = round(_MADE_UP * n_training)
     total = n_made_up + n_training + n_test
-    call = (seed, n_training, n_test)
-    samples = None if keep is None else load_samples(keep, call)
-    if samples is None:
-        samples = _drawn(seed, n_made_up, total, progress)
-        if keep is not None:
-            save_samples(keep, call, samples)
+    seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
+    seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
+    draw = ending_with_this(draw_sample)
+    drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
+        delayed(draw)(one, bushings=i >= n_made_up) for i, one in enumerate(seeds)
+    )
     real = load_real_sounds()
     card: dict[str, object] = {
         "seed": seed,
@@ -392,7 +304,7 @@ def train(
         "licences": sorted(f"{name}: {licence}" for name, licence in real.licences.items()),
     }
     return learn(
-        samples,
+        list(progress(drawn, total) if progress else drawn),
         n_made_up + n_training,
         seed=seed,
         real=real.samples,
@@ -400,21 +312,6 @@ def train(
         card=card,
         growing=growing,
     )
-
-
-def _drawn(
-    seed: int,
-    n_made_up: int,
-    total: int,
-    progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None,
-) -> list[Sample]:
-    seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
-    seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
-    draw = ending_with_this(draw_sample)
-    drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(draw)(seeds[i], bushings=i >= n_made_up) for i in range(total)
-    )
-    return list(progress(drawn, total) if progress else drawn)
 
 
 def learn(
@@ -465,8 +362,9 @@ def learn(
     for name, kinds in (("pressure", SUBSETS[0]), ("three_channels", SUBSETS[1])):
         scored = masked(test, kinds)
         if scored:
-            x, group = windows_of(scored)
-            p = clearest(classifier.predict_proba(x[:, columns_of(classifier)]), group)
+            group = np.repeat(np.arange(len(scored)), [len(s.features) for s in scored])
+            x = np.concatenate([s.features for s in scored])[:, columns_of(classifier)]
+            p = clearest(classifier.predict_proba(x), group)
             said[name] = scores(p, columns_of_labels(scored), LABELS.index("unknown"))
     return replace(classifier, card=said)
 

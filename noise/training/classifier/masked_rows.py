@@ -86,24 +86,6 @@ def masked(samples: Sequence[Sample], kinds: tuple[str, ...]) -> list[Sample]:
     ]
 
 
-def windows_of(samples: Sequence[Sample]) -> tuple[NDArray[np.float32], NDArray[np.intp]]:
-    """Return windows of all samples.
-
-    Parameters
-    ----------
-    samples : sequence of Sample
-
-    Returns
-    -------
-    features : ndarray of float32, shape (n_windows, n_features)
-        By `noise.labels.windows.FEATURE_NAMES` [unit of each feature].
-    group : ndarray of int, shape (n_windows,)
-        Which sample each is of.
-    """
-    group = np.repeat(np.arange(len(samples)), [len(s.features) for s in samples])
-    return np.concatenate([s.features for s in samples]), group
-
-
 def mask(features: NDArray[np.float32], kinds: tuple[str, ...]) -> NDArray[np.float32]:
     """Return features with those of other kinds of channel than `kinds` missing.
 
