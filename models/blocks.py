@@ -2,18 +2,12 @@
 
 Reading a part gives the samples that reading the whole gives, bit for bit, so what is computed from
 parts does not depend on how long a recording is.
-
-Windows, filters and transforms grow with the sampling rate, and at 10 MHz half a second is as much
-as minutes of sound. Above 400 kHz every so many samples are therefore made one, through a filter
-without delay.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,15 +21,6 @@ Read = Callable[[int, int], NDArray[np.float64]]
 _PIECE = 1 << 17
 """Samples of a piece."""
 
-HIGHEST_WORKED = 400e3
-"""Rates above it are brought below it [Hz]; measuring cards for sound reach 384 kHz."""
-
-_REACH = 10
-"""Samples of the result that the filter reaches to either side."""
-
-_PASS_BAND = 0.8
-"""Where the filter has fallen to half, over half of the new rate."""
-
 
 @dataclass(frozen=True, eq=False)
 class RecordingBlocks:
@@ -44,7 +29,7 @@ class RecordingBlocks:
     Parameters
     ----------
     rate : float
-        Sampling rate [Hz], at most `HIGHEST_WORKED`.
+        Sampling rate [Hz]
     channels : tuple of Channel
     condition : Condition
     calibrated : bool
@@ -75,14 +60,10 @@ class RecordingBlocks:
         """Return a recording in memory as one of which parts can be had."""
         if isinstance(recording, RecordingBlocks):
             return recording
-        read, n_samples, rate = decimated(
-            lambda first, last: recording.samples[:, first:last],
-            recording.samples.shape[1],
-            recording.rate,
-        )
         return cls(
-            rate, recording.channels, recording.condition, recording.calibrated, recording.name,
-            n_samples, read,
+            recording.rate, recording.channels, recording.condition, recording.calibrated,
+            recording.name, recording.samples.shape[1],
+            lambda first, last: recording.samples[:, first:last],
         )  # fmt: skip
 
     def cut(self, first: int, last: int) -> Recording:
@@ -198,57 +179,3 @@ def in_pieces(read: Read, n_samples: int, length: int = _PIECE) -> Iterator[NDAr
     """
     for first in range(0, n_samples, length):
         yield read(first, min(first + length, n_samples))
-
-
-def decimated(read: Read, n_samples: int, rate: float) -> tuple[Read, int, float]:
-    """Bring a recording to a rate that can be worked with.
-
-    Parameters
-    ----------
-    read : callable
-        From first and last sample to the samples between them, shape (n_channels, n) [unit of
-        each channel].
-    n_samples : int
-        Of each channel.
-    rate : float
-        [Hz]
-
-    Returns
-    -------
-    read : callable
-    n_samples : int
-    rate : float
-        [Hz]; all three as they were, up to `HIGHEST_WORKED`.
-
-    Examples
-    --------
-    >>> ones = np.ones((1, 10_000))
-    >>> read, n, rate = decimated(lambda first, last: ones[:, first:last], 10_000, 1e6)
-    >>> n, round(rate), np.allclose(read(100, 110), 1.0)
-    (3334, 333333, True)
-    """
-    every = math.ceil(rate / HIGHEST_WORKED)
-    if every <= 1:
-        return read, n_samples, rate
-    n = -(-n_samples // every)
-
-    def read_decimated(first: int, last: int) -> NDArray[np.float64]:
-        from scipy.signal import upfirdn
-
-        last = min(last, n)
-        taps, reach = _taps(every), _REACH * every
-        start, end = first * every - reach, (last - 1) * every + reach + 1
-        there = read(max(start, 0), min(end, n_samples))
-        missing = (max(0, -start), max(0, end - n_samples))
-        padded = np.pad(there, ((0, 0), missing), mode="edge")
-        filtered = upfirdn(taps, padded, 1, every, axis=1)
-        return np.ascontiguousarray(filtered[:, 2 * _REACH : 2 * _REACH + last - first])
-
-    return read_decimated, n, rate / every
-
-
-@lru_cache(maxsize=8)
-def _taps(every: int) -> NDArray[np.float64]:
-    from scipy.signal import firwin
-
-    return np.asarray(firwin(2 * _REACH * every + 1, _PASS_BAND / every, window=("kaiser", 8.0)))

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from models.blocks import RecordingBlocks, decimated
+from models.blocks import RecordingBlocks
 from models.calibration import Calibration
 from models.errors import RecordingError, naming
 from models.foreign_file import reading, refusing
@@ -215,10 +215,10 @@ def _in_chunks(path: Path, raw: RawRecording, meaning: Meaning) -> RecordingBloc
             unwrapping.add(samples, first)
         return samples
 
-    worked, n_samples, rate = decimated(read_unwrapped, raw.n_samples, raw.rate)
     return RecordingBlocks(
-        rate, channels, meaning.condition, meaning.calibrated, path.name, n_samples, worked
-    )
+        raw.rate, channels, meaning.condition, meaning.calibrated, path.name, raw.n_samples,
+        read_unwrapped,
+    )  # fmt: skip
 
 
 def _to_units(

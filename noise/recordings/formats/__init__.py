@@ -27,7 +27,7 @@ from models.recording import Channel
 if TYPE_CHECKING:
     from noise.recordings.formats.logged import LoggedChannel
 
-LOWEST_RATE, HIGHEST_RATE = 1.0, 10e6
+LOWEST_RATE, HIGHEST_RATE = 1.0, 400e3
 """Sampling rates that are possible [Hz]; filters and windows grow with them."""
 
 
@@ -131,13 +131,13 @@ def check_rate(rate: float, where: str) -> None:
     Raises
     ------
     RecordingError
-        It lies outside of 1 Hz to 10 MHz, or is no number.
+        It lies outside of 1 Hz to 400 kHz, or is no number.
 
     Examples
     --------
     >>> check_rate(1e8, "run.wav")
     Traceback (most recent call last):
-    models.errors.RecordingError: run.wav: sampling rate is 1e+08 Hz, expected 1 Hz to 10 MHz
+    models.errors.RecordingError: run.wav: sampling rate is 1e+08 Hz, expected 1 Hz to 400 kHz
     """
     if not LOWEST_RATE <= rate <= HIGHEST_RATE:
-        raise RecordingError(f"{where}: sampling rate is {rate:g} Hz, expected 1 Hz to 10 MHz")
+        raise RecordingError(f"{where}: sampling rate is {rate:g} Hz, expected 1 Hz to 400 kHz")
