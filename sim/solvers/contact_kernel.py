@@ -17,16 +17,6 @@ from numba import float64, int64, njit, types
 from models.compilation import COMPILED, PART
 from sim.contact import CRITICAL, KINETIC, STICKS
 from sim.solvers import contact_rates as at
-from sim.solvers.contact_rates import (
-    N_LAG,
-    N_STAGES,
-    Bushing,
-    Drive,
-    Hooks,
-    Limits,
-    Rows,
-    contact_rates,
-)
 from sim.solvers.tsitouras import (
     NODES,
     factor_of_step,
@@ -67,11 +57,11 @@ _LEAST_FACTOR = 0.2
 _VECTOR = float64[::1]
 _MATRIX = float64[:, ::1]
 _RECORD = types.BaseTuple.from_types
-_BUSHING = _RECORD([_VECTOR, int64, _VECTOR, _VECTOR, _VECTOR], Bushing)
-_HOOKS = _RECORD([int64, int64[:, ::1]], Hooks)
-_DRIVE = _RECORD([float64, _VECTOR, _VECTOR, _VECTOR], Drive)
-_ROWS = _RECORD([_MATRIX, *[_VECTOR] * 7], Rows)
-_LIMITS = _RECORD([float64, float64], Limits)
+_BUSHING = _RECORD([_VECTOR, int64, _VECTOR, _VECTOR, _VECTOR], at.Bushing)
+_HOOKS = _RECORD([int64, int64[:, ::1]], at.Hooks)
+_DRIVE = _RECORD([float64, _VECTOR, _VECTOR, _VECTOR], at.Drive)
+_ROWS = _RECORD([_MATRIX, *[_VECTOR] * 7], at.Rows)
+_LIMITS = _RECORD([float64, float64], at.Limits)
 
 
 @njit(**PART)
@@ -149,7 +139,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
     k, start, end, u = rows.stages, rows.start, rows.end, rows.state
     slope, step, tolerance = drive.slope, drive.step, limits.tolerance
     n, d = direction_out.size, u.size
-    lag = d - N_LAG if hooks.n > 0 else d
+    lag = d - at.N_LAG if hooks.n > 0 else d
     last = max(drive.speed.size - 2, 0)  # segment of the drive
     t_crit, t_kin = s[8], s[9]
     bushing.contact[CRITICAL], bushing.contact[KINETIC] = t_crit, t_kin
@@ -182,11 +172,11 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             time = (first + sample) * step
             i = min(sample, last)
             stick_time = time - stick_start if mode == 0 else stick_length
-            friction, e, holding, critical, caught, shaft = contact_rates(
-                int64(N_STAGES), (sample - i) * step, i, time, stick_time, mode, bushing, hooks,
+            friction, e, holding, critical, caught, shaft = at.contact_rates(
+                int64(at.N_STAGES), (sample - i) * step, i, time, stick_time, mode, bushing, hooks,
                 drive, rows,
             )  # fmt: skip
-            surface = k[0, N_STAGES]
+            surface = k[0, at.N_STAGES]
             out[0, sample], out[1, sample] = friction, e
             out[2, sample], out[3, sample], out[4, sample] = u[0], surface, u[2]
             out[5, sample], out[6, sample] = u[3], shaft
@@ -208,7 +198,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             mode, fresh, error_before = next_mode, True, 1.0
         for j in range(d):
             start[j] = end[j]
-            k[j, 0] = k[j, N_STAGES - 1]
+            k[j, 0] = k[j, at.N_STAGES - 1]
         while i0 < last and (i0 + 1) * step <= t0 + _TIME_TOLERANCE:
             i0 += 1
             if abs(slope[i0] - slope[i0 - 1]) > kink:
@@ -222,13 +212,13 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
         ends = False
         while True:
             n_done += 1.0
-            for stage in range(begin, N_STAGES):
+            for stage in range(begin, at.N_STAGES):
                 fill_stage(u, start, k, stage, h)
                 t = t0 + NODES[stage] * h
                 i = min(max(int(t / step), i0), i_last)
                 time = first * step + t
                 stick_time = time - stick_start if mode == 0 else stick_length
-                friction, e, holding, critical, caught, shaft = contact_rates(
+                friction, e, holding, critical, caught, shaft = at.contact_rates(
                     stage, t - i * step, i, time, stick_time, mode, bushing, hooks, drive,
                     rows,
                 )  # fmt: skip
@@ -315,7 +305,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             step_of_slip = min(follows, limits.longest)
         else:
             step_of_stick = min(follows, limits.longest)
-            end[1] = k[0, N_STAGES - 1]  # the surface goes with the shaft
+            end[1] = k[0, at.N_STAGES - 1]  # the surface goes with the shaft
         if has_law:
             if ends:  # the sliding turns
                 slide, far_start = -slide, -far

@@ -17,28 +17,7 @@ import numpy as np
 from numba import njit
 
 from models.compilation import PART
-from sim.contact import (
-    CREEP,
-    CRITICAL,
-    ELASTOMER_TORQUE,
-    KINETIC,
-    SHAFT_ANGLE,
-    SHAFT_INERTIA,
-    SHAFT_LAG,
-    SHAFT_LAG_RATE,
-    SHAFT_SPEED,
-    SHAFT_TORQUE,
-    SLIDING_SPEED,
-    STICK_TIME,
-    STIFFNESS,
-    TIME,
-    TORQUE,
-    TWIST,
-    TWIST_RATE,
-    call_hook_at,
-    call_law_at,
-    pointer,
-)
+from sim import contact as shared
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -81,28 +60,31 @@ def contact_rates(
     critical, kinetic, creep = t_crit, t_kin, 0.0
     mobility, shaft_torque = 0.0, 0.0
     if hooks.n > 0:
-        context[TIME], context[STICK_TIME] = time, stick_time
+        context[shared.TIME], context[shared.STICK_TIME] = time, stick_time
         turned = since * (drive.speed[i] + 0.5 * acceleration * since)
-        context[SHAFT_ANGLE] = drive.angle[i] + turned
-        context[SHAFT_SPEED], context[TWIST] = shaft, twist
-        context[SHAFT_LAG], context[SHAFT_LAG_RATE] = u[lag], u[lag + 1]
+        context[shared.SHAFT_ANGLE] = drive.angle[i] + turned
+        context[shared.SHAFT_SPEED], context[shared.TWIST] = shaft, twist
+        context[shared.SHAFT_LAG], context[shared.SHAFT_LAG_RATE] = u[lag], u[lag + 1]
         # A creeping contact relieves the elastomer's damper, on whose torque its creep depends:
         # a share is sought that makes itself, by secants from rest.
         share, share_before, gap_before = 0.0, 0.0, 0.0
         for turn in range(_MOST_CREEP_PASSES):
-            context[SLIDING_SPEED], context[TWIST_RATE] = shaft - surface, surface - u[3]
-            context[TORQUE] = e
-            contact[CRITICAL], contact[KINETIC] = t_crit, t_kin
-            contact[STIFFNESS], contact[ELASTOMER_TORQUE] = k_e, 0.0
-            contact[CREEP], contact[SHAFT_TORQUE] = 0.0, 0.0
-            contact[SHAFT_INERTIA] = math.inf
+            context[shared.SLIDING_SPEED], context[shared.TWIST_RATE] = (
+                shaft - surface,
+                surface - u[3],
+            )
+            context[shared.TORQUE] = e
+            contact[shared.CRITICAL], contact[shared.KINETIC] = t_crit, t_kin
+            contact[shared.STIFFNESS], contact[shared.ELASTOMER_TORQUE] = k_e, 0.0
+            contact[shared.CREEP], contact[shared.SHAFT_TORQUE] = 0.0, 0.0
+            contact[shared.SHAFT_INERTIA] = math.inf
             at, seen, where = contact.ctypes, context.ctypes, hooks.addresses
             for a in range(hooks.n):
-                call_hook_at(
-                    where[a, 0], seen, pointer(where[a, 1]), pointer(where[a, 2]),
-                    pointer(where[a, 3]), at,
+                shared.call_hook_at(
+                    where[a, 0], seen, shared.pointer(where[a, 1]), shared.pointer(where[a, 2]),
+                    shared.pointer(where[a, 3]), at,
                 )  # fmt: skip
-            creep = contact[CREEP]
+            creep = contact[shared.CREEP]
             gap = creep - share
             if not sticks or gap == 0.0:
                 break
@@ -116,13 +98,13 @@ def contact_rates(
             e = k_e * twist + c_e * (surface - u[3])
             if settled:
                 break
-        e += (contact[STIFFNESS] - k_e) * twist + contact[ELASTOMER_TORQUE]
-        kinetic = contact[KINETIC]
+        e += (contact[shared.STIFFNESS] - k_e) * twist + contact[shared.ELASTOMER_TORQUE]
+        kinetic = contact[shared.KINETIC]
         # What slides at a torque can be held by it, whatever an effect says.
-        critical = max(contact[CRITICAL], kinetic)
-        if contact[SHAFT_INERTIA] != math.inf:
-            mobility = 1.0 / contact[SHAFT_INERTIA]
-            shaft_torque = contact[SHAFT_TORQUE]
+        critical = max(contact[shared.CRITICAL], kinetic)
+        if contact[shared.SHAFT_INERTIA] != math.inf:
+            mobility = 1.0 / contact[shared.SHAFT_INERTIA]
+            shaft_torque = contact[shared.SHAFT_TORQUE]
     # What holds the surfaces together, on a shaft whose end yields to the same torque.
     if mobility == 0.0:
         holding = e + j_e * acceleration
@@ -130,7 +112,7 @@ def contact_rates(
         holding = (e + j_e * shaft_torque * mobility) / (1.0 + j_e * mobility)
     if has_law:
         # Laws have the first of the inner states, effects those after.
-        friction = call_law_at(
+        friction = shared.call_law_at(
             bushing.law, shaft - surface, bushing.coefficients.ctypes, contact.ctypes,
             rows.inner.ctypes, rows.inner_rates.ctypes,
         )  # fmt: skip
@@ -156,37 +138,25 @@ def contact_rates(
 SHORTEST_STEP = 1e-7
 """Average over a run, below which it is given up [s]."""
 
-MODE = 0
-"""+1 or -1 while it slides, 0 in stick and with a law."""
-SLIDE = 1
-"""Sign of the sliding speed with a law, 0 while that is not known."""
-STICK_START = 2
-"""When the last stick began [s]."""
-STICK_LENGTH = 3
-"""Of the last stick [s]."""
-ANGLE = 4
-"""Of the drive at the next sample [rad]."""
-FIRST = 5
-"""The next sample."""
-STEP_START = 6
-"""Of the last step, since the next sample [s]."""
-STEP_END = 7
-"""[s]"""
-STEP_OF_STICK = 8
-"""The next step as the error allows it, in stick [s]."""
-STEP_OF_SLIP = 9
-"""[s]"""
-FRESH = 10
-"""Whether the rates at the end of the last step are to be computed anew."""
-DONE = 11
-"""Steps since the start; negative where they became too many."""
-FAR = 12
-"""From the end of stick or slip, at the end of the last step."""
-NEXT_MODE = 13
-"""After the last step."""
-ERROR = 14
-"""Of the last step, over the tolerance."""
-N_CARRIED = 15
+# What is carried on from block to block, by place.
+(
+    MODE,  # +1 or -1 while it slides, 0 in stick and with a law
+    SLIDE,  # sign of the sliding speed with a law, 0 while that is not known
+    STICK_START,  # when the last stick began [s]
+    STICK_LENGTH,  # of the last stick [s]
+    ANGLE,  # of the drive at the next sample [rad]
+    FIRST,  # the next sample
+    STEP_START,  # of the last step, since the next sample [s]
+    STEP_END,  # [s]
+    STEP_OF_STICK,  # the next step as the error allows it, in stick [s]
+    STEP_OF_SLIP,  # [s]
+    FRESH,  # whether the rates at the end of the last step are to be computed anew
+    DONE,  # steps since the start; negative where they became too many
+    FAR,  # from the end of stick or slip, at the end of the last step
+    NEXT_MODE,  # after the last step
+    ERROR,  # of the last step, over the tolerance
+    N_CARRIED,
+) = range(16)
 
 N_STAGES = 7
 """Of a step of `sim.solvers.tsitouras`."""
@@ -199,70 +169,94 @@ N_LAG = 2
 
 
 class Bushing(NamedTuple):
-    """The lumped model and its friction, as compiled code reads them."""
+    """The lumped model and its friction, as compiled code reads them.
+
+    Parameters
+    ----------
+    system : ndarray, shape (10,)
+        J_E, J_C, k_E, k_B, c_E, c_B, the inertias' reciprocals, T_crit, T_kin.
+    law : int
+        Address of the friction law's compiled function; 0 where the contact truly sticks.
+    coefficients : ndarray
+        Of the law.
+    context, contact : ndarray
+        What effects read, and what they change and laws read, by `sim.contact`.
+    """
 
     system: NDArray[np.float64]
-    """J_E, J_C, k_E, k_B, c_E, c_B, the inertias' reciprocals, T_crit, T_kin."""
     law: int
-    """Address of the friction law's compiled function; 0 where the contact truly sticks."""
     coefficients: NDArray[np.float64]
-    """Of the law."""
     context: NDArray[np.float64]
-    """What effects read, by `sim.contact`."""
     contact: NDArray[np.float64]
-    """What effects change and laws read, by `sim.contact`."""
 
 
 class Hooks(NamedTuple):
-    """What the effects' compiled functions are called with."""
+    """What the effects' compiled functions are called with.
+
+    Parameters
+    ----------
+    n : int
+        Of effects that act.
+    addresses : ndarray, shape (n, 4)
+        Of function, values, states and their rates of each effect: numbers instead of arrays, since
+        each array would be seven arguments to compile and to pass.
+    """
 
     n: int
-    """Of effects that act."""
     addresses: NDArray[np.int64]
-    """Of function, values, states and their rates of each effect, shape (n, 4).
-    Numbers instead of arrays, since each array would be seven arguments to compile and to pass."""
 
 
 class Drive(NamedTuple):
-    """The shaft's drive at the samples, linear between them, as far as it is known."""
+    """The shaft's drive at the samples, linear between them, as far as it is known.
+
+    Parameters
+    ----------
+    step : float
+        From sample to sample [s].
+    speed, angle : ndarray
+        [rad/s], [rad]
+    slope : ndarray
+        After each sample [rad/s2]; the last goes on beyond them.
+    """
 
     step: float
-    """From sample to sample [s]."""
     speed: NDArray[np.float64]
-    """[rad/s]"""
     slope: NDArray[np.float64]
-    """After each sample [rad/s2]; the last goes on beyond them."""
     angle: NDArray[np.float64]
-    """[rad]"""
 
 
 class Rows(NamedTuple):
-    """States of all variables, or their rates, and room for them."""
+    """States of all variables, or their rates, and room for them.
+
+    Parameters
+    ----------
+    stages : ndarray, shape (n, N_STAGES + 1)
+        Rates of each variable at the stages of the last step, then those at an output.
+    weights : ndarray, shape (N_STAGES,)
+        Of the stages.
+    start, end : ndarray, shape (n,)
+        States where the last step began and ended.
+    state, rates : ndarray, shape (n,)
+        At one instant; of the rates those that laws and effects fill.
+    inner, inner_rates : ndarray
+        Of these what comes after the motion: the law's, then the effects', then the lag.
+    """
 
     stages: NDArray[np.float64]
-    """Rates of each variable at the stages of the last step, then those at an output."""
     weights: NDArray[np.float64]
-    """Of the stages."""
     start: NDArray[np.float64]
-    """State where the last step began."""
     end: NDArray[np.float64]
-    """State where it ended."""
     state: NDArray[np.float64]
-    """At one instant."""
     rates: NDArray[np.float64]
-    """At that instant, of what laws and effects fill."""
     inner: NDArray[np.float64]
-    """Those of the state after the motion: the law's, then the effects', then the lag."""
     inner_rates: NDArray[np.float64]
 
 
 class Limits(NamedTuple):
-    """Of steps."""
+    """Of steps: the longest [s], and the error of a step over its scale [-]."""
 
     longest: float
-    """[s]"""
     tolerance: float
-    """Error of a step over its scale."""
 
 
 def empty_rows(n: int) -> Rows:

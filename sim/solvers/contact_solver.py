@@ -20,17 +20,6 @@ from numpy.typing import NDArray
 from models.errors import ParameterError
 from sim.contact import N_CONTACT, N_CONTEXT, address_of
 from sim.solvers import contact_rates as at
-from sim.solvers.contact_rates import (
-    N_LAG,
-    N_MOTION,
-    SHORTEST_STEP,
-    Bushing,
-    Drive,
-    Hooks,
-    Limits,
-    Rows,
-    empty_rows,
-)
 
 LONGEST_STEP = 1e-4
 """Whatever the error says: an effect may act at any time [s]."""
@@ -115,7 +104,7 @@ class ContactRun:
         from sim.solvers.contact_kernel import run_contact
 
         law_state = np.zeros(0) if law_state is None else law_state
-        self._rows = empty_rows(n_variables(law_state, hooks))
+        self._rows = at.empty_rows(n_variables(law_state, hooks))
         self._functions = law, hooks  # which the loop reads by their addresses
         self._constants = (
             contact_record(system, critical_torque, kinetic_torque, law, coefficients),
@@ -123,7 +112,7 @@ class ContactRun:
         )
         self._loop: Any = run_contact
         # The error of a step goes with the fifth power of its length.
-        self._limits = Limits(LONGEST_STEP / refined, tolerance / refined**5)
+        self._limits = at.Limits(LONGEST_STEP / refined, tolerance / refined**5)
         self._step, self._name = step, name
         self._parts = _parts(law, law_state.size, hooks)
         self._carried = np.zeros(at.N_CARRIED)
@@ -135,7 +124,7 @@ class ContactRun:
                 self._carried[[at.MODE, at.NEXT_MODE]] = math.copysign(1.0, start_speed - motion[1])
         elif law is None:
             self._rows.end[1] = start_speed
-        self._rows.end[N_MOTION : N_MOTION + law_state.size] = law_state
+        self._rows.end[at.N_MOTION : at.N_MOTION + law_state.size] = law_state
 
     @property
     def end_state(self) -> NDArray[np.float64]:
@@ -152,14 +141,14 @@ class ContactRun:
         direction : float
             Of the sliding, by its sign: +1 or -1, 0 in stick [-].
         """
-        motion = self._rows.end[:N_MOTION].copy()
+        motion = self._rows.end[: at.N_MOTION].copy()
         if not self._constants[0].law:
             return motion, float(self._carried[at.NEXT_MODE])
         return motion, math.copysign(1.0, shaft_speed - motion[1])
 
     def start_from(self, motion: NDArray[np.float64], direction: float, angle: float) -> None:
         """Start from a motion, as of `motion`, with the shaft at an angle [rad]."""
-        self._rows.end[:N_MOTION] = motion
+        self._rows.end[: at.N_MOTION] = motion
         self._carried[at.ANGLE] = angle
         if not self._constants[0].law:
             self._carried[[at.MODE, at.NEXT_MODE]] = direction
@@ -227,13 +216,13 @@ class ContactRun:
         )  # fmt: skip
         if self._carried[at.DONE] < 0.0:
             raise ParameterError(
-                f"{self._name}: the motion changes so fast that steps of {SHORTEST_STEP:g} s "
+                f"{self._name}: the motion changes so fast that steps of {at.SHORTEST_STEP:g} s "
                 "cannot follow; make the torque less steep with speed, shear and time, and parts "
                 "softer, heavier or less damped"
             )
         return states.T, direction
 
-    def _drive(self, speed: NDArray[np.float64], n: int) -> Drive:
+    def _drive(self, speed: NDArray[np.float64], n: int) -> at.Drive:
         """Return the drive from the next sample on, of which `n` are solved."""
         known, size = speed.size, max(n + 1, speed.size)
         slope, angle = np.zeros(size), np.zeros(size)
@@ -242,14 +231,14 @@ class ContactRun:
         angle[0] = self._carried[at.ANGLE]
         angle[1:known] = 0.5 * self._step * (speed[:-1] + speed[1:])
         np.cumsum(angle[:known], out=angle[:known])
-        return Drive(self._step, np.ascontiguousarray(speed), slope, angle)
+        return at.Drive(self._step, np.ascontiguousarray(speed), slope, angle)
 
 
 def _parts(law: Any, n_law: int, hooks: tuple[Hook, ...]) -> dict[Any, slice]:
     """Which variables are whose: of law and effects by their functions, of the lag by a name."""
     lengths = [(law, n_law), *((hook.function, hook.n_states) for hook in hooks)]
-    lengths += [("lag", N_LAG)] if hooks else []
-    parts, first = {}, N_MOTION
+    lengths += [("lag", at.N_LAG)] if hooks else []
+    parts, first = {}, at.N_MOTION
     for key, length in lengths:
         parts[key], first = slice(first, first + length), first + length
     return parts
@@ -257,8 +246,8 @@ def _parts(law: Any, n_law: int, hooks: tuple[Hook, ...]) -> dict[Any, slice]:
 
 def n_variables(law_state: NDArray[np.float64], hooks: tuple[Hook, ...]) -> int:
     """Count motion, the law's inner states (`law_state`, shape (n,)), the effects', and the lag."""
-    lag = N_LAG if hooks else 0
-    return N_MOTION + law_state.size + sum(hook.n_states for hook in hooks) + lag
+    lag = at.N_LAG if hooks else 0
+    return at.N_MOTION + law_state.size + sum(hook.n_states for hook in hooks) + lag
 
 
 def contact_record(
@@ -267,11 +256,11 @@ def contact_record(
     kinetic_torque: float,
     law: Any,
     coefficients: NDArray[np.float64] | None,
-) -> Bushing:
+) -> at.Bushing:
     """Return the lumped model and its friction as compiled code reads them; as of `ContactRun`."""
     j_e, j_c, _, k_b, _, _ = system
     mobilities = [1.0 / j_e, 0.0 if k_b < 0.0 else 1.0 / j_c]  # a fixed clamp does not move
-    return Bushing(
+    return at.Bushing(
         np.array([*system, *mobilities, critical_torque, kinetic_torque]),
         address_of(law),
         np.zeros(1) if coefficients is None else coefficients,
@@ -280,20 +269,20 @@ def contact_record(
     )
 
 
-def hooks_record(hooks: tuple[Hook, ...], rows: Rows, n_law: int) -> Hooks:
+def hooks_record(hooks: tuple[Hook, ...], rows: at.Rows, n_law: int) -> at.Hooks:
     """Return what the effects' functions are called with.
 
     Parameters
     ----------
     hooks : tuple of Hook
-    rows : Rows
+    rows : at.Rows
         Whose inner states are the law's, then theirs.
     n_law : int
         Inner states of the law. They and the hooks must outlive what is returned.
     """
-    addresses, first = np.zeros((len(hooks), 4), dtype=np.int64), N_MOTION + n_law
+    addresses, first = np.zeros((len(hooks), 4), dtype=np.int64), at.N_MOTION + n_law
     for row, hook in zip(addresses, hooks, strict=True):
         arrays = hook.values, rows.state[first:], rows.rates[first:]
         row[:] = [address_of(hook.function), *(array.ctypes.data for array in arrays)]
         first += hook.n_states
-    return Hooks(len(hooks), addresses)
+    return at.Hooks(len(hooks), addresses)
