@@ -101,9 +101,10 @@ class Robustness:
     Examples
     --------
     >>> from noise.screening.design import load_design
-    >>> found = robustness(load_design("PDMS"), np.random.default_rng(0), parts=4)
+    >>> design = load_design("fluorocarbon-thesis")
+    >>> found = robustness(design, np.random.default_rng(0), parts=4)
     >>> found.noisy.value, found.assumed
-    (0.0, True)
+    (1.0, True)
     """
 
     design: str

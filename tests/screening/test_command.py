@@ -103,7 +103,8 @@ kinetic_torque = 0.05
 
 @pytest.fixture
 def few(monkeypatch):
-    """Few parts, which take a tenth of the time, and no advice."""
+    """Few parts, also of the indices, which take a tenth of the time, and no advice."""
+    monkeypatch.setattr("noise.screening.parts._INDICES", 16)
     monkeypatch.setattr("noise.screening.screen.robustness", partial(robustness, parts=8))
     with no_advice():
         yield
