@@ -25,7 +25,7 @@ settings.load_profile("server" if os.environ.get("CI") else "desk")
 
 
 HERE = Path(__file__).parent
-MAINTENANCE = [HERE / folder for folder in ("exam", "training")]
+MAINTENANCE = [HERE / "exam", HERE / "training", HERE.parent / "noise" / "training"]
 
 
 def pytest_ignore_collect(collection_path, config):

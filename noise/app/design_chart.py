@@ -104,9 +104,11 @@ def chart_of(asked: ChartRequest) -> dict[str, object]:
 
     Examples
     --------
+    >>> from dataclasses import replace
     >>> from models.rig_file import load_material_rig
     >>> from noise.app.design_chart import ChartRequest
-    >>> found = chart_of(ChartRequest(load_material_rig("PDMS"), 2214.0, 23.0))
+    >>> rig = load_material_rig("PDMS")
+    >>> found = chart_of(ChartRequest(replace(rig, fits=rig.fits[:1]), 2214.0, 23.0))
     >>> found["legend"], 'data-label="none"' in found["html"]
     ('Quiet everywhere', True)
     """

@@ -74,11 +74,10 @@ def test_a_diagnosis_writes_the_rig_that_closes_its_gap(improved):
     assert named["gap_after"] < named["gap_recalibrated"]
     rig = load_rig(out / "improved.toml")
     assert [spec.name for spec in rig.effects] == ["velocity_weakening"]
-    again = diagnose(data, out / "improved.toml", quick=True)
+    again = diagnose(data, rig, quick=True)  # a rig, as a notebook gives it
     assert again.verdict == ()
     assert again.improved is None
     assert again.gap < 0.5 * told["gap"]
-    assert diagnose(data, rig, quick=True).gap == again.gap
 
 
 def test_an_improved_rig_says_from_what_it_is_and_how_sure(improved):

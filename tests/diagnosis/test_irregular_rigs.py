@@ -25,7 +25,7 @@ def scattered(scatter):
 def recordings(rig, seed=5):
     return tuple(
         simulate(
-            rig, speed, interference=fit, support_stiffness=support,
+            rig, speed, interference=fit, support_stiffness=support, seconds=0.5,
             rng=np.random.default_rng([seed, i]),
         ).recording
         for i, (speed, fit, support) in enumerate(CONDITIONS)

@@ -43,7 +43,7 @@ def test_one_recording_through_noisy_sensors_can_have_a_cause(tmp_path):
 @pytest.mark.parametrize("n", [1, 2])
 def test_p_values_of_repeats_are_even_and_those_of_others_fall_below_any_threshold(n):
     rng, p = np.random.default_rng(0), []
-    for _ in range(100):
+    for _ in range(50):
         known = reference(list(rng.normal(size=(12, len(NAMES)))))
         p.append(gap_of(list(rng.normal(size=(n, len(NAMES)))), [known] * n).p_value)
     assert np.mean(np.array(p) < 0.05) <= 0.12

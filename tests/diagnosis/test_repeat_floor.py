@@ -94,7 +94,7 @@ def test_p_values_of_100_second_rigs_without_effects_are_uniform(tmp_path):
 def test_exchanges_give_uniform_p_values_however_few_the_repeats():
     rng = np.random.default_rng(1)
     p_values = []
-    for _ in range(200):
+    for _ in range(100):
         runs = rng.standard_t(3, (2, 7, len(NAMES))) + rng.standard_t(3, (2, 7, 1))
         references = [reference(list(runs[i, 2:])) for i in (0, 0, 1)]
         references[1] = references[0]

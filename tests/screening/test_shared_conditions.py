@@ -80,7 +80,7 @@ def quick(monkeypatch):
     monkeypatch.setattr("noise.screening.screen.why_never_slipping", lambda *_: "")
 
 
-@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=8, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     designs=st.lists(bushings(), min_size=2, max_size=3),
     asked=st.none() | USE,
