@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from models.condition import Condition
 from models.drawing import BLUE, ORANGE, axes_or_new, thinned
 from models.errors import ParameterError
-from models.radiation.impulse_responses import ImpulseResponses, radiate, radiate_pulses
+from models.radiation.impulse_responses import ImpulseResponses, radiate
 from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
 from models.rig import Rig
@@ -209,7 +209,7 @@ def radiate_motion(
     force = pulse_force(motion, effects)
     pulse_pressure = np.zeros_like(pressure)
     if np.any(force):
-        struck, pulse_pressure = radiate_pulses(paths, force)
+        struck, pulse_pressure = radiate(paths, force, "pulse")
         acceleration += struck
         pressure += pulse_pressure
     return Sound(acceleration, pressure, pulse_pressure)

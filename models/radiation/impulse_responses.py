@@ -14,9 +14,8 @@ from scipy.fft import rfft
 
 from models.transfer_functions.filtering import convolve, transform_size
 
-Path = Literal[
-    "torque_to_acceleration", "torque_to_pressure", "pulse_to_acceleration", "pulse_to_pressure"
-]
+Source = Literal["torque", "pulse"]
+"""What drives the structure: the bushing's torque, or the anchors' pulse force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,18 +47,21 @@ class ImpulseResponses:
 
 
 def radiate(
-    paths: ImpulseResponses, torque: NDArray[np.float64]
+    paths: ImpulseResponses, signal: NDArray[np.float64], source: Source = "torque"
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Acceleration and sound pressure that a torque causes.
+    """Acceleration and sound pressure that a torque, or pulses of force, cause.
 
-    The first sample of the torque is taken to have acted for ever before, so a torque that
-    starts at a constant part makes no thump.
+    The first sample of a torque is taken to have acted for ever before, so a torque that starts at
+    a constant part makes no thump.
 
     Parameters
     ----------
     paths : ImpulseResponses
-    torque : ndarray, shape (n,)
-        Of the bushing on the clamp, sampled at their rate [Nm].
+    signal : ndarray, shape (n,)
+        Torque of the bushing on the clamp [Nm] or pulse force of the anchors on the plate [N],
+        sampled at their rate.
+    source : {"torque", "pulse"}
+        Which it is.
 
     Returns
     -------
@@ -74,48 +76,17 @@ def radiate(
     >>> acceleration.round(9), pressure.round(9)
     (array([0., 0., 2.]), array([0. , 0.5, 0.5]))
     """
-    change = torque - torque[:1]
-    return (
-        _along(paths, "torque_to_acceleration", change),
-        _along(paths, "torque_to_pressure", change),
+    change = signal - signal[:1] if source == "torque" else signal
+    acceleration, pressure = (
+        convolve(
+            change, response, _spectrum(paths, name, transform_size(change.size, response.size))
+        )
+        for name in (f"{source}_to_acceleration", f"{source}_to_pressure")
+        for response in [getattr(paths, name)]
     )
-
-
-def radiate_pulses(
-    paths: ImpulseResponses, pulse_force: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Acceleration and sound pressure that pulses cause, without those of the torque.
-
-    Parameters
-    ----------
-    paths : ImpulseResponses
-    pulse_force : ndarray, shape (n,)
-        Of the anchors on the plate, sampled at their rate [N].
-
-    Returns
-    -------
-    acceleration, pressure : ndarray, shape (n,)
-        [m/s2] and [Pa]
-
-    Examples
-    --------
-    >>> echo = ImpulseResponses(48e3, np.ones(1), np.ones(1), np.array([2.0]), np.array([0.0, 3.0]))
-    >>> acceleration, pressure = radiate_pulses(echo, np.array([1.0, 0.0]))
-    >>> acceleration.round(9), pressure.round(9)
-    (array([2., 0.]), array([0., 3.]))
-    """
-    return (
-        _along(paths, "pulse_to_acceleration", pulse_force),
-        _along(paths, "pulse_to_pressure", pulse_force),
-    )
-
-
-def _along(paths: ImpulseResponses, path: Path, signal: NDArray[np.float64]) -> NDArray[np.float64]:
-    impulse_response = getattr(paths, path)
-    size = transform_size(signal.size, impulse_response.size)
-    return convolve(signal, impulse_response, _spectrum(paths, path, size))
+    return acceleration, pressure
 
 
 @lru_cache(maxsize=16)
-def _spectrum(paths: ImpulseResponses, path: Path, size: int) -> NDArray[np.complex128]:
-    return np.asarray(rfft(getattr(paths, path), size))
+def _spectrum(paths: ImpulseResponses, name: str, size: int) -> NDArray[np.complex128]:
+    return np.asarray(rfft(getattr(paths, name), size))

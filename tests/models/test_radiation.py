@@ -7,7 +7,7 @@ import pytest
 
 from models.condition import FIXED
 from models.errors import ParameterError
-from models.radiation.impulse_responses import radiate_pulses
+from models.radiation.impulse_responses import radiate
 from models.radiation.rig_response import first_mode_damping, impulse_responses
 from models.rig_file import load_material_rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
@@ -49,7 +49,7 @@ def test_bolting_the_clamp_down_silences_the_pulses():
     bolted = impulse_responses(BENCH, TIGHT, FIXED, RATE)
     pulse = np.zeros(4800)
     pulse[100:105] = 10.0
-    acceleration, pressure = radiate_pulses(bolted, pulse)
+    acceleration, pressure = radiate(bolted, pulse, "pulse")
     assert not np.any(acceleration)
     assert not np.any(pressure)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from models.radiation.impulse_responses import radiate, radiate_pulses
+from models.radiation.impulse_responses import radiate
 from models.rig_file import load_material_rig
 from noise.diagnosis.cases.draws import drawn_curve
 from noise.training.causes.cases.draw import draw_case
@@ -43,7 +43,7 @@ def played(effect=None):
     if effect is not None and effect.force is not None:
         force = effect.force(motion, effect.forms[0], effects[0].values)
     chain = changed_chain(PLAIN_CHAIN, effects, np.random.default_rng(5))
-    parts = (radiate(chain, motion.torque), radiate_pulses(chain, force))
+    parts = (radiate(chain, motion.torque), radiate(chain, force, "pulse"))
     acceleration, pressure = (sum(each) for each in zip(*parts, strict=True))
     signals = {"torque": motion.torque, "acceleration": acceleration, "pressure": pressure}
     if effect is not None and effect.sensors is not None:

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from scipy.fft import rfft
 
 from models.condition import Condition, KnownCondition, known_condition
-from models.radiation.impulse_responses import ImpulseResponses, radiate_pulses
+from models.radiation.impulse_responses import ImpulseResponses, radiate
 from models.recording import Channel, Recording
 from models.rig import Fit, Rig
 from models.sensors import Sensor, Sensors
@@ -148,7 +148,7 @@ def heard_of(
     acceleration, pressure = (found[name][: kept.stop] for name in _OUTPUTS)
     force, pulses = pulse_force(motion, effects), np.zeros_like(pressure)
     if paths is not None and np.any(force):
-        struck, pulses = radiate_pulses(paths, force)
+        struck, pulses = radiate(paths, force, "pulse")
         acceleration, pressure = acceleration + struck, pressure + pulses
     return Sound(acceleration, pressure, pulses)
 
