@@ -132,7 +132,7 @@ def _behind_links(target: Path, option: str = "") -> Path:
 def _tidy(folder: Path) -> None:
     """Remove what processes that were killed left in a folder."""
     with suppress(OSError):  # a folder that may be written to but not listed
-        for path in folder.glob(".*.part*"):
+        for path in folder.glob(f".{'[0-9a-f]' * 32}.part*"):  # as `atomic` names them
             if time.time() - path.stat().st_mtime > _FORGOTTEN:
                 path.unlink()
 

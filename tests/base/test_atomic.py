@@ -32,13 +32,14 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path, interruption):
 
 
 def test_what_a_killed_program_left_behind_goes_a_day_later(tmp_path):
-    for name, age in (("a", 90_000), ("b", 80_000)):
-        left = tmp_path / f".{name}.part.csv"
+    names = [f".{'a' * 32}.part.csv", f".{'b' * 32}.part.csv", ".theirs.part.csv"]
+    for name, age in zip(names, (90_000, 80_000, 90_000), strict=True):
+        left = tmp_path / name
         left.write_text("half")
         os.utime(left, (time.time() - age,) * 2)
     with atomic(tmp_path / "table.csv") as path:
         path.write_text("whole")
-    assert sorted(one.name for one in tmp_path.iterdir()) == [".b.part.csv", "table.csv"]
+    assert sorted(one.name for one in tmp_path.iterdir()) == [*names[1:], "table.csv"]
 
 
 def test_a_full_disk_is_an_error_in_one_line(tmp_path):
