@@ -7,7 +7,6 @@ been used when the classifier has spoken, and are not kept.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +18,8 @@ from models.blocks import RecordingBlocks
 from models.recording import REFERENCE_PRESSURE
 from noise.base.labels import LABELS
 from noise.classifier import Classifier
-from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
-from noise.labels.windows import FEATURE_NAMES, WindowPages, columns_of, joined_frames
+from noise.labels.levels import CELL_RATE, sound_levels
+from noise.labels.windows import FEATURE_NAMES, WindowFeatures, columns_of, window_features
 
 _SILENT_LEVEL = 10.0
 """Calibrated sound below it is silence [dB re 20 uPa]: below any microphone's own noise."""
@@ -37,30 +36,9 @@ over those elsewhere [-]; assumed: of the recordings that the classifier learned
 such sounds."""
 
 
-@dataclass(frozen=True, eq=False)
-class Classified:
-    """What is known of a recording once its windows are classified.
-
-    Parameters
-    ----------
-    probabilities : ndarray, shape (n_windows, n_labels)
-        [-]; what is silent is ``none``.
-    of_frequency : ndarray of float32, shape (n_windows, n_features)
-        By `FREQUENCY_NAMES` [unit of each feature].
-    level, frames, cells
-        As `noise.labels.windows.WindowFeatures` has them.
-    """
-
-    probabilities: NDArray[np.float64]
-    of_frequency: NDArray[np.float32]
-    level: NDArray[np.float32]
-    frames: NDArray[np.float32]
-    cells: CellLevels
-
-
 def classified(
     blocks: RecordingBlocks, classifier: Classifier, *, at_rig: bool = False
-) -> Classified:
+) -> tuple[NDArray[np.float64], NDArray[np.float32], WindowFeatures]:
     """Describe and classify all windows of a recording.
 
     Parameters
@@ -73,28 +51,26 @@ def classified(
 
     Returns
     -------
-    Classified
+    probabilities : ndarray, shape (n_windows, n_labels)
+        [-]; what is silent is ``none``.
+    of_frequency : ndarray of float32, shape (n_windows, n_features)
+        By `FREQUENCY_NAMES` [unit of each feature].
+    found : WindowFeatures
+        Level, frames and cells of all windows.
     """
     columns = columns_of(classifier)
-    probabilities, of_frequency, shown = [], [], []
-    pages = WindowPages(blocks)
-    for page in pages:
-        probabilities.append(classifier.predict_proba(page.features[:, columns]))
-        of_frequency.append(page.features[:, FREQUENCY_COLUMNS])
-        shown.append(page._replace(features=page.features[:0]))
-    found = Classified(
-        np.concatenate(probabilities),
-        np.concatenate(of_frequency),
-        np.concatenate([page.level for page in shown]),
-        joined_frames(shown),
-        pages.cells,
-    )
+
+    def spoken(features: NDArray[np.float32]) -> NDArray[np.float64]:
+        p = classifier.predict_proba(features[:, columns])
+        return np.concatenate([p, features[:, FREQUENCY_COLUMNS]], axis=1)
+
+    found = window_features(blocks, spoken)
+    probabilities, of_frequency = np.split(found.features, [len(LABELS)], axis=1)
     if at_rig:
-        found.probabilities[:, LABELS.index("unknown")] *= _STRANGERS
-        found.probabilities[:] /= found.probabilities.sum(axis=1, keepdims=True)
-    silent = _silent_windows(blocks, found)
-    found.probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
-    return found
+        probabilities[:, LABELS.index("unknown")] *= _STRANGERS
+        probabilities /= probabilities.sum(axis=1, keepdims=True)
+    probabilities[_silent_windows(blocks, found)] = np.eye(len(LABELS))[LABELS.index("none")]
+    return probabilities, of_frequency.astype(np.float32), found
 
 
 def at_a_condition(blocks: RecordingBlocks) -> bool:
@@ -104,7 +80,7 @@ def at_a_condition(blocks: RecordingBlocks) -> bool:
     return any(value is not None for value in stated)
 
 
-def _silent_windows(blocks: RecordingBlocks, found: Classified) -> NDArray[np.bool_]:
+def _silent_windows(blocks: RecordingBlocks, found: WindowFeatures) -> NDArray[np.bool_]:
     """Whether nothing is to be heard in each window."""
     cells, n = found.cells, len(found.level)
     row = blocks.first("pressure")

@@ -8,14 +8,13 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.blocks import RecordingBlocks
 from models.recording import Recording
 from models.show import short_repr
 from noise.base.labels import LABELS
 from noise.classifier import Classifier
-from noise.labels.classified import Classified, at_a_condition, classified, segment_frequency
+from noise.labels.classified import at_a_condition, classified, segment_frequency
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
 from noise.labels.segmentation import change_points, labelled_stretches
 from noise.labels.windows import has_window_channel, tracks
@@ -219,42 +218,24 @@ def _label(
     if not has_window_channel(blocks):
         return [_nothing_to_tell(blocks, channel)]
     at_rig = surroundings in (None, "rig") and at_a_condition(blocks)
-    found = classified(blocks, classifier, at_rig=at_rig)
+    probabilities, of_frequency, found = classified(blocks, classifier, at_rig=at_rig)
     # At a condition nothing but the bushing is expected to sound: the likeliest label is said.
     thresholds = None if at_rig else classifier.thresholds[surroundings or "any"]
-    edges, names, heard = labelled_stretches(found.probabilities, thresholds, found.level)
+    edges, names, heard = labelled_stretches(probabilities, thresholds, found.level)
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
     last_cell = found.cells.count
     limits = [0, *np.clip(cells, 1, max(1, last_cell - 1)).tolist(), last_cell]
     parts = zip(pairwise(edges.tolist()), pairwise(limits), names.tolist(), heard, strict=True)
-    return [
-        _segment(blocks, found, channel, windows, cells, LABELS[name], p)
-        for windows, cells, name, p in parts
-        if cells[1] > cells[0]
-    ]
-
-
-def _segment(
-    blocks: RecordingBlocks,
-    found: Classified,
-    channel: str,
-    windows: tuple[int, int],
-    cells: tuple[int, int],
-    label: str,
-    probabilities: NDArray[np.float64],
-) -> Segment:
-    edges = found.cells.edges[list(cells)] / blocks.rate
-    level, level_dbfs = _levels(blocks, found.cells, *cells)
-    return Segment(
-        channel=channel,
-        start=float(edges[0]),
-        end=float(edges[1]),
-        label=label,
-        probabilities=dict(zip(LABELS, probabilities.tolist(), strict=True)),
-        frequency=segment_frequency(found.of_frequency[slice(*windows)], label),
-        level=level,
-        level_dbfs=level_dbfs,
-    )
+    segments = []
+    for windows, (first, last), name, p in parts:
+        if last <= first:
+            continue
+        start, end = (found.cells.edges[[first, last]] / blocks.rate).tolist()
+        frequency = segment_frequency(of_frequency[slice(*windows)], LABELS[name])
+        levels = _levels(blocks, found.cells, first, last)
+        by_label = dict(zip(LABELS, p.tolist(), strict=True))
+        segments.append(Segment(channel, start, end, LABELS[name], by_label, frequency, *levels))
+    return segments
 
 
 def _nothing_to_tell(blocks: RecordingBlocks, channel: str) -> Segment:
@@ -264,18 +245,10 @@ def _nothing_to_tell(blocks: RecordingBlocks, channel: str) -> Segment:
     if row is not None:
         # Few samples a second, so few in all.
         levels.add(0, blocks.n_samples, blocks.read(0, blocks.n_samples)[row], 0)
-    level, level_dbfs = _levels(blocks, levels, 0, levels.count)
-    certain = np.eye(len(LABELS))[LABELS.index("unknown")].tolist()
-    return Segment(
-        channel=channel,
-        start=0.0,
-        end=blocks.n_samples / blocks.rate,
-        label="unknown",
-        probabilities=dict(zip(LABELS, certain, strict=True)),
-        frequency=None,
-        level=level,
-        level_dbfs=level_dbfs,
-    )
+    certain = {label: float(label == "unknown") for label in LABELS}
+    end = blocks.n_samples / blocks.rate
+    found = _levels(blocks, levels, 0, levels.count)
+    return Segment(channel, 0.0, end, "unknown", certain, None, *found)
 
 
 def _levels(

@@ -8,9 +8,9 @@ at a time needs no more memory for a longer one.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,7 +80,7 @@ class WindowFeatures:
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        By `FEATURE_NAMES` [unit of each feature].
+        By `FEATURE_NAMES` [unit of each feature], or what is wanted of them.
     level : ndarray, shape (n_windows,)
         A-weighted power of the channel listened to, from 160 Hz to 7 kHz [dB re its unit].
     frames : ndarray of float32, shape (n_frames, n)
@@ -89,7 +89,7 @@ class WindowFeatures:
         Of that channel, all frequencies.
     """
 
-    features: NDArray[np.float32]
+    features: NDArray[Any]
     level: NDArray[np.float32]
     frames: NDArray[np.float32]
     cells: CellLevels
@@ -116,13 +116,18 @@ def tracks(blocks: RecordingBlocks, *, per_track: bool) -> Iterator[tuple[str, R
         yield "all", blocks
 
 
-def window_features(blocks: RecordingBlocks) -> WindowFeatures:
+def window_features(
+    blocks: RecordingBlocks,
+    reduced: Callable[[NDArray[np.float32]], NDArray[Any]] = lambda features: features,
+) -> WindowFeatures:
     """Compute the features of all windows of a recording.
 
     Parameters
     ----------
     blocks : RecordingBlocks
         With a channel of pressure, acceleration or torque, of which the first is listened to.
+    reduced : callable
+        From the features of some windows, shape (n, n_features), to what is wanted of each.
 
     Returns
     -------
@@ -138,14 +143,18 @@ def window_features(blocks: RecordingBlocks) -> WindowFeatures:
     (True, 97)
     """
     pages = WindowPages(blocks)
-    # Filled page by page: a list of pages and what it is put together to would take twice as much.
-    table = np.empty((pages.count, len(FEATURE_NAMES)), dtype=np.float32)
-    found = []
-    for page in pages:
-        table[page.first : page.first + len(page.features)] = page.features
-        found.append(page._replace(features=page.features[:0]))
+    found = [page._replace(features=reduced(page.features)) for page in pages]
+    # Where two pages have the same frame, the later one's is taken.
+    starts = [page.first * FRAMES_A_HOP for page in found]
+    ends = [*starts[1:], starts[-1] + len(found[-1].frames)]
+    frames = [
+        page.frames[: end - start] for page, start, end in zip(found, starts, ends, strict=True)
+    ]
     return WindowFeatures(
-        table, np.concatenate([page.level for page in found]), joined_frames(found), pages.cells
+        np.concatenate([page.features for page in found]),
+        np.concatenate([page.level for page in found]),
+        np.concatenate(frames),
+        pages.cells,
     )
 
 
@@ -162,24 +171,9 @@ class Page(NamedTuple):
     """
 
     first: int
-    features: NDArray[np.float32]
+    features: NDArray[Any]
     level: NDArray[np.float32]
     frames: NDArray[np.float32]
-
-
-def joined_frames(pages: Sequence[Page]) -> NDArray[np.float32]:
-    """Put the frames of pages together; where two have the same frame, the later one's is taken.
-
-    Returns
-    -------
-    ndarray of float32, shape (n_frames, n_columns)
-        In the [unit] of each column.
-    """
-    starts = [page.first * FRAMES_A_HOP for page in pages]
-    ends = [*starts[1:], starts[-1] + len(pages[-1].frames)]
-    return np.concatenate(
-        [page.frames[: end - start] for page, start, end in zip(pages, starts, ends, strict=True)]
-    )
 
 
 class WindowPages:
