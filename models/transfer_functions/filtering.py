@@ -182,8 +182,8 @@ def share_before_cause(transfer: TransferFunction) -> float:
     >>> [round(share) for share in shares]
     [0, 1]
     """
-    end, step = float(transfer.frequencies[-1]), float(np.min(np.diff(transfer.frequencies)))
-    impulse = irfft(transfer.at(np.arange(0.0, end, step), falls_below=True))
+    lines = np.arange(0.0, float(transfer.frequencies[-1]), transfer.spacing)
+    impulse = irfft(transfer.at(lines, falls_below=True))
     power = np.square(impulse)
     return float(np.sqrt(power[impulse.size // 2 :].sum() / power.sum()))
 
