@@ -36,13 +36,7 @@ _ALLOWANCE, _MOST = 64 << 20, 100
 
 _LONGEST_REASON = 200  # letters
 
-_KINDS = {
-    stat.S_IFDIR: "a folder",
-    stat.S_IFIFO: "a pipe",
-    stat.S_IFCHR: "a device",
-    stat.S_IFBLK: "a device",
-    stat.S_IFSOCK: "a socket",
-}
+_KINDS = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket"}
 
 
 class ExcessError(ValueError):
@@ -89,7 +83,7 @@ def reading(
     with refusing(where, what, error):
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):
-            kind = _KINDS.get(stat.S_IFMT(status.st_mode), "something else")
+            kind = _KINDS.get(stat.S_IFMT(status.st_mode), "a device")
             raise ExcessError(f"is {kind}, not a file")
         if largest is not None and status.st_size > largest:
             raise ExcessError(

@@ -162,8 +162,7 @@ def _tell_coherence(transfer: TransferFunction, least: float) -> None:
         return
     widest = sorted(sorted(bands, key=lambda band: band[0] - band[1])[:_MOST_BANDS])
     told = ", ".join(f"{low:.5g}-{high:.5g}" for low, high in widest)
-    narrower = len(bands) - len(widest)
-    more = f", and {narrower} narrower ones" * (narrower > 0)
+    more = ", and narrower ones" * (len(bands) > len(widest))
     note(f"coherence below {least:g}, not to be trusted: {told} Hz{more}")
 
 
@@ -176,8 +175,9 @@ def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) 
             write_transfer_function(outputs.enter_context(atomic(options.out)), transfer)
         if modes is not None:
             table = _mode_table(modes, transfer)
-            lines = zip(*table.values(), strict=True)
-            rows = [dict(zip(table, line, strict=True)) for line in lines]
+            rows = (
+                dict(zip(table, line, strict=True)) for line in zip(*table.values(), strict=True)
+            )
             write_table(outputs.enter_context(atomic(options.modes)), list(table), rows)
     if options.out is None and options.modes is None:
         if sys.stdout is None:
@@ -198,8 +198,7 @@ def _trusted(modes: Modes, transfer: TransferFunction, hits: list[Hit], least: f
     ):
         if left_out := int((~kept).sum()):
             note(f"{counted(left_out, 'mode')} left out, where {reason}")
-    kept = coherent & excited
-    return modes.only(kept)
+    return modes.only(coherent & excited)
 
 
 def _coherence(modes: Modes, transfer: TransferFunction) -> NDArray[np.float64]:

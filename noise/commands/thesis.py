@@ -34,7 +34,10 @@ def run(options: Namespace) -> int:
 def _write_table(out: Path | None) -> None:
     """Compute, write, and tell how many rows hold."""
     is_page = out is not None and out.suffix.lower() == _PAGE_ENDING
-    _check(out, is_page=is_page)
+    if not is_page:
+        check_table_path(out)
+    if out is not None:
+        check_target(out)
     say("preparing")
     from noise.thesis.page import thesis_page, verdict_counts
     from noise.thesis.row import COLUMNS
@@ -63,12 +66,3 @@ def _draw(folder: Path) -> None:
         path = folder / f"{name}.png"
         write_picture(path, figure)
         report(path)
-
-
-def _check(out: Path | None, *, is_page: bool) -> None:
-    """Refuse a file that the table cannot be written to."""
-    if out is None:
-        return
-    if not is_page:
-        check_table_path(out)
-    check_target(out)
