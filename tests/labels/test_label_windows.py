@@ -48,7 +48,7 @@ def reference():
     return described(noise(2.0, 192_000), 192_000.0)
 
 
-@pytest.mark.parametrize("rate", [16_000, 22_050, 30_000, 44_100, 48_000, 96_000])
+@pytest.mark.parametrize("rate", [16_000, 22_050, 44_100, 96_000])
 def test_features_do_not_depend_on_the_sampling_rate(reference, rate):
     found = described(resample_poly(noise(2.0, 192_000), rate, 192_000), rate)
     inside = slice(1, -1)  # the resampler's own ends

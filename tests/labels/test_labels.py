@@ -67,7 +67,7 @@ def test_noises_begin_and_end_where_they_were_put_to_50_ms(
         rig, speed, interference=interference, support_stiffness=stiffness, seconds=3.0
     ).recording["pressure"]
     rng = np.random.default_rng(0)
-    for _ in range(6):
+    for _ in range(3):
         begin, length = rng.uniform(1.0, 2.0), rng.uniform(1.2, 3.0)
         first, n = round(begin * 30_000), round(length * 30_000)
         heard = rng.normal(size=180_000)

@@ -17,18 +17,17 @@ first, by other counts, so that it is those with one that the final counts hold 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
-from features.recording import recording_features
 from features.table import recording_feature_names
-from noise.inference.inputs import KINDS, QUANTITIES, of_channels, scaled, segment_features
+from noise.inference.inputs import KINDS, QUANTITIES, of_channels, segment_features
 from noise.inference.model import Inference
-from noise.training.inference.population import draw_audible_run
+from noise.training.inference.population import RunSample, draw_run_sample
 from noise.training.trees import PER_LEAF, grow_quantile_forest
 
 _LEAST = 50
@@ -196,24 +195,6 @@ _PRESSURE_ALONE = 0.35
 """Share of those with the sound alone; the others keep any subset of the channels."""
 
 
-@dataclass(frozen=True, eq=False)
-class RunSample:
-    """Features of one audible run, and what made it.
-
-    Parameters
-    ----------
-    label : str
-    scaled : ndarray, shape (3,)
-        Its condition, as `noise.inference.inputs.scaled` gives it.
-    features : tuple of (mapping of str to float)
-        In the field, and on the rig [unit of each feature].
-    """
-
-    label: str
-    scaled: NDArray[np.float64]
-    features: tuple[Mapping[str, float], Mapping[str, float]]
-
-
 def train_inference(
     *,
     seed: int = 0,
@@ -264,13 +245,6 @@ def train_inference(
         "test": tested,
     }
     return replace(calibrated, card=card)
-
-
-def draw_run_sample(seed: np.random.SeedSequence) -> RunSample:
-    """Draw one audible run and take its features."""
-    run = draw_audible_run(np.random.default_rng(seed))
-    features = recording_features(run.field), recording_features(run.rig)
-    return RunSample(run.label, scaled(run.condition), features)
 
 
 def coverage(model: Inference, samples: Iterable[RunSample]) -> dict[str, dict[str, float | int]]:

@@ -22,6 +22,7 @@ when the classifier learns to know more.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,7 +30,8 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import fftconvolve
 
-from models.condition import FIXED, Condition
+from features.recording import recording_features
+from models.condition import FIXED
 from models.recording import Channel, Recording
 from models.rig import LawSpec, Rig
 from models.rig_file import load_material_rig
@@ -41,10 +43,11 @@ from noise.inference.inputs import (
     SHORTEST,
     SPEED_RANGE,
     SUPPORT_RANGE,
+    scaled,
 )
 from noise.noise_definition import label_by_physics
 from noise.training.classifier.augmentation.recorder import resampled
-from noise.training.classifier.designs import SHAPES, scaled
+from noise.training.classifier.designs import SHAPES, scaled as scaled_fit
 from noise.training.draws import coloured_noise, log_uniform
 from sim.run import Run, simulate
 
@@ -117,46 +120,43 @@ _GAIN_SCATTER = 0.03
 
 
 @dataclass(frozen=True, eq=False)
-class AudibleRun:
-    """One audible run, recorded twice.
+class RunSample:
+    """Features of one audible run, and what made it.
 
     Parameters
     ----------
     label : str
         Its noise, by physics (`noise.noise_definition`).
-    condition : Condition
-        Speed, interference, support stiffness and material, all known.
-    rig, field : Recording
-        Calibrated on the rig, and uncalibrated in some room; torque, acceleration and pressure.
+    scaled : ndarray, shape (3,)
+        Its condition, as `noise.inference.inputs.scaled` gives it.
+    features : tuple of (mapping of str to float)
+        In the field, and on the rig [unit of each feature].
     """
 
     label: str
-    condition: Condition
-    rig: Recording
-    field: Recording
+    scaled: NDArray[np.float64]
+    features: tuple[Mapping[str, float], Mapping[str, float]]
 
 
-def draw_audible_run(rng: np.random.Generator) -> AudibleRun:
-    """Draw runs until one is audible.
+def draw_run_sample(seed: np.random.SeedSequence) -> RunSample:
+    """Draw runs until one is audible, record it twice, and take its features.
 
     Examples
     --------
-    >>> run = draw_audible_run(np.random.default_rng(0))
-    >>> run.label in ("creak", "squawk", "squeal"), run.rig.calibrated, run.field.calibrated
-    (True, True, False)
+    >>> sample = draw_run_sample(np.random.SeedSequence(0))
+    >>> sample.label in ("creak", "squawk", "squeal"), sample.scaled.shape
+    (True, (3,))
     """
-    while True:
-        run = _draw_run(rng)
-        label = label_by_physics(run)
-        if label != "none":
-            break
+    rng = np.random.default_rng(seed)
+    while (label := label_by_physics(run := _draw_run(rng))) == "none":
+        pass
     whole = rng.random() < 0.5
     seconds = LONGEST if whole else float(rng.uniform(SHORTEST, LONGEST))
     start = float(rng.uniform(0.0, LONGEST - seconds))
     rig = _on_the_rig(run, rng)
     field = _in_the_field(run, rng)
-    condition = run.recording.condition
-    return AudibleRun(label, condition, _cut(rig, start, seconds), _cut(field, start, seconds))
+    features = tuple(recording_features(_cut(one, start, seconds)) for one in (field, rig))
+    return RunSample(label, scaled(run.recording.condition), (features[0], features[1]))
 
 
 def _draw_run(rng: np.random.Generator) -> Run:
@@ -199,7 +199,7 @@ def _specimen(rng: np.random.Generator) -> Rig:
         elastomer_inertia=about(rig.elastomer_inertia),
         clamp_inertia=about(rig.clamp_inertia),
         elastomer_damping_share=about(rig.elastomer_damping_share),
-        fits=tuple(scaled(fit, stiffness, torque, damping) for fit in rig.fits),
+        fits=tuple(scaled_fit(fit, stiffness, torque, damping) for fit in rig.fits),
         friction=jittered(rig.friction),
         effects=tuple(jittered(spec) for spec in rig.effects),
     )
