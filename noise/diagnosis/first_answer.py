@@ -22,14 +22,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.recording import Recording
 from models.rig import Rig
 from models.sensors import Sensors
 from models.units import CHANNEL_UNITS
 from noise.base.arrays import Array
+from noise.diagnosis.case import Case
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, as_seldom, null_log_odds
 from noise.diagnosis.causes.verdict import (
     UNUSUAL,
@@ -49,10 +50,6 @@ from noise.diagnosis.simulated.model_runs import Model
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects.effect import Effect
 from sim.rig_effects import constant_version
-
-if TYPE_CHECKING:
-    from models.recording import Recording
-    from noise.diagnosis.case import Case
 
 _KINDS = ("torque", "acceleration", "pressure")
 

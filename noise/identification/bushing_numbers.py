@@ -10,21 +10,16 @@ import math
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from noise.base import SURE_90
 from noise.base.arrays import Array
-from noise.identification.bushing_fit import phases_of
+from noise.identification.bushing_fit import BushingFit, phases_of
+from noise.identification.law_fit import LawFit
 from noise.identification.law_model import LOCAL, fitted_evidence
 from noise.identification.outcome import Forecast, Number, Seen, values_of
-
-if TYPE_CHECKING:
-    from noise.identification.bushing_fit import BushingFit
-    from noise.identification.law_fit import LawFit
-
 
 _FAST = 0.6
 """Share of the fastest sliding from which the contact counts as sliding fast; assumed."""

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from noise.base import SURE_90
 from noise.diagnosis.bench.check import unit_findings
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers, read_again, torque_levels
-from noise.identification.law_fit import MARGIN, Choice, choose_law
+from noise.identification.law_fit import MARGIN, Choice, LawFit, choose_law
 from noise.identification.law_model import LOCAL, fitted_evidence
 from noise.identification.measured import (
     Beforehand,
@@ -39,9 +39,6 @@ from noise.identification.static_test import static_evidence, static_notes, with
 from noise.identification.subjects import subjects_of
 from sim.effects import EFFECTS
 from sim.friction import friction_law
-
-if TYPE_CHECKING:
-    from noise.identification.law_fit import LawFit
 
 
 def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:

@@ -15,29 +15,25 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from noise.base.arrays import Array
+from noise.identification.bushing_fit import Known
 from noise.identification.law_model import (
     CANDIDATES,
     LOCAL,
     SHARE_ASSUMED,
+    Candidate,
     LawModel,
     priors,
     share_error,
 )
+from noise.identification.measured import Measured
 from noise.identification.outcome import LawScore
-
-if TYPE_CHECKING:
-    from noise.identification.bushing_fit import Known
-    from noise.identification.law_model import Candidate
-    from noise.identification.measured import Measured
-    from noise.identification.static_test import Evidence
-    from noise.identification.subjects import Subject
-
+from noise.identification.static_test import Evidence
+from noise.identification.subjects import Subject
 
 _STEP = 3e-4
 """Of the logarithms, for slopes."""

@@ -16,7 +16,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from importlib import resources
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
@@ -25,21 +24,18 @@ from numpy.typing import NDArray
 from models.errors import ParameterError
 from models.rig import Fit, LawSpec, Rig
 from noise.base.arrays import Array
+from noise.identification.bushing_fit import Known
+from noise.identification.static_test import Evidence
+from noise.identification.subjects import Excerpts, Subject
 from sim.bushing import LumpedBushing
 from sim.contact import CRITICAL, KINETIC, N_CONTACT, address_of, call_law_at
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import friction_law
+from sim.friction.law import FrictionLaw
 from sim.motion import contact_hooks
 from sim.parameters import resolve
 from sim.solvers.contact_solver import ContactRun, Hook
-
-if TYPE_CHECKING:
-    from noise.identification.bushing_fit import Known
-    from noise.identification.static_test import Evidence
-    from noise.identification.subjects import Excerpts, Subject
-    from sim.friction.law import FrictionLaw
-
 
 _SCATTER = np.array([0.025, 0.025, 0.03, 0.03, 0.02, 0.008, 0.01])
 """By which they scatter about the rig's [-]; a support's counts as its clamp's inertia;

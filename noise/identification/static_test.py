@@ -23,7 +23,6 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,11 +34,8 @@ from models.errors import ParameterError
 from models.show import short_repr
 from noise.base import SURE_90
 from noise.base.arrays import Array
+from noise.identification.bushing_fit import Known
 from noise.identification.outcome import Number
-
-if TYPE_CHECKING:
-    from noise.identification.bushing_fit import Known
-
 
 UNITS = {
     "elastomer_stiffness": "Nm/rad",

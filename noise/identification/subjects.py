@@ -10,20 +10,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from noise.base.arrays import Array
-from noise.identification.bushing_fit import TorqueSpectrum, torque_spectrum
+from noise.identification.bushing_fit import Known, TorqueSpectrum, torque_spectrum
+from noise.identification.measured import Measured
+from noise.identification.outcome import Seen
 from sim.bushing import LumpedBushing
-
-if TYPE_CHECKING:
-    from noise.identification.bushing_fit import Known
-    from noise.identification.measured import Measured
-    from noise.identification.outcome import Seen
-
 
 _LOOKED_AT = 0.42
 """Of a recording; what a transform of it costs [s]; assumed."""

@@ -16,7 +16,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,10 +23,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import hanning
-
-if TYPE_CHECKING:
-    from sim.bushing import LumpedBushing
-
+from sim.bushing import LumpedBushing
 
 _SPEED_LIMIT = 60.0
 """The shaft's speed follows its angle up to so many hertz, half as much again fading."""

@@ -29,24 +29,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import gamma
 
 from features.kernels.spectra import segment_spectra
 from models.condition import known_condition
+from models.recording import Recording
+from models.rig import Rig
 from models.sensors import Sensor
 from models.units import CHANNEL_UNITS
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import USABLE
 from noise.diagnosis.preparation.settled_part import settled_parts
 from sim.acquisition import Acquisition, decimate
-
-if TYPE_CHECKING:
-    from models.recording import Recording
-    from models.rig import Rig
-
 
 _LENGTH = 128
 """Of a segment [samples]; a few milliseconds; assumed."""

@@ -18,19 +18,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from models.condition import known_condition
+from models.recording import Recording
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import segment_frequency
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.diagnosis.text.words import joined
-
-if TYPE_CHECKING:
-    from models.recording import Recording
 
 _BLOCK, _LAG = 5e-3, 2
 """Of which an angle is averaged [s], and blocks to either side that a speed is the slope of;

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from scipy.fft import irfft, rfft
 from models.condition import known_condition
 from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
+from models.recording import Recording
 from models.rig import Rig
 from models.transfer_functions.filtering import (
     FINER,
@@ -29,14 +29,10 @@ from models.transfer_functions.measured import measured_with
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.reconstruction import closed_length, closed_spectrum
+from sim.bushing import LumpedBushing
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, Effect, activated
-
-if TYPE_CHECKING:
-    from models.recording import Recording
-    from sim.bushing import LumpedBushing
-
 
 _LONGEST = 0.25
 """Impulse responses are followed so long [s]."""

@@ -7,9 +7,8 @@ replaced by a cautious phrase that reads like a finding.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
 
-from noise.diagnosis.outcome import SHOWN_IN, SURE, EffectFinding
+from noise.diagnosis.outcome import SHOWN_IN, SURE, Diagnosis, EffectFinding
 from noise.diagnosis.text.verdict_sentences import (
     agreement_sentence,
     far_ones,
@@ -29,10 +28,6 @@ from noise.diagnosis.text.words import (
     percent,
     stages_acting,
 )
-
-if TYPE_CHECKING:
-    from noise.diagnosis.outcome import Diagnosis
-
 
 _COLUMNS = {
     "speed_rad_s": ("speed", "rad/s"),

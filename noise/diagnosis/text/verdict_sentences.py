@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from noise.diagnosis.outcome import SHOWN_IN, SURE, Agreement
+from noise.diagnosis.outcome import SHOWN_IN, SURE, Agreement, Diagnosis
 from noise.diagnosis.text.words import (
     PHASES,
     cause_of,
@@ -24,10 +23,6 @@ from noise.diagnosis.text.words import (
     percent,
     stage_of_effect,
 )
-
-if TYPE_CHECKING:
-    from noise.diagnosis.outcome import Diagnosis
-
 
 AGREES = 2.0
 """Floors up to which a recording agrees with the rig file; assumed. Of 480 simulated repeats of ten

@@ -12,15 +12,10 @@ import math
 import tomllib
 from dataclasses import dataclass
 from importlib import resources
-from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.diagnosis.outcome import LARGEST_GAP, SURE, EffectFinding
+from noise.diagnosis.outcome import LARGEST_GAP, SURE, Diagnosis, EffectFinding
 from sim.effects import EFFECTS
-
-if TYPE_CHECKING:
-    from noise.diagnosis.outcome import Diagnosis
-
 
 PHASES = {
     "stick": "while the contact sticks",

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,13 +24,10 @@ from scipy.special import expit
 from noise.base.arrays import Array
 from noise.base.trees import BoostedTrees
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
-from noise.diagnosis.evidence.summary import evidence, scale_of
+from noise.diagnosis.evidence.summary import CaseTable, evidence, scale_of
 from noise.diagnosis.simulated.repeats import CHANNELS
 from noise.training.causes.cases.draw import Truth, seen_through
 from noise.training.trees import as_arrays, boosted_nodes
-
-if TYPE_CHECKING:
-    from noise.diagnosis.evidence.summary import CaseTable
 
 _OFFERED = 80
 """Columns that a split is offered."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +15,7 @@ from models.transfer_functions.transfer_function import TransferFunction
 from noise.base import log_uniform
 from noise.base.arrays import Array
 from noise.diagnosis.cases.draws import log_uniforms
-
-if TYPE_CHECKING:
-    from sim.bushing import LumpedBushing
-
+from sim.bushing import LumpedBushing
 
 _LINES = np.arange(10.0, 10_001.0, 2.5)
 """Of the hammer test [Hz]."""
