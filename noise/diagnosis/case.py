@@ -22,7 +22,7 @@ from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.recording import Recording
 from models.rig import Rig
 from noise.diagnosis.bench.channels import length_unit, misplaced_torque
-from noise.diagnosis.bench.check import clipped_channels, without_dead_channels
+from noise.diagnosis.bench.check import clipped_channels, refuse_unusable, without_dead_channels
 from noise.diagnosis.preparation.prepare import measured_speed, prepared
 from noise.diagnosis.preparation.settled_part import shortest
 from noise.recordings import find_recordings, read_recording
@@ -199,9 +199,6 @@ def _mm(interference: float) -> str:
     return f"{1e3 * interference:.4g} mm"
 
 
-LEAST_RATE = 8e3
-"""Least sampling rate [Hz]: the cycle's harmonics to 3 kHz are in it; assumed."""
-
 _SAME = 1e-3
 """Relative difference up to which two fits or supports are the same; rounding of what files state;
 assumed."""
@@ -279,27 +276,23 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
             raise ParameterError(what)
         raise RecordingError("; ".join([what, *(f"{name}: {why}" for name, why in refused)]))
     faults = clipped_channels(recordings, rig)
-    sounding = without_dead_channels(names, recordings)
-    if any(recording is not None for recording in sounding.recordings):  # else the check says it
-        faults = [*sounding.findings, *faults]
-        pairs = list(zip(names, sounding.recordings, strict=True))
+    alive, dead = without_dead_channels(names, recordings)
+    if any(left is not None for left in alive):  # else the check says it
+        faults = [*dead, *faults]
+        pairs = list(zip(names, alive, strict=True))
         refused += [(name, "all its channels are dead") for name, left in pairs if left is None]
         names = [name for name, left in pairs if left is not None]
         recordings = [left for _, left in pairs if left is not None]
     misplaced = misplaced_torque(recordings, rig)
-    ready = prepared(rig, recordings)
-    refused += [(names[i], reason) for i, reason in ready.left_out.items()]
-    kept = tuple(name for i, name in enumerate(names) if i not in ready.left_out)
-    stated, seen = rig.sensors, ready.rig.sensors
+    seen, ready, notes, left_out = prepared(rig, recordings)
+    refused += [(names[i], reason) for i, reason in left_out.items()]
+    kept = tuple(name for i, name in enumerate(names) if i not in left_out)
     estimated = tuple(
         kind
-        for kind, sensor in seen.by_kind.items()
-        if stated.of(kind).noise is None and sensor.noise is not None
+        for kind, sensor in seen.sensors.by_kind.items()
+        if rig.sensors.of(kind).noise is None and sensor.noise is not None
     )
-    return Case(
-        ready.rig, kept, ready.recordings, tuple(refused), ready.notes, tuple(faults), misplaced,
-        estimated,
-    )  # fmt: skip
+    return Case(seen, kept, ready, tuple(refused), notes, tuple(faults), misplaced, estimated)
 
 
 def usable(recording: Recording, rig: Rig) -> Recording:
@@ -313,18 +306,9 @@ def usable(recording: Recording, rig: Rig) -> Recording:
     ParameterError
         What it lacks.
     """
-    if not recording.calibrated:
-        raise ParameterError(
-            'is not in physical units; state units in a sidecar, with "calibrated": true, or '
-            "calibration under [sensors] of the rig file"
-        )
+    refuse_unusable(recording, shortest(recording.rate))
     if all(recording.first(kind) is None for kind in KINDS):
         raise ParameterError(f"has no channel of {', '.join(KINDS)}")
-    if recording.rate < LEAST_RATE:
-        raise ParameterError(f"is sampled at {recording.rate:g} Hz; {LEAST_RATE:g} at least")
-    least = shortest(recording.rate)
-    if recording.duration < least:
-        raise ParameterError(f"lasts {recording.duration:.3g} s; {least:.3g} s at least")
     recording = with_told_conditions(recording, rig)
     condition = known_condition(recording.condition)
     interference, support = condition.interference, condition.support_stiffness

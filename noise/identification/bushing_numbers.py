@@ -19,7 +19,7 @@ from noise.base.arrays import Array
 from noise.identification.bushing_fit import BushingFit, phases_of
 from noise.identification.law_fit import LawFit
 from noise.identification.law_model import LOCAL, fitted_evidence
-from noise.identification.outcome import Forecast, Number, Seen, values_of
+from noise.identification.outcome import Forecast, Number, Seen
 
 _FAST = 0.6
 """Share of the fastest sliding from which the contact counts as sliding fast; assumed."""
@@ -141,9 +141,7 @@ def read_again(seen: Sequence[Seen], fit: LawFit) -> list[Seen]:
             one.fit, bushing=bushing, contact=contact, phases=phases,
             stuck_share=float(np.mean(phases.stuck)),
         )  # fmt: skip
-        levels = torque_levels(read)
-        values = values_of(read, levels)
-        again.append(replace(one, fit=read, levels=levels, values=values, forecast=forecast))
+        again.append(replace(one, fit=read, levels=torque_levels(read), forecast=forecast))
     return again
 
 
@@ -192,7 +190,8 @@ def _levels(seen: Sequence[Seen]) -> list[Number]:
         groups: dict[float, list[float]] = defaultdict(list)
         for one in seen:
             if one.levels.slips:
-                groups[one.measured.condition.interference].append(one.values[name])
+                level = getattr(one.levels, name.removesuffix("_torque"))
+                groups[one.measured.condition.interference].append(level)
         for at, values in sorted(groups.items()):
             # levels that change with speed do so for a reason: their mean is no less sure
             value = float(np.exp(np.mean(np.log(values))))

@@ -34,7 +34,7 @@ from noise.identification.measured import (
     known_beforehand,
     read_measurements,
 )
-from noise.identification.outcome import Identification, Number, Seen, as_json, values_of
+from noise.identification.outcome import Identification, Number, Seen, as_json
 from noise.identification.static_test import static_evidence, static_notes, with_evidence
 from noise.identification.subjects import subjects_of
 from sim.effects import EFFECTS
@@ -124,8 +124,7 @@ def identify_rig(
     seen = []
     for one in measurements.used:
         fit = fit_bushing(one, beforehand.known)
-        levels = torque_levels(fit)
-        seen.append(Seen(one, fit, levels, values_of(fit, levels)))
+        seen.append(Seen(one, fit, torque_levels(fit)))
         tell(_sentence(seen[-1]))
     if not any(one.levels.slips for one in seen) and measurements.static:
         return _by_static_tests(measurements, beforehand)

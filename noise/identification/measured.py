@@ -22,7 +22,7 @@ from models.rig import Rig
 from models.rig_file import read_toml, rig_from, shipped_name
 from models.show import short_repr
 from noise.base.arrays import Array
-from noise.diagnosis.bench.check import speed_words
+from noise.diagnosis.bench.check import refuse_unusable, speed_words
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 from noise.identification.bushing_fit import Known
 from noise.identification.static_test import StaticTest, static_test
@@ -124,9 +124,6 @@ def _stated(content: Mapping[str, Any], folder: Path) -> set[str]:
 
 SHORTEST = LEAD + TAIL + 0.1
 """Shorter recordings show too few cycles [s]; assumed."""
-
-LEAST_RATE = 8e3
-"""[Hz]"""
 
 LEAST_TURN = 0.02
 """Angle by which the shaft has to turn [rad]; less is no rotation, or degrees taken for radians;
@@ -264,11 +261,7 @@ def measured(recording: Recording, name: str) -> Measured:
     ParameterError
         What it lacks.
     """
-    if not recording.calibrated:
-        raise ParameterError(
-            'is not in physical units; state units in a sidecar, with "calibrated": true, or '
-            "calibration under [sensors] of the rig file"
-        )
+    refuse_unusable(recording, SHORTEST)
     rows = {kind: recording.first(kind) for kind in ("torque", "angle", "speed")}
     turning = rows["angle"] if rows["angle"] is not None else rows["speed"]
     if rows["torque"] is None or turning is None:
@@ -277,10 +270,6 @@ def measured(recording: Recording, name: str) -> Measured:
             f"has no channel of {lacking}; a rig is identified from the torque of the cell and the "
             "shaft's angle"
         )
-    if recording.rate < LEAST_RATE:
-        raise ParameterError(f"is sampled at {recording.rate:g} Hz; {LEAST_RATE:g} at least")
-    if recording.duration < SHORTEST:
-        raise ParameterError(f"lasts {recording.duration:.3g} s; {SHORTEST:.3g} s at least")
     torque = np.asarray(recording.samples[rows["torque"]], dtype=np.float64)
     course = np.asarray(recording.samples[turning], dtype=np.float64)
     if not (np.isfinite(torque).all() and np.isfinite(course).all()):

@@ -81,8 +81,6 @@ class Seen:
     measured : Measured
     fit : BushingFit
     levels : Levels
-    values : mapping of str to float
-        What counts of it in the end [SI units], by the names of the rig's numbers.
     forecast : Forecast, optional
         Where the law was fitted to it.
     """
@@ -90,7 +88,6 @@ class Seen:
     measured: Measured
     fit: BushingFit
     levels: Levels
-    values: Mapping[str, float]
     forecast: Forecast | None = None
 
 
@@ -116,18 +113,6 @@ _NUMBER_COLUMNS = (
     "name", "unit", "interference_mm", "support_stiffness_Nm_rad",
     "value", "low", "high", "recordings",
 )  # fmt: skip
-
-
-def values_of(fit: BushingFit, levels: Levels) -> dict[str, float]:
-    """Name what one recording said [SI units]."""
-    return {
-        "elastomer_stiffness": fit.bushing.elastomer_stiffness,
-        "damping": fit.damping,
-        "elastomer_inertia": fit.bushing.elastomer_inertia,
-        "clamp_inertia": fit.bushing.clamp_inertia,
-        "critical_torque": levels.critical,
-        "kinetic_torque": levels.kinetic,
-    }
 
 
 @short_repr
@@ -270,11 +255,11 @@ def _static(one: StaticTest) -> dict[str, Any]:
 def _recording(one: Seen) -> dict[str, Any]:
     speed = {"speed_rad_s": one.measured.written_speed}
     row = _place(one.measured.condition) | {
-        "elastomer_stiffness_Nm_rad": one.values["elastomer_stiffness"],
-        "damping_Nms_rad": one.values["damping"],
+        "elastomer_stiffness_Nm_rad": one.fit.bushing.elastomer_stiffness,
+        "damping_Nms_rad": one.fit.damping,
         "mean_torque_Nm": one.levels.mean,
-        "critical_torque_Nm": one.values["critical_torque"],
-        "kinetic_torque_Nm": one.values["kinetic_torque"],
+        "critical_torque_Nm": one.levels.critical,
+        "kinetic_torque_Nm": one.levels.kinetic,
         "slips": one.levels.slips, "stuck_share": round(one.fit.stuck_share, 3),
     }  # fmt: skip
     return {"file": one.measured.name, **speed, **_rounded(row)}

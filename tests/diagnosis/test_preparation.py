@@ -213,9 +213,9 @@ def test_what_a_rig_file_states_of_a_sensor_stays():
 
 def test_a_settled_case_with_good_sensors_is_itself():
     even = turning(np.ones(24_000))
-    ready = prepared(RIG, [even])
-    assert ready.recordings[0].samples is even.samples
-    assert ready.left_out == {}
+    _, (ready,), _, left_out = prepared(RIG, [even])
+    assert ready.samples is even.samples
+    assert left_out == {}
 
 
 @given(size=st.floats(0.0, 1.0), slips=st.floats(40.0, 150.0))

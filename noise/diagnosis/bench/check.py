@@ -18,14 +18,14 @@ are held against what torque and angle say themselves: speed, its sign, order.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from models.condition import known_condition
-from models.errors import BushingNoiseError
+from models.errors import BushingNoiseError, ParameterError
 from models.recording import Recording
 from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
@@ -67,6 +67,35 @@ assumed."""
 
 _SORTED = 1.0
 """Mean of such differences below which another order fits [-]; assumed."""
+
+
+LEAST_RATE = 8e3
+"""Least sampling rate [Hz]: the cycle's harmonics to 3 kHz are in it; assumed."""
+
+
+def refuse_unusable(recording: Recording, shortest: float) -> None:
+    """Refuse a recording that no rig can be told from.
+
+    Parameters
+    ----------
+    recording : Recording
+    shortest : float
+        Least duration [s].
+
+    Raises
+    ------
+    ParameterError
+        It is not in physical units, sampled too seldom or too short.
+    """
+    if not recording.calibrated:
+        raise ParameterError(
+            'is not in physical units; state units in a sidecar, with "calibrated": true, or '
+            "calibration under [sensors] of the rig file"
+        )
+    if recording.rate < LEAST_RATE:
+        raise ParameterError(f"is sampled at {recording.rate:g} Hz; {LEAST_RATE:g} at least")
+    if recording.duration < shortest:
+        raise ParameterError(f"lasts {recording.duration:.3g} s; {shortest:.3g} s at least")
 
 
 def wrong_speed(levels: Sequence[Levels]) -> str:
@@ -166,23 +195,9 @@ _SAME = 1e-3
 """Relative difference of tops that are those of one range [-]; assumed."""
 
 
-@dataclass(frozen=True, eq=False)
-class Sounding:
-    """Recordings without their dead channels.
-
-    Parameters
-    ----------
-    recordings : tuple of Recording, or None
-        One each that was given; None where nothing is left that can be looked at.
-    findings : tuple of str
-        Which channels are dead, one line each.
-    """
-
-    recordings: tuple[Recording | None, ...]
-    findings: tuple[str, ...] = ()
-
-
-def without_dead_channels(names: Sequence[str], recordings: Sequence[Recording]) -> Sounding:
+def without_dead_channels(
+    names: Sequence[str], recordings: Sequence[Recording]
+) -> tuple[list[Recording | None], list[str]]:
     """Leave dead channels out of recordings.
 
     Parameters
@@ -193,16 +208,19 @@ def without_dead_channels(names: Sequence[str], recordings: Sequence[Recording])
 
     Returns
     -------
-    Sounding
+    recordings : list of Recording or None
+        One each that was given; None where nothing is left that can be looked at.
+    findings : list of str
+        Which channels are dead, one line each.
 
     Examples
     --------
     >>> from models.recording import Channel, Recording
     >>> sound = np.stack([np.sin(np.arange(9000.0)), np.zeros(9000)])
     >>> run = Recording(sound, 30e3, (Channel("torque"), Channel("pressure")))
-    >>> found = without_dead_channels(["a.wav"], [run])
-    >>> found.recordings[0].channel_names, found.findings
-    (('torque',), ('channel pressure is dead: it stays at 0 in all recordings',))
+    >>> (left,), findings = without_dead_channels(["a.wav"], [run])
+    >>> left.channel_names, findings
+    (('torque',), ['channel pressure is dead: it stays at 0 in all recordings'])
     """
     dead = _dead(recordings)
     left: list[Recording | None] = []
@@ -215,7 +233,7 @@ def without_dead_channels(names: Sequence[str], recordings: Sequence[Recording])
             left.append(replace(recording, samples=recording.samples[kept], channels=channels))
         else:
             left.append(None)
-    return Sounding(tuple(left), tuple(dead_channels(names, recordings)))
+    return left, dead_channels(names, recordings)
 
 
 def dead_channels(names: Sequence[str], recordings: Sequence[Recording]) -> list[str]:

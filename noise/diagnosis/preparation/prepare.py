@@ -27,8 +27,8 @@ little there.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import gamma
@@ -422,7 +422,7 @@ def bounded(
     is longer than 2 s, of which the last 2 s were looked at
     """
     factors = [math.ceil(recording.rate / HIGHEST_RATE) for recording in recordings]
-    kept = tuple(_last(_thinned(r, k)) for r, k in zip(recordings, factors, strict=True))
+    kept = tuple(_part(r, k) for r, k in zip(recordings, factors, strict=True))
     n, fine = len(kept), sum(k > 1 for k in factors)
     long = sum(recording.duration > LONGEST for recording in recordings)
     notes = []
@@ -440,18 +440,15 @@ def bounded(
     return _with_thinned_sensors(rig, min(factors, default=1)), kept, tuple(notes)
 
 
-def _thinned(recording: Recording, factor: int) -> Recording:
-    if factor == 1:
+def _part(recording: Recording, factor: int) -> Recording:
+    """Return the last part of a recording, at a rate so many times lower."""
+    samples, rate = recording.samples, recording.rate / factor
+    if factor > 1:
+        samples = np.stack([decimate(row, factor) for row in samples])
+    last = samples[:, -round(LONGEST * rate) :]
+    if last.shape == recording.samples.shape:
         return recording
-    samples = np.stack([decimate(row, factor) for row in recording.samples])
-    return replace(recording, samples=samples, rate=recording.rate / factor)
-
-
-def _last(recording: Recording) -> Recording:
-    n = round(LONGEST * recording.rate)
-    if recording.samples.shape[1] <= n:
-        return recording
-    return replace(recording, samples=np.ascontiguousarray(recording.samples[:, -n:]))
+    return replace(recording, samples=np.ascontiguousarray(last), rate=rate)
 
 
 def _with_thinned_sensors(rig: Rig, factor: int) -> Rig:
@@ -469,29 +466,9 @@ def _thinned_sensor(sensor: Sensor, factor: int) -> Sensor:
     return replace(sensor, noise=noise, bits=None)
 
 
-@dataclass(frozen=True, eq=False)
-class Prepared:
-    """Recordings as they are compared, with the rig that they are compared with.
-
-    Parameters
-    ----------
-    rig : Rig
-        Its sensors as the recordings show them, where its file does not state them.
-    recordings : tuple of Recording
-        Their settled part, at the speed that they turn at; those that are ``left_out`` are missing.
-    notes : tuple of str
-        What a user should know of it, a line each.
-    left_out : mapping of int to str
-        Why a recording cannot be used, by its place among those given.
-    """
-
-    rig: Rig
-    recordings: tuple[Recording, ...]
-    notes: tuple[str, ...] = ()
-    left_out: Mapping[int, str] = field(default_factory=dict)
-
-
-def prepared(rig: Rig, recordings: Sequence[Recording]) -> Prepared:
+def prepared(
+    rig: Rig, recordings: Sequence[Recording]
+) -> tuple[Rig, tuple[Recording, ...], tuple[str, ...], dict[int, str]]:
     """Make recordings ready to be compared with a rig.
 
     Parameters
@@ -502,7 +479,14 @@ def prepared(rig: Rig, recordings: Sequence[Recording]) -> Prepared:
 
     Returns
     -------
-    Prepared
+    rig : Rig
+        Its sensors as the recordings show them, where its file does not state them.
+    recordings : tuple of Recording
+        Their settled part, at the speed that they turn at; those that are left out are missing.
+    notes : tuple of str
+        What a user should know of it, a line each.
+    left_out : dict of int to str
+        Why a recording cannot be used, by its place among those given.
 
     Examples
     --------
@@ -513,11 +497,11 @@ def prepared(rig: Rig, recordings: Sequence[Recording]) -> Prepared:
     >>> x = 7.0 + 0.1 * np.random.default_rng(0).standard_normal((1, 15_000))
     >>> at = KnownCondition(1.0, 0.279e-3, 3745.0)
     >>> run = Recording(x, 30e3, (Channel("torque"),), at)
-    >>> prepared(load_material_rig("fluorocarbon-thesis"), [run]).recordings[0].duration
+    >>> prepared(load_material_rig("fluorocarbon-thesis"), [run])[1][0].duration
     0.5
     """
     parts, cut, left_out = settled_parts(recordings)
     timed, turned = at_measured_speeds(parts)
     seen, sensed = with_seen_sensors(rig, timed)
     thinned, kept, shortened = bounded(seen, timed)
-    return Prepared(thinned, kept, (*cut, *turned, *sensed, *shortened), left_out)
+    return thinned, kept, (*cut, *turned, *sensed, *shortened), left_out

@@ -67,14 +67,14 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
 
 def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
     """Summarise a case as a user's would be, with repeats of earlier ones where these serve."""
-    ready = prepared(case.rig, case.recordings)
-    if len(ready.recordings) < _FEWEST:
+    rig, recordings, _, _ = prepared(case.rig, case.recordings)
+    if len(recordings) < _FEWEST:
         return None
-    repeats = next((s for s in shared if s.serves(ready.rig)), None)
+    repeats = next((s for s in shared if s.serves(rig)), None)
     if repeats is None:
-        repeats = _Shared(ready.rig)
+        repeats = _Shared(rig)
         shared.append(repeats)
-    return case_table(ready.recordings, repeats.rig, nominal=repeats)
+    return case_table(recordings, repeats.rig, nominal=repeats)
 
 
 @dataclass(frozen=True, eq=False)
