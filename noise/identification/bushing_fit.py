@@ -17,7 +17,8 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -184,8 +185,6 @@ def _above_noise(lines: NDArray[np.complex128], frequency: Array) -> Array:
     return np.asarray(np.maximum(1.0 - noise / np.maximum(smooth, noise), 0.0))
 
 
-NUMBERS = ("elastomer_stiffness", "damping", "elastomer_inertia", "clamp_inertia")
-
 _GUARD = 0.8e-4
 """Left out on either side of where stick or slip ends [s]: the band limit smears it; assumed."""
 
@@ -243,9 +242,7 @@ class Known:
     share_error: float = 0.02
 
 
-@short_repr
-@dataclass(frozen=True, eq=False)
-class Phases:
+class Phases(NamedTuple):
     """Where a contact sticks and slides; boolean arrays of shape (n,), transitions in neither."""
 
     stuck: NDArray[np.bool_]
@@ -260,20 +257,10 @@ class BushingFit:
     Parameters
     ----------
     bushing : LumpedBushing
-    errors : dict of str to float
-        Relative standard error of each of `NUMBERS` by the curvature of the fit [-].
-    contact : Contact
-    phases : Phases
-    stuck_share : float
-        Of the time [-].
     spectrum : TorqueSpectrum
     """
 
     bushing: LumpedBushing
-    errors: dict[str, float]
-    contact: Contact
-    phases: Phases
-    stuck_share: float
     spectrum: TorqueSpectrum
 
     @property
@@ -281,28 +268,25 @@ class BushingFit:
         """Of elastomer and beams together [Nm s/rad]."""
         return self.bushing.elastomer_damping + self.bushing.support_damping
 
+    @cached_property
+    def contact(self) -> Contact:
+        """The contact as this bushing has it."""
+        return self.spectrum.contact(self.bushing)
 
-def phases_of(contact: Contact, shaft_speed: Array, rate: float) -> Phases:
-    """Tell stick from slip by the sliding speed.
+    @cached_property
+    def phases(self) -> Phases:
+        """When it sticks and slides."""
+        return _phases(self.contact, self.spectrum)
 
-    Parameters
-    ----------
-    contact : Contact
-    shaft_speed : ndarray, shape (n,)
-        [rad/s]
-    rate : float
-        Sampling rate [Hz].
 
-    Returns
-    -------
-    Phases
-    """
-    guard = np.ones(2 * max(1, round(_GUARD * rate)) + 1)
+def _phases(contact: Contact, spectrum: TorqueSpectrum) -> Phases:
+    """Tell stick from slip by the sliding speed."""
+    guard = np.ones(2 * max(1, round(_GUARD * spectrum.rate)) + 1)
     v = contact.sliding_speed
     # what the cell's noise makes of a standing contact
     noise = 1.4826 * float(np.median(np.abs(np.diff(v)))) / math.sqrt(2.0)
-    stuck = np.abs(v) < _STUCK * shaft_speed + 3.0 * noise
-    sliding = v > _SLIDING * shaft_speed + 3.0 * noise
+    stuck = np.abs(v) < _STUCK * spectrum.shaft_speed + 3.0 * noise
+    sliding = v > _SLIDING * spectrum.shaft_speed + 3.0 * noise
     return Phases(binary_erosion(stuck, guard), binary_erosion(sliding, guard))
 
 
@@ -320,16 +304,10 @@ def fit_bushing(measured: Measured, known: Known) -> BushingFit:
     """
     spectrum = torque_spectrum(measured)
     support = measured.condition.support_stiffness
-    values, errors = _start(measured, known), np.full(4, np.inf)
+    values = _start(measured, known)
     for _ in range(_ROUNDS):
-        values, errors = _refined(spectrum, support, known, values)
-    bushing = _bushing(values, support, known)
-    contact = spectrum.contact(bushing)
-    phases = phases_of(contact, spectrum.shaft_speed, spectrum.rate)
-    return BushingFit(
-        bushing, dict(zip(NUMBERS, errors.tolist(), strict=True)), contact, phases,
-        float(np.mean(phases.stuck)), spectrum,
-    )  # fmt: skip
+        values = _refined(spectrum, support, known, values)
+    return BushingFit(_bushing(values, support, known), spectrum)
 
 
 def _bushing(values: Array, support: float, known: Known) -> LumpedBushing:
@@ -390,12 +368,9 @@ def _thin(mask: NDArray[np.bool_]) -> NDArray[np.int64]:
     return found[:: max(1, math.ceil(found.size / _THINNED))]
 
 
-def _refined(
-    spectrum: TorqueSpectrum, support: float, known: Known, start: Array
-) -> tuple[Array, Array]:
+def _refined(spectrum: TorqueSpectrum, support: float, known: Known, start: Array) -> Array:
     """One round of least squares with phases as the start has them."""
-    contact = spectrum.contact(_bushing(start, support, known))
-    phases = phases_of(contact, spectrum.shaft_speed, spectrum.rate)
+    phases = _phases(spectrum.contact(_bushing(start, support, known)), spectrum)
     stuck, sliding = _thin(phases.stuck), _thin(phases.sliding)
     prior = np.log([1.0, 1.0, known.elastomer_inertia, known.clamp_inertia])
     prior[:2] = start[0], math.log(0.09)
@@ -434,8 +409,7 @@ def _refined(
         ])  # fmt: skip
 
     fit = least_squares(residuals, start, method="lm", diff_step=1e-4, max_nfev=60)
-    covariance = np.linalg.pinv(fit.jac.T @ fit.jac)
-    return np.clip(fit.x, start - 0.7, start + 0.7), np.sqrt(np.diag(covariance))
+    return np.clip(fit.x, start - 0.7, start + 0.7)
 
 
 def _bent(x: Array) -> Array:

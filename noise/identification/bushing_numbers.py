@@ -14,12 +14,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from models.rig import Rig
 from noise.base import SURE_90
 from noise.base.arrays import Array
-from noise.identification.bushing_fit import BushingFit, phases_of
+from noise.identification.bushing_fit import BushingFit
 from noise.identification.law_fit import LawFit
 from noise.identification.law_model import LOCAL, fitted_evidence
 from noise.identification.outcome import Forecast, Number, Seen
+from sim.effects import EFFECTS
+from sim.friction import friction_law
 
 _FAST = 0.6
 """Share of the fastest sliding from which the contact counts as sliding fast; assumed."""
@@ -42,15 +45,12 @@ class Levels:
         Median of the highest torque of each cycle, and torque of the contact in fast sliding [Nm].
     slips : int
         Cycles that were seen.
-    fastest : float
-        Sliding speed that 1 in 200 samples exceeds [rad/s].
     """
 
     mean: float
     critical: float
     kinetic: float
     slips: int
-    fastest: float
 
 
 def torque_levels(fit: BushingFit) -> Levels:
@@ -72,14 +72,12 @@ def torque_levels(fit: BushingFit) -> Levels:
     fast = v > max(_FAST * fastest, 1.1 * float(np.mean(fit.spectrum.shaft_speed)))
     begins = _slips(v, fit.spectrum.shaft_speed)
     if begins.size < 2 or fast.sum() < _LEAST_SAMPLES:
-        return Levels(mean, mean, mean, 0, fastest)
+        return Levels(mean, mean, mean, 0)
     peaks = np.array([
         np.max(torque[a:b]) for a, b in itertools.pairwise(begins)
     ])  # fmt: skip
-    return Levels(
-        mean, float(np.median(peaks)), float(np.mean(contact.torque[fast])), int(begins.size),
-        fastest,
-    )  # fmt: skip
+    sliding = float(np.mean(contact.torque[fast]))
+    return Levels(mean, float(np.median(peaks)), sliding, int(begins.size))
 
 
 def _slips(v: Array, shaft_speed: Array) -> NDArray[np.int64]:
@@ -134,13 +132,7 @@ def read_again(seen: Sequence[Seen], fit: LawFit) -> list[Seen]:
             again.append(one)
             continue
         bushing, forecast = own[id(one.measured)]
-        spectrum = one.fit.spectrum
-        contact = spectrum.contact(bushing)
-        phases = phases_of(contact, spectrum.shaft_speed, spectrum.rate)
-        read = replace(
-            one.fit, bushing=bushing, contact=contact, phases=phases,
-            stuck_share=float(np.mean(phases.stuck)),
-        )  # fmt: skip
+        read = replace(one.fit, bushing=bushing)
         again.append(replace(one, fit=read, levels=torque_levels(read), forecast=forecast))
     return again
 
@@ -173,14 +165,18 @@ def _of_fit(fit: LawFit, name: str, unit: str) -> list[Number]:
     said = list(fitted_evidence(model).values())
     numbers = []
     for g, (i, key) in enumerate(model.groups):
-        if i != place:
-            continue
-        at = key if isinstance(key, tuple) else (key, None)
-        value = math.exp(means[g])
-        away = math.exp(SURE_90 * math.hypot(float(spread[model.n_local + g]), shared))
-        n = int(np.sum(model.group_of[:, i] == g)) + said.count(g)
-        numbers.append(Number(name, unit, value, value / away, value * away, n, *at))
+        if i == place:
+            at = key if isinstance(key, tuple) else (key, None)
+            error = math.hypot(float(spread[model.n_local + g]), shared)
+            n = int(np.sum(model.group_of[:, i] == g)) + said.count(g)
+            numbers.append(_number(name, unit, math.exp(means[g]), error, n, *at))
     return sorted(numbers, key=lambda n: (n.interference or 0.0, n.support_stiffness or 0.0))
+
+
+def _number(name: str, unit: str, value: float, error: float, n: int, *at: float | None) -> Number:
+    """Return a number with the interval that its relative standard error makes."""
+    away = math.exp(SURE_90 * error)
+    return Number(name, unit, value, value / away, value * away, n, *at)
 
 
 def _levels(seen: Sequence[Seen]) -> list[Number]:
@@ -194,8 +190,43 @@ def _levels(seen: Sequence[Seen]) -> list[Number]:
                 groups[one.measured.condition.interference].append(level)
         for at, values in sorted(groups.items()):
             # levels that change with speed do so for a reason: their mean is no less sure
-            value = float(np.exp(np.mean(np.log(values))))
-            away = math.hypot(_TORQUE_SCATTER / math.sqrt(len(values)), _TORQUE_SHARED)
-            away = math.exp(SURE_90 * away)
-            numbers.append(Number(name, "Nm", value, value / away, value * away, len(values), at))
+            value, n = float(np.exp(np.mean(np.log(values)))), len(values)
+            error = math.hypot(_TORQUE_SCATTER / math.sqrt(n), _TORQUE_SHARED)
+            numbers.append(_number(name, "Nm", value, error, n, at))
     return numbers
+
+
+def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
+    """Torques as the law means them, and the law's own parameters, by the curvature of the fit.
+
+    Parameters
+    ----------
+    fit : LawFit
+        To all recordings.
+    rig : Rig
+        Identified by it.
+    """
+    model, spread = fit.model, np.sqrt(np.diag(fit.covariance))
+    error = {group: float(spread[model.n_local + g]) for g, group in enumerate(model.groups)}
+    numbers = []
+    for one in rig.fits:
+        kinetic, drop = (
+            error[LOCAL.index(name), one.interference] for name in ("kinetic_torque", "drop")
+        )
+        critical = math.hypot(kinetic, (1.0 - one.kinetic_torque / one.critical_torque) * drop)
+        for name, value, of in (
+            ("law_kinetic_torque", one.kinetic_torque, kinetic),
+            ("law_critical_torque", one.critical_torque, critical),
+        ):
+            numbers.append(_number(name, "Nm", value, min(of, _UNKNOWN), 0, one.interference))
+    candidate = model.candidate
+    own = EFFECTS[candidate.effect].parameters if candidate.effect else None
+    units = own or friction_law(candidate.law).parameters
+    for i, name in enumerate(candidate.free, start=model.n_common):
+        unit, error_of = units[name].unit, min(float(spread[i]), _UNKNOWN)
+        numbers.append(_number(f"friction.{name}", unit, math.exp(fit.vector[i]), error_of, 0))
+    return numbers
+
+
+_UNKNOWN = 2.0
+"""Relative standard error beyond which a number of the law is as good as unknown [-]."""

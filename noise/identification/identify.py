@@ -1,86 +1,41 @@
 """From recordings to a rig: single recordings first, all of them together, the law of friction.
 
-Numbers that only a law gives a meaning to, each with its 90 % interval.
-
 An identification changes bushing and contact; clamp, beams and plate stay those that are known, the
 shipped bench's where nothing is. How far off these are a diagnosis tells.
 """
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from models.bushing import TemperatureDependence
 from models.errors import ParameterError
 from models.rig import Rig
 from models.rig_file import rig_text
 from models.schema import remarks
-from noise.base import SURE_90
 from noise.diagnosis.bench.check import unit_findings
 from noise.identification.bushing_fit import fit_bushing
-from noise.identification.bushing_numbers import bushing_numbers, read_again, torque_levels
-from noise.identification.law_fit import MARGIN, Choice, LawFit, choose_law
-from noise.identification.law_model import LOCAL, fitted_evidence
+from noise.identification.bushing_numbers import (
+    bushing_numbers,
+    law_numbers,
+    read_again,
+    torque_levels,
+)
+from noise.identification.law_fit import MARGIN, choose_law
+from noise.identification.law_model import Candidate, fitted_evidence
 from noise.identification.measured import (
     Beforehand,
     Measurements,
     known_beforehand,
     read_measurements,
 )
-from noise.identification.outcome import Identification, Number, Seen, as_json
+from noise.identification.outcome import Identification, LawScore, Seen, as_json
 from noise.identification.static_test import static_evidence, static_notes, with_evidence
 from noise.identification.subjects import subjects_of
-from sim.effects import EFFECTS
-from sim.friction import friction_law
-
-
-def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
-    """Torques as the law means them, and the law's own parameters, by the curvature of the fit.
-
-    Parameters
-    ----------
-    fit : LawFit
-        To all recordings.
-    rig : Rig
-        Identified by it.
-    """
-    model, spread = fit.model, np.sqrt(np.diag(fit.covariance))
-    error = {group: float(spread[model.n_local + g]) for g, group in enumerate(model.groups)}
-    numbers = []
-    for one in rig.fits:
-        kinetic, drop = (
-            error[LOCAL.index(name), one.interference] for name in ("kinetic_torque", "drop")
-        )
-        share = 1.0 - one.kinetic_torque / one.critical_torque
-        for name, value, of in (
-            ("law_kinetic_torque", one.kinetic_torque, kinetic),
-            ("law_critical_torque", one.critical_torque, math.hypot(kinetic, share * drop)),
-        ):
-            low, high = _interval(value, of)
-            numbers.append(Number(name, "Nm", value, low, high, 0, one.interference))
-    candidate = model.candidate
-    units = (
-        EFFECTS[candidate.effect].parameters
-        if candidate.effect
-        else friction_law(candidate.law).parameters
-    )
-    for i, name in enumerate(candidate.free):
-        value = math.exp(fit.vector[model.n_common + i])
-        low, high = _interval(value, float(spread[model.n_common + i]))
-        numbers.append(Number(f"friction.{name}", units[name].unit, value, low, high, 0))
-    return numbers
-
-
-def _interval(value: float, error: float) -> tuple[float, float]:
-    away = math.exp(SURE_90 * min(error, 2.0))
-    return value / away, value * away
 
 
 class NothingSlipsError(ParameterError):
@@ -123,8 +78,8 @@ def identify_rig(
     tell = progress or (lambda _text: None)
     seen = []
     for one in measurements.used:
-        fit = fit_bushing(one, beforehand.known)
-        seen.append(Seen(one, fit, torque_levels(fit)))
+        alone = fit_bushing(one, beforehand.known)
+        seen.append(Seen(one, alone, torque_levels(alone)))
         tell(_sentence(seen[-1]))
     if not any(one.levels.slips for one in seen) and measurements.static:
         return _by_static_tests(measurements, beforehand)
@@ -144,31 +99,31 @@ def identify_rig(
         )
     # what truly sticks tells its stiffness itself; what yields looks softer than it is
     evidence = {sticks: static_evidence(static, known, sticks=sticks) for sticks in (True, False)}
-    choice = choose_law(known, subjects, tell, evidence)
-    model = choice.fit.model
-    seen = read_again(seen, choice.fit)
-    rig = model.rig(choice.fit.vector, beforehand.rig, material)
+    fit, scores, held_out = choose_law(known, subjects, tell, evidence)
+    model = fit.model
+    seen = read_again(seen, fit)
+    rig = model.rig(fit.vector, beforehand.rig, material)
     fitted = fitted_evidence(model)
     rest = [one for one in model.evidence if one not in fitted]
-    numbers = with_evidence(bushing_numbers(seen, choice.fit), rest)
+    numbers = with_evidence(bushing_numbers(seen, fit), rest)
     rig = replace(rig, fastest_fitted=max(one.measured.written_speed for one in seen))
     rig = replace(rig, temperature=_dependence(beforehand.rig, seen, material))
     assumed, not_found = _assumed(beforehand, seen)
     return Identification(
         rig_toml=rig_text(rig, (_HEAD, f"{_structure(beforehand)}."), beforehand.structure),
-        numbers=(*numbers, *law_numbers(choice.fit, rig)),
-        laws=choice.scores,
+        numbers=(*numbers, *law_numbers(fit, rig)),
+        laws=scores,
         law=model.candidate.name,
         seen=tuple(seen),
         assumed=assumed,
         not_found=not_found,
         notes=(
             *remarks(rig),
-            *_notes(choice),
+            *_notes(model.candidate, scores, held_out),
             *static_notes(static),
         ),
         refused=measurements.refused,
-        held_out=choice.held_out,
+        held_out=held_out,
         margin=MARGIN,
         static=static,
         seconds=time.perf_counter() - started,
@@ -246,27 +201,29 @@ def _by_static_tests(measurements: Measurements, beforehand: Beforehand) -> Iden
     )  # fmt: skip
 
 
-def _notes(choice: Choice) -> tuple[str, ...]:
+def _notes(
+    candidate: Candidate, scores: Sequence[LawScore], held_out: Sequence[str]
+) -> tuple[str, ...]:
     notes = [
         "intervals are of the rig, about which single recordings scatter by 2 to 3 %, and hold if "
         "its law of friction is much like the one that was chosen",
         "torques named critical_torque and kinetic_torque are those seen in the recordings; the "
         "rig file has those that the law means, law_critical_torque and law_kinetic_torque",
     ]
-    if not choice.held_out:
+    if not held_out:
         notes.append(
             "fewer than three conditions: the laws are judged by the recordings they were fitted "
             "to; record more speeds"
         )
-    best = choice.scores[0]
-    chosen = next(s for s in choice.scores if s.law == choice.fit.model.candidate.name)
-    if not choice.fit.model.candidate.sticks:
+    best = scores[0]
+    chosen = next(s for s in scores if s.law == candidate.name)
+    if not candidate.sticks:
         notes.append(
             "this law's contact creeps while it sticks, which looks like damping. On rigs of a "
             "second simulator the damping came out up to a quarter too large, and up to two fifths "
             "with the clamp bolted down"
         )
-    rivals = [s.law for s in choice.scores if s.missed <= _RIVALS * best.missed and s != chosen]
+    rivals = [s.law for s in scores if s.missed <= _RIVALS * best.missed and s != chosen]
     if rivals:
         notes.append(f"these recordings hardly tell {' and '.join([chosen.law, *rivals])} apart")
     if max(chosen.missed, chosen.held_out) > _MISSED:

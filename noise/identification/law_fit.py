@@ -464,25 +464,6 @@ _NOT_WORTH_IT = 3.0
 """A law that misses so many times as much at first is not searched to the end; assumed."""
 
 
-@dataclass(frozen=True, eq=False)
-class Choice:
-    """The law that was chosen.
-
-    Parameters
-    ----------
-    fit : LawFit
-        To all recordings.
-    scores : tuple of LawScore
-        Best first.
-    held_out : tuple of str
-        Recordings that the laws were compared on.
-    """
-
-    fit: LawFit
-    scores: tuple[LawScore, ...]
-    held_out: tuple[str, ...]
-
-
 def left_out(recordings: Sequence[Measured]) -> list[int]:
     """Choose recordings to leave out: whole conditions, about a third, no interference altogether.
 
@@ -513,7 +494,7 @@ def choose_law(
     subjects: Sequence[Subject],
     progress: Callable[[str], None],
     evidence: Mapping[bool, tuple[Evidence, ...]],
-) -> Choice:
+) -> tuple[LawFit, tuple[LawScore, ...], tuple[str, ...]]:
     """Fit all laws and choose.
 
     Parameters
@@ -528,7 +509,12 @@ def choose_law(
 
     Returns
     -------
-    Choice
+    fit : LawFit
+        Of the law that was chosen, to all recordings.
+    scores : tuple of LawScore
+        Best first.
+    held_out : tuple of str
+        Recordings that the laws were compared on.
     """
     recordings = [one.measured for one in subjects]
     held = left_out(recordings)
@@ -559,7 +545,7 @@ def choose_law(
     if held:
         whole = _with_held(fit, subjects, trained, held)
         fit = fit_law(Sketch(whole.model, (whole.vector,), 0.0))
-    return Choice(fit, tuple(scores), tuple(recordings[i].name for i in held))
+    return fit, tuple(scores), tuple(recordings[i].name for i in held)
 
 
 def _mean(shares: Array) -> float:

@@ -260,6 +260,6 @@ def _recording(one: Seen) -> dict[str, Any]:
         "mean_torque_Nm": one.levels.mean,
         "critical_torque_Nm": one.levels.critical,
         "kinetic_torque_Nm": one.levels.kinetic,
-        "slips": one.levels.slips, "stuck_share": round(one.fit.stuck_share, 3),
+        "slips": one.levels.slips, "stuck_share": round(float(one.fit.phases.stuck.mean()), 3),
     }  # fmt: skip
     return {"file": one.measured.name, **speed, **_rounded(row)}

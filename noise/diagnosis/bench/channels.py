@@ -161,8 +161,6 @@ class Levels:
         As stated [rad/s].
     turned : float, optional
         Slope of the angle [rad/s]; None without one.
-    straight : float
-        What the angle has besides its slope, over the way it turns [-].
     torque : float, optional
         Mean over the kinetic torque of the fit, negative against the stated rotation [-].
     swing : float
@@ -177,7 +175,6 @@ class Levels:
 
     speed: float
     turned: float | None
-    straight: float
     torque: float | None
     swing: float
     falls: float
@@ -206,9 +203,9 @@ def levels_of(recording: Recording, rig: Rig, transfer_functions: TransferFuncti
         for kind in KINDS
         if (row := recording.first(kind)) is not None
     }
-    turned, straight = _turning(signal["angle"], rate) if "angle" in signal else (None, 0.0)
+    turned = _turning(signal["angle"], rate) if "angle" in signal else None
     if "torque" not in signal:
-        return Levels(c.speed, turned, straight, None, 0.0, 0.0)
+        return Levels(c.speed, turned, None, 0.0, 0.0)
     torque, kinetic = signal["torque"], rig.fit(c.interference).kinetic_torque
     paths: dict[tuple[str, str], PathFit] = {}
     backwards: dict[str, PathFit] = {}
@@ -222,7 +219,7 @@ def levels_of(recording: Recording, rig: Rig, transfer_functions: TransferFuncti
             back = predict(torque[::-1], rate, functions[path])
             backwards[path] = path_fit(back, signal[path][::-1], rate)
     return Levels(
-        c.speed, turned, straight, math.copysign(1.0, c.speed) * float(torque.mean()) / kinetic,
+        c.speed, turned, math.copysign(1.0, c.speed) * float(torque.mean()) / kinetic,
         float(torque.std()) / kinetic, _falling(torque, rate), paths, backwards,
     )  # fmt: skip
 
@@ -274,12 +271,10 @@ def _alike(p: Array, m: Array, rate: float) -> float:
     return float(near[np.argmax(np.abs(near))])
 
 
-def _turning(angle: Array, rate: float) -> tuple[float, float]:
+def _turning(angle: Array, rate: float) -> float:
     time = np.arange(angle.size) / rate
     time -= time.mean()
-    slope = float(time @ (angle - angle.mean())) / float(time @ time)
-    rest = float((angle - angle.mean() - slope * time).std())
-    return slope, rest / (abs(slope) * angle.size / rate + 1e-300)
+    return float(time @ (angle - angle.mean())) / float(time @ time)
 
 
 def _falling(torque: Array, rate: float) -> float:

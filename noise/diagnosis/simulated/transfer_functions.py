@@ -238,31 +238,18 @@ def predict_outputs(
     """
     length, changes = closed_length(n, rate), changes or {}
     outputs = [
-        spectrum * (_on_lines(_Same(transfer), length, rate) + changes.get(name, 0.0))
+        spectrum * (_on_lines(transfer, length, rate) + changes.get(name, 0.0))
         for name, transfer in transfer_functions.items()
     ]
     rows = irfft(np.stack(outputs), length, axis=1)[:, :n] if outputs else ()
     return dict(zip(transfer_functions, rows, strict=True))
 
 
-class _Same:
-    """An object that is looked up as itself, whatever it holds: its content takes long to hash."""
-
-    def __init__(self, it: TransferFunction) -> None:
-        self.it = it
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and self.it is other.it
-
-    def __hash__(self) -> int:
-        return id(self.it)
-
-
 @lru_cache(maxsize=32)
-def _on_lines(same: _Same, length: int, rate: float) -> NDArray[np.complex128]:
+def _on_lines(transfer: TransferFunction, length: int, rate: float) -> NDArray[np.complex128]:
     """Response at the lines of a transform; the same few are asked for again and again."""
     frequencies = np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64)
-    return same.it.at(frequencies, falls_below=True)
+    return transfer.at(frequencies, falls_below=True)
 
 
 def shift_clamp_mode(
