@@ -181,7 +181,7 @@ class Candidate:
 
 
 CANDIDATES = tuple(
-    Candidate(name, free={key: tuple(range_) for key, range_ in row.pop("free", {}).items()}, **row)
+    Candidate(name, **row)
     for name, row in tomllib.loads(
         (resources.files(__package__) / "candidates.toml").read_text("utf-8")
     ).items()

@@ -407,7 +407,8 @@ def wrong_units(levels: Sequence[Levels], *, alike: float = 1.0) -> Iterator[str
     scale = 1.0
     if torque:
         factor = float(np.median(torque))
-        unit = unit_of("torque", factor) or _far_unit(factor, alike) or _torque_of_paths(levels)
+        far = unit_of("torque", factor, math.log(alike) + 1e-9)
+        unit = unit_of("torque", factor) or (far if far in _FAR else "") or _torque_of_paths(levels)
         if not _TORQUE[0] < factor < _TORQUE[1]:
             yield _unit_words("torque", unit, factor, "the kinetic torque of the rig file")
             scale = factor if unit else 1.0
@@ -419,11 +420,6 @@ def wrong_units(levels: Sequence[Levels], *, alike: float = 1.0) -> Iterator[str
             factor = scale * float(np.median([fit.gain for fit in fits]))
         if unit or (follows and not _GAIN[0] < factor < _GAIN[1]):
             yield _unit_words(kind, unit, factor, "what the torque makes of it on this rig")
-
-
-def _far_unit(factor: float, alike: float) -> str:
-    unit = unit_of("torque", factor, math.log(alike) + 1e-9)
-    return unit if unit in _FAR else ""
 
 
 def _torque_of_paths(levels: Sequence[Levels]) -> str:

@@ -149,7 +149,8 @@ def shuffled_conditions(case: Case, levels: Sequence[Levels]) -> str:
     for one, recording in zip(levels, case.recordings, strict=True):
         if one.turned is None or one.torque is None or not one.turned or not one.torque:
             return ""
-        kinetic = _kinetic(case.rig, recording.condition.interference)
+        interference = known_condition(recording.condition).interference
+        kinetic = case.rig.fit(interference).kinetic_torque
         stated.append((np.log(abs(one.speed)), np.log(kinetic)))
         seen.append((np.log(abs(one.turned)), np.log(abs(one.torque) * kinetic)))
     x, y = np.array(seen), np.array(stated)
@@ -165,11 +166,6 @@ def shuffled_conditions(case: Case, levels: Sequence[Levels]) -> str:
         f"conditions look shuffled among the recordings: speed and torque of {', '.join(moved)} "
         "are those stated of others"
     )
-
-
-def _kinetic(rig: Rig, interference: float | None) -> float:
-    assert interference is not None  # `usable` made it so
-    return rig.fit(interference).kinetic_torque
 
 
 KINDS = ("torque", "acceleration", "pressure", "angle")

@@ -278,16 +278,11 @@ def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
     return numbers
 
 
-def _slow(speed: float) -> float:
-    """Sliding speed below which the surface sticks [rad/s]."""
-    return 0.7 * speed + 1.2
-
-
 def _stick(
     found: Reconstruction, fit: Fit, near: NDArray[np.bool_], speed: float
 ) -> tuple[int, Numbers]:
     """Count the samples in stick, and summarise them."""
-    stick = ~near & (np.abs(found.sliding_speed) < _slow(speed))
+    stick = ~near & (np.abs(found.sliding_speed) < 0.7 * speed + 1.2)
     m, b, shaft = int(np.count_nonzero(stick)), found.sliding_speed[stick], found.shaft_speed[stick]
     ratio = found.friction_torque[stick] / fit.critical_torque
     rate = found.torque_rate[stick]
@@ -348,17 +343,12 @@ def _cycles(
     time = starts / rate
     interval, duration = np.diff(time), (ends - starts) / rate
     stuck = np.maximum(starts[1:] - ends[:-1], 1) / rate
-    numbers = {
-        "peak": _middle(peak),
-        "peak_spread": float(peak.std()),
+    each = {"peak": peak, "trough": trough, "fastest": fastest, "kinetic": sliding}
+    numbers = {name: _middle(x) for name, x in each.items()}
+    numbers |= {f"{name}_spread": float(x.std()) for name, x in each.items()}
+    numbers |= {
         "peak_range": float(quantile(peak, 0.9) - quantile(peak, 0.1)),
         "peak_least": float(peak.min()),
-        "trough": _middle(trough),
-        "trough_spread": float(trough.std()),
-        "fastest": _middle(fastest),
-        "fastest_spread": float(fastest.std()),
-        "kinetic": _middle(sliding),
-        "kinetic_spread": float(sliding.std()),
         "interval": math.log(_middle(interval)),
         "interval_spread": float(interval.std() / interval.mean()),
         "duration": math.log(_middle(duration)),

@@ -235,7 +235,8 @@ def reconstruct(
     if spectrum is None:
         spectrum = closed_spectrum(torque, rate)
     length = closed_length(n, rate)
-    every = _thinning(length, rate)
+    # of so many samples one is enough for what the band limit leaves
+    every = next(k for k in (4, 2, 1) if k == 1 or (rate >= k * _LEAST_RATE and length % k == 0))
     rate /= every
     kept = slice(round(LEAD * rate), n // every - round(TAIL * rate))
     filters = _filters(length, rate * every, bushing)
@@ -261,11 +262,6 @@ def reconstruct(
         by_damping=by_damping,
         by_clamp=by_clamp,
     )
-
-
-def _thinning(length: int, rate: float) -> int:
-    """Of how many samples one is enough for what the band limit leaves."""
-    return next(k for k in (4, 2, 1) if k == 1 or (rate >= k * _LEAST_RATE and length % k == 0))
 
 
 @lru_cache(maxsize=6)

@@ -256,7 +256,8 @@ def nominal_recordings(
         outputs: dict[str, Array] = {}
         for corner in {corners[name] for name in _OUTPUTS}:
             paths = {n: transfer_functions[n] for n in _OUTPUTS if corners[n] == corner}
-            torque = _steadied(by_filter[corner], kept, rate)
+            mean = by_filter[corner][kept].mean()
+            torque = mean + faded(by_filter[corner] - mean, rate)
             spectrum = with_clamp_shifted(
                 closed_spectrum(torque, rate), torque.size, rate, bushing, lumped
             )
@@ -345,11 +346,6 @@ def _with_effects(
         signals, rate, condition, rng, scatter,
         decimation=DIAGNOSIS.decimation(rate), sensors=rig.sensors,
     )  # fmt: skip
-
-
-def _steadied(torque: Array, kept: slice, rate: float) -> Array:
-    mean = torque[kept].mean()
-    return np.asarray(mean + faded(torque - mean, rate))
 
 
 @dataclass(frozen=True)

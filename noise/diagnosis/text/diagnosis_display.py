@@ -28,7 +28,7 @@ def draw_causes(diagnosis: Diagnosis, ax: Axes | None = None) -> Axes:
     >>> [tick.get_text() for tick in draw_causes(nothing, Figure().subplots()).get_yticklabels()]
     ['no gap']
     """
-    causes = _most_probable(diagnosis)
+    causes = sorted(diagnosis.probabilities.items(), key=lambda item: -item[1])[:_SHOWN]
     named = diagnosis.verdict or ("none",)
     with axes_or_new(ax) as axes:
         axes.barh(
@@ -44,7 +44,3 @@ def draw_causes(diagnosis: Diagnosis, ax: Axes | None = None) -> Axes:
         axes.set_xlabel("Probability of being at work [%]")
         axes.set_title(headline(diagnosis), loc="left")
     return axes
-
-
-def _most_probable(diagnosis: Diagnosis) -> list[tuple[str, float]]:
-    return sorted(diagnosis.probabilities.items(), key=lambda item: -item[1])[:_SHOWN]
