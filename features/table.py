@@ -181,7 +181,11 @@ class Feature:
 def _row(cells: Mapping[str, str]) -> Feature:
     silent = cells["silent"]
     return Feature(
-        *(cells[name] for name in ("name", "unit", "definition", "source", "value")),
+        name=cells["name"],
+        unit=cells["unit"],
+        definition=cells["definition"],
+        source=cells["source"],
+        value=cells["value"],
         silent=None if silent == "value" else float(silent or math.nan),
         calibrated=cells["calibrated"] == "yes",
         kinds=tuple(cells["kinds"].split()),

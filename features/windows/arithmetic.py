@@ -34,6 +34,34 @@ def ordered_sum(terms: NDArray[_Float], axis: int = 0) -> NDArray[_Float]:
     return np.asarray(np.add.accumulate(terms, axis=axis)[last])
 
 
+def power_of(spectrum: NDArray[Any], least: float | np.float32 = 0.0) -> NDArray[np.float32]:
+    """Square the magnitudes of spectra, in one pass over them.
+
+    Parameters
+    ----------
+    spectrum : ndarray of complex64, shape (n_rows, n_bins)
+        [unit]
+    least : float
+        Added to each [unit^2].
+
+    Examples
+    --------
+    >>> power_of(np.array([[3.0 + 4.0j]], dtype=np.complex64)).tolist()
+    [[25.0]]
+    """
+    power = np.empty(spectrum.shape, dtype=np.float32)
+    _square(spectrum, np.float32(least), power)
+    return power
+
+
+@njit(cache=True, **COMPILED)
+def _square(spectrum, least, power) -> None:
+    for row in range(power.shape[0]):
+        for k in range(power.shape[1]):
+            real, imaginary = spectrum[row, k].real, spectrum[row, k].imag
+            power[row, k] = real * real + imaginary * imaginary + least
+
+
 def padded_rows(
     values: NDArray[Any], row: NDArray[np.int64], counts: NDArray[np.int64], fill: float
 ) -> NDArray[Any]:

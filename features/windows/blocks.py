@@ -27,6 +27,7 @@ from scipy import fft
 
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 from features.kernels.levels import a_weighting
+from features.windows.arithmetic import power_of
 from models.compilation import COMPILED
 
 RATE = 16_000
@@ -161,8 +162,7 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
 
 def _rate_held(spectrum: NDArray[np.complex64], seconds: float, rate: float) -> float:
     """Return the lowest rate that holds all there is: its own, or that of a store on the way."""
-    power = spectrum.real**2
-    power += spectrum.imag**2
+    power = power_of(spectrum)
     below = np.append(0.0, np.cumsum(power.mean(axis=0), dtype=np.float64))
     for stored in _STORED_RATES:
         bins = 0.5 * stored * seconds

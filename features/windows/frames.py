@@ -18,7 +18,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy import fft
 
-from features.windows.arithmetic import OCTAVES, ordered_sum
+from features.windows.arithmetic import OCTAVES, ordered_sum, power_of
 from features.windows.blocks import FRAME_RATE, RATE
 from models.compilation import COMPILED, PART
 
@@ -126,10 +126,7 @@ def _described(
     frames: NDArray[np.float32], last: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Return `FRAME_COLUMNS` of some frames, and the power in their bands."""
-    spectrum = fft.rfft(frames * _WINDOW, axis=1)
-    power = spectrum.real**2
-    power += spectrum.imag**2
-    power += _LEAST
+    power = power_of(fft.rfft(frames * _WINDOW, axis=1), _LEAST)
     correlation = fft.irfft(power, axis=1)[:, : _LAGS[1] + 2] * _TAPER
     values = np.empty((len(power), len(FRAME_COLUMNS)), dtype=np.float32)
     values[:, 1] = np.log2(power[:, _FIRST_BIN:last]).mean(axis=1)

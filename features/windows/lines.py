@@ -14,7 +14,13 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy import fft
 
-from features.windows.arithmetic import OCTAVES, ordered_sum, padded_rows, prominent_maxima
+from features.windows.arithmetic import (
+    OCTAVES,
+    ordered_sum,
+    padded_rows,
+    power_of,
+    prominent_maxima,
+)
 from models.compilation import COMPILED, PART
 
 _SEGMENT = 4000
@@ -104,9 +110,7 @@ class Lines:
 
     def __init__(self, segments: NDArray[np.float32], at: NDArray[np.int64], limit: float) -> None:
         needed, row = np.unique(at, return_inverse=True)
-        spectrum = fft.rfft(segments[needed] * _WINDOW, n=_LENGTH, axis=1)
-        spectra = spectrum.real**2
-        spectra += spectrum.imag**2
+        spectra = power_of(fft.rfft(segments[needed] * _WINDOW, n=_LENGTH, axis=1))
         end = max(FIRST + BLOCK, min(int(limit / SPACING) + 1, spectra.shape[1] - 2))
         power = np.full((len(at), max(end, _KILOHERTZ[0]) + 2), _LEAST, dtype=np.float32)
         described = slice(FIRST - 2, end + 2)

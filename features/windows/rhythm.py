@@ -20,6 +20,7 @@ from features.windows.arithmetic import (
     ordered_sum,
     padded_medians,
     padded_rows,
+    power_of,
     prominent_maxima,
 )
 from features.windows.blocks import RATE
@@ -110,8 +111,7 @@ def rhythm_of(power: NDArray[np.float32], size: int) -> dict[str, NDArray[np.flo
     varying = np.zeros((windows, _LENGTH), dtype=np.float32)
     mean, spread = np.empty(windows), np.empty(windows)
     _amplitudes(power, size, varying, mean, spread)
-    spectrum = fft.rfft(varying, axis=1)
-    modulation = spectrum.real**2 + spectrum.imag**2
+    modulation = power_of(fft.rfft(varying, axis=1))
     correlation = fft.irfft(modulation, axis=1)[:, : 2 * _LAGS[1] + 2]
     shares = np.add.reduceat(modulation, _MODULATION, axis=1)[:, :-1]
     shares /= np.maximum(shares.sum(axis=1, keepdims=True), 1e-30)
