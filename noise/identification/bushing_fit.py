@@ -409,7 +409,7 @@ def _refined(spectrum: TorqueSpectrum, support: float, known: Known, start: Arra
         ])  # fmt: skip
 
     fit = least_squares(residuals, start, method="lm", diff_step=1e-4, max_nfev=60)
-    return np.clip(fit.x, start - 0.7, start + 0.7)
+    return np.asarray(np.clip(fit.x, start - 0.7, start + 0.7))
 
 
 def _bent(x: Array) -> Array:

@@ -397,7 +397,7 @@ def fit_law(sketch: Sketch, *, hopeless: bool = False) -> LawFit:
             vector, away, normal = _searched(misfit, vector, iterations)
         found.append((misfit.cost(vector, away, 1.0), vector, misfit.missed(away), normal))
     _, vector, missed, normal = min(found, key=lambda one: one[0])
-    return LawFit(sketch.model, vector, missed, np.linalg.pinv(normal))
+    return LawFit(sketch.model, vector, missed, np.asarray(np.linalg.pinv(normal), np.float64))
 
 
 def fit_some(model: LawModel, vector: Array, free: NDArray[np.bool_]) -> LawFit:
@@ -417,7 +417,9 @@ def fit_some(model: LawModel, vector: Array, free: NDArray[np.bool_]) -> LawFit:
     """
     misfit = Misfit(model, vector)
     vector, away, normal = _searched(misfit, vector, _ITERATIONS["fit"], free)
-    return LawFit(model, vector, misfit.missed(away), np.linalg.pinv(normal))
+    return LawFit(
+        model, vector, misfit.missed(away), np.asarray(np.linalg.pinv(normal), np.float64)
+    )
 
 
 def _searched(
