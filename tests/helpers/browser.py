@@ -8,6 +8,7 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 
 from tests.helpers.opened_app import PATIENCE
@@ -126,18 +127,40 @@ def accessibility_errors(page: Page) -> list[tuple[str, str]]:
     return [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]]
 
 
-class OpenedPage:
-    """The page in the browser, with all that it complains of and asks for."""
+class WatchedPage:
+    """A page in the browser, with all that it complains of and asks for."""
 
-    def __init__(self, browser, file, width=1280, *, tapped=False):
-        self.complaints = []
-        self.requests = []
-        viewport = {"width": width, "height": 800}
+    def __init__(self, browser, address, width=1280, height=900, *, tapped=False):
+        self.complaints, self.requests = [], []
+        viewport = {"width": width, "height": height}
         self.page = new_page(browser, tapped=tapped, viewport=viewport)
         self.page.on("console", lambda message: self.complaints.append(message.text))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("dialog", lambda dialog: self.complaints.append(dialog.message))
         self.page.on("request", lambda request: self.requests.append(request.url))
-        self.page.goto(file.as_uri())
+        self.page.goto(address)
+
+    def more(self, n=24000):
+        """What has gone to the loudspeaker, once it is so many samples more."""
+        known = self.page.evaluate("heard.length")
+        self.page.wait_for_function("(n) => heard.length >= n", arg=known + n)
+        return np.array(self.page.evaluate("heard"))
+
+    def heard(self, n=24000):
+        """What goes to the loudspeaker from now on."""
+        self.page.evaluate("hearAnew()")
+        return self.more(n)
+
+    def close(self):
+        assert self.complaints == []
+        self.page.close()
+
+
+class OpenedPage(WatchedPage):
+    """A page that is a file."""
+
+    def __init__(self, browser, file, width=1280, *, tapped=False):
+        super().__init__(browser, file.as_uri(), width, 800, tapped=tapped)
 
     def state(self):
         return self.page.evaluate(

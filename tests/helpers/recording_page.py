@@ -10,7 +10,7 @@ from models.recording import Channel, Recording
 from noise.base.tables import write_table
 from noise.labels.table import COLUMNS, read_label_table
 from noise.recordings.wav import write_recording
-from tests.helpers.browser import new_page, until
+from tests.helpers.browser import WatchedPage, until
 from tests.helpers.labelled_folder import made_row
 
 RATE = 48000
@@ -36,17 +36,11 @@ def write_sounds(folder):
     return folder
 
 
-class OpenPage:
+class OpenPage(WatchedPage):
     """The app in a browser, with one recording open."""
 
-    def __init__(self, browser, app, width=1280, height=900, *, tapped=False):
-        self.complaints = []
-        viewport = {"width": width, "height": height}
-        self.page = new_page(browser, tapped=tapped, viewport=viewport)
-        self.page.on("console", lambda message: self.complaints.append(message.text))
-        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        self.page.on("dialog", lambda dialog: self.complaints.append(dialog.message))
-        self.page.goto(app.address)
+    def __init__(self, browser, app, *, tapped=False):
+        super().__init__(browser, app.address, tapped=tapped)
 
     def open(self, name):
         row = self.page.get_by_role("option").filter(has_text=name).first
@@ -94,21 +88,6 @@ class OpenPage:
 
     def is_playing(self):
         self.page.locator(".play").filter(has_text="Pause").wait_for()
-
-    def more(self, n=24000):
-        """What has gone to the loudspeaker, once it is so many samples more."""
-        known = self.page.evaluate("heard.length")
-        self.page.wait_for_function("(n) => heard.length >= n", arg=known + n)
-        return np.array(self.page.evaluate("heard"))
-
-    def heard(self):
-        """What goes to the loudspeaker from now on."""
-        self.page.evaluate("hearAnew()")
-        return self.more()
-
-    def close(self):
-        assert self.complaints == []
-        self.page.close()
 
 
 def in_table(folder, name=TONE):

@@ -13,19 +13,32 @@ from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.acquisition import Acquisition
 from sim.blocks import simulate_blocks
+from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 from sim.run import simulate
-from tests.helpers.chain_paths import RATE, changed, spectra
 from tests.helpers.spectra import path_spectra
 
+RATE = 96e3
 RIG = load_material_rig("fluorocarbon")
 CHAIN = ("beam_modes", "plate_modes", "room_reflections")
 EVERY_FORM = [(name, form) for name in CHAIN for form in EFFECTS[name].forms]
 PATHS = ("torque_to_acceleration", "torque_to_pressure", "pulse_to_acceleration",
          "pulse_to_pressure")  # fmt: skip
 QUIET = Acquisition(noise={})
+
+
+def changed(paths, name, seed=0, **parameters):
+    active = EFFECTS[name].active(parameters)
+    return changed_chain(paths, [active], np.random.default_rng(seed))
+
+
+def spectra(*signals, n=2**17):
+    """Frequencies from 300 Hz to 18 kHz, and the spectrum of each signal there."""
+    frequency = np.fft.rfftfreq(n, 1 / RATE)
+    kept = (frequency > 300.0) & (frequency < 18e3)
+    return frequency[kept], *(np.fft.rfft(signal, n)[kept] for signal in signals)
 
 
 @pytest.fixture(scope="module")

@@ -2,13 +2,71 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
-from tests.helpers.browser import accessibility_errors
-from tests.helpers.jury_page import JuryPage, pairs, votes
+from noise.base.tables import read_table
+from tests.helpers.browser import WatchedPage, accessibility_errors
 from tests.helpers.jury_sounds import NAMES, write_tones
 from tests.helpers.opened_app import opened_app
+
+
+class JuryPage(WatchedPage):
+    """The view of a jury, as a person with a keyboard uses it."""
+
+    def __init__(self, browser, app, width=1280, *, tapped=False):
+        super().__init__(browser, f"{app.address}#jury", width, tapped=tapped)
+        self.begins = self.page.get_by_role("button", name="Begin")
+        self.begins.wait_for()
+
+    def begin(self):
+        self.page.wait_for_function("() => !document.querySelector('.begin').disabled")
+        self.begins.click()
+        return self.turn(1)
+
+    def turn(self, place):
+        """Wait for a comparison, the first of which is 1, to be there."""
+        self.page.wait_for_function(
+            """(place) =>
+               document.querySelector(".voting .count").textContent.startsWith(`${place} of`)
+               && [...document.querySelectorAll(".side")].every((side) => !side.disabled)""",
+            arg=place,
+        )
+        return self
+
+    def hear(self, side):
+        """Listen to a side, and return what goes to the loudspeaker after the change."""
+        self.page.keyboard.press(side)
+        self.page.locator(f".side[aria-pressed=true] >> text={side.upper()}").wait_for()
+        return self.heard(9600)
+
+    def listen(self):
+        """Press A, then B, and wait until both have been heard."""
+        for side in "ab":
+            self.page.keyboard.press(side)
+            self.page.locator(f".side.heard >> text={side.upper()}").wait_for()
+
+    def vote(self, key):
+        self.page.locator(".saved").evaluate("(one) => { one.textContent = ''; }")
+        self.listen()
+        self.page.keyboard.press(key)
+        self.page.locator(".saved").filter(has_text=re.compile("^saved ")).wait_for(
+            state="attached"
+        )
+
+
+def rows(folder):
+    return read_table(folder / "votes.csv")[1]
+
+
+def votes(folder):
+    return [row["vote"] for row in rows(folder) if row["vote"]]
+
+
+def pairs(folder):
+    return [(row["first"], row["second"]) for row in rows(folder)]
 
 
 @pytest.fixture
@@ -72,7 +130,7 @@ def test_what_was_looked_at_before_is_neither_in_the_page_nor_asked_for_nor_hear
             assert name not in page.content()
             for answer in told:
                 assert name.encode() not in answer.body()
-        assert not jury.heard().any()
+        assert not jury.heard(9600).any()
         page.locator("#tab-labels").click()
         page.locator(".recording .about h2").filter(has_text="onerror").wait_for()
         page.keyboard.press("1")
@@ -89,7 +147,7 @@ def test_a_and_b_are_heard_in_step_at_one_gain(browser, folder):
         assert levels[2] == pytest.approx(levels[0], rel=0.02)
         jury.page.keyboard.press(" ")
         jury.page.get_by_role("button", name="Play").wait_for()
-        assert not jury.heard().any()
+        assert not jury.heard(9600).any()
         jury.close()
 
 
