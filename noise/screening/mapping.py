@@ -29,15 +29,20 @@ from scipy.spatial import cKDTree
 from models.rig import Rig
 from models.show import short_repr
 from noise.base.labels import PERSISTS
-from noise.screening.batches import LABELS, Batch, Evaluator
+from noise.screening.batches import Evaluator
 from noise.screening.grid import Grid
-from noise.screening.point import REGIMES
-from noise.screening.provenance import is_substituted, point_notes, rows_of
+from noise.screening.provenance import point_notes, rows_of
+from noise.screening.vibration import Condition
+from sim.analysis.regime import Regime
 from sim.analysis.stability import sliding_growth
 from sim.temperature import at_temperature
 
 Cell = tuple[int, int, int, int, int]
 """Plane, first and last row, first and last column."""
+
+REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
+LABELS = ("none", "creak", "squawk", "squeal")
+"""Of a point, in the order of their codes."""
 
 HOW = ("simulated", "refined", "unchanged")
 """How a point is known: run, as the simulated points about it, as at another temperature or fit."""
@@ -86,6 +91,8 @@ class DesignMap:
     note : ndarray of str, shape of the grid
         What is not the design's own there, by `noise.screening.provenance.point_notes`: data
         interpolated or held, a speed beyond those fitted; empty where nothing is.
+    substituted : ndarray of bool, shape of the grid
+        Where such data stand in.
     open : int
         Points beside a boundary that were left to their nearest neighbour.
     """
@@ -104,12 +111,8 @@ class DesignMap:
     how: NDArray[np.str_]
     growth: NDArray[np.float64]
     note: NDArray[np.object_]
+    substituted: NDArray[np.bool_]
     open: int
-
-    @property
-    def substituted(self) -> NDArray[np.bool_]:
-        """At which points data interpolated or held stand in for the design's own."""
-        return np.asarray(np.vectorize(is_substituted, otypes=[bool])(self.note))
 
     def count(self, how: str) -> int:
         """How many points are known in a way."""
@@ -162,21 +165,24 @@ def map_design(
     support, speed = np.array(grid.support_stiffness), np.array(grid.speed)
     shape = (temperature.size, support.size, interference.size, speed.size)
     planes = (shape[0] * shape[1], shape[2], shape[3])
-    values = np.full((4, *planes), np.nan)  # label by physics, persists, levels
+    values = np.full((3, *planes), np.nan)  # label by physics, levels
     swings = bool(grid.frequency)
-    frequency = np.array(grid.frequency) if swings else np.full(speed.size, np.nan)
+
+    def condition(plane: int, row: int, column: int) -> Condition:
+        return Condition(
+            grid.speed[column], float(interference[row]), float(support[plane % shape[1]]),
+            float(temperature[plane // shape[1]]), grid.frequency[column] if swings else None,
+        )  # fmt: skip
 
     def simulate(points: NDArray[np.int64]) -> NDArray[np.int64]:
-        plane, row, column = points.T
-        rows = evaluate(
-            Batch(
-                rig, speed[column], frequency[column], interference[row],
-                support[plane % shape[1]], temperature[plane // shape[1]],
-            )
-        )  # fmt: skip
-        values[:, plane, row, column] = rows[:, [3, 2, 4, 5]].T
-        kind = rows[:, 1] + len(LABELS) * rows[:, 2]
-        return (kind * len(REGIMES) + rows[:, 0]).astype(np.int64)
+        codes = []
+        found = evaluate(rig, [condition(*point) for point in points.tolist()])
+        for at, one in zip(points.tolist(), found, strict=True):
+            physics = LABELS.index(one.physics)
+            values[:, *at] = physics, one.level, one.level_max
+            kind = LABELS.index(one.label) + len(LABELS) * one.persists
+            codes.append(kind * len(REGIMES) + REGIMES.index(one.regime))
+        return np.array(codes)
 
     growth = np.full(shape, np.nan)
     if not swings:
@@ -192,10 +198,11 @@ def map_design(
         ),
     )
     code = found.codes.reshape(shape)
+    note, substituted = point_notes(rig, grid)
     kind = code // len(REGIMES)
     sound = np.array(LABELS)[kind % len(LABELS)]
     physics = interpolated(values[0], found, nearest=1).reshape(shape).astype(int)
-    level, level_max = (interpolated(one, found).reshape(shape) for one in values[2:])
+    level, level_max = (interpolated(one, found).reshape(shape) for one in values[1:])
     mapped = DesignMap(
         design=design,
         environment=environment,
@@ -210,7 +217,8 @@ def map_design(
         loudness=np.full(shape, np.nan),
         how=np.where(found.simulated.reshape(shape), HOW[0], HOW[1]).astype("U9"),
         growth=growth,
-        note=point_notes(rig, grid),
+        note=note,
+        substituted=substituted,
         open=found.open,
     )
     return _copied(mapped, *known_by)

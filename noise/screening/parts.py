@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -32,7 +32,7 @@ from noise.screening.grid import grid_of
 from noise.screening.point import is_noisy
 from noise.screening.tolerances import Tolerance, nominal_values, varied
 from noise.screening.vibration import Condition
-from sim.analysis.stability import sliding_growth
+from sim.analysis.stability import growth_of_parts
 from sim.friction import friction_law
 from sim.temperature import at_temperature
 
@@ -189,23 +189,33 @@ def robustness(
     def part(row: NDArray[np.float64]) -> tuple[Rig, Condition]:
         return varied(design.rig, at, dict(zip(spread, row.tolist(), strict=True)))
 
-    def noisy(row: NDArray[np.float64]) -> bool:
-        rig, own = part(row)
-        worst = float(speeds[_growth(rig, own, speeds).argmax()])
-        tried = dict.fromkeys([own.speed, worst, float(speeds[0]), float(speeds[-1])])
-        return is_noisy(rig, own, list(tried))
+    def growth(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Growth of each row of factors at each speed, shape (n_rows, n_speeds)."""
+        return growth_of_parts(
+            [
+                (at_temperature(rig, own.temperature), own.interference, own.support_stiffness)
+                for rig, own in map(part, rows)
+            ],
+            speeds,
+        )
 
+    def noisy(row: NDArray[np.float64], worst: float) -> bool:
+        rig, own = part(row)
+        tried = dict.fromkeys([own.speed, worst, float(speeds[0]), float(speeds[-1])])
+        return is_noisy(rig, [replace(own, speed=speed) for speed in tried])
+
+    worst = speeds[growth(factors).argmax(axis=1)].tolist()
     progress(f"{parts} parts of {design.name}")
     with one_thread():
-        found = Parallel(n_jobs=workers, prefer="threads")(delayed(noisy)(row) for row in factors)
+        found = Parallel(n_jobs=workers, prefer="threads")(
+            delayed(noisy)(row, speed) for row, speed in zip(factors, worst, strict=True)
+        )
     k = int(sum(found))
     interval = stats.binomtest(k, parts).proportion_ci(0.95, method="exact")
     sensitivities: tuple[Sensitivity, ...] = ()
     if friction_law(design.rig.friction.name).torque is not None:
         progress(f"sensitivities of {design.name}")
-        sensitivities = _sensitivities(
-            lambda row: float(_growth(*part(row), speeds).max()), spread, rng
-        )
+        sensitivities = _sensitivities(lambda rows: growth(rows.T).max(axis=1), spread, rng)
     return Robustness(
         design=design.name,
         at=at,
@@ -215,25 +225,16 @@ def robustness(
     )
 
 
-def _growth(rig: Rig, at: Condition, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
-    hot = at_temperature(rig, at.temperature)
-    return sliding_growth(hot, speeds, at.interference, at.support_stiffness)
-
-
 def _sensitivities(
-    output: Callable[[NDArray[np.float64]], float],
+    output: Callable[[NDArray[np.float64]], NDArray[np.float64]],
     spread: dict[str, Any],
     rng: np.random.Generator,
 ) -> tuple[Sensitivity, ...]:
     """Sobol' indices of an output of parts, the largest total index first."""
-
-    def outputs(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.array([output(row) for row in rows.T])
-
     if len(spread) < 2:
         one = Estimate(1.0, 1.0, 1.0)
         return tuple(Sensitivity(name, one, one) for name in spread)
-    found = stats.sobol_indices(func=outputs, n=_INDICES, dists=list(spread.values()), rng=rng)
+    found = stats.sobol_indices(func=output, n=_INDICES, dists=list(spread.values()), rng=rng)
     drawn = found.bootstrap(n_resamples=200)
     indices = [
         Sensitivity(

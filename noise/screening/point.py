@@ -21,7 +21,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.levels import weighted_levels
+from features.kernels.levels import WeightedLevels, weighted_levels
 from models.condition import Condition as Stated
 from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses
@@ -56,9 +56,6 @@ from sim.run import (
 )
 from sim.shaft import Oscillation
 from sim.temperature import at_temperature
-
-REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
-"""In the order of their codes."""
 
 JUDGED = 0.5
 """Last part of a run that is heard: a window of the classifier [s]."""
@@ -152,54 +149,51 @@ def evaluate_point(rig: Rig, at: Condition) -> PointResult:
     >>> evaluate_point(rig, Condition(10.0, 0.279e-3, 3745.0)).label
     'squeal'
     """
-    if at.frequency is not None:
-        return heard_of(rig, at, _motion(rig, at, at.frequency))
-    return evaluate_row(rig, at, [at.speed])[0]
+    return evaluate_row(rig, [at])[0]
 
 
-def evaluate_row(rig: Rig, at: Condition, speeds: Sequence[float]) -> list[PointResult]:
-    """Simulate points of constant speed that are alike but for it, which is cheaper together.
+def evaluate_row(rig: Rig, row: Sequence[Condition]) -> list[PointResult]:
+    """Simulate points that differ in speed alone, which is cheaper together.
 
     Parameters
     ----------
     rig : Rig
-    at : Condition
-        Of which the speed does not matter.
-    speeds : sequence of float
-        [rad/s]
+    row : sequence of Condition
+        Of constant speed, or of swings.
 
     Returns
     -------
     list of PointResult
     """
-    found = [SILENT] * len(speeds)
-    for i, one in vibrations_at(rig, at, speeds):
-        if one.course is None:
-            continue
-        here, persists = replace(at, speed=float(speeds[i])), one.state == PERSISTS
-        found[i] = heard_of(rig, here, one.course.motion, persists=persists)
-        if found[i].label == "none":
-            longer = gone_on(one.course, _LONGER)
-            found[i] = heard_of(rig, here, longer, persists=persists, judged=_LONGER)
+    if row[0].frequency is not None:
+        return [heard_of(rig, at, _motion(rig, at)) for at in row]
+    found = [SILENT] * len(row)
+    for i, one in vibrations_at(rig, row):
+        if one.course is not None:
+            persists = one.state == PERSISTS
+            found[i] = heard_of(rig, row[i], one.course.motion, persists=persists)
+            if found[i].label == "none":
+                longer = gone_on(one.course, _LONGER)
+                found[i] = heard_of(rig, row[i], longer, persists=persists, judged=_LONGER)
     return found
 
 
-def is_noisy(rig: Rig, at: Condition, speeds: Sequence[float]) -> bool:
-    """Whether a vibration lasts at any of some speeds [rad/s], and is heard.
+def is_noisy(rig: Rig, row: Sequence[Condition]) -> bool:
+    """Whether a vibration lasts at any of some conditions that differ in speed alone, and is heard.
 
     Costs half of what the name of the noise does.
     """
-    hot = at_temperature(rig, at.temperature)
-    for i, one in vibrations_at(rig, at, speeds):
-        if one.course is None:
-            continue
-        motion = _last_part(one.course.motion)
-        sound = _sound(hot, replace(at, speed=float(speeds[i])), motion)
-        heard = sound.pressure[-round(JUDGED * RATE) :]
-        levels = weighted_levels(lambda first, last, p=heard: p[first:last], heard.size, RATE)
-        if levels.level_a >= LEAST_LEVEL:
-            return True
+    hot = at_temperature(rig, row[0].temperature)
+    for i, one in vibrations_at(rig, row):
+        if one.course is not None:
+            sound = _sound(hot, row[i], _last_part(one.course.motion))
+            if _levels(sound.pressure[-round(JUDGED * RATE) :]).level_a >= LEAST_LEVEL:
+                return True
     return False
+
+
+def _levels(pressure: NDArray[np.float64]) -> WeightedLevels:
+    return weighted_levels(lambda first, last: pressure[first:last], pressure.size, RATE)
 
 
 def _last_part(motion: Motion, judged: float = JUDGED) -> Motion:
@@ -239,7 +233,7 @@ def heard_of(
     rig = at_temperature(rig, at.temperature)
     sound = _sound(rig, at, motion)
     pressure, pulses = sound.pressure[start:], sound.pulse_pressure[start:]
-    levels = weighted_levels(lambda first, last: pressure[first:last], pressure.size, RATE)
+    levels = _levels(pressure)
     criteria, interval = _liveliest(pressure, pulses, intervals)
     slips = motion_slips(interval.since(-round(_REGIME * RATE))).times.size > 0
     physics = criteria.label
@@ -303,7 +297,7 @@ def point_sound(rig: Rig, at: Condition) -> tuple[float, NDArray[np.float64]]:
         [Pa]
     """
     if at.frequency:
-        motion, start = _motion(rig, at, at.frequency), 0.25 / at.frequency
+        motion, start = _motion(rig, at), 0.25 / at.frequency
     elif (course := vibration_at(rig, at).course) is not None:
         motion, start = gone_on(course, 1.0), _RINGING
     else:
@@ -312,13 +306,12 @@ def point_sound(rig: Rig, at: Condition) -> tuple[float, NDArray[np.float64]]:
     return RATE, sound.pressure[round(start * RATE) :]
 
 
-def _motion(rig: Rig, at: Condition, frequency: float) -> Motion:
+def _motion(rig: Rig, at: Condition) -> Motion:
     """Motion of a swing, from one turning on for a cycle and a quarter."""
     return simulate_motion(
-        at_temperature(rig, at.temperature),
-        Oscillation(at.speed / (2.0 * math.pi * frequency), frequency),
+        at_temperature(rig, at.temperature), shaft_motion(at.speed, at.frequency),
         interference=at.interference, support_stiffness=at.support_stiffness,
-        seconds=1.25 / frequency, rate=RATE, tolerance=1e-5,
+        seconds=1.25 / at.frequency, rate=RATE, tolerance=1e-5,
     )  # fmt: skip
 
 

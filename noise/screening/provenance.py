@@ -12,7 +12,7 @@ they go on, and those of the nearest are held.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +22,7 @@ from models.condition import FIXED
 from noise.screening.axis_values import axis_words
 
 if TYPE_CHECKING:
-    from models.rig import Fit, Rig
+    from models.rig import Rig
     from noise.screening.grid import Grid
 
 
@@ -33,13 +33,11 @@ RULE = (
 )
 """What stands in at conditions that a design is not given for."""
 
-_HELD = " held"
-
 _SAME = 0.01
 """Relative distance within which a fit or a support is one that data are given for."""
 
 
-def point_notes(rig: Rig, grid: Grid) -> NDArray[np.object_]:
+def point_notes(rig: Rig, grid: Grid) -> tuple[NDArray[np.object_], NDArray[np.bool_]]:
     """Say of each point what is not the design's own there.
 
     Parameters
@@ -49,9 +47,11 @@ def point_notes(rig: Rig, grid: Grid) -> NDArray[np.object_]:
 
     Returns
     -------
-    ndarray of str, shape of the grid
+    notes : ndarray of str, shape of the grid
         What was interpolated, held, or is faster than anything that the rig was fitted to; empty
         where nothing is.
+    substituted : ndarray of bool, same shape
+        Where `RULE` stands in.
 
     Examples
     --------
@@ -59,35 +59,22 @@ def point_notes(rig: Rig, grid: Grid) -> NDArray[np.object_]:
     >>> from noise.screening.grid import grid_of
     >>> design = load_design("fluorocarbon")
     >>> use = Use(speed=(5.0,), interference=(0.3e-3,), support_stiffness=(2214.0, 3000.0))
-    >>> for note in point_notes(design.rig, grid_of(design, use)).flat:
+    >>> for note in point_notes(design.rig, grid_of(design, use))[0].flat:
     ...     print(note)
     interpolated between fits of 0.279 and 0.381 mm
     interpolated between fits of 0.279 and 0.381 mm; damping interpolated between 2214 Nm/rad and...
     """
-    of_fit = [_fit_note(rig, fit) for fit in grid.interference]
-    of_support = [
-        [_support_note(rig, fit, support) for fit in grid.interference]
-        for support in grid.support_stiffness
-    ]
     fast = f"faster than {rig.fastest_fitted:.4g} rad/s, the fastest that was fitted"
-    of_speed = [fast if v > rig.fastest_fitted * (1.0 + 1e-9) else "" for v in grid.speed]
     notes = np.empty(grid.shape, dtype=object)
-    for at in np.ndindex(grid.shape):
-        _, support, fit, speed = at
-        told = (of_fit[fit], of_support[support][fit], of_speed[speed])
-        notes[at] = "; ".join(text for text in told if text)
-    return notes
-
-
-def is_substituted(note: str) -> bool:
-    """Whether a point's note says that `RULE` stands in for data of the design's own.
-
-    Examples
-    --------
-    >>> is_substituted("damping of 3745 Nm/rad held"), is_substituted("faster than 13 rad/s, ...")
-    (True, False)
-    """
-    return "interpolated" in note or note.endswith(_HELD) or f"{_HELD};" in note
+    substituted = np.zeros(grid.shape, dtype=bool)
+    for k, support in enumerate(grid.support_stiffness):
+        for i, fit in enumerate(grid.interference):
+            stand_in = [_fit_note(rig, fit), _support_note(rig, fit, support)]
+            substituted[:, k, i] = any(stand_in)
+            for v, speed in enumerate(grid.speed):
+                beyond = [fast] if speed > rig.fastest_fitted * (1.0 + 1e-9) else []
+                notes[:, k, i, v] = "; ".join(filter(None, [*stand_in, *beyond]))
+    return notes, substituted
 
 
 def rows_of(rig: Rig, interference: Sequence[float]) -> list[int]:
@@ -106,14 +93,11 @@ def rows_of(rig: Rig, interference: Sequence[float]) -> list[int]:
     [2, 2, 2, 3, 4, 4]
     """
     low, high = rig.interference_range
-    below = [i for i, fit in enumerate(interference) if fit <= low]
-    above = [i for i, fit in enumerate(interference) if fit >= high]
-    rows = list(range(len(interference)))
-    for i in below:
-        rows[i] = below[-1]
-    for i in above:
-        rows[i] = above[0]
-    return rows
+    fits = np.array(interference)
+    rows = np.arange(fits.size)
+    rows[fits <= low] = rows[fits <= low].max(initial=-1)
+    rows[fits >= high] = rows[fits >= high].min(initial=fits.size)
+    return [int(row) for row in rows]
 
 
 def within_fits(rig: Rig, interference: float) -> bool:
@@ -144,55 +128,52 @@ def fits_remark(rig: Rig, interference: Sequence[float]) -> str:
     >>> fits_remark(load_material_rig("PDMS"), [0.178e-3, 0.254e-3, 0.3e-3])
     'fits are given for 0.254 and 0.381 mm; for 0.178 mm the nearest is held, for 0.3 mm they are...
     """
-    between = [fit for fit in interference if len(_around(rig, fit)) > 1]
-    held = [fit for fit in interference if fit not in between and _fit_note(rig, fit)]
-    told = [f"for {_millimetres(held)} mm the nearest is held"] if held else []
-    told += [f"for {_millimetres(between)} mm they are interpolated"] if between else []
-    if not told:
-        return ""
-    given = _millimetres([fit.interference for fit in rig.fits])
-    return f"fits are given for {given} mm; {', '.join(told)}"
+    given = [fit.interference for fit in rig.fits]
+    told = [f"fits are given for {_millimetres(given)} mm"]
+    stand_in = {fit: len(_stand_in(given, fit)) for fit in interference}
+    of = {n: _millimetres([fit for fit in interference if stand_in[fit] == n]) for n in (1, 2)}
+    told_of = [f"for {of[1]} mm the nearest is held"] if of[1] else []
+    told_of += [f"for {of[2]} mm they are interpolated"] if of[2] else []
+    return "; ".join([*told, ", ".join(told_of)]) if told_of else ""
 
 
 def _millimetres(values: Sequence[float]) -> str:
-    return axis_words([1e3 * value for value in values])
+    return axis_words([1e3 * value for value in values]) if values else ""
+
+
+def _stand_in(given: Iterable[float], value: float) -> list[float]:
+    """Return what stands in for a value: the two about it or the nearest; nothing if given."""
+    if any(math.isclose(each, value, rel_tol=_SAME) for each in given):
+        return []
+    below, above = [g for g in given if g < value], [g for g in given if g > value]
+    return [below[-1], above[0]] if below and above else below[-1:] or above[:1]
 
 
 def _fit_note(rig: Rig, interference: float) -> str:
-    around = _around(rig, interference)
+    around = [
+        f"{1e3 * fit:g}" for fit in _stand_in([f.interference for f in rig.fits], interference)
+    ]
     if len(around) == 2:
-        left, right = (f"{1e3 * fit.interference:g}" for fit in around)
-        return f"interpolated between fits of {left} and {right} mm"
-    [nearest] = around
-    if math.isclose(nearest.interference, interference, rel_tol=_SAME):
-        return ""
-    return f"properties of the fit of {1e3 * nearest.interference:g} mm{_HELD}"
+        return f"interpolated between fits of {' and '.join(around)} mm"
+    return f"properties of the fit of {around[0]} mm held" if around else ""
 
 
 def _support_note(rig: Rig, interference: float, support: float) -> str:
+    around = _stand_in([fit.interference for fit in rig.fits], interference)
+    fits = [
+        fit for fit in rig.fits
+        if fit.interference in around
+        or (not around and math.isclose(fit.interference, interference, rel_tol=_SAME))
+    ]  # fmt: skip
     # One damping alone, without a support of its own, is of every support.
-    given = [set(fit.damping) for fit in _around(rig, interference) if set(fit.damping) != {FIXED}]
+    given = [set(fit.damping) for fit in fits if set(fit.damping) != {FIXED}]
     if not given:
         return ""
     own = sorted(set.intersection(*given)) or sorted(set.union(*given))
-    if any(math.isclose(each, support, rel_tol=_SAME) for each in own):
-        return ""
-    below = [each for each in own if each < support]
-    above = [each for each in own if each > support]
-    if below and above:
-        return f"damping interpolated between {_words(below[-1])} and {_words(above[0])}"
-    return f"damping of {_words((below[-1:] or above)[0])}{_HELD}"
-
-
-def _around(rig: Rig, interference: float) -> list[Fit]:
-    """Fits that an interference lies between, or the one that it is or is nearest to."""
-    for fit in rig.fits:
-        if math.isclose(fit.interference, interference, rel_tol=_SAME):
-            return [fit]
-    left = [fit for fit in rig.fits if fit.interference < interference]
-    right = [fit for fit in rig.fits if fit.interference > interference]
-    return [left[-1], right[0]] if left and right else [(left[-1:] or right)[0]]
-
-
-def _words(support: float) -> str:
-    return "the bolted clamp" if math.isinf(support) else f"{support:g} Nm/rad"
+    words = [
+        "the bolted clamp" if math.isinf(each) else f"{each:g} Nm/rad"
+        for each in _stand_in(own, support)
+    ]
+    if len(words) == 2:
+        return f"damping interpolated between {' and '.join(words)}"
+    return f"damping of {words[0]} held" if words else ""

@@ -20,7 +20,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -30,7 +30,7 @@ from models.show import short_repr
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.batch.journal import Journal
 from noise.screening.advice import advise
-from noise.screening.batches import Evaluator, batch_evaluator, keeping
+from noise.screening.batches import batch_evaluator, keeping
 from noise.screening.design import Design, Swinging, Use, load_designs
 from noise.screening.environments import DRY, environment, in_environment
 from noise.screening.grid import Grid, shared_grid, shared_motions
@@ -54,6 +54,8 @@ from sim.effects import EFFECTS
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from pandas import DataFrame
+
+T = TypeVar("T")
 
 DEFAULT_SIMULATIONS = 500
 """Of a map, more or less."""
@@ -111,32 +113,11 @@ class Screening:
     seconds: float
     statistics_seconds: float
 
-    def count(self, how: str) -> int:
-        """How many points of all maps are known in a way: `DesignMap.how`."""
-        return sum(found.count(how) for found in self.maps)
-
-    @property
-    def points(self) -> int:
-        """How many points the maps have."""
-        return sum(found.label.size for found in self.maps)
-
     @property
     def conditions(self) -> tuple[Grid, ...]:
         """Conditions that all designs are compared over, one for each environment and motion."""
         first = self.maps[0].design
         return tuple(found.grid for found in self.maps if found.design == first)
-
-    @property
-    def substituted(self) -> dict[str, int]:
-        """How many points of each design rest on data interpolated or held, by the design's name.
-
-        What stands in is said by `noise.screening.provenance.RULE`, and of each point by the map's
-        `note`.
-        """
-        counts = {found.design: 0 for found in self.maps}
-        for found in self.maps:
-            counts[found.design] += int(np.sum(found.substituted))
-        return {name: count for name, count in counts.items() if count}
 
     @property
     def failed(self) -> tuple[tuple[str, str], ...]:
@@ -182,10 +163,9 @@ class Screening:
         """
         from noise.pictures.maps import plot_map
 
-        _check_index("map", number, len(self.maps))
-        found = self.maps[number]
-        _check_index("support", support, len(found.grid.support_stiffness))
-        _check_index("temperature", temperature, len(found.grid.temperature))
+        found = _chosen("map", number, self.maps)
+        _chosen("support", support, found.grid.support_stiffness)
+        _chosen("temperature", temperature, found.grid.temperature)
         return plot_map(found, ax, support=support, temperature=temperature)
 
     def to_pandas(self, table: str = "designs") -> DataFrame:
@@ -216,9 +196,10 @@ class Screening:
         return data_frame(*tables[f"{table}.csv"])
 
 
-def _check_index(what: str, index: int, there: int) -> None:
-    if not 0 <= index < there:
-        raise ParameterError(f"there is no {what} {index}; there are 0 to {there - 1}")
+def _chosen(what: str, index: int, among: Sequence[T]) -> T:
+    if not 0 <= index < len(among):
+        raise ParameterError(f"there is no {what} {index}; there are 0 to {len(among) - 1}")
+    return among[index]
 
 
 def screen(
@@ -286,7 +267,7 @@ def screen(
     started = time.perf_counter()
     if not designs:
         raise ParameterError("there is no design to screen")
-    in_environments = [environment(name) for name in dict.fromkeys(environments)]
+    names = list(dict.fromkeys(environment(name).name for name in environments))
     if loudness:
         from features.sound_quality import check_available
 
@@ -295,62 +276,61 @@ def screen(
     motions = shared_motions(list(loaded.values()), given)
     grids = {
         (name, swinging): shared_grid(list(loaded.values()), given, where=name, swinging=swinging)
-        for name in dict.fromkeys(where.name for where in in_environments)
+        for name in names
         for swinging in motions
     }
     maps: list[DesignMap] = []
-    screened: dict[str, Design] = {}
-    remarks: dict[tuple[str, str], list[str]] = {}
+    notes: dict[tuple[str, str], list[str]] = {}
     with batch_evaluator(workers=workers, scheduler=scheduler) as evaluate:
         if kept is not None:
             evaluate = keeping(evaluate, kept)
-        for design in loaded.values():
+        for name, design in loaded.items():
             try:
-                told = {
-                    (design.name, where): _remarks(design, where, grids, given)
-                    for where in dict.fromkeys(where for where, _ in grids)
-                }
-                for text in dict.fromkeys(text for texts in told.values() for text in texts):
-                    progress(f"{design.name}: {text}")
-                remarks |= told
+                own = {(name, where): _remarks(design, where, grids, given) for where in names}
+                for text in dict.fromkeys(itertools.chain(*own.values())):
+                    progress(f"{name}: {text}")
                 found: list[DesignMap] = []
                 for (where, swinging), grid in grids.items():
-                    progress(f"mapping {design.name}, {where}")
-                    one = _mapped(design, where, grid, evaluate, simulations, loudness)
+                    progress(f"mapping {name}, {where}")
+                    rig = in_environment(design.rig, environment(where))
+                    one = map_design(
+                        rig, grid, evaluate, design=name, environment=where, most=simulations
+                    )
+                    if loudness:
+                        from noise.screening.loudness import with_loudness
+
+                        one = with_loudness(one, rig)
                     if swinging is not None and len(motions) > _ONE_SWING:
                         degrees = math.degrees(swinging.amplitude)
                         one = replace(one, motion=f"swinging by {degrees:.4g} degrees")
                     found.append(one)
             except BushingNoiseError as error:
-                refused.append((design.name, str(error)))
-                continue
-            screened[design.name] = design
-            maps += found
+                refused.append((name, str(error)))
+            else:
+                maps, notes = maps + found, notes | own
     if not maps:
         raise ParameterError(refused[0][1])
     mapped = time.perf_counter()
     refuse_unlike(maps)
-    critical: list[CriticalPoint] = []
+    critical = [critical_points(each) for each in maps]
     standings: list[Standing] = []
     rng = rng or np.random.default_rng(0)
-    for each, stream in zip(maps, rng.spawn(len(maps)), strict=True):
-        design = screened[each.design]
-        rig = in_environment(design.rig, environment(each.environment))
-        points = critical_points(each)
-        standing = standing_of(each, points, why_never_slipping(rig, each.grid))
-        notes = remarks[each.design, each.environment]
-        standing = replace(standing, notes=(*notes, *filter(None, [standing.never_slips])))
-        critical += points
-        standings.append(
-            standing
-            if standing.never_slips or each.motion != "steady"
-            else _advised(standing, each, replace(design, rig=rig), stream, tolerances=tolerances,
-                          workers=workers, progress=progress)
-        )  # fmt: skip
+    for each, points, stream in zip(maps, critical, rng.spawn(len(maps)), strict=True):
+        design = loaded[each.design]
+        design = replace(design, rig=in_environment(design.rig, environment(each.environment)))
+        one = standing_of(each, points, why_never_slipping(design.rig, each.grid))
+        told = *notes[each.design, each.environment], *filter(None, [one.never_slips])
+        one = replace(one, notes=told)
+        if each.motion == "steady" and not one.never_slips:
+            one = _advised(one, each, design, workers, progress)
+            if bool(design.tolerances) if tolerances is None else tolerances:
+                one = _with_parts(one, each, design, stream, workers, progress)
+        standings.append(one)
+    screened = {each.design: loaded[each.design] for each in maps}
     return Screening(
         designs=tuple(screened.values()),
         maps=tuple(maps),
-        critical=tuple(critical),
+        critical=tuple(itertools.chain(*critical)),
         standings=ranked(standings),
         refused=tuple(refused),
         files=tuple(one for one in files if one[0] in screened),
@@ -363,35 +343,38 @@ def _advised(
     one: Standing,
     found: DesignMap,
     design: Design,
-    rng: np.random.Generator,
-    *,
-    tolerances: bool | None,
     workers: int,
     progress: Callable[[str], None],
 ) -> Standing:
-    """Add what would end the loudest noise, and what tolerances do; what fails is told."""
-    where = f"{one.design}, {one.environment}"
-    failed: list[str] = []
+    """Add what would end the loudest noise; what fails is told."""
+    if one.loudest is None:
+        return one
+    progress(f"advice for {one.design}, {one.environment}")
     try:
-        if one.loudest is not None:
-            progress(f"advice for {where}")
-            others = _other_noisy(found, one.loudest)
-            one = with_advice(one, advise(design.rig, one.loudest, others, workers=workers))
+        others = _other_noisy(found, one.loudest)
+        return with_advice(one, advise(design.rig, one.loudest, others, workers=workers))
     except _FAILURES as error:
-        failed.append(f"advice: {error}")
-    if bool(design.tolerances) if tolerances is None else tolerances:
-        grid = found.grid
-        slowest, fastest = grid.use
-        used = Use((slowest or 0.02 * fastest, fastest), grid.interference,
-                   grid.support_stiffness, grid.temperature)  # fmt: skip
-        try:
-            stands = robustness(
-                replace(design, use=used), rng, at=one.loudest, workers=workers, progress=progress
-            )
-            one = replace(one, robustness=stands)
-        except _FAILURES as error:
-            failed.append(f"tolerances: {error}")
-    return replace(one, failed=tuple(failed))
+        return replace(one, failed=(f"advice: {error}",))
+
+
+def _with_parts(
+    one: Standing,
+    found: DesignMap,
+    design: Design,
+    rng: np.random.Generator,
+    workers: int,
+    progress: Callable[[str], None],
+) -> Standing:
+    """Add what tolerances do; what fails is told."""
+    grid, (slowest, fastest) = found.grid, found.grid.use
+    speeds = slowest or 0.02 * fastest, fastest
+    used = Use(speeds, grid.interference, grid.support_stiffness, grid.temperature)
+    design = replace(design, use=used)
+    try:
+        parts = robustness(design, rng, at=one.loudest, workers=workers, progress=progress)
+        return replace(one, robustness=parts)
+    except _FAILURES as error:
+        return replace(one, failed=(*one.failed, f"tolerances: {error}"))
 
 
 def _other_noisy(found: DesignMap, loudest: Condition) -> list[Condition]:
@@ -474,20 +457,3 @@ def _remarks(
         found.append(temperature_remark(rig, *temperature))
     found += effect_remarks(in_environment(rig, environment(where)), EFFECTS)
     return list(dict.fromkeys(filter(None, found)))
-
-
-def _mapped(
-    design: Design,
-    where: str,
-    grid: Grid,
-    evaluate: Evaluator,
-    simulations: int | None,
-    loudness: bool,
-) -> DesignMap:
-    rig = in_environment(design.rig, environment(where))
-    found = map_design(rig, grid, evaluate, design=design.name, environment=where, most=simulations)
-    if loudness:
-        from noise.screening.loudness import with_loudness
-
-        found = with_loudness(found, rig)
-    return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from noise.screening.provenance import RULE, within_fits
@@ -29,18 +30,20 @@ def summary_lines(screening: Screening) -> list[str]:
     if len(screening.designs) > 1:
         lines.append(RANKING_RULE)
     lines += conditions_lines(screening)
-    how = ", ".join(
-        f"{screening.count(way)} {words}"
+    maps = screening.maps
+    counts = {
+        words: sum(found.count(way) for found in maps)
         for way, words in (
             ("simulated", "simulated from rest and from running vibration"),
             ("refined", "as the simulated ones about them"),
             ("unchanged", "as at another temperature or fit"),
         )
-        if screening.count(way)
-    )
-    left = sum(found.open for found in screening.maps)
+    }
+    how = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
+    left = sum(found.open for found in maps)
     boundary = f" ({left} beside a boundary, as their nearest neighbour)" if left else ""
-    lines.append(f"{screening.points} points in {screening.seconds:.1f} s: {how}{boundary}")
+    points = sum(found.label.size for found in maps)
+    lines.append(f"{points} points in {screening.seconds:.1f} s: {how}{boundary}")
     lines.append(f"advice and tolerances in {screening.statistics_seconds:.1f} s")
     return lines
 
@@ -100,9 +103,11 @@ def conditions_lines(screening: Screening) -> list[str]:
     n_points = sum(math.prod(grid.shape) for grid in screening.conditions)
     same = "the same " if len(screening.designs) > 1 else ""
     lines = [f"each design at {same}{n_points} points: {'; '.join(said)}"]
-    if screening.substituted:
-        counts = ", ".join(f"{count} of {name}" for name, count in screening.substituted.items())
-        lines.append(f"not from a design's own data: {counts}; {RULE}")
+    counts: Counter[str] = Counter()
+    for found in screening.maps:
+        counts[found.design] += int(found.substituted.sum())
+    if stand_in := [f"{count} of {name}" for name, count in counts.items() if count]:
+        lines.append(f"not from a design's own data: {', '.join(stand_in)}; {RULE}")
         lines += [text for text in [_fair(screening)] if text]
     return lines
 

@@ -200,14 +200,14 @@ def vibration_at(rig: Rig, at: Condition, *, from_rest: bool = False) -> Vibrati
     >>> states
     ['breaks out', 'none']
     """
-    [(_, found)] = vibrations_at(rig, at, [at.speed], from_rest=from_rest)
+    [(_, found)] = vibrations_at(rig, [at], from_rest=from_rest)
     return found
 
 
 def vibrations_at(
-    rig: Rig, at: Condition, speeds: Sequence[float], *, from_rest: bool = False
+    rig: Rig, row: Sequence[Condition], *, from_rest: bool = False
 ) -> Iterator[tuple[int, Vibration]]:
-    """Tell what becomes of a vibration at several speeds, all else alike, in any order.
+    """Tell what becomes of a vibration at conditions that differ in speed alone, in any order.
 
     From where sliding is unstable outwards a vibration persists up to some speed and dies beyond,
     so that speed is bisected; each run goes on from the nearest that lasts.
@@ -215,39 +215,36 @@ def vibrations_at(
     Parameters
     ----------
     rig : Rig
-    at : Condition
-        Of which the speed does not matter.
-    speeds : sequence of float
-        [rad/s]
+    row : sequence of Condition
     from_rest : bool
         As for `vibration_at`.
 
     Yields
     ------
     (int, Vibration)
-        Which of the speeds it is, and what becomes of it there.
+        Which of the conditions it is, and what becomes of it there.
     """
-    speed = np.array(speeds, dtype=np.float64)
-    growth = growth_at(rig, at, np.concatenate([speed[:, None], speed[:, None] * _AROUND], axis=1))
-    unstable = [_nearest_unstable(v, row) for v, row in zip(speed, growth[:, 1:], strict=True)]
+    speed = np.array([at.speed for at in row])
+    around = np.concatenate([speed[:, None], speed[:, None] * _AROUND], axis=1)
+    growth = growth_at(rig, row[0], around)
+    unstable = [_nearest_unstable(v, each) for v, each in zip(speed, growth[:, 1:], strict=True)]
     own = growth[:, 0].tolist()
-    points = [replace(at, speed=float(v)) for v in speed]
     sides: dict[tuple[bool, int], list[int]] = {}
     for i in np.argsort(speed).tolist():
         if own[i] > 0.0:
-            yield i, Vibration(*_unstable(rig, points[i], own[i], unstable[i]))
+            yield i, Vibration(*_unstable(rig, row[i], own[i], unstable[i]))
         elif (start := unstable[i]) is None:
-            course = running(rig, points[i], own[i])
+            course = running(rig, row[i], own[i])
             # A contact stuck at rest may vibrate though no speed makes its sliding unstable.
-            yield i, _beside_rest(rig, points[i], own[i], course, from_rest=True)
+            yield i, _beside_rest(rig, row[i], own[i], course, from_rest=True)
         else:
             between = int(np.sum((speed < speed[i]) & (growth[:, 0] > 0.0)))
             sides.setdefault((start > speed[i], between), []).append(i)
     for (above, _), side in sides.items():
         side = side[::-1] if above else side
-        reached = _outwards(rig, [(points[i], own[i], unstable[i]) for i in side])
+        reached = _outwards(rig, [(row[i], own[i], unstable[i]) for i in side])
         for i, course in zip(side, reached, strict=True):
-            yield i, _beside_rest(rig, points[i], own[i], course, from_rest=from_rest)
+            yield i, _beside_rest(rig, row[i], own[i], course, from_rest=from_rest)
 
 
 def _unstable(

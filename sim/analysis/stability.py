@@ -24,6 +24,7 @@ shaft that yields and an elastomer with a memory do not count.
 # ruff: noqa: ANN001
 
 import math
+from collections.abc import Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -113,16 +114,60 @@ def sliding_growth(
         np.ascontiguousarray(np.broadcast_to(np.asarray(x, dtype=np.float64), shape).ravel())
         for x in (speed, interference, support_stiffness)
     )
-    v = np.abs(v)
+    return _growth(rig, packed_systems(rig, fit, support), np.abs(v)).reshape(shape)
+
+
+def growth_of_parts(
+    parts: Sequence[tuple[Rig, float, float]], speed: ArrayLike
+) -> NDArray[np.float64]:
+    """Return how fast a small vibration grows in many rigs, those of one friction law at once.
+
+    Parameters
+    ----------
+    parts : sequence of (Rig, float, float)
+        With interference [m] and support stiffness [Nm/rad].
+    speed : array_like, shape (n_speeds,)
+        [rad/s]
+
+    Returns
+    -------
+    ndarray, shape (n_parts, n_speeds)
+        [1/s]
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon")
+    >>> damped = rig.changed(damping="x3")
+    >>> found = growth_of_parts([(rig, 3e-4, 2214.0), (damped, 3e-4, 2214.0)], [5.0, 9.0])
+    >>> bool((found[0] > found[1]).all())
+    True
+    """
+    v = np.abs(np.asarray(speed, dtype=np.float64))
+    found = np.empty((len(parts), v.size))
+    alike: dict[str, list[int]] = {}
+    for i, (rig, _, _) in enumerate(parts):
+        alike.setdefault(repr((rig.friction, rig.effects)), []).append(i)
+    for of_law in alike.values():
+        systems = [
+            packed_systems(rig, np.full(1, fit), np.full(1, support))
+            for rig, fit, support in (parts[i] for i in of_law)
+        ]
+        repeated = np.repeat(np.concatenate(systems), v.size, axis=0)
+        growth = _growth(parts[of_law[0]][0], repeated, np.tile(v, len(of_law)))
+        found[of_law] = growth.reshape(len(of_law), v.size)
+    return found
+
+
+def _growth(rig: Rig, systems: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the growth of systems, one a speed `v` [rad/s], with a rig's friction and effects."""
     law = friction_law(rig.friction.name)
     values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
-    coefficients = law.coefficients(values)
-    systems = packed_systems(rig, fit, support)
     acting = activated(constant_version(rig).effects, EFFECTS)
     contacts = _contacts(contact_hooks(acting, np.random.default_rng(0)), systems, v)
-    matrices = _linearised(law, coefficients, systems, v, contacts)
+    matrices = _linearised(law, law.coefficients(values), systems, v, contacts)
     eigenvalues = np.linalg.eigvals(matrices) if v.size else np.zeros((0, 1), dtype=complex)
-    return np.asarray(eigenvalues.real.max(axis=1).reshape(shape))
+    return np.asarray(eigenvalues.real.max(axis=1))
 
 
 def _contacts(

@@ -74,8 +74,9 @@ def main() -> None:
         used = time.process_time()
         found = screen(["fluorocarbon"], GRID)
         used = time.process_time() - used
-        counts = {how: found.count(how) for how in ("simulated", "refined")}
-        print(f"{found.points} conditions: {found.seconds:.1f} s, {used:.1f} s of processor time")
+        [one] = found.maps
+        counts = {how: one.count(how) for how in ("simulated", "refined")}
+        print(f"{one.label.size} conditions: {found.seconds:.1f} s, {used:.1f} s of processor time")
         print(f"  {counts}, {found.maps[0].open} beside a boundary as their nearest neighbour")
     rng = np.random.default_rng(1)
     looped, own, alike = 0.0, 0.0, 0
@@ -91,7 +92,7 @@ def main() -> None:
         alike += vibrates == (regime_at(RIG, speed, *where, seconds=SECONDS) != "steady sliding")
     print(f"solve_ivp, {sample} conditions: {looped / sample:.2f} s each, {alike} regimes alike")
     print(f"  a point with its sound and label: {own / sample:.3f} s")
-    whole = looped / sample * found.points
+    whole = looped / sample * found.maps[0].label.size
     print(
         f"  10,000 of them: {whole:.0f} s of processor time, {whole / used:.0f} times the screen's"
     )

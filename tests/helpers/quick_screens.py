@@ -6,7 +6,9 @@ import contextlib
 
 import pytest
 
+from noise.screening.point import SILENT, PointResult
 from noise.screening.screen import screen
+from sim.analysis.regime import Regime
 
 
 @contextlib.contextmanager
@@ -21,3 +23,13 @@ def quick_screen(*given, **more):
     """Screen designs without advice."""
     with no_advice():
         return screen(*given, **more)
+
+
+def judged_by_speed(points, ends=5.0):
+    """Noise below a speed, in no time: what an evaluator of maps returns."""
+    return [
+        PointResult(Regime.STICK_SLIP, "squawk", False, "squawk", 57.0 + at.speed, 60.0 + at.speed)
+        if at.speed < ends
+        else SILENT
+        for at in points
+    ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from models.rig_file import load_material_rig
@@ -11,6 +10,7 @@ from noise.screening.design import Design, Use
 from noise.screening.grid import grid_of
 from noise.screening.mapping import map_design
 from tests.helpers.kept import staying_results
+from tests.helpers.quick_screens import judged_by_speed
 
 USE = Use(interference=(0.254e-3, 0.3e-3, 0.381e-3), support_stiffness=(2214.0,))
 
@@ -22,15 +22,13 @@ class Judge:
         self.left = lasts
         self.n_points = 0
 
-    def __call__(self, batch):
+    def __call__(self, rig, points):
         if not self.left:
             raise KeyboardInterrupt
         self.left -= 1
-        self.n_points += batch.speed.size
-        loud = batch.speed < 5.0 + sum(batch.rig.fit(0.3e-3).damping.values())
-        codes = np.where(loud[:, None], [2.0, 2.0, 0.0, 2.0], 0.0)
-        level = np.where(loud, batch.speed / 3.0, np.nan)
-        return np.column_stack([codes, level, level])
+        self.n_points += len(points)
+        ends = 5.0 + sum(rig.fit(0.3e-3).damping.values())
+        return judged_by_speed(points, ends)
 
 
 def mapped(judge, folder, change=1.0):
