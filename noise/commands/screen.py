@@ -153,7 +153,7 @@ def _given(options: Namespace) -> Use:
 
 
 def _swinging(text: str) -> Swinging:
-    from noise.screening.axis_values import FREQUENCY, text_values
+    from noise.screening.axis_values import FREQUENCY, axis_values
     from noise.screening.design import Swinging
 
     degrees, comma, frequency = text.partition(",")
@@ -161,8 +161,8 @@ def _swinging(text: str) -> Swinging:
         raise ParameterError(
             f"--oscillate is {text!r}, expected degrees and Hz, such as 15,2 or 15,0.5..4"
         )
-    (amplitude,) = text_values(degrees, "--oscillate")[:1]
-    return Swinging(math.radians(amplitude), text_values(frequency, "--oscillate", FREQUENCY))
+    (amplitude,) = axis_values(degrees, "--oscillate")[:1]
+    return Swinging(math.radians(amplitude), axis_values(frequency, "--oscillate", FREQUENCY))
 
 
 def _write(options: Namespace, found: Screening, tell: Steps) -> list[Path]:

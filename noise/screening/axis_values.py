@@ -75,12 +75,13 @@ def spread(low: float, high: float, points: int) -> tuple[float, ...]:
     return tuple(float(f"{low + i * step:.10g}") for i in range(points))
 
 
-def text_values(text: str, what: str, rule: AxisRule = POSITIVE) -> tuple[float, ...]:
-    """Read ``5``, ``0.178,0.279``, ``0.25..13`` or ``0.25..13/52``.
+def axis_values(given: object, what: str, rule: AxisRule = POSITIVE) -> tuple[float, ...]:
+    """Read an axis: a number, ``5``, ``0.178,0.279``, ``0.25..13``, ``0.25..13/52``, or a list.
 
     Parameters
     ----------
-    text : str
+    given : object
+        Of an option or a design file; None has no values.
     what : str
         What messages call it, such as ``--speed``.
     rule : AxisRule
@@ -97,56 +98,43 @@ def text_values(text: str, what: str, rule: AxisRule = POSITIVE) -> tuple[float,
 
     Examples
     --------
-    >>> text_values("1..2/3", "--speed"), text_values("fixed,2214", "-k", SUPPORT)
+    >>> axis_values("1..2/3", "--speed"), axis_values("fixed,2214", "-k", SUPPORT)
     ((1.0, 1.5, 2.0), (2214.0, inf))
-    """
-    found: list[float] = []
-    for part in text.split(","):
-        first, dots, rest = part.partition("..")
-        if not dots:
-            found.append(_value(part, what, text, fixed=rule.fixed))
-            continue
-        last, slash, count = rest.partition("/")
-        start, end = _value(first, what, text), _value(last, what, text)
-        if not start < end:
-            raise ParameterError(f"{what} is {text!r}: a range rises, as 0.25..13 does")
-        if slash:
-            if not count.strip().isdecimal() or not 2 <= int(count) <= MOST_POINTS:
-                raise ParameterError(
-                    f"{what} is {text!r}: the points of a range are a whole number from 2 to "
-                    f"{MOST_POINTS}, as in 0.25..13/52"
-                )
-            n = int(count)
-        else:
-            n = rule.points
-            if rule.step is not None:
-                n = min(MOST_POINTS, round((end - start) / rule.step) + 1)
-        found += spread(start, end, max(2, n))
-    return _checked(found, what, text, rule)
-
-
-def axis_values(given: object, what: str, rule: AxisRule = POSITIVE) -> tuple[float, ...]:
-    """Read an axis of a design file: a number, a text as `text_values` takes, or a list of both.
-
-    Parameters, returns and errors are those of `text_values`; None has no values.
-
-    Examples
-    --------
     >>> axis_values([0.178, 0.279], "interference_mm"), axis_values("1..2/2", "speed_rad_s")
     ((0.178, 0.279), (1.0, 2.0))
     """
     if given is None:
         return ()
-    listed: Sequence[object] = given if isinstance(given, list) else [given]
     found: list[float] = []
-    for item in listed:
+    for item in given if isinstance(given, list) else [given]:
         if isinstance(item, str):
-            found += text_values(item, what, rule)
+            for part in item.split(","):
+                found += _part_values(part, what, item, rule)
         elif isinstance(item, int | float) and not isinstance(item, bool):
             found.append(float(item))
         else:
             raise ParameterError(f"{what} = {given!r}: give numbers, or a range such as '0.25..13'")
     return _checked(found, what, str(given), rule)
+
+
+def _part_values(part: str, what: str, whole: str, rule: AxisRule) -> tuple[float, ...]:
+    """Read what stands between commas: a number, or a range."""
+    first, dots, rest = part.partition("..")
+    if not dots:
+        return (_value(part, what, whole, fixed=rule.fixed),)
+    last, slash, count = rest.partition("/")
+    start, end = _value(first, what, whole), _value(last, what, whole)
+    if not start < end:
+        raise ParameterError(f"{what} is {whole!r}: a range rises, as 0.25..13 does")
+    if slash and not (count.strip().isdecimal() and 2 <= int(count) <= MOST_POINTS):
+        raise ParameterError(
+            f"{what} is {whole!r}: the points of a range are a whole number from 2 to "
+            f"{MOST_POINTS}, as in 0.25..13/52"
+        )
+    n = int(count) if slash else rule.points
+    if rule.step is not None and not slash:
+        n = min(MOST_POINTS, round((end - start) / rule.step) + 1)
+    return spread(start, end, max(2, n))
 
 
 def axis_words(values: Sequence[float], most: int = 4) -> str:

@@ -186,7 +186,9 @@ def map_design(
 
     growth = np.full(shape, np.nan)
     if not swings:
-        growth = growth_rates(rig, temperature, support, interference, speed)
+        at = interference[:, None], support[:, None, None]
+        hot = [at_temperature(rig, float(t)) for t in temperature]
+        growth = np.stack([sliding_growth(one, speed, *at) for one in hot])
     found = refined_map(
         planes,
         simulate,
@@ -229,32 +231,6 @@ def _stride(values: NDArray[np.float64], apart: float) -> int:
     if values.size < 2:
         return STRIDE
     return max(1, min(STRIDE, round(apart / float(np.diff(values).max()))))
-
-
-def growth_rates(
-    rig: Rig,
-    temperature: NDArray[np.float64],
-    support: NDArray[np.float64],
-    interference: NDArray[np.float64],
-    speed: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """Growth of a small vibration about steady sliding over a grid.
-
-    Parameters
-    ----------
-    rig : Rig
-    temperature, support, interference, speed : ndarray, shape (n_values,) each
-        [degree Celsius], [Nm/rad], [m] and [rad/s]
-
-    Returns
-    -------
-    ndarray, shape (n_temperatures, n_supports, n_fits, n_speeds)
-        [1/s]
-    """
-    at = interference[:, None], support[:, None, None]
-    return np.stack(
-        [sliding_growth(at_temperature(rig, float(t)), speed, *at) for t in temperature]
-    )
 
 
 def _copied(found: DesignMap, *known_by: NDArray[np.int64]) -> DesignMap:

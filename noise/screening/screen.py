@@ -44,9 +44,9 @@ from noise.screening.standing import (
     ranked,
     refuse_unlike,
     standing_of,
-    with_advice,
 )
 from noise.screening.vibration import Condition
+from noise.screening.words import advice_words
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import never_slips
 from sim.effects import EFFECTS
@@ -352,7 +352,9 @@ def _advised(
     progress(f"advice for {one.design}, {one.environment}")
     try:
         others = _other_noisy(found, one.loudest)
-        return with_advice(one, advise(design.rig, one.loudest, others, workers=workers))
+        offers = advise(design.rig, one.loudest, others, workers=workers)
+        words = advice_words(one.loudest_label, one.loudest, offers)
+        return replace(one, offers=offers, advice=words)
     except _FAILURES as error:
         return replace(one, failed=(f"advice: {error}",))
 

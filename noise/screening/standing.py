@@ -25,7 +25,7 @@ from noise.screening.mapping import DesignMap
 from noise.screening.margins import CriticalPoint
 from noise.screening.parts import Robustness
 from noise.screening.vibration import Condition
-from noise.screening.words import advice_words, use_words
+from noise.screening.words import use_words
 
 SHARED = ("creak", "squawk", "squeal", "none", PERSISTS)
 """Labels of a map, of which shares are told."""
@@ -172,14 +172,6 @@ def condition_at(grid: Grid, at: Sequence[int | np.integer]) -> Condition:
         grid.temperature[t],
         grid.frequency[columns[v]] if grid.frequency else None,
     )
-
-
-def with_advice(one: Standing, offers: Sequence[Offer]) -> Standing:
-    """Return a standing with the changes that end its loudest noise."""
-    if one.loudest is None:
-        return one
-    words = advice_words(one.loudest_label, one.loudest, offers)
-    return replace(one, offers=tuple(offers), advice=words)
 
 
 def ranked(found: Sequence[Standing]) -> tuple[Standing, ...]:

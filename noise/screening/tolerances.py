@@ -38,21 +38,6 @@ PARAMETERS = {
 """What can vary, with the unit in which a design file says it; and parameters of effects."""
 
 
-def unit_of(name: str) -> str:
-    """Return the unit in which a design file says a tolerance.
-
-    Examples
-    --------
-    >>> unit_of("damping"), unit_of("shaft_compliance.inertia")
-    ('Nm s/rad', 'kg m2')
-    """
-    effect, dot, parameter = name.partition(".")
-    if not dot:
-        return PARAMETERS[name]
-    known = EFFECTS[effect].parameters if effect in EFFECTS else {}
-    return known[parameter].unit if parameter in known else ""
-
-
 _WIDEST_NORMAL = 1.0 / 6.0
 """Relative standard deviation from which on a normal distribution is taken as lognormal."""
 

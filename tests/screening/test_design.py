@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.screening.axis_values import text_values
+from noise.screening.axis_values import axis_values
 from noise.screening.design import load_design
 from noise.screening.environments import environment, environment_names, in_environment
 from noise.screening.parts import middle_of_use
@@ -93,7 +93,7 @@ def test_what_cannot_be_used_is_named_with_its_file(tmp_path, changed, message):
     st.integers(2, 200),
 )
 def test_a_range_has_its_ends_and_as_many_points_as_asked(low, wide, points):
-    values = text_values(f"{low}..{low + wide}/{points}", "--speed")
+    values = axis_values(f"{low}..{low + wide}/{points}", "--speed")
     assert len(values) == points
     assert values[0] == pytest.approx(low)
     assert values[-1] == pytest.approx(low + wide)
