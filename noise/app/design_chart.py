@@ -7,13 +7,11 @@ a process beside the sound.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import NamedTuple
 
 import numpy as np
 
 from models.rig import Rig
-from noise.app.requests import number
 from noise.base.labels import LABEL_LOOKS, MAP_LABELS, NAMED, PERSISTS
 from noise.pages.maps import MAP_SIZE, ConditionMap, areas_of, axis_of, cells_of
 from noise.pages.page import map_html
@@ -25,66 +23,21 @@ from noise.screening.mapping import map_design
 from noise.screening.point import evaluate_point
 from noise.screening.vibration import Condition
 
-if TYPE_CHECKING:
-    from sim.blocks import Setting
 
-
-_LEAST, _MOST = 0.05, 200.0
-"""Speeds at which a noise is looked for [rad/s]."""
-
-
-@dataclass(frozen=True)
-class ChartRequest:
-    """What a chart is of; speed and interference are its axes.
-
-    Parameters
-    ----------
-    rig : Rig
-    support_stiffness : float
-        [Nm/rad]
-    temperature : float
-        [degree Celsius]
-    """
+class ChartRequest(NamedTuple):
+    """Rig, support stiffness [Nm/rad] and temperature [degree Celsius] of a chart."""
 
     rig: Rig
     support_stiffness: float
     temperature: float
 
-    @classmethod
-    def of(cls, setting: Setting) -> ChartRequest:
-        """Return what is asked of a setting."""
-        return cls(setting.rig, setting.support_stiffness, setting.temperature)
 
-
-@dataclass(frozen=True)
-class SuggestionRequest:
-    """What a change is to end the noise of: one condition.
-
-    Parameters
-    ----------
-    chart : ChartRequest
-    interference : float
-        [m]
-    speed : float
-        [rad/s]
-    """
+class SuggestionRequest(NamedTuple):
+    """Condition whose noise is to end: that of a chart, interference [m], speed [rad/s]."""
 
     chart: ChartRequest
     interference: float
     speed: float
-
-    @classmethod
-    def of(cls, setting: Setting, asked: dict[str, Any]) -> SuggestionRequest:
-        """Return what is asked of a setting, at the speed that a request may state with it.
-
-        Raises
-        ------
-        ParameterError
-            That is no speed.
-        """
-        at_first = float(setting.shaft.speed(np.zeros(1))[0])
-        speed = abs(number(asked, "speed", -_MOST, _MOST, at_first))
-        return cls(ChartRequest.of(setting), setting.interference, max(speed, _LEAST))
 
 
 _STEP, _FITS = 0.25, 5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
@@ -14,6 +15,7 @@ from noise.app.design_controls import base_of, bases_of
 from noise.app.design_player import BLOCK, RATE, TORQUE_STEP
 from noise.app.design_sound import LiveSounds
 from noise.app.gate import body
+from noise.app.requests import number
 from noise.app.worker_process import WorkerProcess
 
 if TYPE_CHECKING:
@@ -21,11 +23,15 @@ if TYPE_CHECKING:
     from starlette.routing import BaseRoute
 
     from noise.app.opened import Opened
+    from sim.blocks import Setting
 
 
 _CHARTS = "noise.app.design_chart"
 _NICE = 15
 """Whoever listens goes first."""
+
+_SLOWEST, _FASTEST = 0.05, 200.0
+"""At which a noise is looked for [rad/s]."""
 
 
 def routes(opened: Opened) -> list[BaseRoute]:
@@ -75,12 +81,14 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return JSONResponse(sounds.levels(int(run)))
 
     def charted(_: Request, asked: dict[str, Any]) -> Response:
-        return _waited(charts.answer_to(ChartRequest.of(design_of(asked, bases).setting)))
+        return _waited(charts.answer_to(_chart(design_of(asked, bases).setting)))
 
     def helped(_: Request, asked: dict[str, Any]) -> Response:
-        return _waited(
-            suggestions.answer_to(SuggestionRequest.of(design_of(asked, bases).setting, asked))
-        )
+        setting = design_of(asked, bases).setting
+        at_first = float(setting.shaft.speed(np.zeros(1))[0])
+        speed = max(abs(number(asked, "speed", -_FASTEST, _FASTEST, at_first)), _SLOWEST)
+        question = SuggestionRequest(_chart(setting), setting.interference, speed)
+        return _waited(suggestions.answer_to(question))
 
     def saved(_: Request, asked: dict[str, Any]) -> Response:
         return JSONResponse(save_rig(asked, bases, opened.folder))
@@ -97,6 +105,10 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/design/helps", body(helped), methods=["POST"]),
         Route("/api/design/rig", body(saved), methods=["POST"]),
     ]
+
+
+def _chart(setting: Setting) -> ChartRequest:
+    return ChartRequest(setting.rig, setting.support_stiffness, setting.temperature)
 
 
 def _waited(answer: tuple[dict[str, object] | None, str] | None) -> Response:

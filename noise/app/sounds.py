@@ -11,11 +11,11 @@ import json
 import math
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
-from contextlib import ExitStack
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -231,9 +231,7 @@ _LONGEST_BANDS = 120.0
 def wav(track: Track, query: Query) -> bytes:
     """Return a stretch as a WAV file of floats: pascals, or the channel's own unit."""
     first, last = read_stretch(query, track, _LONGEST_PLAYED)
-    full_scale = number(query, "full_scale", 1e-12, 1e12, 1.0)
-    sound = playable(track.read(first, last), track.rate, _RATE)
-    return wav_bytes(sound / full_scale, _RATE, 32)
+    return wav_bytes(playable(track.read(first, last), track.rate, _RATE), _RATE, 32)
 
 
 def level_course(track: Track) -> dict[str, object]:
@@ -324,7 +322,8 @@ def outline(track: Track, query: Query) -> tuple[Facts, NDArray[np.float32]]:
 def spectrogram(track: Track, query: Query) -> tuple[Facts, NDArray[np.uint8]]:
     """Return levels in steps, the highest frequency first, shape (height, width)."""
     begin, end = read_stretch(query, track)
-    lowest, highest = _frequencies(track, query)
+    highest = min(HIGHEST, 0.5 * track.rate)
+    lowest = min(LOWEST, 0.01 * highest)
     width = int(number(query, "width", 16, 4000, 1000))
     height = int(number(query, "height", 16, 1024, 256))
     shortest, longest = (seconds * track.rate for seconds in _WINDOW)
@@ -344,18 +343,8 @@ def spectrogram(track: Track, query: Query) -> tuple[Facts, NDArray[np.uint8]]:
         "floor": floor,
         "step": _STEP,
         "unit": track.level_unit,
-        "window_s": length / track.rate,
     }
     return facts, np.clip(np.rint((levels - floor) / _STEP), 0, 255).astype(np.uint8)
-
-
-def _frequencies(track: Track, query: Query) -> tuple[float, float]:
-    nyquist = 0.5 * track.rate
-    highest = number(query, "high", 0.0, nyquist, min(HIGHEST, nyquist))
-    lowest = number(query, "low", 0.0, nyquist, min(LOWEST, 0.01 * highest))
-    if not 0.0 < lowest < highest:
-        raise ParameterError(f"low {lowest:g} Hz: must be above zero and below high {highest:g} Hz")
-    return lowest, highest
 
 
 def routes(opened: Opened) -> list[BaseRoute]:
@@ -369,13 +358,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         blocks = sounds.blocks(index)
         tracks = [sounds.track(index, channel.name) for channel in blocks.channels]
         channels = [
-            {
-                "name": track.channel.name,
-                "kind": track.channel.kind,
-                "unit": track.unit,
-                "level_unit": track.level_unit,
-            }
-            for track in tracks
+            {"name": of.channel.name, "kind": of.channel.kind, "unit": of.unit} for of in tracks
         ]
         heard = sounds.track(index)
         return JSONResponse(
@@ -392,36 +375,36 @@ def routes(opened: Opened) -> list[BaseRoute]:
             }
         )
 
-    def of_track(answer: Callable[[Track, Query], Response]) -> Callable[[Request], Response]:
+    one_at_a_time = Lock()  # or what is seen of the next recording waits for them all
+
+    def of_track(
+        answer: Callable[[Track, Query], Response], lock: AbstractContextManager[object]
+    ) -> Callable[[Request], Response]:
         def endpoint(request: Request) -> Response:
             query = request.query_params
-            return answer(sounds.track(request.path_params["id"], query.get("channel", "")), query)
+            track = sounds.track(request.path_params["id"], query.get("channel", ""))
+            with lock:
+                return answer(track, query)
 
         return endpoint
 
-    def told(answer: Callable[[Track, Query], Facts]) -> Callable[[Request], Response]:
-        return of_track(lambda track, query: JSONResponse(answer(track, query)))
-
-    one_at_a_time = Lock()  # or what is seen of the next recording waits for them all
-
     def measured(answer: Callable[[Track, Query], Facts]) -> Callable[[Request], Response]:
-        def in_turn(track: Track, query: Query) -> Facts:
-            with one_at_a_time:
-                return answer(track, query)
+        return of_track(lambda *asked: JSONResponse(answer(*asked)), one_at_a_time)
 
-        return told(in_turn)
-
-    def numbers(
+    def drawn(
         answer: Callable[[Track, Query], tuple[Facts, NDArray[np.generic]]],
     ) -> Callable[[Request], Response]:
-        return of_track(lambda track, query: _framed(*answer(track, query)))
+        return of_track(lambda *asked: _framed(*answer(*asked)), nullcontext())
+
+    def audio(*asked: Any) -> Response:
+        return Response(wav(*asked), media_type="audio/wav")
 
     at = "/api/sounds/{id:int}"
     return [
         Route(at, about),
-        Route(f"{at}/audio", of_track(lambda *of: Response(wav(*of), media_type="audio/wav"))),
-        Route(f"{at}/outline", numbers(outline)),
-        Route(f"{at}/spectrogram", numbers(spectrogram)),
+        Route(f"{at}/audio", of_track(audio, nullcontext())),
+        Route(f"{at}/outline", drawn(outline)),
+        Route(f"{at}/spectrogram", drawn(spectrogram)),
         Route(f"{at}/levels", measured(lambda track, _: level_course(track))),
         Route(f"{at}/bands", measured(bands)),
         Route(f"{at}/loudness", measured(equal)),

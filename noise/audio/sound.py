@@ -9,7 +9,6 @@ import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,15 +31,6 @@ _PASS_BAND = 0.95  # of the lower Nyquist frequency
 _LARGEST_TERM = 20_000  # of that ratio: the filter is 300 times as long
 _FINEST_RATIO = 1000  # terms of the ratio of the rates; the pitch is right within 1e-6
 _ORDER = 4  # of a band's ends, once
-
-
-class _Described(Protocol):
-    @property
-    def name(self) -> str: ...
-    @property
-    def rate(self) -> float: ...
-    @property
-    def channels(self) -> Sequence[Channel]: ...
 
 
 def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> NDArray[np.float64]:
@@ -99,14 +89,19 @@ def playable(
     (4800,)
     """
     sound = resampled(signal - signal.mean(), rate, new_rate)
-    n = min(round(fade * new_rate), sound.size // 2)
-    flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / max(n, 1)) ** 2
-    sound[:n] *= flank
-    sound[sound.size - n :] *= flank[::-1]
+    fade_ends(sound, round(fade * new_rate))
     return sound
 
 
-def pressure_channel(recording: _Described) -> Channel:
+def fade_ends(sound: NDArray[np.floating], n: int) -> None:
+    """Fade a sound in and out, in place, each over n samples or half of it."""
+    n = min(n, sound.size // 2)
+    flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / max(n, 1)) ** 2
+    sound[:n] *= flank
+    sound[sound.size - n :] *= flank[::-1]
+
+
+def pressure_channel(recording: Recording | RecordingBlocks) -> Channel:
     """Return the channel that is heard: the first of sound pressure.
 
     Raises

@@ -32,7 +32,7 @@ from noise.audio.gain import (
     loudness,
     true_peak,
 )
-from noise.audio.sound import FADE
+from noise.audio.sound import FADE, fade_ends
 from noise.base.labels import LABELS
 from noise.base.progress import counted
 from noise.labels.summary import labels_in, naming_row
@@ -385,10 +385,7 @@ def _clip(
         begin = round(first * RATE)
         samples = samples[begin : begin + round(longest * RATE)].copy()
         offset += begin / RATE
-        n = round(FADE * RATE)
-        flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / n) ** 2
-        samples[:n] *= flank
-        samples[samples.size - n :] *= flank[::-1]
+        fade_ends(samples, round(FADE * RATE))
     full_scale = gain.of(entry)
     largest = largest_sample(_BITS)  # a sample beyond would wrap round
     fractions = np.clip((samples / full_scale).astype(np.float64), -largest, largest)

@@ -1,13 +1,14 @@
 """Designs compared: their maps side by side over the same axes, and what a script needs for more.
 
-The page itself draws which noise occurs where; its script draws from the same cells how loud it is
-and what differs between any two designs. Each look has words, or a number,
+The page itself draws which noise occurs where and how loud it is; its script draws from the same
+cells what differs between any two designs. Each look has words, or a number,
 on the map as well, so that nothing is told by colour alone.
 """
 
 from __future__ import annotations
 
 import json
+from bisect import bisect
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,6 +20,8 @@ from noise.base.labels import LABEL_LOOKS, MAP_LABELS, Look
 from noise.base.progress import counted
 from noise.pages.clips import Entry
 from noise.pages.maps import (
+    LEVEL_STEPS,
+    LEVELS,
     MAP_SIZE,
     Area,
     Axis,
@@ -38,19 +41,6 @@ from noise.pages.screen_sounds import (
     shared_points,
     simulated_entries,
 )
-
-LEVEL_STEPS = (50.0, 60.0, 70.0, 80.0, 90.0)
-"""Between the colours of levels [dB(A)]."""
-
-LEVELS = {
-    "level-0": Look("#fdf1cf", "#8a6d2f", "plain", "below 50"),
-    "level-1": Look("#fccf96", "#8a6d2f", "plain", "50 to 60"),
-    "level-2": Look("#f89b6c", "#7a3600", "plain", "60 to 70"),
-    "level-3": Look("#dd5f6b", "#6b1f2e", "plain", "70 to 80"),
-    "level-4": Look("#a63a80", "#4b1d3e", "plain", "80 to 90"),
-    "level-5": Look("#5e2379", "#2b0d3e", "plain", "90 and more"),
-}
-"""By steps of the level, from soft to loud."""
 
 DIFFERENCES = {
     "gone": Look("#3f8fc4", "#dcebf6", "lines", "noise gone"),
@@ -121,7 +111,7 @@ class Compared:
     @property
     def weight(self) -> float:
         """What the maps take up on a page at most [byte]."""
-        n_areas = sum(len(of.areas) for one in self.places for of in one.maps)
+        n_areas = sum(len(of.areas) + len(of.levels) for one in self.places for of in one.maps)
         return _MAP_BYTES * self.n_maps + _AREA_BYTES * n_areas + len(json.dumps(self.data))
 
     @property
@@ -150,7 +140,6 @@ class Compared:
         return {
             "names": self.names,
             "labels": MAP_LABELS,
-            "steps": LEVEL_STEPS,
             "pair": self.pair,
             "places": [one.cells for one in self.places],
         }
@@ -285,19 +274,23 @@ def _laid_out(
     speed = "Largest speed" if maps[0].points[0].frequency is not None else "Speed"
 
     def condition_map(
-        title: str, own: int | None, areas: tuple[Area, ...] = (), note: str = ""
+        title: str,
+        own: int | None,
+        areas: tuple[Area, ...] = (),
+        levels: tuple[Area, ...] = (),
+        note: str = "",
     ) -> ConditionMap:
         spots = _spots(across, up, heard, own, designs, n_designs)
         number = None if own is None else designs[own]
         return ConditionMap(
-            title, across, up, areas, spots, note, speed, height, number, compared=True
+            title, across, up, areas, spots, note, speed, height, number, True, levels
         )
 
     laid = []
     for own, (one, of, why) in enumerate(zip(maps, cells, silent, strict=True)):
-        labels = [point.label for point in one.points]
-        areas = areas_of(of, labels, across, up, (MAP_SIZE[0], height))
-        laid.append(condition_map(one.design, own, areas, _own_note(one, why)))
+        kinds = [point.label for point in one.points], list(map(_level_step, one.points))
+        areas, levels = (areas_of(of, kind, across, up, (MAP_SIZE[0], height)) for kind in kinds)
+        laid.append(condition_map(one.design, own, areas, levels, _own_note(one, why)))
     if len(maps) > 1:
         laid.append(condition_map("Difference: B against A", None))
     values: dict[str, object] = {
@@ -309,6 +302,13 @@ def _laid_out(
         },
     }
     return Place(maps[0].where, tuple(laid), values, _note(maps, heard))
+
+
+def _level_step(point: ScreenPoint) -> str:
+    """Return the look of a point's level, ``none`` where it is quiet."""
+    if point.label == "none" or point.level is None:
+        return "none"
+    return f"level-{bisect(LEVEL_STEPS, point.level)}"
 
 
 def _cell_values(one: ScreenMap, cells: Cells) -> dict[str, object]:

@@ -2,9 +2,8 @@
 
 Axes are numbers, not places in a table, so that the maps of a screen and of a campaign can be laid
 beside each other. A map has areas, where a label is known all over, as a screen knows it, and
-spots, where there is something to be heard. Where the points make a grid, a cell ends half-way to
-the neighbours, else a place belongs to the point that is nearest. Maps of different points are laid
-over one another by cutting both along all edges.
+spots, where there is something to be heard. The cell of a point ends half-way to its neighbours.
+Maps of different points are laid over one another by cutting both along all edges.
 """
 
 from __future__ import annotations
@@ -17,6 +16,7 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
+from noise.base.labels import Look
 from noise.labels.conditions import Place, Range, conditions_map
 from noise.pages.cards import round_ticks
 from noise.pictures.figure import place_title
@@ -24,8 +24,18 @@ from noise.pictures.figure import place_title
 MAP_SIZE = (500.0, 300.0)
 """Width and height of the drawing of a condition map [px]."""
 
-_RASTER = (100, 60)
-"""Into how many cells a map is divided whose points make no grid."""
+LEVEL_STEPS = (50.0, 60.0, 70.0, 80.0, 90.0)
+"""Between the colours of levels [dB(A)]."""
+
+LEVELS = {
+    "level-0": Look("#fdf1cf", "#8a6d2f", "plain", "below 50"),
+    "level-1": Look("#fccf96", "#8a6d2f", "plain", "50 to 60"),
+    "level-2": Look("#f89b6c", "#7a3600", "plain", "60 to 70"),
+    "level-3": Look("#dd5f6b", "#6b1f2e", "plain", "70 to 80"),
+    "level-4": Look("#a63a80", "#4b1d3e", "plain", "80 to 90"),
+    "level-5": Look("#5e2379", "#2b0d3e", "plain", "90 and more"),
+}
+"""By steps of the level, from soft to loud."""
 
 
 @dataclass(frozen=True)
@@ -77,11 +87,7 @@ def cells_of(speed: NDArray[np.float64], interference: NDArray[np.float64]) -> C
     rows, row = np.unique(interference, return_inverse=True)
     point = np.full((rows.size, columns.size), -1)
     point[row, column] = np.arange(speed.size)
-    if (point >= 0).all():
-        return Cells(_edges(columns), _edges(rows), point)
-    x_edges = np.linspace(columns[0], columns[-1], _RASTER[0] + 1)
-    y_edges = np.linspace(rows[0], rows[-1], _RASTER[1] + 1)
-    return Cells(x_edges, y_edges, _nearest(x_edges, y_edges, speed, interference))
+    return Cells(_edges(columns), _edges(rows), point)
 
 
 def common_cells(maps: Sequence[Cells]) -> list[Cells]:
@@ -176,24 +182,6 @@ def _edges(values: NDArray[np.float64]) -> NDArray[np.float64]:
     )
 
 
-def _nearest(
-    x_edges: NDArray[np.float64],
-    y_edges: NDArray[np.float64],
-    speed: NDArray[np.float64],
-    interference: NDArray[np.float64],
-) -> NDArray[np.int64]:
-    """Nearest point at each place, distances being shares of the axes."""
-    from scipy.spatial import cKDTree
-
-    width = (x_edges[-1] - x_edges[0]) or 1.0
-    height = (y_edges[-1] - y_edges[0]) or 1.0
-    tree = cKDTree(np.column_stack((speed / width, interference / height)))
-    _, found = tree.query(
-        np.stack(np.meshgrid(_middles(x_edges) / width, _middles(y_edges) / height), axis=-1)
-    )
-    return np.asarray(found)
-
-
 def _middles(edges: NDArray[np.float64]) -> NDArray[np.float64]:
     return 0.5 * (edges[1:] + edges[:-1])
 
@@ -285,6 +273,8 @@ class ConditionMap:
         Number of the design among those that are compared with one another; None of any other map.
     compared : bool
         Whether it is one of several maps of the same axes side by side.
+    levels : tuple of Area
+        By keys of `LEVELS`, and ``none``.
     """
 
     title: str
@@ -297,6 +287,7 @@ class ConditionMap:
     height: float = MAP_SIZE[1]
     design: int | None = None
     compared: bool = False
+    levels: tuple[Area, ...] = ()
 
 
 def axis_of(values: Iterable[float], *, edges: bool) -> Axis:

@@ -20,7 +20,7 @@ from noise.base.labels import LABEL_LOOKS
 from noise.pages import blocks as b
 from noise.pages.cards import draw_entries, frequency_ticks, scale_picture
 from noise.pages.clips import MOST_RAISED, Clip, Entry, equal_factors
-from noise.pages.maps import MAP_SIZE, ConditionMap
+from noise.pages.maps import LEVELS, MAP_SIZE, ConditionMap
 
 PAGE_BYTES, CARD_BYTES, ORDERS_BYTES = 75_000.0, 45_000.0, 100_000.0
 """What a page takes up, and at most each of its sounds beside the sound itself and an order map
@@ -186,6 +186,7 @@ def _environment() -> Environment:
     environment.globals |= {
         "label_display": LABEL_LOOKS,
         "frequencies": frequency_ticks(),
+        "map_marks": {name: look.mark for name, look in (LABEL_LOOKS | LEVELS).items()},
         "map_size": tuple(round(length) for length in MAP_SIZE),
         "scale": scale_picture,
     }

@@ -254,7 +254,7 @@ def test_a_click_on_the_other_map_changes_over_without_a_jump(shown):
 def test_maps_show_noises_or_levels(shown):
     opened = shown(screened)
     drawn = opened.page.locator("[data-map][data-design='0'] svg")
-    words = {"noise": r"Cr|Sk|P|quiet", "level": r"\d\d.*|quiet"}
+    words = {"noise": r"Cr|Sk|P|quiet", "level": r"\d\d .*|below 50|quiet"}
     for look, pattern in words.items():
         opened.page.locator(f"[data-look='{look}']").click()
         texts = drawn.locator("text:visible").all_text_contents()

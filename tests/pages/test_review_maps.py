@@ -51,16 +51,6 @@ def test_areas_cover_the_map_once_and_have_the_label_of_their_point(n_across, n_
         assert found.label == label
 
 
-def test_points_without_a_grid_are_divided_by_the_nearest():
-    rng = np.random.default_rng(5)
-    speed, fit = rng.uniform(1.0, 11.0, 300), rng.uniform(0.2, 0.4, 300)
-    _, _, areas = areas_among(speed, fit, ["creak" if v < 6.0 else "none" for v in speed])
-    share = sum(a.width * a.height for a in areas if a.label == "creak") / (
-        MAP_SIZE[0] * MAP_SIZE[1]
-    )
-    assert share == pytest.approx(0.5, abs=0.05)
-
-
 @given(st.integers(1, 20))
 def test_no_more_points_are_heard_than_allowed_and_none_twice(most):
     chosen = chosen_points(points(screen_rows()), most)

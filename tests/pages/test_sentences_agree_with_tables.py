@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from noise.app.jury import VOTES, Jury, in_words, random_pairs, scale
 from noise.base.labels import NAMED, PERSISTS
 from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.outcome import Agreement, EffectFinding, StageFinding
@@ -225,3 +226,23 @@ def test_the_line_of_a_file_is_its_longest_row():
             row = rows[round(float(level)) - 60]
             assert (row["label"], row["frequency_hz"]) == (label, float(frequency)), line
             assert f"{row['start_s']:.2f}-{row['end_s']:.2f} s" in line
+
+
+def test_the_words_of_a_jury_are_those_of_its_table():
+    for seed in range(OUTCOMES // 5):
+        rng = np.random.default_rng(seed)
+        pairs = random_pairs("abcdef"[: int(rng.integers(2, 7))], rng)
+        votes = rng.choice(list(VOTES), int(rng.integers(1, len(pairs) + 1))).tolist()
+        rows, _ = scale(Jury(1, "", "", "", tuple(pairs), tuple(votes)))
+        words, placed = in_words(rows), [row for row in rows if row["value"] is not None]
+        for place, row in (("first", placed[0]), ("last", placed[-1])):
+            if found := re.search(rf"(\w) comes {place}: chosen in (\d+) of (\d+)", words):
+                counts = [row[name] for name in ("chosen", "not_chosen", "no_difference")]
+                assert (row["sound"], counts[0], sum(counts)) == (
+                    found[1], int(found[2]), int(found[3]),
+                ), words  # fmt: skip
+        first, *others = placed
+        close = [row["sound"] for row in others if row["high_95"] >= first["low_95"]]
+        if found := re.search(r"Its lead over ([\w, ]+) is not clear", words):
+            assert found[1].split(", ") == close
+        assert ("clearly ahead" in words) == (not close), words

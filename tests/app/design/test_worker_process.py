@@ -7,7 +7,7 @@ import time
 import pytest
 
 from noise.app.design import design_of
-from noise.app.design_chart import SuggestionRequest, suggestions_of
+from noise.app.design_chart import ChartRequest, SuggestionRequest, suggestions_of
 from noise.app.design_controls import bases_of
 from noise.app.opened import open_paths
 from noise.app.worker_process import WorkerProcess
@@ -24,8 +24,10 @@ def waited(found):
     return known
 
 
-def setting(values, base="fluorocarbon"):
-    return design_of({"base": base, "values": values}, BASES).setting
+def suggested(values):
+    of = design_of({"base": "fluorocarbon", "values": values}, BASES).setting
+    chart = ChartRequest(of.rig, of.support_stiffness, of.temperature)
+    return suggestions_of(SuggestionRequest(chart, of.interference, values["speed"]))
 
 
 def test_only_the_newest_question_is_answered_and_each_once():
@@ -44,13 +46,11 @@ def test_only_the_newest_question_is_answered_and_each_once():
 @pytest.mark.slow
 def test_the_change_that_is_suggested_ends_the_noise():
     values = {"speed": 5.0}
-    found = suggestions_of(SuggestionRequest.of(setting(values), {}))
+    found = suggested(values)
     assert found["noise"] == "squawk"
     names = [one["name"] for one in found["changes"]]
     assert "damping" in names
     more = found["changes"][names.index("damping")]["factor"]
-    quiet = suggestions_of(
-        SuggestionRequest.of(setting({**values, "change.damping": more * 1.02}), {})
-    )
+    quiet = suggested({**values, "change.damping": more * 1.02})
     assert quiet["noise"] == "none"
     assert quiet["changes"] == []

@@ -12,9 +12,8 @@ export class Chart {
     this.said = made("p", { className: "soft" });
     this.progress = made("progress", { max: 1, ariaLabel: "Map", hidden: true });
     this.took = USUAL;
-    this.ask = made("button", { type: "button", textContent: "What would end the noise?" });
+    this.ask = made("button", { type: "button", textContent: "What would end the noise?", onclick: () => this.help() });
     this.helps = made("ul", { className: "helps" });
-    this.ask.addEventListener("click", () => this.help());
     panel.append(made("section", { className: "shown" }, made("h2", { textContent: "Map" }), this.box, this.progress, this.said),
       made("section", {}, made("h2", { textContent: "What to change" }), made("div", { className: "tools" }, this.ask), this.helps));
   }
@@ -86,12 +85,9 @@ export class Chart {
     this.helps.replaceChildren(...changes.map(({ name, factor, steady }) => {
       const key = { support_stiffness: "support", interference: "interference" }[name] ?? `change.${name}`;
       const { label, unit } = this.design.controls.declared.get(key), percent = 100 * (factor - 1);
-      const text = `${label} ${percent > 0 ? "+" : "−"}${Math.abs(percent).toFixed(1)} %`;
-      const press = made("button", { type: "button", textContent: text });
-      press.addEventListener("click", () => {
-        const value = this.design.controls.values.get(key) * factor;
-        this.design.put({ ...stated, values: { ...stated.values, [key]: Number(value.toPrecision(4)) } });
-      });
+      const textContent = `${label} ${percent > 0 ? "+" : "−"}${Math.abs(percent).toFixed(1)} %`;
+      const value = Number((this.design.controls.values.get(key) * factor).toPrecision(4));
+      const press = made("button", { type: "button", textContent, onclick: () => this.design.put({ ...stated, values: { ...stated.values, [key]: value } }) });
       return made("li", {}, press, ` ends the ${noise} ${at}${steady ? "" : "; a slightly larger change brings it back"}`);
     }));
   }

@@ -71,11 +71,9 @@ export class Controls extends EventTarget {
     const entry = { row, put: () => {} };
     if (one.kind === "number") {
       const label = made("label", { htmlFor: `${id}-slider`, textContent: name(one.label), title: one.meaning });
-      const slider = made("input", { id: `${id}-slider`, type: "range", min: 0, max: TICKS, step: 1 });
-      const field = made("input", { id, type: "number", min: one.least, max: one.most, step: "any" });
-      field.setAttribute("aria-label", `${name(one.label)}${one.unit ? `, ${one.unit}` : ""}`);
+      const slider = made("input", { id: `${id}-slider`, type: "range", min: 0, max: TICKS, step: 1, oninput: () => this.#input(one, rounded(valueAt(one, slider.value / TICKS), one)) });
+      const field = made("input", { id, type: "number", min: one.least, max: one.most, step: "any", ariaLabel: [name(one.label), one.unit].filter(Boolean).join(", ") });
       const unit = made("span", { className: "unit", textContent: one.unit });
-      slider.addEventListener("input", () => this.#input(one, rounded(valueAt(one, slider.value / TICKS), one)));
       field.addEventListener("change", () => {
         const value = Number(field.value);
         if (field.value.trim() !== "" && value >= one.least && value <= one.most) this.#input(one, value);
@@ -89,14 +87,12 @@ export class Controls extends EventTarget {
       row.append(label, slider, field, unit);
       if (one.key.startsWith("change.")) row.append(entry.fact = made("span", { className: "fact" }));
     } else if (one.kind === "switch") {
-      const box = made("input", { id, type: "checkbox" });
-      box.addEventListener("change", () => this.#input(one, box.checked));
+      const box = made("input", { id, type: "checkbox", onchange: () => this.#input(one, box.checked) });
       entry.put = (value) => { box.checked = value; };
       row.append(made("label", { htmlFor: id, textContent: name(one.label), title: one.meaning }), box);
     } else {
-      const list = made("select", { id });
-      list.append(...Object.entries(one.choices).map(([value, textContent]) => made("option", { value, textContent })));
-      list.addEventListener("change", () => this.#input(one, list.value));
+      const options = Object.entries(one.choices).map(([value, textContent]) => made("option", { value, textContent }));
+      const list = made("select", { id, onchange: () => this.#input(one, list.value) }, ...options);
       entry.put = (value) => { list.value = value; };
       row.append(made("label", { htmlFor: id, textContent: name(one.label), title: one.meaning }), list);
     }

@@ -5,11 +5,9 @@ import { made } from "../dom.js";
 export class Saving {
   constructor(panel, design) {
     this.design = design;
-    this.name = made("input", { id: "design-name", type: "text", value: "design", spellcheck: false, autocomplete: "off" });
+    this.name = made("input", { id: "design-name", type: "text", value: "design", spellcheck: false, autocomplete: "off", oninput: () => { this.again = null; } });
     this.text = made("p", { className: "saved", role: "status" });
-    const save = made("button", { type: "button", textContent: "Save rig file" });
-    save.addEventListener("click", () => this.#save());
-    this.name.addEventListener("input", () => { this.again = null; });
+    const save = made("button", { type: "button", textContent: "Save rig file", onclick: () => this.#save() });
     panel.append(made("section", { className: "saving" }, made("h2", { textContent: "Save" }),
       made("div", { className: "tools" }, made("label", { htmlFor: "design-name", textContent: "Name" }), this.name, save), this.text));
   }

@@ -15,19 +15,18 @@ export async function mount(panel) {
   const about = await api("design");
   const view = made("div", { className: "design-view" });
   const left = made("div", { className: "left" }), right = made("div", { className: "right" });
-  const base = made("select", { id: "design-base" });
-  base.append(...about.bases.map(({ id, name }) => made("option", { value: id, textContent: name })));
-  const play = made("button", { type: "button", className: "play", textContent: "Play", disabled: true }); // until there is a design
-  const slots = ["A", "B"].map((name) => made("button", { type: "button", className: "slot", textContent: name, ariaPressed: String(name === "A") }));
-  const copy = made("button", { type: "button" });
-  const reset = made("button", { type: "button", textContent: "Reset to base" });
+  const base = made("select", { id: "design-base", onchange: () => rebase() }, ...about.bases.map(({ id, name }) => made("option", { value: id, textContent: name })));
+  const play = made("button", { type: "button", className: "play", textContent: "Play", disabled: true, onclick: () => toggle() }); // until there is a design
+  const slots = ["A", "B"].map((name) => made("button", { type: "button", className: "slot", textContent: name, ariaPressed: String(name === "A"), onclick: () => choose(name) }));
+  const copy = made("button", { type: "button", onclick: () => copied() });
+  const reset = made("button", { type: "button", textContent: "Reset to base", onclick: () => toBase() });
   const tools = made("div", { className: "tools", role: "group", ariaLabel: "Play and compare" });
   tools.append(play, made("span", { className: "group" }, ...slots), copy, reset, made("span", { className: "soft", textContent: "Keys: Space, A, B" }));
   const start = made("div", { className: "row choice" }, made("label", { htmlFor: "design-base", textContent: "Base" }), base);
   const rows = made("div", { className: "controls" });
   const name = made("p", { className: "name" }), level = made("p", { className: "level" }), gain = made("span", { className: "gain" });
   const scale = made("input", { id: "design-full-scale", type: "number", min: 0.1, max: 1000, step: "any", title: "Sound pressure of full scale. Set that of your loudspeaker to hear the true level." });
-  const fit = made("button", { type: "button", textContent: "Reset playback level" });
+  const fit = made("button", { type: "button", textContent: "Reset playback level", onclick: () => sound.fit() });
   const torque = made("canvas", { className: "torque", role: "img", ariaLabel: "Torque of the last fifth of a second" });
   const spectrum = made("canvas", { className: "spectrum", role: "img", ariaLabel: "Spectrum of the sound pressure" });
   const remarks = made("ul", { className: "remarks", ariaLabel: "Remarks" });
@@ -130,19 +129,16 @@ export async function mount(panel) {
   design.choose = choose;
 
   controls.addEventListener("change", changed);
-  base.addEventListener("change", rebase);
-  for (const one of slots) one.addEventListener("click", () => choose(one.textContent));
-  copy.addEventListener("click", () => {
+  function copied() {
     states[other()] = states[slot];
     notice.textContent = `${other()} is now a copy of ${slot}.`;
-  });
-  reset.addEventListener("click", () => {
-    const dropped = controls.words();
+  }
+  function toBase() {
+    const words = controls.words();
     controls.put({});
     changed();
-    notice.textContent = dropped ? `Dropped: ${dropped}.` : "";
-  });
-  fit.addEventListener("click", () => sound.fit());
+    notice.textContent = words ? `Dropped: ${words}.` : "";
+  }
   scale.addEventListener("change", () => {
     const asked = Number(scale.value);
     if (asked >= 0.1 && asked <= 1000) sound.fit(asked);
@@ -154,7 +150,6 @@ export async function mount(panel) {
     name.textContent = "Starting ...";
     level.textContent = "The first start takes some seconds.";
   };
-  play.addEventListener("click", toggle);
   listen(view, { " ": () => { if (!play.disabled) toggle(); }, a: () => choose("A"), b: () => choose("B") });
   sound.addEventListener("change", () => {
     if (!sound.playing) {

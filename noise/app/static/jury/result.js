@@ -14,10 +14,8 @@ export class Result {
     this.rows = made("tbody");
     const box = made("div", { className: "table", tabIndex: 0, role: "region", ariaLabel: "Scale as a table" },
       made("table", {}, made("thead", {}, made("tr", {}, ...HEADS.map((textContent) => made("th", { scope: "col", textContent })))), this.rows));
-    this.on = made("button", { type: "button", textContent: "Go on voting" });
-    this.on.addEventListener("click", () => goes.voting(this.number));
-    const back = made("button", { type: "button", textContent: "To all juries" });
-    back.addEventListener("click", () => goes.setup());
+    this.on = made("button", { type: "button", textContent: "Go on voting", onclick: () => goes.voting(this.number) });
+    const back = made("button", { type: "button", textContent: "To all juries", onclick: () => goes.setup() });
     this.named = made("p", { className: "soft", textContent: "You have seen the names: further votes are no longer blind." });
     element.append(this.title, this.words, this.facts, this.remarks, box, made("p", { className: "soft", textContent: MEANS }), made("div", { className: "line" }, this.on, back), this.named);
   }

@@ -25,15 +25,14 @@ export class Setup {
     this.played = made("select", {},
       made("option", { value: "one gain", textContent: "as recorded, all at one gain" }),
       made("option", { value: "equal loudness", textContent: "at equal loudness" }));
-    this.kind = made("select", {}, ...KINDS.map((kind) => made("option", { value: kind === "all" ? "" : kind, textContent: kind })));
-    this.find = made("input", { type: "search", placeholder: "by name" });
+    this.kind = made("select", { onchange: () => this.#list() }, ...KINDS.map((kind) => made("option", { value: kind === "all" ? "" : kind, textContent: kind })));
+    this.find = made("input", { type: "search", placeholder: "by name", oninput: () => { clearTimeout(this.wait); this.wait = setTimeout(() => this.#list(), 150); } });
     this.sounds = made("ul", { className: "sounds" });
-    const all = made("button", { type: "button", textContent: "All shown" });
-    const none = made("button", { type: "button", textContent: "None" });
+    const all = made("button", { type: "button", textContent: "All shown", onclick: () => { for (const { id } of this.shown) this.chosen.add(id); this.#draw(); } });
+    const none = made("button", { type: "button", textContent: "None", onclick: () => { this.chosen.clear(); this.#draw(); } });
     this.count = made("output", { className: "count" });
-    this.number = made("input", { type: "number", step: 1 });
-    this.number.addEventListener("input", () => { this.wanted = Number(this.number.value); this.#tell(); });
-    this.begin = made("button", { type: "button", className: "begin", textContent: "Begin", disabled: true });
+    this.number = made("input", { type: "number", step: 1, oninput: () => { this.wanted = Number(this.number.value); this.#tell(); } });
+    this.begin = made("button", { type: "button", className: "begin", textContent: "Begin", disabled: true, onclick: () => this.#begin() });
     this.plan = made("p", { className: "plan", role: "status" });
     element.append(this.goingOn, made("section", {},
       made("h2", { textContent: "New jury" }),
@@ -43,11 +42,6 @@ export class Setup {
         made("div", { className: "line" }, field("With", this.kind), field("Find", this.find), all, none, this.count),
         this.sounds),
       made("div", { className: "line" }, field("Comparisons", this.number), this.begin, this.plan)));
-    this.find.addEventListener("input", () => { clearTimeout(this.wait); this.wait = setTimeout(() => this.#list(), 150); });
-    this.kind.addEventListener("change", () => this.#list());
-    all.addEventListener("click", () => { for (const { id } of this.shown) this.chosen.add(id); this.#draw(); });
-    none.addEventListener("click", () => { this.chosen.clear(); this.#draw(); });
-    this.begin.addEventListener("click", () => this.#begin());
   }
 
   async open() {
@@ -67,10 +61,8 @@ export class Setup {
 
   #jury({ jury: number, question, listener, total, waiting, sounds, open }) {
     const facts = [`${number}. ${question}`, listener, `${sounds} sounds`, `${waiting ?? total} of ${total} voted`, open ? "" : "its sounds are not open"];
-    const on = made("button", { type: "button", textContent: "Go on", ariaLabel: `Go on with jury ${number}`, disabled: !open, hidden: waiting === null });
-    const result = made("button", { type: "button", textContent: "Result", ariaLabel: `Result of jury ${number}` });
-    on.addEventListener("click", () => this.goes.voting(number));
-    result.addEventListener("click", () => this.goes.result(number));
+    const on = made("button", { type: "button", textContent: "Go on", ariaLabel: `Go on with jury ${number}`, disabled: !open, hidden: waiting === null, onclick: () => this.goes.voting(number) });
+    const result = made("button", { type: "button", textContent: "Result", ariaLabel: `Result of jury ${number}`, onclick: () => this.goes.result(number) });
     return made("li", {}, made("span", { textContent: facts.filter(Boolean).join(" · ") }), on, result);
   }
 
@@ -86,8 +78,7 @@ export class Setup {
 
   #draw() {
     this.sounds.replaceChildren(...this.shown.map(({ id, name, labels }) => {
-      const box = made("input", { type: "checkbox", checked: this.chosen.has(id) });
-      box.addEventListener("change", () => { this.chosen[box.checked ? "add" : "delete"](id); this.#tell(); });
+      const box = made("input", { type: "checkbox", checked: this.chosen.has(id), onchange: () => { this.chosen[box.checked ? "add" : "delete"](id); this.#tell(); } });
       return made("li", {}, made("label", {}, box, made("span", { textContent: name }), made("small", { textContent: labels.join(" + ") })));
     }));
     this.#tell();

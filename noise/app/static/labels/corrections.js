@@ -82,7 +82,7 @@ export class Corrections extends EventTarget {
     this.taken += 1;
     const known = rows.filter((row) => row.label);
     this.saved = known.map((row) => ({ ...row, channel: row.channel || "all", start_s: row.start_s ?? 0, end_s: row.end_s ?? this.duration }));
-    if (!this.queue.some((one) => one.id === id)) this.#show(this.saved);
+    if (!this.queue.some((one) => one.rows && one.id === id)) this.#show(this.saved);
   }
 
   #show(rows) {
@@ -137,7 +137,7 @@ export class Corrections extends EventTarget {
 
   // Undo the last change, or redo what was undone last; the number of its recording comes of it, null where there is none.
   undo(redo = false) {
-    const undoing = new Promise((undone) => this.queue.push({ undone, redo }));
+    const { id, name } = this, undoing = new Promise((undone) => this.queue.push({ id, name, undone, redo }));
     this.undoing = undoing;
     this.working ??= this.#work();
     return undoing.finally(() => { if (this.undoing === undoing) this.undoing = null; });
@@ -146,56 +146,33 @@ export class Corrections extends EventTarget {
   async #work() {
     while (this.queue.length) {
       this.sending = this.queue.shift();
-      await (this.sending.undone ? this.#undo(this.sending) : this.#send(this.sending));
+      await this.#send(this.sending);
       this.sending = null;
     }
     this.working = null;
   }
 
-  async #send({ id, name, rows }) {
-    this.#say(id, name, "saving ...");
+  // Write rows, or undo: there are none to be written then.
+  async #send({ id, name, rows, undone, redo }) {
+    const did = rows ? "saved" : redo ? "redone" : "undone";
+    const said = rows?.map(({ start_s, end_s, label, channel, label_source }) => ({ start_s, end_s, label, channel, label_source }));
+    if (rows) this.#say(id, name, "saving ...");
     try {
-      const said = rows.map(({ start_s, end_s, label, channel, label_source }) => ({ start_s, end_s, label, channel, label_source }));
-      const answer = await api(`recordings/${id}/segments`, { rows: said, version: this.versions.get(id), page: PAGE });
-      this.#say(id, name, `saved ${clock()}`);
+      const answer = await (rows ? api(`recordings/${id}/segments`, { rows: said, version: this.versions.get(id), page: PAGE }) : api("undo", { page: PAGE, redo }));
+      this.#say(answer.id, answer.name, rows ? `saved ${clock()}` : `${did}, saved ${clock()}`);
       this.#take(answer);
+      undone?.(answer.id);
     } catch (error) {
-      this.#say(id, name, `not saved: ${error.message}`);
-      const now = await this.#now(id);
-      this.#drop(id, now);
+      this.#say(id, name, `not ${did}: ${error.message}`);
+      const now = await api(`recordings/${id}/segments?page=${PAGE}`).catch(() => null);
+      // What was changed until now was made of what could not be written, and what undoes means it.
+      const dropped = rows ? this.queue.filter((one) => one.undone || one.id === id) : [];
+      this.queue = this.queue.filter((one) => !dropped.includes(one));
+      if (now) this.#take(now);
+      else if (id === this.id && this.saved) this.#show(this.saved);
+      for (const one of [{ undone }, ...dropped]) one.undone?.(null);
     }
     this.dispatchEvent(new CustomEvent("saved", { detail: id }));
-  }
-
-  // What was changed until now was made of what could not be written, and what undoes means it.
-  #drop(id, now) {
-    const isDropped = (one) => one.undone || one.id === id, dropped = this.queue.filter(isDropped);
-    this.queue = this.queue.filter((one) => !isDropped(one));
-    this.#again(id, now);
-    for (const { undone } of dropped) undone?.(null);
-  }
-
-  async #undo({ undone, redo }) {
-    try {
-      const answer = await api("undo", { page: PAGE, redo });
-      this.#say(answer.id, answer.name, `${redo ? "redone" : "undone"}, saved ${clock()}`);
-      this.#take(answer);
-      undone(answer.id);
-      this.dispatchEvent(new CustomEvent("saved", { detail: answer.id }));
-    } catch (error) {
-      this.tell(`not ${redo ? "redone" : "undone"}: ${error.message}`);
-      const { id } = this;
-      this.#again(id, await this.#now(id));
-      undone(null);
-    }
-  }
-
-  // Rows as the table has them; null where it cannot be asked.
-  #now(id) { return api(`recordings/${id}/segments?page=${PAGE}`).catch(() => null); }
-
-  #again(id, now) {
-    if (now) this.#take(now);
-    else if (id === this.id && this.saved) this.#show(this.saved);
   }
 
   #say(id, name, text) { this.tell(id === this.id ? text : `${name}: ${text}`); }

@@ -30,19 +30,17 @@ export class RecordingList {
   asked = 0;
   at = 0; // where the keyboard is
   on = null; // number of the recording there
-  after = null; // and of the one after it
-  gone = false; // whether the keyboard is before the one that took its recording's place
   marked = null; // the one that is open
 
   constructor(element, onOpen, onSeen) {
     Object.assign(this, { onOpen, onSeen });
-    this.find = made("input", { type: "search", placeholder: "find by name", ariaLabel: "Find by name" });
-    this.order = made("select", { ariaLabel: "Order" }, ...Object.entries(ORDERS).map(([value, textContent]) => made("option", { value, textContent })));
+    let wait;
+    this.find = made("input", { type: "search", placeholder: "find by name", ariaLabel: "Find by name", oninput: () => { clearTimeout(wait); wait = setTimeout(() => this.#ask(this.label), 120); } });
+    this.order = made("select", { ariaLabel: "Order", onchange: () => this.#ask(this.label) }, ...Object.entries(ORDERS).map(([value, textContent]) => made("option", { value, textContent })));
     this.kinds = made("div", { className: "kinds", role: "group", ariaLabel: "Show recordings with" });
     for (const [kind, text] of Object.entries(KINDS)) {
-      const button = made("button", { type: "button", className: `kind ${kind}`, title: MEANING[kind] ?? "", data: { kind } }, made("i"), `${text} `, made("span"));
-      button.addEventListener("click", () => this.#ask(this.label === kind ? "" : kind));
-      this.kinds.append(button);
+      const onclick = () => this.#ask(this.label === kind ? "" : kind);
+      this.kinds.append(made("button", { type: "button", className: `kind ${kind}`, title: MEANING[kind] ?? "", data: { kind }, onclick }, made("i"), `${text} `, made("span")));
     }
     this.progress = made("progress", { ariaLabel: "Labelled", hidden: true });
     this.stateLine = made("span");
@@ -58,9 +56,6 @@ export class RecordingList {
       made("div", { className: "line" }, this.find, this.order), this.kinds,
       made("div", { className: "line" }, this.labelButton, this.stateLine, this.progress),
       this.empty, this.box));
-    let wait;
-    this.find.addEventListener("input", () => { clearTimeout(wait); wait = setTimeout(() => this.#ask(this.label), 120); });
-    this.order.addEventListener("change", () => this.#ask(this.label));
     addEventListener("focus", () => onceShown(this.box, () => this.load())); // somebody may come back from another page of the same table
     this.box.addEventListener("click", ({ target }) => { const row = target.closest("[role=option]"); if (row) this.#open(this.rows.findIndex((one) => one.id === row.shown.id)); });
     this.box.addEventListener("keydown", (event) => this.#key(event));
@@ -91,17 +86,15 @@ export class RecordingList {
     this.draw();
   }
 
-  // The keyboard stays on its recording. Where a correction took that away or elsewhere, it is before the one after it.
+  // The keyboard stays on its recording. Where a correction took that away, it is before the one that took its place.
   #stay() {
-    const place = (id) => this.rows.findIndex((row) => row.id === id), at = place(this.on), after = place(this.after);
-    const isWhereItWas = at >= 0 && (after < 0 || after === at + 1);
-    const isGone = this.on !== null && !isWhereItWas;
-    this.at = Math.min(Math.max(0, isWhereItWas ? at : after >= 0 ? after : this.at), Math.max(0, this.rows.length - 1));
-    if (isGone) this.gone = true;
-    else this.#put(this.at);
+    const at = this.rows.findIndex((row) => row.id === this.on);
+    if (at >= 0) this.#put(at);
+    else if (this.on !== null) this.#put(this.at - 1);
+    else if (this.at >= 0) this.#put(this.at);
   }
 
-  #put(at) { Object.assign(this, { at, on: this.rows[at]?.id ?? null, after: this.rows[at + 1]?.id ?? null, gone: false }); }
+  #put(at) { Object.assign(this, { at, on: this.rows[at]?.id ?? null }); }
 
   #tell({ counts, state }) {
     for (const button of this.kinds.children) {
@@ -131,9 +124,9 @@ export class RecordingList {
     if (nodes.length !== this.box.children.length || nodes.some((node, at) => node !== this.box.children[at])) this.box.replaceChildren(...nodes);
     for (const [id, node] of this.nodes) {
       node.setAttribute("aria-selected", id === this.marked);
-      node.classList.toggle("at", !this.gone && id === this.on);
+      node.classList.toggle("at", id === this.on);
     }
-    this.box.setAttribute("aria-activedescendant", this.nodes.has(this.on) && !this.gone ? `row-${this.on}` : "");
+    this.box.setAttribute("aria-activedescendant", this.nodes.has(this.on) ? `row-${this.on}` : "");
   }
 
   open(id) {
@@ -153,7 +146,7 @@ export class RecordingList {
     if (event.ctrlKey || event.metaKey || event.altKey || last < 0) return;
     if (event.key === "Enter") this.#open(this.at);
     else if (step !== undefined) {
-      this.#put(Math.min(Math.max(0, (this.gone && step > 0 ? this.at - 1 : this.at) + step), last));
+      this.#put(Math.min(Math.max(0, this.at + step), last));
       this.nodes.get(this.on).scrollIntoView({ block: "nearest" });
       this.draw();
     } else return;

@@ -83,9 +83,8 @@ export class RecordingPage {
     const { parts, sound: { channels }, id } = this, others = channels.filter(({ name }) => name !== this.channel);
     parts.others.hidden = !others.length;
     parts.others.replaceChildren("Also show ", ...others.map(({ name }) => {
-      const one = made("button", { type: "button", textContent: name, ariaPressed: this.beside.has(name) });
-      one.addEventListener("click", () => { this.beside.delete(name) || this.beside.add(name); this.#stack(); });
-      return one;
+      const onclick = () => { this.beside.delete(name) || this.beside.add(name); this.#stack(); };
+      return made("button", { type: "button", textContent: name, ariaPressed: this.beside.has(name), onclick });
     }));
     const shown = others.filter(({ name }) => this.beside.has(name));
     this.stacked = shown.map(({ name }) => new Outline(this.timeline, { plot: made("canvas", { role: "img", ariaLabel: `${name} over time` }), axis: made("canvas", { ariaHidden: "true" }), name }));

@@ -1,5 +1,5 @@
 // Condition maps: a click plays what is there, or the nearest sound of the same label, and says which.
-// Of designs compared it draws levels and what differs between two of them, A and B.
+// Of designs compared it draws what differs between two of them, A and B.
 const short = (value) => Number(value.toPrecision(3)).toString();
 const at = (spot) => [parseFloat(spot.style.left) / 100, parseFloat(spot.style.bottom) / 100];
 
@@ -24,62 +24,34 @@ const comparison = (function () {
     return made;
   }
 
-  // Runs of cells of one key as rectangles, with words where there is room; rows count from the lowest.
-  function draw(map, place, keyOf, wordsOf) {
-    const svg = map.querySelector(".plot svg"), group = element("g", { class: "drawn" }), columns = place.x.length - 1;
-    for (let row = 0; row + 1 < place.y.length; row++) {
-      const keys = Array.from({ length: columns }, (_, column) => keyOf(row * columns + column));
-      for (let first = 0, end; first < columns; first = end) {
-        end = first + 1;
-        while (end < columns && keys[end] === keys[first]) end++;
-        if (!keys[first]) continue;
-        const x = place.x[first], y = place.y[row + 1], width = place.x[end] - x, height = place.y[row] - y;
-        group.append(element("rect", { x, y, width, height, fill: "url(#fill-" + keys[first] + ")" }));
-        const cells = Array.from({ length: end - first }, (_, i) => row * columns + first + i), text = wordsOf(keys[first], cells);
-        if (text && width > 9 * text.length && height > 18) group.append(element("text", { x: x + 6, y: y + height - 7 }, text));
-      }
-    }
-    svg.append(group);
-  }
-
-  function levels(of, cells) {
-    const known = cells.map((cell) => of.level[cell]).filter((level) => level !== null);
-    if (!known.length) return "";
-    const [low, high] = [Math.round(Math.min(...known)), Math.round(Math.max(...known))];
-    return low === high ? "" + low : low + "\u2013" + high;
-  }
-
-  function drawDesign(map, place, of) {
-    if (look !== "level") return;
-    const step = (cell) => data.steps.filter((one) => of.level[cell] >= one).length;
-    draw(map, place, (cell) => !has(of, cell) ? "" : !noisy(of, cell) || of.level[cell] === null ? "none" : "level-" + step(cell),
-      (key, cells) => (key === "none" ? "quiet" : levels(of, cells)));
-  }
-
   // What B does against A in a cell.
-  function differing(place, cell) {
-    const [one, other] = [place.designs[a], place.designs[b]];
+  function differing(one, other, cell) {
     if (!has(one, cell) || !has(other, cell)) return "";
     const [before, after] = [noisy(one, cell), noisy(other, cell)];
     if (!before || !after) return before ? "gone" : after ? "new" : "quiet";
-    if (one.level[cell] === null || other.level[cell] === null) return "alike";
     const by = other.level[cell] - one.level[cell];
-    return Math.abs(by) < SOFT ? "alike" : (by < 0 ? "softer" : "louder") + (Math.abs(by) >= MUCH ? "-much" : "");
+    if (one.level[cell] === null || other.level[cell] === null || Math.abs(by) < SOFT) return "alike";
+    return (by < 0 ? "softer" : "louder") + (Math.abs(by) >= MUCH ? "-much" : "");
   }
 
-  function median(values) {
-    const sorted = values.filter(Number.isFinite).sort((one, other) => one - other), half = sorted.length >> 1;
-    if (!sorted.length) return null;
-    return sorted.length % 2 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
-  }
-
-  function drawDifference(map, place) {
-    const [one, other] = [place.designs[a], place.designs[b]];
-    const by = (cell) => (one.level[cell] === null || other.level[cell] === null ? NaN : other.level[cell] - one.level[cell]);
-    draw(map, place, (cell) => differing(place, cell), (kind, cells) => {
-      const middle = median(cells.map(by));
-      return ["gone", "new", "quiet", "alike"].includes(kind) || middle === null ? kind : signed(middle) + " dB";
-    });
+  // Runs of cells of one kind as rectangles, with words where there is room; rows count from the lowest.
+  function drawDifference(map, { x, y, designs: { [a]: one, [b]: other } }) {
+    const group = element("g", { class: "drawn" }), columns = x.length - 1;
+    for (let row = 0; row + 1 < y.length; row++) {
+      const kinds = Array.from({ length: columns }, (_, column) => differing(one, other, row * columns + column));
+      for (let first = 0, end; first < columns; first = end) {
+        const kind = kinds[first];
+        end = first + 1;
+        while (kinds[end] === kind) end++;
+        if (!kind) continue;
+        const width = x[end] - x[first], height = y[row] - y[row + 1];
+        group.append(element("rect", { x: x[first], y: y[row + 1], width, height, fill: `url(#fill-${kind})` }));
+        const by = Array.from({ length: end - first }, (_, i) => other.level[row * columns + first + i] - one.level[row * columns + first + i]);
+        const text = /^(softer|louder)/.test(kind) ? `${signed(by.reduce((sum, each) => sum + each) / by.length)} dB` : kind;
+        if (width > 9 * text.length && height > 18) group.append(element("text", { x: x[first] + 6, y: y[row] - 7 }, text));
+      }
+    }
+    map.querySelector(".plot svg").append(group);
   }
 
   function cellAt(map, x, y) {
@@ -142,13 +114,12 @@ const comparison = (function () {
       const both = place.designs[a] && place.designs[b] && a !== b;
       for (const map of section.querySelectorAll("[data-map]")) {
         const design = designOf(map), slot = map.querySelector(".slot");
-        for (const old of map.querySelectorAll(".drawn")) old.remove();
+        map.querySelector(".drawn")?.remove();
         map.style.order = design === null ? 2 : a === b || design === a ? 0 : design === b ? 1 : 3;
         if (design !== null) {
           slot.hidden = a === b || (design !== a && design !== b);
           slot.textContent = design === a ? "A" : "B";
-          map.querySelector(".areas").toggleAttribute("hidden", look !== "noise");
-          drawDesign(map, place, place.designs[design]);
+          for (const areas of map.querySelectorAll(".areas")) areas.toggleAttribute("hidden", areas.dataset.areas !== look);
           continue;
         }
         map.hidden = !both;
