@@ -160,7 +160,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Sounds:
-    """What holds for all sounds: gains, equal loudness, labels, and the colours of spectrograms."""
+    """What holds for all sounds: gains, labels, and the colours of spectrograms."""
 
     gain: Sequence[str]
     labels: Sequence[str] = LABELS

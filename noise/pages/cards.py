@@ -1,4 +1,4 @@
-"""Cards of a page: spectrogram, labels and level over time, order map, and what is known, in words.
+"""Cards of a page: spectrogram, labels and level over time, and what is known, in words.
 
 Time runs across the whole width of a picture and nothing else does, so that a cursor over it needs
 no more than the fraction of the clip that has been played; the page draws the axes. Frequency is
@@ -12,7 +12,7 @@ import io
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,6 @@ from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.labels.summary import ASSUMED, assumes_material
 from noise.pages.clips import RATE, Clip, Entry, Row, number_or
 from noise.pictures.recording import level_over_time
-
-if TYPE_CHECKING:
-    from noise.pages.figures import Panel
 
 Ticks = tuple[tuple[float, str], ...]
 
@@ -216,8 +213,6 @@ class EntryDisplay:
         What the spectrogram shows.
     level : LevelDisplay or None
         A-weighted, Fast, over the time of the clip.
-    orders : Panel or None
-        Order map of a run-up.
     """
 
     id: str
@@ -231,7 +226,6 @@ class EntryDisplay:
     ticks: tuple[tuple[float, str], ...]
     alt: str
     level: LevelDisplay | None
-    orders: Panel | None
 
 
 def draw_entries(
@@ -312,11 +306,6 @@ def _display(
         notes.insert(0, f"{cut} s from {first} s of {whole} s")
     if any(number_or(row.get("level_dbfs"), 0.0) > 0.0 for row in entry.rows):
         notes.append("above 0 dBFS, so it is probably clipped")
-    orders = None
-    if clip is not None and entry.orders is not None:
-        from noise.pages.figures import orders_panel  # which loads matplotlib
-
-        orders = orders_panel(entry.orders, calibrated=entry.calibrated)
     ticks = round_ticks(start, end, _MOST_TICKS) if clip is not None and end > start else []
     return EntryDisplay(
         id=key,
@@ -330,7 +319,6 @@ def _display(
         ticks=tuple((_per_cent(tick, start, end), f"{tick:.6g}") for tick in ticks),
         alt=_alt(entry, start, end),
         level=level,
-        orders=orders,
     )
 
 

@@ -16,7 +16,6 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 import soundfile
@@ -26,10 +25,7 @@ from models.condition import Condition
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.gain import (
-    LOUDNESS_BLOCK,
-    TARGET_LOUDNESS,
     full_scale_without_clipping,
-    loudness,
     true_peak,
 )
 from noise.audio.sound import FADE, fade_ends
@@ -37,9 +33,6 @@ from noise.base.labels import LABELS
 from noise.base.progress import counted
 from noise.labels.summary import labels_in, naming_row
 from noise.recordings.wav import integers, largest_sample
-
-if TYPE_CHECKING:
-    from features.kernels.orders import OrderMap
 
 Row = Mapping[str, object]
 FastLevels = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -77,8 +70,6 @@ class Entry:
     offset : float
         Where that stretch begins [s].
     calibrated : bool
-    orders : OrderMap, optional
-        Of a sound whose shaft's speed was recorded and changes.
     fast_levels : tuple of 2 ndarrays, shape (n,), optional
         Time [s] and A-weighted level, Fast [dB], where they were measured before the sound was
         faded and resampled, as by `noise.pictures.recording.recorded_levels`.
@@ -94,7 +85,6 @@ class Entry:
     offset: float = 0.0
     calibrated: bool = True
     note: str = ""
-    orders: OrderMap | None = None
     fast_levels: FastLevels | None = None
 
     @property
@@ -410,51 +400,3 @@ def _length_that_fits(clips: Sequence[Clip], budget: float) -> float:
         total = sum(r * min(d, middle) for r, d in zip(rates, lengths, strict=True))
         low, high = (middle, high) if total <= budget else (low, middle)
     return low
-
-
-MOST_RAISED = 36.0
-"""A sound that would have to be raised by more is left as it is [dB]."""
-
-_CEILING = -3.0
-"""Largest sample [dB re full scale]: peaks between two samples are seldom 3 dB higher."""
-
-
-def equal_factors(sounds: Mapping[str, NDArray[np.float64]]) -> tuple[dict[str, float], float]:
-    """Return by what each sound is multiplied to be as loud as the others.
-
-    Parameters
-    ----------
-    sounds : mapping of str to ndarray, shape (n_samples,)
-        In fractions of full scale [-], at the rate of the page.
-
-    Returns
-    -------
-    factors : dict of str to float
-        For those that have a loudness and can be raised to that of the others [-].
-    target : float
-        The loudness that they then have [LUFS].
-
-    Examples
-    --------
-    >>> tone = np.sin(2 * np.pi * 997 * np.arange(RATE) / RATE)
-    >>> factors, target = equal_factors({"loud": 0.5 * tone, "soft": 0.05 * tone})
-    >>> round(factors["soft"] / factors["loud"], 3), target
-    (10.0, -23.0)
-    """
-    known = {}
-    for name, fractions in sounds.items():
-        peak = float(np.abs(fractions).max(initial=0.0))
-        if peak > 0.0 and fractions.size >= LOUDNESS_BLOCK * RATE:
-            known[name] = loudness(fractions, RATE), 20.0 * math.log10(peak)
-    audible = {name: pair for name, pair in known.items() if math.isfinite(pair[0])}
-    while audible:
-        target = min(
-            [TARGET_LOUDNESS, *(reached - peak + _CEILING for reached, peak in audible.values())]
-        )
-        softest = min(audible, key=lambda name: audible[name][0])
-        if target - audible[softest][0] <= MOST_RAISED:
-            return {
-                name: 10.0 ** ((target - reached) / 20.0) for name, (reached, _) in audible.items()
-            }, target
-        del audible[softest]
-    return {}, TARGET_LOUDNESS

@@ -28,9 +28,9 @@ from noise.diagnosis.text.words import number
 from noise.pages import blocks as b
 from noise.pages.cards import facts_of
 from noise.pages.clips import RATE, Clip, Entry, common_gain, make_clips
-from noise.pages.figures import COLUMNS, Line, Panel, lines_panel
+from noise.pages.figures import COLUMNS, LEAD, Line, Panel, cycle_window, lines_panel
 from noise.pictures.figure import KINDS
-from noise.pictures.recording import recorded_levels, recorded_orders
+from noise.pictures.recording import recorded_levels
 
 if TYPE_CHECKING:
     from noise.diagnosis.evidence.contact_summary import FrictionCurves
@@ -57,7 +57,6 @@ CURVES = {
 _LOWEST, _HIGHEST = 25.0, 15e3  # mid-band frequencies [Hz]
 _SHORTEST, _LONGEST = 0.03, 0.05  # of the cycles shown [s]
 _CYCLES = 3.0
-_LEAD = 0.25  # of the window, before the slip
 _RESOLUTION = 1.0  # [Hz]: three bins in the lowest band
 _LEAST_BINS = 2.0
 _RANGE = 70.0  # of a level axis at most [dB]
@@ -136,39 +135,6 @@ def sixth_octaves(
     return middle[kept], level[kept]
 
 
-def cycle_window(torque: NDArray[np.float64], rate: float, length: float) -> tuple[float, bool]:
-    """Find where to show a torque.
-
-    Parameters
-    ----------
-    torque : ndarray, shape (n_samples,)
-        [N m]
-    rate, length : float
-        [Hz], [s]
-
-    Returns
-    -------
-    start : float
-        Such that the slip nearest to the middle lies a quarter of `length` behind it [s].
-    aligned : bool
-        False where there is no slip, and the middle is taken.
-
-    Examples
-    --------
-    >>> t = np.arange(30000) / 30e3
-    >>> start, aligned = cycle_window(8.0 + 2.7 * ((100.0 * t) % 1.0), 30e3, 0.04)
-    >>> aligned, round(1e3 * (start + 0.01) % 10.0) % 10
-    (True, 0)
-    """
-    duration = torque.size / rate
-    times = torque_slips(torque, rate).times
-    inside = times[(times >= _LEAD * length) & (times <= duration - (1.0 - _LEAD) * length)]
-    if not inside.size:
-        return max(0.0, 0.5 * (duration - length)), False
-    slip = inside[np.abs(inside - 0.5 * duration).argmin()]
-    return float(slip) - _LEAD * length, True
-
-
 def _signal(recording: Recording, kind: str) -> NDArray[np.float64] | None:
     row = recording.first(kind)
     if row is None or recording.samples.shape[1] < _LEAST_SAMPLES:
@@ -195,7 +161,7 @@ def _cycles(runs: dict[str, Recording]) -> Panel:
         start, aligned = cycle_window(signal, rate, length)
         first = round(start * rate)
         piece = signal[first : first + round(length * rate) + 1]
-        time = (np.arange(first, first + piece.size) / rate - start - _LEAD * length) * 1e3
+        time = (np.arange(first, first + piece.size) / rate - start - LEAD * length) * 1e3
         lines.append(_line(name, *thinned(time, piece, columns=COLUMNS)))
         low, high = min(low, float(piece.min())), max(high, float(piece.max()))
         unaligned += [] if aligned else [CURVES[name].label]
@@ -208,7 +174,7 @@ def _cycles(runs: dict[str, Recording]) -> Panel:
             title, across = "Torque, in which nothing slips", "Time [ms]"
     return lines_panel(
         title, across, "Torque [Nm]", lines, alt,
-        across_ends=(-1e3 * _LEAD * length, 1e3 * (1.0 - _LEAD) * length),
+        across_ends=(-1e3 * LEAD * length, 1e3 * (1.0 - LEAD) * length),
         up_ends=padded(low, high, 0.1),
     )  # fmt: skip
 
@@ -328,7 +294,6 @@ def illustration_entries(illustration: Illustration) -> dict[str, Entry]:
                 duration=sound.size / RATE,
                 sound=sound,
                 note=f"{number(level, '.1f')} dB(A)" if math.isfinite(level) else "",
-                orders=recorded_orders(recording),
                 fast_levels=recorded_levels(recording),
             )
     return entries

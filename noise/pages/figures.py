@@ -21,15 +21,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import NDArray
 
+from features.kernels.slips import torque_slips
 from features.kernels.spectra import Spectrum, autospectrum
 from models.drawing import frequency_axis, levels, styled, thinned
 from models.recording import Recording
 from noise.pages.blocks import Panels
 from noise.pictures.figure import KINDS
-from noise.pictures.recording import draw_orders
 
 if TYPE_CHECKING:
-    from features.kernels.orders import OrderMap
     from noise.labels.segments import Segment
 
 
@@ -170,27 +169,41 @@ def lines_panel(
     return Panel(as_svg(figure), alt)
 
 
-def orders_panel(orders: OrderMap, *, calibrated: bool) -> Panel:
-    """Draw the order map of a run-up.
+LEAD = 0.25
+"""Of a window about a slip, before it [-]."""
+
+
+def cycle_window(torque: NDArray[np.float64], rate: float, length: float) -> tuple[float, bool]:
+    """Find where to show a torque.
+
+    Parameters
+    ----------
+    torque : ndarray, shape (n_samples,)
+        [N m]
+    rate, length : float
+        [Hz], [s]
+
+    Returns
+    -------
+    start : float
+        Such that the slip nearest to the middle lies a quarter of `length` behind it [s].
+    aligned : bool
+        False where there is no slip, and the middle is taken.
 
     Examples
     --------
-    >>> from features.kernels.orders import order_map
-    >>> speed = np.linspace(1.0, 11.0, 48000)
-    >>> sound = np.sin(2000 * np.cumsum(speed) / 24e3)
-    >>> found = order_map(lambda first, last: sound[first:last], 48000, 24e3, speed, 24e3)
-    >>> orders_panel(found, calibrated=True).alt[:30]
-    'Order map, 1.41 to 10.7 rad/s,'
+    >>> t = np.arange(30000) / 30e3
+    >>> start, aligned = cycle_window(8.0 + 2.7 * ((100.0 * t) % 1.0), 30e3, 0.04)
+    >>> aligned, round(1e3 * (start + 0.01) % 10.0) % 10
+    (True, 0)
     """
-    with styled():
-        figure = Figure(figsize=_SIZE, layout="constrained")
-        draw_orders(figure, figure.add_subplot(), orders, "dB re 20 µPa" if calibrated else "dBFS")
-        svg = as_svg(figure)
-    (low, *_, high), (least, *_, most) = orders.speed_edges, orders.order_edges
-    return Panel(
-        svg,
-        f"Order map, {low:.3g} to {high:.3g} rad/s, {least:.2g} to {most:.2g} cycles a revolution",
-    )
+    duration = torque.size / rate
+    times = torque_slips(torque, rate).times
+    inside = times[(times >= LEAD * length) & (times <= duration - (1.0 - LEAD) * length)]
+    if not inside.size:
+        return max(0.0, 0.5 * (duration - length)), False
+    slip = inside[np.abs(inside - 0.5 * duration).argmin()]
+    return float(slip) - LEAD * length, True
 
 
 LOWEST, HIGHEST = 20.0, 15e3

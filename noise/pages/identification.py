@@ -16,7 +16,7 @@ from noise.base.files import atomic
 from noise.identification.law_model import CANDIDATES
 from noise.identification.outcome import Forecast, Identification, Number, Seen, as_json
 from noise.pages import blocks as b
-from noise.pages.figures import Line, Panel, lines_panel
+from noise.pages.figures import Line, Panel, cycle_window, lines_panel
 from noise.pages.page import page_html, write_page
 
 if TYPE_CHECKING:
@@ -46,7 +46,8 @@ def recording_panels(one: Seen) -> tuple[Panel, ...]:
 def _rise(one: Seen) -> Panel:
     """Torque over the shaft's angle, with the rise by the effective stiffness."""
     spectrum, fit = one.fit.spectrum, one.fit
-    begin, end = _window(one, _SHOWN)
+    begin = round(cycle_window(spectrum.torque, spectrum.rate, _SHOWN)[0] * spectrum.rate)
+    end = begin + round(_SHOWN * spectrum.rate)
     angle = np.cumsum(spectrum.shaft_speed[begin:end]) / spectrum.rate
     angle -= angle[0]
     torque, stuck = spectrum.torque[begin:end], fit.phases.stuck[begin:end]
@@ -81,17 +82,6 @@ def _prediction(forecast: Forecast) -> Panel:
         f"Recorded and predicted torque; {100.0 * missed:.1f} % is missed.",
         legend="lower right", room=(0.25, 0.0),
     )  # fmt: skip
-
-
-def _window(one: Seen, seconds: float) -> tuple[int, int]:
-    """Return first and last sample around the slip nearest to the middle."""
-    sliding, rate = one.fit.phases.sliding, one.fit.spectrum.rate
-    n = min(round(seconds * rate), sliding.size)
-    begins = np.flatnonzero(np.diff(sliding.astype(np.int8)) == 1)
-    middle = sliding.size // 2
-    slip = int(begins[np.argmin(np.abs(begins - middle))]) if begins.size else middle
-    begin = min(max(slip - n // 3, 0), sliding.size - n)
-    return begin, begin + n
 
 
 def static_panels(test: StaticTest) -> tuple[Panel, ...]:

@@ -19,12 +19,11 @@ from noise.base.files import atomic
 from noise.base.labels import LABEL_LOOKS
 from noise.pages import blocks as b
 from noise.pages.cards import draw_entries, frequency_ticks, scale_picture
-from noise.pages.clips import MOST_RAISED, Clip, Entry, equal_factors
+from noise.pages.clips import Clip, Entry
 from noise.pages.maps import LEVELS, MAP_SIZE, ConditionMap
 
-PAGE_BYTES, CARD_BYTES, ORDERS_BYTES = 75_000.0, 45_000.0, 100_000.0
-"""What a page takes up, and at most each of its sounds beside the sound itself and an order map
-[byte]."""
+PAGE_BYTES, CARD_BYTES = 75_000.0, 45_000.0
+"""What a page takes up, and at most each of its sounds beside the sound itself [byte]."""
 
 
 def page_html(
@@ -68,16 +67,13 @@ def page_html(
     """
     entries, clips = entries or {}, clips or {}
     displays, scale_words = draw_entries(entries, clips)
-    factors, target = equal_factors(
-        {key: clip.samples.astype(float) / clip.full_scale for key, clip in clips.items()}
-    )
     about: dict[str, dict[str, object]] = {}
     for key in clips:
         display, on_card = displays[key], key not in without_card
         facts = [fact.words for fact in display.facts.values()] if on_card else [display.note]
         about[key] = {
             "title": display.title, "label": " + ".join(display.labels),
-            "facts": " · ".join(facts), "duration": display.duration, "equal": factors.get(key),
+            "facts": " · ".join(facts), "duration": display.duration,
         }  # fmt: skip
         if not on_card:
             about[key]["picture"] = f"data:image/png;base64,{as_base64(display.picture)}"
@@ -95,7 +91,6 @@ def page_html(
             scale_words=scale_words,
             sounds=clips,
             about=about,
-            equal=_equal_words(len(factors), len(clips), target),
         )
     )
 
@@ -159,19 +154,6 @@ def shortened_text(shortened: float | None) -> b.Text:
         return b.Text("")
     words = f"So that the page keeps to its size, sounds are no longer than {shortened:.3g} s"
     return b.Text(f"{words}; each says which stretch.", "soft")
-
-
-def _equal_words(n_equal: int, n_sounds: int, target: float) -> str:
-    """Say what the button of equal loudness does; nothing where there is nothing to compare."""
-    if n_equal < 2:
-        return ""
-    left = n_sounds - n_equal
-    rest = (
-        f"; {left} shorter than 0.4 s or softer by {MOST_RAISED:g} dB stay as they are"
-        if left
-        else ""
-    )
-    return f"{target:.0f} LUFS (ITU-R BS.1770){rest}".replace("-", "\N{MINUS SIGN}", 1)
 
 
 @lru_cache(maxsize=1)

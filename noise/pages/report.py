@@ -19,7 +19,7 @@ from noise.pages.cards import facts_of
 from noise.pages.clips import RATE, Entry, common_gain, labels_sentence, make_clips
 from noise.pages.figures import recording_panels
 from noise.pages.page import page_html, write_page
-from noise.pictures.recording import recorded_levels, recorded_orders
+from noise.pictures.recording import recorded_levels
 
 if TYPE_CHECKING:
     from noise.labels.segments import Segment
@@ -146,6 +146,5 @@ def _entry(entry: ReportEntry) -> Entry:
         audible(recording, RATE).astype(np.float32) if heard else None,
         calibrated=recording.calibrated,
         note=entry.note,
-        orders=recorded_orders(recording) if heard else None,
         fast_levels=recorded_levels(recording) if heard else None,
     )

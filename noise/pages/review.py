@@ -32,7 +32,6 @@ from noise.pages.comparison import Compared, compare_designs
 from noise.pages.maps import recorded_maps
 from noise.pages.page import (
     CARD_BYTES,
-    ORDERS_BYTES,
     PAGE_BYTES,
     page_html,
     shortened_text,
@@ -371,7 +370,6 @@ def review(
     gain = common_gain(entries.values(), pascal_per_full_scale)
     n_maps = 0 if compared is None else compared.n_maps
     drawn = 0.0 if compared is None else compared.weight
-    drawn += ORDERS_BYTES * sum(entry.orders is not None for entry in entries.values())
     beside = PAGE_BYTES + CARD_BYTES * len(entries) + drawn
     clips, shortened = make_clips(
         entries, gain, budget=budget, beside=beside, dither=np.random.default_rng(seed)

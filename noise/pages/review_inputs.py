@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.orders import OrderMap
 from models.blocks import RecordingBlocks
 from models.errors import BushingNoiseError, ParameterError
 from models.recording import Recording
@@ -29,7 +28,7 @@ from noise.labels.rows import label_rows
 from noise.labels.segments import label_recording
 from noise.labels.table import read_label_table
 from noise.pages.clips import BYTES_A_SECOND, RATE, SHORTEST, Entry, FastLevels, Row, stretch_start
-from noise.pictures.recording import recorded_levels, recorded_orders
+from noise.pictures.recording import recorded_levels
 from noise.recordings import find_recordings
 from noise.recordings.files import open_blocks
 from noise.recordings.folders import files_below, is_file
@@ -256,9 +255,6 @@ def _each_once(paths: Iterable[Path]) -> tuple[Path, ...]:
     return tuple({path.resolve(): path for path in paths}.values())
 
 
-_RUN_UP = 60.0
-"""Longest stretch of a recording whose orders are told [s]."""
-
 _GENEROUS = 4.0
 """Quiet sounds take a quarter of the space of loud noise."""
 
@@ -398,23 +394,15 @@ def _read_entry(
             offset = stretch_start(rows, duration, longest)
             heard, why = _heard(blocks, offset, longest)
             sound, levels = (None, None) if heard is None else _sound(heard)
-            orders = _orders(blocks, rows, duration)
     except BushingNoiseError as error:
         return Refusal.of(path, error)
     except OSError as error:  # it was there when the folder was searched
         return Refusal.of(path, f"cannot be read ({error.strerror or error})")
     return Entry(
         name, tuple(rows), blocks.condition, duration, sound, offset,
-        blocks.calibrated, "; ".join(filter(None, (note, why))), orders,
+        blocks.calibrated, "; ".join(filter(None, (note, why))),
         None if levels is None else (offset + levels[0], levels[1]),
     )  # fmt: skip
-
-
-def _orders(blocks: RecordingBlocks, rows: Sequence[Row], duration: float) -> OrderMap | None:
-    if blocks.first("pressure") is None or blocks.first("speed") is blocks.first("angle") is None:
-        return None
-    first = round(stretch_start(rows, duration, _RUN_UP) * blocks.rate)
-    return recorded_orders(blocks.part(first, first + round(_RUN_UP * blocks.rate)))
 
 
 def _heard(blocks: RecordingBlocks, offset: float, longest: float) -> tuple[Recording | None, str]:

@@ -20,10 +20,8 @@ from noise.pages.diagnosis import (
     waterfall,
     write_diagnosis,
 )
-from noise.pages.diagnosis_evidence import (
-    cycle_window,
-    sixth_octaves,
-)
+from noise.pages.diagnosis_evidence import sixth_octaves
+from noise.pages.figures import cycle_window
 from tests.helpers.made_diagnoses import (
     KINDS,
     none,

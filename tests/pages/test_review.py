@@ -12,10 +12,9 @@ import pytest
 import soundfile
 
 from models.errors import ParameterError
-from noise.audio.gain import loudness
 from noise.cli import main
 from noise.pages.cards import facts_of
-from noise.pages.clips import Entry, Gain, common_gain, equal_factors, make_clips
+from noise.pages.clips import Entry, Gain, common_gain, make_clips
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.review import review
 from noise.recordings import write_recording
@@ -95,15 +94,6 @@ def test_flac_gives_a_tone_back_within_half_a_step_and_its_dither(campaign):
     assert np.abs(error).max() <= 1.5 / 2**15
     at_the_tone = np.abs(np.exp(-2j * np.pi * TONE / RATE * np.arange(error.size)) @ error)
     assert 2.0 * at_the_tone / error.size < 1e-6
-
-
-def test_equal_loudness_is_equal_without_clipping_and_leaves_what_is_too_soft():
-    sounds = {"a": sound("creak"), "b": 0.05 * sound("hiss"), "c": 1e-5 * sound("squeal")}
-    factors, target = equal_factors(sounds | {"d": np.zeros(RATE), "e": sound("creak", 0.2)})
-    assert set(factors) == {"a", "b"}
-    for name, factor in factors.items():
-        assert loudness(factor * sounds[name], RATE) == pytest.approx(target, abs=0.05)
-        assert np.abs(factor * sounds[name]).max() < 10 ** (-2.9 / 20)
 
 
 def test_the_budget_shortens_all_sounds_alike_and_is_kept(tmp_path):

@@ -26,7 +26,10 @@ function bringBack(view) {
 }
 
 async function show(name) {
-  if (shown !== null && shown !== name) putAway(shown);
+  if (shown !== null && shown !== name) {
+    putAway(shown);
+    if (told.by !== "") told(""); // an error of another view; that the program does not answer stays
+  }
   shown = name;
   for (const tab of tabs) {
     const chosen = tab.dataset.view === name;

@@ -11,6 +11,7 @@ const TARGET = -23, CEILING = -3, MOST_RAISED = 36; // LUFS, dB re full scale, d
 
 export class RecordingPlayer extends Player {
   fullScale = null; // of calibrated sounds [Pa]
+  equal = false; // whether A and B are equally loud
   kept = new Map();
 
   // `read` gives the samples of a sound from a moment on, as many as there are in one answer.

@@ -42,11 +42,8 @@ const page = (function () {
     const slot = engine.active.toUpperCase();
     if (engine.failure) return engine.failure;
     if (key === null) return slot + " is empty: play a sound to put it there.";
-    const { title, label, facts, equal } = about[key];
-    const text = said && said.key === key ? said.text : slot + ": " + [title, label, facts].filter(Boolean).join(" · ");
-    if (!engine.equal) return text;
-    const decibel = equal && (equal < 1 ? "\u2212" : "+") + Math.abs(20 * Math.log10(equal)).toFixed(1);
-    return text + (equal === null ? " (cannot be made equally loud)" : ` (${decibel} dB for equal loudness)`);
+    const { title, label, facts } = about[key];
+    return said && said.key === key ? said.text : slot + ": " + [title, label, facts].filter(Boolean).join(" · ");
   }
 
   function bar() {
@@ -55,7 +52,6 @@ const page = (function () {
     $("toggle").textContent = playing ? "Pause" : "Play";
     $("toggle").setAttribute("aria-label", playing ? "Pause" : "Play");
     press($("loop"), engine.looping);
-    if ($("equal")) press($("equal"), engine.equal);
     each("[data-slot]", (button) => {
       const of = slots[button.dataset.slot];
       press(button, button.dataset.slot === engine.active);
@@ -136,7 +132,7 @@ const page = (function () {
   document.addEventListener("click", (event) => {
     const button = event.target.closest("button"), view = event.target.closest(".view:not(.still)");
     const { play: key, put, of, slot, show: label } = button ? button.dataset : {};
-    const acts = { toggle: start, loop: () => engine.loop(), equal: () => engine.equalize(), help: () => $("keys").showModal() };
+    const acts = { toggle: start, loop: () => engine.loop(), help: () => $("keys").showModal() };
     if (key) play(key);
     else if (put) { choose(of, false); engine.put(put, of); }
     else if (slot) engine.hear(slot);
@@ -151,7 +147,7 @@ const page = (function () {
   // What a focused button does with space and enter is left to it.
   const keys = {
     " ": start, a: () => engine.hear("a"), b: () => engine.hear("b"), x: () => engine.hear(engine.active === "a" ? "b" : "a"),
-    l: () => engine.loop(), e: () => { if ($("equal")) engine.equalize(); }, Home: () => engine.seek(0),
+    l: () => engine.loop(), Home: () => engine.seek(0),
     ArrowUp: () => step(-1), ArrowDown: () => step(1), "?": () => $("keys").showModal(),
     ArrowLeft: (by) => engine.seek(engine.now() - by), ArrowRight: (by) => engine.seek(engine.now() + by),
   };

@@ -43,7 +43,7 @@ class ClipPlayer extends Player {
 
   get length() { return Math.max(0, ...Object.values(this.slots).filter((key) => key !== null).map((key) => about[key].duration)); }
 
-  factor(slot) { return (this.equal && about[this.slots[slot]].equal) || 1; }
+  factor() { return 1; } // the gain is in the samples
 
   put(slot, key) {
     this.slots[slot] = key;
@@ -72,11 +72,6 @@ class ClipPlayer extends Player {
     this.looping = !this.looping;
     if (this.playing) this.play(this.position);
     this.tell();
-  }
-
-  equalize() {
-    this.equal = !this.equal;
-    this.hear(this.active);
   }
 }
 

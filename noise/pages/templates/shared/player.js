@@ -50,7 +50,6 @@ export class Player extends EventTarget {
   slots = { a: null, b: null };
   active = "a";
   looping = true;
-  equal = false;
   start = 0; // of the stretch that is played [s]
   position = 0; // where it stands while nothing plays [s]
   running = null;
