@@ -23,8 +23,10 @@ from models.recording import Recording
 from models.rig import Rig
 from noise.diagnosis.bench.channels import length_unit, misplaced_torque
 from noise.diagnosis.bench.check import clipped_channels, refuse_unusable, without_dead_channels
+from noise.diagnosis.gap.distance import KINDS
 from noise.diagnosis.preparation.prepare import measured_speed, prepared
 from noise.diagnosis.preparation.settled_part import shortest
+from noise.diagnosis.text.words import joined
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.rotation import as_logged
 from noise.recordings.sidecar import sidecar_text
@@ -71,8 +73,8 @@ def sidecar_request(
     full = sidecar_text(replace(recording, condition=filled, calibrated=True, notes=()))
     name = PurePath(recording.name).with_suffix(".json").name if recording.name else "its sidecar"
     choices = [
-        f"interference_mm is {_either([f'{1e3 * x:.4g}' for x in interferences])}",
-        f"support_stiffness_Nm_rad {_either([_support(x) for x in supports])}",
+        f"interference_mm is {joined([f'{1e3 * x:.4g}' for x in interferences], 'or')}",
+        f"support_stiffness_Nm_rad {joined([_support(x) for x in supports], 'or')}",
     ]
     return (
         f"write {name} with your own numbers: {json.dumps(json.loads(full))}; {', '.join(choices)}"
@@ -81,10 +83,6 @@ def sidecar_request(
 
 def _support(stiffness: float) -> str:
     return "null (clamp bolted to the baseplate)" if stiffness == FIXED else f"{stiffness:g}"
-
-
-def _either(choices: Sequence[str]) -> str:
-    return choices[0] if len(choices) == 1 else f"{', '.join(choices[:-1])} or {choices[-1]}"
 
 
 _NEAR, _FAR = (-0.2, 0.3), (-0.35, 0.5)
@@ -202,9 +200,6 @@ def _mm(interference: float) -> str:
 _SAME = 1e-3
 """Relative difference up to which two fits or supports are the same; rounding of what files state;
 assumed."""
-
-KINDS = ("torque", "acceleration", "pressure")
-"""Kinds of channel of which a recording must have one."""
 
 
 @dataclass(frozen=True, eq=False)

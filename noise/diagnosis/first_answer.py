@@ -45,13 +45,11 @@ from noise.diagnosis.causes.verdict import (
 from noise.diagnosis.evidence.channel_summary import USABLE
 from noise.diagnosis.evidence.summary import CaseTable, case_table, lacking_coherence
 from noise.diagnosis.fit.case_comparison import CaseComparison
-from noise.diagnosis.gap.distance import Gap
+from noise.diagnosis.gap.distance import KINDS, Gap
 from noise.diagnosis.simulated.model_runs import Model
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects.effect import Effect
 from sim.rig_effects import constant_version
-
-_KINDS = ("torque", "acceleration", "pressure")
 
 _WIDTHS = (0.02, 0.05, 0.1, 0.15)
 """Distances from an end, over the span [-]: the lower an amplifier cuts, the wider its filter's
@@ -107,7 +105,7 @@ def flat_channels(
     """
     found = []
     repeats: list[Recording] = []
-    for kind in _KINDS:
+    for kind in KINDS:
         having = [r for r in recordings if r.first(kind) is not None]
         if len(having) < _FEWEST or (flat := _flatness(having, kind)) < 1.0:
             continue

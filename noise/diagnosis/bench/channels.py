@@ -287,13 +287,11 @@ def _falling(torque: Array, rate: float) -> float:
     return float(np.mean(step**3)) / spread**3 if spread > 0.0 else 0.0
 
 
-_KINDS = ("torque", "acceleration", "pressure", "angle")
-
 _RISE = 0.3
 """From its beginning to its end, over its mean, of what rises all the time [-]: an angle by twice
 as much and more, whatever a torque drifts by; assumed."""
 
-_OUTPUTS = ("acceleration", "pressure")
+OUTPUTS = ("acceleration", "pressure")
 
 _TORQUE = (1.0 / 6.0, 6.0)
 """Mean torque over the kinetic torque of the fit, whatever is missing [-]; assumed."""
@@ -376,7 +374,7 @@ def _stands_for_torque(recording: Recording, rig: Rig) -> str:
     assert condition.interference is not None  # `usable` made it so
     kinetic = rig.fit(condition.interference).kinetic_torque
     found = []
-    for kind in _KINDS:
+    for kind in KINDS:
         row = recording.first(kind)
         if row is not None:
             x = np.asarray(recording.samples[row], dtype=np.float64)
@@ -412,7 +410,7 @@ def wrong_units(levels: Sequence[Levels], *, alike: float = 1.0) -> Iterator[str
         if not _TORQUE[0] < factor < _TORQUE[1]:
             yield _unit_words("torque", unit, factor, "the kinetic torque of the rig file")
             scale = factor if unit else 1.0
-    for kind in _OUTPUTS:
+    for kind in OUTPUTS:
         unit, factor = _unit_of_path(kind, levels, scale)
         fits = [p for one in _slipping(levels, scale) if (p := one.paths.get((kind, kind)))]
         follows = bool(fits) and float(np.median([fit.explained for fit in fits])) > 0.5
@@ -426,7 +424,7 @@ def _torque_of_paths(levels: Sequence[Levels]) -> str:
     """Return the unit of a torque from which both other channels follow too weakly or strongly."""
     gains = [
         [fit.gain for one in levels if (fit := one.paths.get((kind, kind))) and _clear(fit)]
-        for kind in _OUTPUTS
+        for kind in OUTPUTS
     ]
     if not all(gains):
         return ""
@@ -460,10 +458,10 @@ def _unit_of_path(kind: str, levels: Sequence[Levels], scale: float) -> tuple[st
     least = min(2, len(having))
     clear = {k: {i: f.gain for i, one in enumerate(levels)
                  if (f := one.paths.get((k, k))) and _clear(f)}
-             for k in _OUTPUTS}  # fmt: skip
+             for k in OUTPUTS}  # fmt: skip
     own = clear[kind]
     gains = [scale * np.array(list(own.values()))]
-    (beside,) = (clear[k] for k in _OUTPUTS if k != kind)
+    (beside,) = (clear[k] for k in OUTPUTS if k != kind)
     both = [i for i in own if i in beside]
     if both and abs(math.log(scale * float(np.median([beside[i] for i in both])))) < math.log(3.0):
         gains.append(np.array([own[i] / beside[i] for i in both]))  # whatever the torque reads
@@ -496,7 +494,7 @@ def turned_channels(levels: Sequence[Levels]) -> Iterator[str]:
     if torque and np.median(torque) < -_TORQUE[0]:
         yield "channel torque has its sign turned: it drives the rotation that it should brake"
         return
-    for kind in _OUTPUTS:
+    for kind in OUTPUTS:
         alike = [p.alike for one in _slipping(levels) if (p := one.paths.get((kind, kind)))]
         if len(alike) > 2 and max(alike) < -_AGAINST:
             yield f"channel {kind} has its sign turned against what the torque makes of it"

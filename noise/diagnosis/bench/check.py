@@ -31,6 +31,8 @@ from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from noise.base.arrays import Array
 from noise.diagnosis.bench.channels import (
+    KINDS,
+    OUTPUTS,
     SWINGING,
     Levels,
     backwards,
@@ -167,8 +169,6 @@ def shuffled_conditions(case: Case, levels: Sequence[Levels]) -> str:
         "are those stated of others"
     )
 
-
-KINDS = ("torque", "acceleration", "pressure", "angle")
 
 _NEEDED = KINDS[:3]
 """Without any of which there is nothing to look at."""
@@ -346,9 +346,6 @@ def _flat_top(x: Array) -> bool:
     return n_top > _FLAT * int(np.count_nonzero(near))
 
 
-_OUTPUTS = ("acceleration", "pressure")
-
-
 def unchecked_units(case: Case, library: Mapping[str, Effect] | None = None) -> tuple[str, ...]:
     """Say of which channels nothing tells the unit.
 
@@ -367,7 +364,7 @@ def unchecked_units(case: Case, library: Mapping[str, Effect] | None = None) -> 
         return ()
     cache = TransferFunctionCache(case.rig, library)
     levels = [levels_of(one, case.rig, cache) for one in case.recordings]
-    recorded = [kind for kind in _OUTPUTS if any(kind in one for one in case.recordings)]
+    recorded = [kind for kind in OUTPUTS if any(kind in one for one in case.recordings)]
     untold = [kind for kind in recorded if not is_told(kind, levels)]
     if not untold:
         return ()

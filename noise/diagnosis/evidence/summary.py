@@ -40,16 +40,14 @@ from noise.diagnosis.evidence.reconstruction import (
     reconstruct,
     shaft_speed,
 )
-from noise.diagnosis.simulated.repeats import condition_key, nominal_repeats
+from noise.diagnosis.simulated.repeats import CHANNELS, condition_key, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict_outputs
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
 from sim.effects.effect import Effect
 
-_KINDS = ("torque", "acceleration", "pressure", "angle")
-
 CONTEXT = (
-    *(f"{kind}_noise" for kind in _KINDS), *(f"{kind}_step" for kind in _KINDS),
+    *(f"{kind}_noise" for kind in CHANNELS), *(f"{kind}_step" for kind in CHANNELS),
     "seconds", "coherence", "constant_law", "listed",
 )  # fmt: skip
 """Names of the numbers, in their order."""
