@@ -395,7 +395,7 @@ class CaseTable:
     rate : float
         Sampling rate of the recordings, the middle one where they differ [Hz].
     bench : mapping of str to float
-        As `noise.diagnosis.evidence.evidence.bench_context` gives it.
+        As `bench_context` gives it.
     """
 
     names: tuple[str, ...]
