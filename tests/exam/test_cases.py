@@ -175,7 +175,7 @@ def test_what_is_handed_out_beside_the_samples_does_not_depend_on_what_is_the_ma
     kind, tmp_path
 ):
     clipping = ((FORMS["clipping", "wrapped_converter"], 1.0),)
-    for index in range(3):
+    for index in range(2):
         drawn = draw_design(17, index, DEVELOPMENT, kind=kind)
         silence = (np.zeros((4, 8), np.float32),) * len(drawn.conditions)
         files = []
