@@ -25,12 +25,11 @@ from noise.training.causes.fit import (
     Known,
     causes_of,
     grow_cause_trees,
-    train_posterior,
     with_channels,
     with_fewer,
 )
 from sim.effects import EFFECTS
-from tests.helpers.made_posteriors import MOVES, NAMES, made_cases, made_posterior, made_table
+from tests.helpers.made_posteriors import MOVES, NAMES, made_posterior, made_table
 
 
 @pytest.fixture(scope="module")
@@ -56,15 +55,6 @@ def test_a_cause_that_was_learned_is_the_most_probable(posterior, cause):
 def test_causes_that_are_not_at_work_are_improbable(posterior):
     p = posterior.probabilities(made_table(np.random.default_rng(5), "clipping"))
     assert max(p[name] for name in EFFECTS if name != "clipping") < 0.15
-
-
-def test_training_is_deterministic():
-    one, other = (train_posterior(made_cases(4, each=5), seed=4, n_rounds=10) for _ in range(2))
-    for name in ("scale", "weights"):
-        assert np.array_equal(getattr(one, name), getattr(other, name))
-    for name in ("roots", "feature", "threshold", "children", "value"):
-        assert np.array_equal(getattr(one.trees, name), getattr(other.trees, name))
-    assert one.alarm == other.alarm
 
 
 def test_at_most_few_cases_without_a_cause_raise_the_alarm(posterior):

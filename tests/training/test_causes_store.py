@@ -14,6 +14,7 @@ import noise
 from models.errors import ParameterError
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.training.causes import __main__ as command, store
+from noise.training.causes.fit import train_posterior
 from noise.training.causes.store import draw_into, load_cases
 from tests.helpers.made_posteriors import made_cases, made_posterior
 
@@ -68,3 +69,12 @@ def test_no_private_module_of_scikit_learn_is_imported():
         if any(part.startswith("_") for part in (node.module or "").split("."))
     }
     assert not private  # they move with any release
+
+
+def test_training_is_deterministic():
+    one, other = (train_posterior(made_cases(4, each=5), seed=4, n_rounds=10) for _ in range(2))
+    for name in ("scale", "weights"):
+        assert np.array_equal(getattr(one, name), getattr(other, name))
+    for name in ("roots", "feature", "threshold", "children", "value"):
+        assert np.array_equal(getattr(one.trees, name), getattr(other.trees, name))
+    assert one.alarm == other.alarm
