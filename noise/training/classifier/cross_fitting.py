@@ -283,7 +283,6 @@ def left_out_scores(
         For the card.
     """
     said: dict[str, object] = {}
-    unknown = LABELS.index("unknown")
     for name, votes in (("pressure", left_out.alone), ("three_channels", left_out.together)):
         held = [
             (s, p)
@@ -291,10 +290,7 @@ def left_out_scores(
             if p is not None and isinstance(s, Sample)
         ]
         if held:
-            p = np.concatenate([_clearest(p) for _, p in held])
-            said[f"{name}_kinds_left_out"] = scores(
-                p, columns_of_labels([s for s, _ in held]), unknown
-            )
+            said[f"{name}_kinds_left_out"] = _scores(held)
     recall = {}
     for label in LABELS[:NOISES]:
         right = [
@@ -316,6 +312,39 @@ def left_out_scores(
         if found
     }
     return said
+
+
+def unlearned_scores(classifier: Classifier, samples: Sequence[Sample]) -> dict[str, object]:
+    """Scores of samples that were not learned, by their sound alone and by three channels.
+
+    Parameters
+    ----------
+    classifier : Classifier
+    samples : sequence of Sample
+
+    Returns
+    -------
+    dict
+        For the card.
+    """
+    columns = columns_of(classifier)
+    several = [s for s in samples if has_more_than_sound(s.features, FEATURE_NAMES).any()]
+    return {
+        name: _scores(
+            [(s, classifier.predict_proba(mask(s.features, kinds)[:, columns])) for s in scored]
+        )
+        for name, kinds, scored in (
+            ("pressure", SUBSETS[0], samples),
+            ("three_channels", SUBSETS[1], several),
+        )
+        if scored
+    }
+
+
+def _scores(voted: Sequence[tuple[Sample, NDArray[np.float64]]]) -> dict[str, object]:
+    """Scores of samples, each with the probabilities of its windows."""
+    p = np.concatenate([_clearest(of_windows) for _, of_windows in voted])
+    return scores(p, columns_of_labels([sample for sample, _ in voted]), LABELS.index("unknown"))
 
 
 def named(p: NDArray[np.float64], classifier: Classifier) -> int:

@@ -39,11 +39,16 @@ from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.processes import ending_with_this
 from noise.classifier.model import Classifier
-from noise.labels.segmentation import clearest
 from noise.labels.windows import FEATURE_NAMES, columns_of, window_features
 from noise.recordings import read_recording
 from noise.training.classifier.augmentation.recorder import augmented
-from noise.training.classifier.cross_fitting import grown, left_out_scores, named, with_trees_of
+from noise.training.classifier.cross_fitting import (
+    grown,
+    left_out_scores,
+    named,
+    unlearned_scores,
+    with_trees_of,
+)
 from noise.training.classifier.described_samples import (
     Drawn,
     Sample,
@@ -53,12 +58,8 @@ from noise.training.classifier.described_samples import (
 )
 from noise.training.classifier.masked_rows import (
     KINDS,
-    SUBSETS,
-    columns_of_labels,
     mask,
-    masked,
 )
-from noise.training.classifier.operating_point import scores
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, own_card
 from noise.training.draws import log_uniform, low_pass
 
@@ -359,14 +360,7 @@ def learn(
         after = [named(p, classifier) for p in left_out.alone[-len(added) :]]
         said["own"] = own_card(added, np.array(before), np.array(after))
     next(fits, None)  # the bar is at its end
-    for name, kinds in (("pressure", SUBSETS[0]), ("three_channels", SUBSETS[1])):
-        scored = masked(test, kinds)
-        if scored:
-            group = np.repeat(np.arange(len(scored)), [len(s.features) for s in scored])
-            x = np.concatenate([s.features for s in scored])[:, columns_of(classifier)]
-            p = clearest(classifier.predict_proba(x), group)
-            said[name] = scores(p, columns_of_labels(scored), LABELS.index("unknown"))
-    return replace(classifier, card=said)
+    return replace(classifier, card=said | unlearned_scores(classifier, test))
 
 
 def _counts(sounds: Iterable[Sample | OwnSample]) -> dict[str, int]:

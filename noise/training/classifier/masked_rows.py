@@ -7,7 +7,6 @@ learned several times, with some of them masked.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,21 +68,6 @@ def masked_rows(
             weights += [share * sound.weight / n] * n
             owners += [i] * n
     return np.concatenate(rows), np.array(labels), np.array(weights), np.array(owners)
-
-
-def masked(samples: Sequence[Sample], kinds: tuple[str, ...]) -> list[Sample]:
-    """Return the samples that have these channels, with no others.
-
-    Parameters
-    ----------
-    samples : sequence of Sample
-    kinds : tuple of str
-    """
-    return [
-        replace(sample, features=mask(sample.features, kinds))
-        for sample in samples
-        if len(kinds) == 1 or has_more_than_sound(sample.features, FEATURE_NAMES).any()
-    ]
 
 
 def mask(features: NDArray[np.float32], kinds: tuple[str, ...]) -> NDArray[np.float32]:
