@@ -135,12 +135,17 @@ def test_a_recording_draws_its_sound_pressure_unless_another_channel_is_named():
         recording().plot("force", Figure().subplots())
 
 
-def test_without_axes_a_new_figure_of_pyplot_is_drawn_on_and_settings_stay():
+def test_pyplot_is_loaded_where_there_are_no_axes_to_draw_on_and_settings_stay():
     code = (
         "import sys, numpy as np, noise\n"
         "tone = noise.Recording(np.zeros((1, 480)), 48e3, (noise.Channel('pressure'),))\n"
         "repr(tone)\n"
+        "import pathlib\n"
+        "from noise.pictures.figure import check_picture_path\n"
+        "check_picture_path(pathlib.Path('a.png'))\n"
         "assert 'matplotlib' not in sys.modules\n"
+        "import noise.pictures.maps\n"
+        "assert 'matplotlib.pyplot' not in sys.modules\n"
         "import matplotlib as mpl\n"
         "before = dict(mpl.rcParams)\n"
         "axes = tone.plot()\n"

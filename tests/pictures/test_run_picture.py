@@ -1,7 +1,5 @@
 """The picture of one run: what it draws is the run."""
 
-import subprocess
-import sys
 import warnings
 from functools import cache
 
@@ -146,16 +144,3 @@ def test_a_picture_that_fails_leaves_the_older_one(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == [path]
     with pytest.raises(ParameterError, match=r"ends in \.png, \.svg or \.pdf"):
         check_picture_path(tmp_path / "a.gif")
-
-
-def test_matplotlib_is_imported_only_to_draw():
-    code = (
-        "import sys, pathlib\nfrom noise.cli import main\n"
-        "main(['simulate', '--help'])\nmain(['thesis', '--help'])\n"
-        "from noise.pictures.figure import check_picture_path\n"
-        "check_picture_path(pathlib.Path('a.png'))\n"
-        "assert 'matplotlib' not in sys.modules\n"
-        "import noise.pictures.maps\n"
-        "assert 'matplotlib.figure' in sys.modules\nassert 'matplotlib.pyplot' not in sys.modules"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
