@@ -98,7 +98,7 @@ def test_flac_gives_a_tone_back_within_half_a_step_and_its_dither(campaign):
 
 def test_the_budget_shortens_all_sounds_alike_and_is_kept(tmp_path):
     for i in range(3):
-        run = recording("hiss", seconds=5.0)
+        run = recording("hiss", seconds=3.2)
         write_recording(tmp_path / "runs" / f"run{i}.wav", run)
     whole = review(tmp_path / "runs", tmp_path / "whole.html", classify=False)
     short = review(tmp_path / "runs", tmp_path / "short.html", classify=False, megabytes=1.0)

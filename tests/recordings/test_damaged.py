@@ -91,8 +91,8 @@ def channel_outside_its_record(c):
 
 FOUND = {
     "text of 4 GB": (".h5", text_of_4_gb, "memory"),
-    "heap without an end": (".h5", heap_without_end, "(reading it took longer than 2 s)"),
-    "circle of groups": (".mf4", group_that_follows_itself, "(reading it took longer than 2 s)"),
+    "heap without an end": (".h5", heap_without_end, "(reading it took longer than 1 s)"),
+    "circle of groups": (".mf4", group_that_follows_itself, "(reading it took longer than 1 s)"),
     "text beyond the end": (".mf4", text_beyond_the_end, "exceeds the file size"),
     "channel outside": (".mf4", channel_outside_its_record, "of a record of"),
     "unknown version": (".tdms", lambda c: at(c, 8, 4, 9999), "version 9999, expected 4712"),
@@ -103,7 +103,7 @@ FOUND = {
 @pytest.mark.parametrize(("ending", "damage", "reason"), FOUND.values(), ids=FOUND)
 def test_what_fuzzing_found_is_refused(valid, tmp_path, monkeypatch, ending, damage, reason):
     if "longer" in reason:
-        monkeypatch.setattr("noise.recordings.formats.isolated._PATIENCE", 2.0)
+        monkeypatch.setattr("noise.recordings.formats.isolated._PATIENCE", 1.0)
     assert reason in refusal_of(tmp_path, ending, damage(bytearray(valid[ending])))
 
 
