@@ -8,7 +8,7 @@ nearly does within a label's region. Small regions borrow from the nearest in le
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,13 +29,6 @@ _MOST_REGIONS = 6
 """Of a map, the largest, whose loudest points are heard."""
 
 
-@dataclass(frozen=True)
-class _LoudPoint:
-    label: str
-    level: float
-    loudness: float
-
-
 def with_loudness(found: DesignMap, rig: Rig) -> DesignMap:
     """Return the map with the loudness N5 of its noises.
 
@@ -54,27 +47,23 @@ def with_loudness(found: DesignMap, rig: Rig) -> DesignMap:
     ParameterError
         The extra ``sound-quality`` is not installed.
     """
-    heard: list[_LoudPoint] = []
+    grid = found.grid
+    heard: dict[str, list[tuple[float, float]]] = {}  # level and loudness by label
     for where, label in _regions(found):
         t, k, i, v = where
-        grid = found.grid
+        frequency = grid.frequency[v] if grid.frequency else None
         at = Condition(
-            grid.speed[v],
-            grid.interference[i],
-            grid.support_stiffness[k],
-            grid.temperature[t],
-            grid.frequency[v] if grid.frequency else None,
-        )
+            grid.speed[v], grid.interference[i], grid.support_stiffness[k], grid.temperature[t],
+            frequency,
+        )  # fmt: skip
         rate, pressure = point_sound(rig, at)
         pressure, rate = resample_poly(pressure, 8, 5), 1.6 * rate  # what the procedure is for
         cycles = int(np.ceil(SHORTEST * rate / pressure.size))  # of a fast swing
         n5 = loudness_n5(np.tile(pressure, cycles), rate)
-        heard.append(_LoudPoint(label, float(found.level_max[where]), n5))
+        heard.setdefault(label, []).append((float(found.level_max[where]), n5))
     loudness = np.full(found.level_max.shape, np.nan)
-    for label in {one.label for one in heard}:
-        of_label = [one for one in heard if one.label == label]
-        levels = np.array([one.level for one in of_label])
-        sones = np.array([one.loudness for one in of_label])
+    for label, points in heard.items():
+        levels, sones = np.array(points).T
         cells = (found.sound == label) & np.isfinite(found.level_max)
         level = found.level_max[cells]
         nearest = np.abs(level[:, None] - levels).argmin(axis=1)

@@ -35,12 +35,13 @@ from noise.screening.design import Design, Swinging, Use, load_designs
 from noise.screening.environments import DRY, environment, in_environment
 from noise.screening.grid import Grid, shared_grid, shared_motions
 from noise.screening.mapping import DesignMap, map_design
-from noise.screening.margins import CriticalPoint, critical_points
 from noise.screening.parts import robustness
 from noise.screening.provenance import fits_remark
 from noise.screening.standing import (
+    CriticalPoint,
     Standing,
     condition_at,
+    critical_points,
     ranked,
     refuse_unlike,
     standing_of,
