@@ -7,7 +7,7 @@ impulse response.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 
@@ -32,7 +32,7 @@ from noise.diagnosis.evidence.reconstruction import closed_length, closed_spectr
 from sim.bushing import LumpedBushing
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
-from sim.effects.effect import ActiveEffect, Effect, activated
+from sim.effects.effect import Effect, activated
 
 _LONGEST = 0.25
 """Impulse responses are followed so long [s]."""
@@ -104,8 +104,7 @@ class TransferFunctionCache:
     """
 
     def __init__(self, rig: Rig, library: Mapping[str, Effect] | None = None) -> None:
-        self._rig = rig
-        self._library = library or EFFECTS
+        self._rig, self._library = rig, library or EFFECTS
         self._known: dict[tuple[float, float], dict[str, TransferFunction]] = {}
         self._whole: dict[tuple[float, float], dict[str, TransferFunction]] = {}
 
@@ -123,53 +122,28 @@ class TransferFunctionCache:
 
     def whole(self, recording: Recording) -> dict[str, TransferFunction]:
         """Return those at the condition of a recording, with the rig's effects on the chain."""
-        c = known_condition(recording.condition)
-        key = (c.interference, c.support_stiffness)
+        plain = self.of(recording)
         effects = [e for e in activated(self._rig.effects, self._library) if e.effect.chain]
         if not effects:
-            return self.at(*key)
+            return plain
+        c = known_condition(recording.condition)
+        key = (c.interference, c.support_stiffness)
         if key not in self._whole:
-            self._whole[key] = with_chain_effects(self._rig, *key, self.at(*key), effects)
+            paths = chain_of(self._rig, *key, plain, _MODEL_RATE, impacts=True)
+            changed = changed_chain(paths, effects, np.random.default_rng(0))
+            self._whole[key] = {n: _with_change(h, n, paths, changed) for n, h in plain.items()}
         return self._whole[key]
 
 
-def with_chain_effects(
-    rig: Rig,
-    interference: float,
-    support_stiffness: float,
-    transfer_functions: Mapping[str, TransferFunction],
-    effects: Sequence[ActiveEffect],
-) -> dict[str, TransferFunction]:
-    """Add to transfer functions what effects change about them.
-
-    Parameters
-    ----------
-    rig : Rig
-    interference : float
-        [m]
-    support_stiffness : float
-        [Nm/rad] or `models.condition.FIXED`.
-    transfer_functions : mapping of str to TransferFunction
-        As `torque_transfer_functions` gives them.
-    effects : sequence of ActiveEffect
-        On the chain from torque to acceleration and sound.
-
-    Returns
-    -------
-    dict of str to TransferFunction
-    """
-    paths = chain_of(
-        rig, interference, support_stiffness, transfer_functions, _MODEL_RATE, impacts=True
-    )
-    changed = changed_chain(paths, effects, np.random.default_rng(0))
-    found = {}
-    for name, transfer in transfer_functions.items():
-        before, after = (getattr(one, f"torque_to_{name}") for one in (paths, changed))
-        n = FINER * max(before.size, after.size)
-        lines = np.asarray(np.fft.rfftfreq(n, 1.0 / _MODEL_RATE), np.float64)
-        more = TransferFunction(lines, rfft(after, n) - rfft(before, n))
-        found[name] = replace(transfer, response=transfer.response + more.at(transfer.frequencies))
-    return found
+def _with_change(
+    transfer: TransferFunction, name: str, paths: ImpulseResponses, changed: ImpulseResponses
+) -> TransferFunction:
+    """Add to a transfer function what effects change about its way."""
+    before, after = (getattr(one, f"torque_to_{name}") for one in (paths, changed))
+    n = FINER * max(before.size, after.size)
+    lines = np.asarray(np.fft.rfftfreq(n, 1.0 / _MODEL_RATE), np.float64)
+    more = TransferFunction(lines, rfft(after, n) - rfft(before, n))
+    return replace(transfer, response=transfer.response + more.at(transfer.frequencies))
 
 
 def predict(torque: Array, rate: float, transfer: TransferFunction) -> Array:
