@@ -79,7 +79,7 @@ def lacking_in_text(function, text, sections):
         told["result"] = function.returns
     for name, annotation in told.items():
         kind = ast.unparse(annotation)
-        if "NDArray[np.float64]" in kind and not says_shape(text):
+        if re.search(r"NDArray\[np.float64\]|\bArray\b", kind) and not says_shape(text):
             yield f"{name}: shape"
         elif re.fullmatch(r"float( \| None)?", kind) and not says_unit(text):
             yield f"{name}: unit"
