@@ -166,7 +166,7 @@ def evaluate_row(rig: Rig, row: Sequence[Condition]) -> list[PointResult]:
     list of PointResult
     """
     if row[0].frequency is not None:
-        return [heard_of(rig, at, _motion(rig, at)) for at in row]
+        return [heard_of(rig, at, _motion(rig, at, at.frequency)) for at in row if at.frequency]
     found = [SILENT] * len(row)
     for i, one in vibrations_at(rig, row):
         if one.course is not None:
@@ -297,7 +297,7 @@ def point_sound(rig: Rig, at: Condition) -> tuple[float, NDArray[np.float64]]:
         [Pa]
     """
     if at.frequency:
-        motion, start = _motion(rig, at), 0.25 / at.frequency
+        motion, start = _motion(rig, at, at.frequency), 0.25 / at.frequency
     elif (course := vibration_at(rig, at).course) is not None:
         motion, start = gone_on(course, 1.0), _RINGING
     else:
@@ -306,12 +306,12 @@ def point_sound(rig: Rig, at: Condition) -> tuple[float, NDArray[np.float64]]:
     return RATE, sound.pressure[round(start * RATE) :]
 
 
-def _motion(rig: Rig, at: Condition) -> Motion:
+def _motion(rig: Rig, at: Condition, frequency: float) -> Motion:
     """Motion of a swing, from one turning on for a cycle and a quarter."""
     return simulate_motion(
-        at_temperature(rig, at.temperature), shaft_motion(at.speed, at.frequency),
+        at_temperature(rig, at.temperature), shaft_motion(at.speed, frequency),
         interference=at.interference, support_stiffness=at.support_stiffness,
-        seconds=1.25 / at.frequency, rate=RATE, tolerance=1e-5,
+        seconds=1.25 / frequency, rate=RATE, tolerance=1e-5,
     )  # fmt: skip
 
 

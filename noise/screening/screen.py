@@ -294,17 +294,17 @@ def screen(
                 for (where, swinging), grid in grids.items():
                     progress(f"mapping {name}, {where}")
                     rig = in_environment(design.rig, environment(where))
-                    one = map_design(
+                    each = map_design(
                         rig, grid, evaluate, design=name, environment=where, most=simulations
                     )
                     if loudness:
                         from noise.screening.loudness import with_loudness
 
-                        one = with_loudness(one, rig)
+                        each = with_loudness(each, rig)
                     if swinging is not None and len(motions) > _ONE_SWING:
                         degrees = math.degrees(swinging.amplitude)
-                        one = replace(one, motion=f"swinging by {degrees:.4g} degrees")
-                    found.append(one)
+                        each = replace(each, motion=f"swinging by {degrees:.4g} degrees")
+                    found.append(each)
             except BushingNoiseError as error:
                 refused.append((name, str(error)))
             else:

@@ -20,6 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -261,6 +262,13 @@ def standing_of(
     noisy = (sound != "none") & np.isfinite(level)
     loudest = np.unravel_index(np.argmax(np.where(noisy, level, -np.inf)), level.shape)
     nothing, any_noise = math.nan, bool(noisy.any())
+    numbers: dict[str, Any] = {
+        name: max((getattr(point, name) for point in critical), default=nothing)
+        for name in _CRITICAL_SPEEDS
+    } | {
+        name: min((getattr(point, name) for point in critical), default=nothing)
+        for name in _MARGINS
+    }
     return Standing(
         rank=None,
         design=found.design,
@@ -272,11 +280,7 @@ def standing_of(
         loudest_label=str(sound[loudest]) if any_noise else "none",
         loudest_level=float(level[loudest]) if any_noise else nothing,
         loudest_level_max=float(level_max[loudest]) if any_noise else nothing,
-        **{
-            name: worst((getattr(point, name) for point in critical), default=nothing)
-            for worst, names in ((max, _CRITICAL_SPEEDS), (min, _MARGINS))
-            for name in names
-        },
+        **numbers,
         never_slips=never_slips,
         words=use_words(found, never_slips),
     )

@@ -243,8 +243,8 @@ def vibrations_at(
     for (above, _), side in sides.items():
         side = side[::-1] if above else side
         reached = _outwards(rig, [(row[i], own[i], unstable[i]) for i in side])
-        for i, course in zip(side, reached, strict=True):
-            yield i, _beside_rest(rig, row[i], own[i], course, from_rest=from_rest)
+        for i, known in zip(side, reached, strict=True):
+            yield i, _beside_rest(rig, row[i], own[i], known, from_rest=from_rest)
 
 
 def _unstable(

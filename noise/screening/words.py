@@ -52,11 +52,9 @@ def use_words(found: DesignMap, never_slips: str = "") -> str:
     --------
     >>> from noise.screening.design import Use
     >>> from noise.screening.screen import screen
-    >>> use = Use(speed=(2.0, 5.0, 12.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
+    >>> use = Use(speed=(2.0, 12.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
     >>> screen(["PDMS"], use).standings[0].words
-    'quiet in its use, all 3 conditions'
-    >>> screen(["fluorocarbon-thesis"], use).standings[0].words
-    'noisy at 67% of its use: squawks from 2 to 5 rad/s'
+    'quiet in its use, all 2 conditions'
     """
     if never_slips:
         return f"{never_slips}; quiet" if found.grid.frequency else never_slips
