@@ -174,13 +174,13 @@ class Bushing(NamedTuple):
     Parameters
     ----------
     system : ndarray, shape (10,)
-        J_E, J_C, k_E, k_B, c_E, c_B, the inertias' reciprocals, T_crit, T_kin.
+        J_E, J_C, k_E, k_B, c_E, c_B, the inertias' reciprocals, T_crit, T_kin [SI].
     law : int
         Address of the friction law's compiled function; 0 where the contact truly sticks.
-    coefficients : ndarray
-        Of the law.
-    context, contact : ndarray
-        What effects read, and what they change and laws read, by `sim.contact`.
+    coefficients : ndarray, shape (n,)
+        Of the law [SI].
+    context, contact : ndarray, shape (n,)
+        What effects read, and what they change and laws read, by `sim.contact` [SI].
     """
 
     system: NDArray[np.float64]
@@ -198,8 +198,8 @@ class Hooks(NamedTuple):
     n : int
         Of effects that act.
     addresses : ndarray, shape (n, 4)
-        Of function, values, states and their rates of each effect: numbers instead of arrays, since
-        each array would be seven arguments to compile and to pass.
+        Of function, values, states and their rates of each effect [-]: numbers instead of arrays,
+        since each array would be seven arguments to compile and to pass.
     """
 
     n: int
@@ -213,9 +213,9 @@ class Drive(NamedTuple):
     ----------
     step : float
         From sample to sample [s].
-    speed, angle : ndarray
+    speed, angle : ndarray, shape (n,)
         [rad/s], [rad]
-    slope : ndarray
+    slope : ndarray, shape (n,)
         After each sample [rad/s2]; the last goes on beyond them.
     """
 
@@ -231,15 +231,15 @@ class Rows(NamedTuple):
     Parameters
     ----------
     stages : ndarray, shape (n, N_STAGES + 1)
-        Rates of each variable at the stages of the last step, then those at an output.
+        Rates of each variable at the stages of the last step, then those at an output [SI].
     weights : ndarray, shape (N_STAGES,)
-        Of the stages.
+        Of the stages [-].
     start, end : ndarray, shape (n,)
-        States where the last step began and ended.
+        States where the last step began and ended [SI].
     state, rates : ndarray, shape (n,)
-        At one instant; of the rates those that laws and effects fill.
-    inner, inner_rates : ndarray
-        Of these what comes after the motion: the law's, then the effects', then the lag.
+        At one instant; of the rates those that laws and effects fill [SI].
+    inner, inner_rates : ndarray, shape (n - N_MOTION,)
+        Of these what comes after the motion: the law's, then the effects', then the lag [SI].
     """
 
     stages: NDArray[np.float64]
