@@ -297,7 +297,20 @@ def _outwards(
 
 
 def growth_at(rig: Rig, at: Condition, speed: ArrayLike | None = None) -> NDArray[np.float64]:
-    """Growth of a small vibration about steady sliding [1/s], at other speeds [rad/s] if given."""
+    """Growth of a small vibration about steady sliding [1/s].
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+    speed : array_like, shape (...), optional
+        In place of that of `at` [rad/s].
+
+    Returns
+    -------
+    ndarray, shape (...)
+        [1/s]
+    """
     rig = at_temperature(rig, at.temperature)
     speed = at.speed if speed is None else speed
     return sliding_growth(rig, speed, at.interference, at.support_stiffness)
@@ -427,7 +440,7 @@ def _outcome(sizes: NDArray[np.float64], growth: float, patience: float) -> bool
 
 
 def gone_on(course: Course, seconds: float) -> Motion:
-    """Return the motion of a course that goes on at its speed for some seconds."""
+    """Return the motion of a course that goes on at its speed for `seconds` [s]."""
     n = round(seconds * RATE)
     drive = np.full(n + steps_beyond(RATE), course.speed)
     return course.motion.followed_by(course.solver.advance(drive, n))
