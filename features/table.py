@@ -37,6 +37,7 @@ KINDS = (*ACOUSTIC_KINDS, "torque")
 
 
 def _mean_by_power(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:
+    """Mean weighted by power."""
     return float(np.average(values, weights=power))
 
 

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from models.errors import BushingNoiseError, RecordingError
-from noise.base.progress import discard, note, say, set_quiet
+from noise.base.progress import discard, note, say, set_verbosity
 from noise.commands import COMMANDS, load_command
 from noise.commands.options import COMMON, add_options, help_of, option_names
 
@@ -145,11 +145,11 @@ def _run(arguments: list[str]) -> int:
         known = ["--help", *option_names([*load_command(options.command).OPTIONS, *COMMON])]
         meant = _meant(unknown[0].partition("=")[0], known)
         return _failed(f"unrecognized: {' '.join(unknown)}{meant} ({options_there})")
-    set_quiet(options.quiet)
+    set_verbosity(quiet=options.quiet, verbose=options.verbose)
     try:
         return load_command(options.command).run(options)
     finally:
-        set_quiet(False)
+        set_verbosity()
 
 
 def _meant(word: str, known: Iterable[str]) -> str:

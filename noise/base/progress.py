@@ -34,21 +34,24 @@ _LONG = 5.0
 _Item = TypeVar("_Item")
 
 
-class _Verbosity:
-    quiet = False
+def set_verbosity(*, quiet: bool = False, verbose: bool = False) -> None:
+    """Say less or more: with `quiet` errors alone, with `verbose` the time of each line.
 
-
-_verbosity = _Verbosity()
-
-
-def set_quiet(quiet: bool) -> None:
-    """Leave out progress, notes, summaries and the names of what was written, or no longer.
+    Quiet leaves out progress, notes, summaries and the names of what was written.
 
     Examples
     --------
-    >>> set_quiet(False)
+    >>> set_verbosity()
     """
-    _verbosity.quiet = quiet
+    _verbosity.quiet, _verbosity.since = quiet, time.monotonic() if verbose else None
+
+
+class _Verbosity:
+    quiet = False
+    since: float | None = None
+
+
+_verbosity = _Verbosity()
 
 
 def say(text: str, *, error: bool = False) -> None:
@@ -70,6 +73,8 @@ def say(text: str, *, error: bool = False) -> None:
     if sys.stderr is None or (_verbosity.quiet and not error):  # None: closed by the caller
         return
     line = readable(" ".join(text.split("\n")))
+    if _verbosity.since is not None:
+        line = f"[{time.monotonic() - _verbosity.since:7.2f} s] {line}"
     try:
         if "tqdm" in sys.modules:
             from tqdm import tqdm

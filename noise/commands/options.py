@@ -322,7 +322,12 @@ def _add(parser: argparse._ActionsContainer, row: Option, texts: Mapping[str, st
 SEED = Option("--seed N", whole_number(0), 0)
 """``--seed``, which all commands take."""
 
-COMMON = (Option("--quiet"),)
+COMMON = (
+    OneOf(
+        Option("--quiet"),
+        Option("--verbose"),
+    ),
+)
 """Options of all commands."""
 
 CHANGE = Option("--change NAME=AMOUNT", change, repeated=True)

@@ -29,7 +29,7 @@ from noise.batch.work import one_thread
 from noise.pages.clips import RATE, Entry
 from noise.pictures.figure import support_words
 from noise.pictures.recording import recorded_levels
-from noise.screening.point import shaft_motion
+from noise.screening.point import swing
 from sim.acquisition import Acquisition
 from sim.run import simulate
 
@@ -356,7 +356,7 @@ def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: 
     support = screened.support_stiffness
     run = simulate(
         rig,
-        shaft_motion(point.speed, point.frequency),
+        point.speed if point.frequency is None else swing(point.speed, point.frequency),
         interference=1e-3 * point.interference,
         seconds=SECONDS,
         acquisition=Acquisition(rate=RATE),

@@ -105,23 +105,14 @@ SILENT = PointResult(Regime.STEADY_SLIDING, "none", False, "none", math.nan, mat
 """Of a condition at which every vibration dies."""
 
 
-def shaft_motion(speed: float, frequency: float | None) -> float | Oscillation:
-    """Return how the shaft turns at a point: steadily, or swinging as fast as that at most.
-
-    Parameters
-    ----------
-    speed : float
-        The largest [rad/s].
-    frequency : float, optional
-        Of the swing [Hz].
+def swing(speed: float, frequency: float) -> Oscillation:
+    """Return the oscillation of a frequency [Hz] whose largest speed [rad/s] is given.
 
     Examples
     --------
-    >>> shaft_motion(5.0, None), shaft_motion(math.pi, 2.0).amplitude
-    (5.0, 0.25)
+    >>> swing(math.pi, 2.0).amplitude
+    0.25
     """
-    if frequency is None:
-        return speed
     return Oscillation(speed / (2.0 * math.pi * frequency), frequency)
 
 
@@ -309,7 +300,7 @@ def point_sound(rig: Rig, at: Condition) -> tuple[float, NDArray[np.float64]]:
 def _motion(rig: Rig, at: Condition, frequency: float) -> Motion:
     """Motion of a swing, from one turning on for a cycle and a quarter."""
     return simulate_motion(
-        at_temperature(rig, at.temperature), shaft_motion(at.speed, frequency),
+        at_temperature(rig, at.temperature), swing(at.speed, frequency),
         interference=at.interference, support_stiffness=at.support_stiffness,
         seconds=1.25 / frequency, rate=RATE, tolerance=1e-5,
     )  # fmt: skip

@@ -3,6 +3,7 @@
 import argparse
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -254,6 +255,8 @@ def test_a_recording_of_somebody_else_is_replaced_only_if_told_to(tmp_path, caps
     assert main([*call, str(foreign), "--force"]) == 0
     assert [main([*call, str(own)]), main([*call, str(own)])] == [0, 0]
     assert capsys.readouterr() == ("", "")  # as it is quiet
+    assert main([*call[:-2], "--verbose", "--out", str(own)]) == 0
+    assert re.match(r"\[ *\d+\.\d\d s\] ", capsys.readouterr().err)  # each line with its time
 
 
 def test_a_speed_that_may_be_meant_in_rpm_is_asked_about(tmp_path, capsys):
