@@ -5,9 +5,10 @@ from __future__ import annotations
 from argparse import Namespace
 from pathlib import Path
 
+from models.errors import ParameterError
 from noise.base.files import atomic, check_target
 from noise.base.progress import report, say, track
-from noise.base.tables import check_table_path, write_table
+from noise.base.tables import TABLE_ENDINGS, check_table_path, write_table
 from noise.commands.options import SEED, Option, check_folder
 
 _PAGE_ENDING = ".md"
@@ -34,6 +35,9 @@ def run(options: Namespace) -> int:
 def _write_table(out: Path | None) -> None:
     """Compute, write, and tell how many rows hold."""
     is_page = out is not None and out.suffix.lower() == _PAGE_ENDING
+    if out is not None and not is_page and out.suffix.lower() not in TABLE_ENDINGS:
+        endings = ", ".join(TABLE_ENDINGS)
+        raise ParameterError(f"{out}: this table ends in {endings} or {_PAGE_ENDING}")
     if not is_page:
         check_table_path(out)
     if out is not None:

@@ -2,16 +2,18 @@
 
 The sound library reads the first sound of a file and stops quietly where it breaks off. A
 measurement cut short is not the measurement, so the samples announced are counted against those
-that there are, and a file of several sounds is refused. Where a recorder did not come to
-write the length of a WAV file, the library is given the file with its true length. Formats that
-cannot be entered at any sample (OGG, MP3, FLAC from a pipe) are decoded as a whole.
+that there are, and a file of several sounds is refused. Where a recorder did not come to write the
+length (a WAV file whose recorder was switched off, FLAC from a pipe, MP3 without a header), the
+library is given the file with its true length.
 """
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import struct
+import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from itertools import chain, islice
@@ -26,7 +28,7 @@ from numpy.typing import NDArray
 from models.errors import RecordingError
 from noise.recordings.formats import Format, RawRecording, Read
 
-_BLOCK = 1 << 16  # samples a channel
+_BLOCK, _FEW = 1 << 16, 1 << 12  # samples a channel
 _RIFF = (b"RIFF", b"RF64", b"BW64")  # tech.ebu.ch/docs/tech/tech3306.pdf, ITU-R BS.2088
 _CHUNKED = (*_RIFF, b"RIFX", b"FORM")
 _MOST_CHUNKS = 100_000  # what holds more was made to be walked for ever
@@ -43,6 +45,14 @@ _STARTS = [
 
 One by one, as a pattern of several is ten times as slow.
 """
+
+_NO_LENGTH = 100
+"""Times its size that an MP3 without a length is given out to have: the library estimates a length
+from the size and the first frames, of 8 to 320 kbit/s, and reads no further than that."""
+
+_EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
+"""Formats of the sound library that can be entered at any sample; of others, what comes before is
+decoded."""
 
 
 @contextmanager
@@ -67,23 +77,12 @@ def open_sound_file(path: Path) -> Iterator[RawRecording]:
     ((1, 480), 48000.0, True, 0.5)
     """
     with ExitStack() as stack:
-        with path.open("rb") as opened:
-            content = stack.enter_context(_Content(opened.fileno(), 0, access=ACCESS_COPY))
+        with path.open("rb") as file:
+            content = stack.enter_context(_Content(file.fileno(), 0, access=ACCESS_COPY))
         chunked = content[:4] in _CHUNKED
         patched, note = _completed(path, content) if chunked else (False, "")
-        # The library takes names in UTF-8 alone.
-        file: Any = content if patched else path if os.name == "nt" else os.fsencode(path)
-        stated = [] if chunked else _starts(path, content)
         with _errors(path):
-            sound = stack.enter_context(soundfile.SoundFile(file))
-            n_samples = int(sound.frames)
-            read = _reading(path, sound)
-            if not (chunked or _flac_length(content)):
-                samples = _decoded(file)
-                if samples.shape[1] < n_samples and stated and content[:4] != b"fLaC":
-                    raise _truncated(path, n_samples, samples.shape[1])
-                n_samples = samples.shape[1]
-                read = lambda first, last: samples[:, first:last].astype(np.float64)  # noqa: E731
+            sound, n_samples = _opened(path, content, stack, patched=patched)
         yield RawRecording(
             n_channels=int(sound.channels),
             n_samples=n_samples,
@@ -91,7 +90,7 @@ def open_sound_file(path: Path) -> Iterator[RawRecording]:
             fractional=sound.subtype not in ("FLOAT", "DOUBLE"),
             description=_description(content) if chunked else "",
             comment=sound.comment,
-            read=read,
+            read=_reading(path, sound, n_samples),
             notes=tuple(filter(None, [note])),
         )
 
@@ -124,63 +123,87 @@ def _errors(path: Path) -> Iterator[None]:
         raise RecordingError(f"{path}: is damaged or no sound file ({reason})") from error
 
 
-def _starts(path: Path, content: mmap) -> list[int]:
-    """Where streams begin that state their length; refused where there are several."""
+def _opened(path: Path, content: mmap, stack: ExitStack, *, patched: bool) -> tuple[Any, int]:
+    """Open the sound of a file, whose name the library takes in UTF-8 alone; tell its length."""
+    file: Any = content if patched else path if os.name == "nt" else os.fsencode(path)
+    if content[:4] in _CHUNKED:
+        sound = stack.enter_context(soundfile.SoundFile(file))
+        return sound, int(sound.frames)
     found = chain.from_iterable(islice(mark.finditer(content), 2) for mark in _STARTS)
     starts = sorted(one.start() for one in found)
     if starts[1:]:
         raise RecordingError(
             f"{path}: a second sound begins at byte {starts[1]}; save each as its own"
         )
-    return starts
+    if content[:4] == b"OggS" or (content[:4] == b"fLaC" and _flac_length(content)):
+        sound = stack.enter_context(soundfile.SoundFile(file))
+        return sound, int(sound.frames)
+    if content[:4] == b"fLaC":
+        with _Quiet(file) as unknown:
+            n_samples = _count(path, unknown, _BLOCK)
+        content[21] |= n_samples >> 32
+        content[22:26] = (n_samples & 0xFFFFFFFF).to_bytes(4, "big")
+        return stack.enter_context(soundfile.SoundFile(content)), n_samples
+    if starts or b"VBRI" in content[:_FEW]:
+        sound = stack.enter_context(_Quiet(file))
+        return sound, int(sound.frames)
+    with _Unending(path) as counted, _Quiet(counted) as unknown:
+        n_samples = _count(path, unknown, _FEW)
+    return stack.enter_context(_Quiet(stack.enter_context(_Unending(path)))), n_samples
 
 
 def _flac_length(content: mmap) -> int:
-    """Return how many samples a stream of FLAC states (RFC 9639), 0 if none or no FLAC."""
+    """Return how many samples a stream of FLAC states (RFC 9639), 0 if unknown."""
     head = content[:26].ljust(26, b"\0")
-    stated = (head[21] & 0x0F) << 32 | int.from_bytes(head[22:26], "big")
-    return stated if head[:4] == b"fLaC" else 0
+    return (head[21] & 0x0F) << 32 | int.from_bytes(head[22:26], "big")
 
 
-class _Stream(soundfile.SoundFile):  # type: ignore[misc]  # the library has no types
-    """A sound that is read from its beginning to its end."""
-
-    def seekable(self) -> bool:
-        """Say no: else the place is set anew after each block, and MP3 clicks there."""
-        return False
-
-
-def _decoded(file: Any) -> NDArray[np.float32]:
-    """Decode a sound to its end, shape (n_channels, n); MP3 may break off within its last frame."""
-    parts: list[NDArray[np.float32]] = []
-    with _Stream(file) as sound:
-        try:
-            while len(part := sound.read(_BLOCK, dtype="float32", always_2d=True)):
-                parts.append(part)
-        except soundfile.LibsndfileError:
-            if not (parts and sound.format == "MP3"):
-                raise
-    return np.concatenate(parts).T if parts else np.zeros((1, 0), np.float32)
+def _count(path: Path, sound: Any, n_at_once: int) -> int:
+    """Decode a sound to its end; MP3 may break off within its last frame."""
+    n = 0
+    try:
+        while passed := len(sound.read(n_at_once)):
+            n += passed
+    except soundfile.LibsndfileError as error:
+        if not (n and sound.format == "MP3"):
+            raise RecordingError(
+                f"{path}: does not say how long it is, and breaks off after {n} samples "
+                f"({n / sound.samplerate:.6g} s; {error.error_string.rstrip('.')})"
+            ) from None
+    return n
 
 
-def _reading(path: Path, sound: Any) -> Read:
-    """Give what reads a sound that can be entered at any sample."""
+def _reading(path: Path, sound: Any, n_samples: int) -> Read:
+    """Give what reads a sound; refused where it breaks off before its end."""
+    position = 0
+
+    def block(start: int, n: int) -> NDArray[np.float64]:
+        nonlocal position
+        if start != position and sound.format in _EXACT:
+            position = sound.seek(start)
+        elif start < position:
+            position = sound.seek(0)
+        while position < start and (passed := len(sound.read(min(_BLOCK, start - position)))):
+            position += passed
+        found: NDArray[np.float64] = sound.read(n, dtype="float64", always_2d=True)
+        position += len(found)
+        return found
 
     def read(first: int, last: int) -> NDArray[np.float64]:
+        samples, done = np.empty((sound.channels, last - first)), first
         with _errors(path):
-            sound.seek(first)
-            samples: NDArray[np.float64] = sound.read(last - first, "float64", always_2d=True)
-        if len(samples) < last - first:
-            raise _truncated(path, int(sound.frames), first + len(samples))
-        return samples.T
+            while done < last:
+                found = block(done, min(_BLOCK, last - done))
+                if not len(found):
+                    raise RecordingError(
+                        f"{path}: is truncated; its header announces {n_samples} samples, "
+                        f"{done} can be read"
+                    )
+                samples[:, done - first : done - first + len(found)] = found.T
+                done += len(found)
+        return samples
 
     return read
-
-
-def _truncated(path: Path, announced: int, found: int) -> RecordingError:
-    return RecordingError(
-        f"{path}: is truncated; its header announces {announced} samples, {found} can be read"
-    )
 
 
 # RIFF and AIFF
@@ -263,3 +286,64 @@ def _description(content: mmap) -> str:
             text = content[chunk.start : chunk.start + min(chunk.size, _DESCRIPTION_BYTES)]
             return text.partition(b"\0")[0].decode("latin-1").strip()
     return ""
+
+
+# MP3, whose library (mpg123) prints what it thinks of a file: that goes nowhere
+
+
+class _Unending(io.FileIO):
+    """A file that is given out to be longer than it is, with zeros behind its end."""
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """Go to a byte."""
+        if whence == os.SEEK_END:
+            whence, offset = os.SEEK_SET, offset + _NO_LENGTH * os.fstat(self.fileno()).st_size
+        return super().seek(offset, whence)
+
+    def readinto(self, buffer: Any) -> int:
+        """Read as many bytes as fit."""
+        if self.tell() > os.fstat(self.fileno()).st_size:  # where a tag would stand
+            view = memoryview(buffer).cast("B")
+            view[:] = bytes(len(view))
+            self.seek(len(view), os.SEEK_CUR)
+            return len(view)
+        return super().readinto(buffer) or 0
+
+
+class _Quiet(soundfile.SoundFile):  # type: ignore[misc]  # the library has no types
+    """A sound read by mpg123."""
+
+    def __init__(self, file: object) -> None:
+        with _silence():
+            super().__init__(file)
+
+    def seekable(self) -> bool:
+        """Say no: else the place is set anew after each block, and MP3 clicks there."""
+        return False
+
+    def read(self, *given: Any, **named: Any) -> Any:
+        """Read samples."""
+        with _silence():
+            return super().read(*given, **named)
+
+
+_silencing = threading.Lock()
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Close standard error to libraries that write past Python."""
+    with _silencing:
+        try:
+            kept = os.dup(2)
+        except OSError:  # it is closed
+            yield
+            return
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 2)
+        try:
+            yield
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+            os.close(nowhere)
