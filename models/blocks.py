@@ -29,7 +29,7 @@ class RecordingBlocks:
     Parameters
     ----------
     rate : float
-        Sampling rate [Hz]
+        Sampling rate [Hz].
     channels : tuple of Channel
     condition : Condition
     calibrated : bool

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+import tomllib
+from importlib import resources
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,3 +35,21 @@ def log_uniform(low: float, high: float, rng: np.random.Generator) -> float:
     True
     """
     return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def packaged_toml(package: str, name: str) -> dict[str, Any]:
+    """Read a TOML file that comes with a package.
+
+    Parameters
+    ----------
+    package : str
+        Its full name.
+    name : str
+        Of the file.
+
+    Examples
+    --------
+    >>> packaged_toml("noise.screening", "environments.toml")["dry"]["temperature_C"]
+    23.0
+    """
+    return tomllib.loads((resources.files(package) / name).read_text(encoding="utf-8"))

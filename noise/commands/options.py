@@ -9,16 +9,16 @@ from __future__ import annotations
 
 import argparse
 import math
-import tomllib
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import import_module, resources
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from models.errors import ParameterError, naming
 from models.schema import Quantity
+from noise.base import packaged_toml
 from noise.base.files import check_target
 from noise.base.progress import note, say
 
@@ -224,8 +224,7 @@ def help_of(command: str) -> Help:
     >>> help_of("render").options["--gap"]
     'silence between two of them in s'
     """
-    text = (resources.files("noise.commands") / "help.toml").read_text(encoding="utf-8")
-    texts = tomllib.loads(text)
+    texts = packaged_toml("noise.commands", "help.toml")
     own = texts[command]
     return Help(
         _filled(own["description"]),

@@ -35,12 +35,14 @@ def run(options: Namespace) -> int:
 def _write_table(out: Path | None) -> None:
     """Compute, write, and tell how many rows hold."""
     is_page = out is not None and out.suffix.lower() == _PAGE_ENDING
-    if out is not None and not is_page and out.suffix.lower() not in TABLE_ENDINGS:
-        endings = ", ".join(TABLE_ENDINGS)
-        raise ParameterError(f"{out}: this table ends in {endings} or {_PAGE_ENDING}")
-    if not is_page:
-        check_table_path(out)
     if out is not None:
+        if is_page and out.is_dir():
+            raise ParameterError(f"{out}: is a folder; name a file to write")
+        if not is_page and out.suffix.lower() not in TABLE_ENDINGS:
+            endings = ", ".join(TABLE_ENDINGS)
+            raise ParameterError(f"{out}: this table ends in {endings} or {_PAGE_ENDING}")
+        if not is_page:
+            check_table_path(out)
         check_target(out)
     say("preparing")
     from noise.thesis.page import thesis_page, verdict_counts

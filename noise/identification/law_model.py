@@ -11,11 +11,9 @@ Excerpts begin where the recording has them, and what recordings scatter by is k
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from importlib import resources
 
 import numpy as np
 from numba import njit
@@ -23,6 +21,7 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.rig import Fit, LawSpec, Rig
+from noise.base import packaged_toml
 from noise.base.arrays import Array
 from noise.identification.bushing_fit import Known
 from noise.identification.static_test import Evidence
@@ -182,9 +181,7 @@ class Candidate:
 
 CANDIDATES = tuple(
     Candidate(name, **row)
-    for name, row in tomllib.loads(
-        (resources.files(__package__) / "candidates.toml").read_text("utf-8")
-    ).items()
+    for name, row in packaged_toml("noise.identification", "candidates.toml").items()
 )
 """By rising number of parameters."""
 

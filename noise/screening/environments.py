@@ -7,14 +7,13 @@ lists that among what is assumed. An effect that the rig has already keeps the r
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from importlib import resources
 
 from models.errors import ParameterError
 from models.rig import Fit, LawSpec, Rig, parse_spec
+from noise.base import packaged_toml
 
 DRY = "dry"
 """What is measured in, as a rule."""
@@ -53,7 +52,6 @@ class Environment:
 
 @lru_cache(maxsize=1)
 def _environments() -> dict[str, Environment]:
-    text = (resources.files("noise.screening") / "environments.toml").read_text(encoding="utf-8")
     return {
         name: Environment(
             name=name,
@@ -63,7 +61,7 @@ def _environments() -> dict[str, Environment]:
             why=tuple(table["why"]),
             factors={key: table[key] for key in FIT_PARAMETERS if key in table},
         )
-        for name, table in tomllib.loads(text).items()
+        for name, table in packaged_toml("noise.screening", "environments.toml").items()
     }
 
 

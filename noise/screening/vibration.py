@@ -93,7 +93,7 @@ _STEADY = 1.02
 _REGULAR = 0.003
 """Relative scatter of a vibration's size over blocks, up to which it repeats itself [-]."""
 
-IRREGULAR = 5.0
+_IRREGULAR = 5.0
 """How long one that does not is followed beside stable sliding [s]."""
 
 _KEPT = 10
@@ -232,7 +232,7 @@ def vibrations_at(
     sides: dict[tuple[bool, int], list[int]] = {}
     for i in np.argsort(speed).tolist():
         if own[i] > 0.0:
-            yield i, Vibration(*_unstable(rig, row[i], own[i], unstable[i]))
+            yield i, _unstable(rig, row[i], own[i], unstable[i])
         elif (start := unstable[i]) is None:
             course = running(rig, row[i], own[i])
             # A contact stuck at rest may vibrate though no speed makes its sliding unstable.
@@ -247,13 +247,14 @@ def vibrations_at(
             yield i, _beside_rest(rig, row[i], own[i], known, from_rest=from_rest)
 
 
-def _unstable(
-    rig: Rig, at: Condition, growth: float, start: float | None
-) -> tuple[str, float, Course | None]:
+def _unstable(rig: Rig, at: Condition, growth: float, start: float | None) -> Vibration:
+    """Tell what becomes of a vibration where steady sliding cannot last."""
     course = _followed(_solver(rig, at), at, growth)
     if not course.lasts:  # it grows so slowly that only what runs already shows where it ends
         course = running(rig, at, growth, start)
-    return (BREAKS_OUT, growth, course) if course.lasts else ("none", growth, None)
+    if course.lasts:
+        return Vibration(BREAKS_OUT, growth, course)
+    return Vibration("none", growth, None)
 
 
 def _beside_rest(
@@ -324,7 +325,7 @@ def running(
     *,
     started: Course | None = None,
     again: bool = True,
-    patience: float = IRREGULAR,
+    patience: float = _IRREGULAR,
 ) -> Course:
     """Follow a vibration that already runs when a condition is reached.
 
@@ -389,7 +390,7 @@ def _followed(
     *,
     approach: NDArray[np.float64] | None = None,
     held: float = 0.0,
-    patience: float = IRREGULAR,
+    patience: float = _IRREGULAR,
 ) -> Course:
     """Run in blocks until it is certain whether the vibration dies or lasts.
 

@@ -14,13 +14,13 @@ from __future__ import annotations
 
 import csv
 import math
-import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from importlib import resources
 from typing import Any
 
+from noise.base import packaged_toml
 from noise.thesis import formulas, heat, modes
 from noise.thesis.row import Published, Row, Values, number
 from noise.thesis.runs import CALIBRATED, LISTED, QUANTITIES, THESIS, Case
@@ -77,8 +77,8 @@ def reasons() -> dict[tuple[str, str], str]:
     >>> reasons()["v_crit1", "0.178 mm, 2214 Nm/rad"][:20]
     "The torque's drop at"
     """
-    text = (resources.files("noise.thesis") / "why.toml").read_text(encoding="utf-8")
-    return {tuple(row): one["text"] for one in tomllib.loads(text)["why"] for row in one["rows"]}
+    given = packaged_toml("noise.thesis", "why.toml")["why"]
+    return {tuple(row): one["text"] for one in given for row in one["rows"]}
 
 
 def thesis_rows(groups: Iterable[str]) -> list[Row]:

@@ -22,10 +22,8 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +35,7 @@ from models.condition import FIXED
 from models.errors import BushingNoiseError, ParameterError
 from models.rig import LawSpec, Rig
 from models.rig_file import load_material_rig, rig_text
+from noise.base import packaged_toml
 from noise.base.files import atomic
 from noise.diagnosis.fit.fit import pattern_search
 from noise.thesis.runs import LONG, SHORT
@@ -44,9 +43,7 @@ from sim.analysis.critical_speeds import falls_below, motion_from_rest
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import LEAST_SUDDEN, motion_slips
 
-_DATA: dict[str, Any] = tomllib.loads(
-    (resources.files("noise.training") / "calibrate.toml").read_text("utf-8")
-)
+_DATA = packaged_toml("noise.training", "calibrate.toml")
 UNKNOWNS: Mapping[str, Mapping[str, Any]] = _DATA["unknowns"]
 _SUPPORTS = {"long": LONG, "short": SHORT, "fixed": FIXED}
 

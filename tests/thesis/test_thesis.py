@@ -263,6 +263,14 @@ def test_an_ending_that_no_table_has_is_refused_before_the_work(name, tmp_path, 
     assert ".md" in capsys.readouterr().err
 
 
+def test_a_folder_in_the_place_of_the_page_is_refused_before_the_work(tmp_path, capsys):
+    (tmp_path / "t.md").mkdir()
+    assert main(["thesis", "--out", str(tmp_path / "t.md")]) == 2
+    said = capsys.readouterr().err
+    assert "is a folder" in said
+    assert "preparing" not in said
+
+
 # Critical speeds and damping
 
 

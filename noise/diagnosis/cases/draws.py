@@ -7,9 +7,7 @@ learnt a hundred such curves has learnt the effect rather than a formula of it.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Callable, Mapping
-from importlib import resources
 from typing import Any
 
 import numpy as np
@@ -17,7 +15,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.signal import butter, lfilter
 
 from models.rig import LawSpec
-from noise.base import log_uniform
+from noise.base import log_uniform, packaged_toml
 from noise.base.arrays import Array
 from sim.effects import EFFECTS
 
@@ -298,7 +296,7 @@ def telegraph(rng: Rng, n: int, rate: float, often: float) -> Array:
     return np.where(np.cumsum(rng.random(n) < often / rate) % 2 == int(rng.integers(2)), 1.0, -1.0)
 
 
-_OWN_FORMS = tomllib.loads((resources.files(__package__) / "own_forms.toml").read_text("utf-8"))
+_OWN_FORMS = packaged_toml("noise.diagnosis.cases", "own_forms.toml")
 
 _ON_CHANNELS = ("channel_delay", "clipping", "gain_error", "mount_resonance")
 """Effects that have a share of each channel as well."""

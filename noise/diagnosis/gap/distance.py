@@ -34,6 +34,7 @@ from features.kernels.levels import band_power
 from features.kernels.spectra import welch
 from models.recording import Recording
 from noise.base.arrays import Array
+from noise.diagnosis.evidence.channel_summary import USABLE
 
 KINDS = ("torque", "acceleration", "pressure")
 """Kinds of channel that have a signature; of each the first channel counts."""
@@ -42,9 +43,6 @@ _PER_OCTAVE = 6
 _LOWEST, _HIGHEST = 50.0, 8000.0
 _RESOLUTION = 12.0
 """Of the spectra [Hz]; the lowest bands share their lines with their neighbours; assumed."""
-
-_USABLE = 0.42
-"""Share of the sampling rate up to which a band counts; as of `channel_summary`."""
 
 _SENSOR_NOISE = {"torque": 0.025, "acceleration": 0.1, "pressure": 4e-3}
 """White noise from 0 to 15 kHz, rms in the channel's unit, five times that of good sensors: added
@@ -156,7 +154,7 @@ def joined_signature(parts: Mapping[str, Array]) -> Array:
 def _levels(signal: Array, rate: float, kind: str) -> Array:
     spectrum = welch(signal - signal.mean(), rate, _RESOLUTION)
     power = band_power(spectrum, EDGES[:-1], EDGES[1:])
-    power[EDGES[1:] > _USABLE * rate] = np.nan
+    power[EDGES[1:] > USABLE * rate] = np.nan
     lines = np.diff(EDGES) + _CORNER * np.diff(np.log(EDGES))
     noise = _SENSOR_NOISE[kind] ** 2 * lines / _NOISE_BAND
     return np.asarray(0.5 * np.log(power + noise))
@@ -194,7 +192,7 @@ def block_signatures(recording: Recording) -> Array | None:
     Returns
     -------
     ndarray, shape (n_blocks, n_values), or None
-        None where the recording is too short for three As of `signature`.
+        None where the recording is too short for three; as of `signature`.
     """
     count = min(int(recording.duration / _BLOCK + 1e-6), _MOST_BLOCKS)
     if count < _FEWEST_BLOCKS:
@@ -333,7 +331,7 @@ def reference(
     Parameters
     ----------
     signatures : sequence of ndarray, shape (n_values,)
-        One a repeat As of `noise.diagnosis.gap.distance.signature`.
+        One per repeat, as of `noise.diagnosis.gap.distance.signature`.
     least : float
         Relative scatter of whole spectra that is known to be there whatever these repeats say; 0
         where they scatter as they should. It is for p-values: in a distance, 3 % is the least.
@@ -370,7 +368,7 @@ def gap_of(
     Parameters
     ----------
     signatures : sequence of ndarray, shape (n_values,)
-        One a recording As of `noise.diagnosis.gap.distance.signature`.
+        One per recording, as of `noise.diagnosis.gap.distance.signature`.
     references : sequence of Reference
         One a recording; recordings of one condition share one.
     seed, n_draws : int

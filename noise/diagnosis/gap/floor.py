@@ -47,7 +47,7 @@ def channel_distances(signatures: Sequence[Array], references: Sequence[Referenc
     Parameters
     ----------
     signatures : sequence of ndarray, shape (n_values,)
-        One a recording As of `noise.diagnosis.gap.distance.signature`.
+        One per recording, as of `noise.diagnosis.gap.distance.signature`.
     references : sequence of Reference
         One a recording.
 
@@ -182,7 +182,7 @@ def references_of(
     ----------
     recordings : sequence of Recording
     signatures : sequence of ndarray, shape (n_values,)
-        Of the recordings As of `noise.diagnosis.gap.distance.signature`.
+        Of the recordings, as of `noise.diagnosis.gap.distance.signature`.
     repeats, least, seed
         As of `repeat_gap`.
 

@@ -9,11 +9,10 @@ which number a word stands for; the number always follows the word.
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import dataclass
-from importlib import resources
 
 from models.errors import ParameterError
+from noise.base import packaged_toml
 from noise.diagnosis.outcome import LARGEST_GAP, SURE, Diagnosis, EffectFinding
 from sim.effects import EFFECTS
 
@@ -87,9 +86,7 @@ class Cause:
 
 CAUSES = {
     name: Cause(*words)
-    for name, words in tomllib.loads(
-        (resources.files(__package__) / "causes.toml").read_text("utf-8")
-    ).items()
+    for name, words in packaged_toml("noise.diagnosis.text", "causes.toml").items()
 }
 """Every shipped effect, and what a verdict can be beside effects, by name."""
 

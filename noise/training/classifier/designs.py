@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from importlib import resources
 
 import numpy as np
 
 from models.bench import Microphone, Plate
 from models.rig import Fit, LawSpec, Rig
 from models.rig_file import load_material_rig
+from noise.base import packaged_toml
 from noise.diagnosis.cases.draws import draw_numbers
 from noise.training.draws import log_uniform
 from sim.effects import EFFECTS
@@ -43,7 +42,7 @@ _SUPPORTS = (2214.0, 3745.0, math.inf)
 """Of the thesis's rig [Nm/rad]."""
 
 
-_EXTRAS = tomllib.loads((resources.files(__package__) / "extras.toml").read_text("utf-8"))
+_EXTRAS = packaged_toml("noise.training.classifier", "extras.toml")
 
 _SHARE_OF_DEAR = 0.02
 

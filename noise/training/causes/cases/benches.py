@@ -16,17 +16,15 @@ How the shaft comes to its speed within a recording: from rest, run up, or swing
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from models.rig import LawSpec
 from models.sensors import Sensor, Sensors
-from noise.base import log_uniform
+from noise.base import log_uniform, packaged_toml
 from noise.base.arrays import Array
 from noise.diagnosis.cases.draws import draw_numbers, drawn_effect
 from sim.acquisition import THESIS_CONVERTER, Acquisition
@@ -112,7 +110,7 @@ STARTS: Mapping[str, Callable[[float, np.random.Generator], Course]] = {
 end as a function of time."""
 
 
-_TABLE = tomllib.loads((resources.files(__package__) / "laws.toml").read_text("utf-8"))
+_TABLE = packaged_toml("noise.training.causes.cases", "laws.toml")
 
 MATERIALS: Mapping[str, float] = _TABLE["materials"]
 """Shipped ones with laws of their own, and how often each is met."""

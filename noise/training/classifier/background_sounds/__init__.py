@@ -7,22 +7,21 @@ a creak (crackle, typing, croaks), as harmonic as a squawk (hum, engines, horns)
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
-from importlib import resources
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from noise.base import packaged_toml
 from noise.training.classifier.background_sounds.synthesis import synthesised
 from noise.training.draws import log_uniform, low_pass
 
 __all__ = ["BACKGROUND_SOUNDS", "WEIGHTS", "background_sound"]
 
-_TABLE = resources.files(__package__) / "background_sounds.toml"
-
-BACKGROUND_SOUNDS: Mapping[str, Mapping[str, Any]] = tomllib.loads(_TABLE.read_text("utf-8"))
+BACKGROUND_SOUNDS: Mapping[str, Mapping[str, Any]] = packaged_toml(
+    __name__, "background_sounds.toml"
+)
 """Rows by name; ``heard`` says whether in a car, at a rig."""
 
 WEIGHTS = {name: float(row["weight"]) for name, row in BACKGROUND_SOUNDS.items()}

@@ -16,16 +16,15 @@ stand out are a squawk, others a creak; those between are ambiguous.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
+from noise.base import packaged_toml
 from noise.training.classifier.friction_sources.limit_cycle import (
     ENVELOPE_RATE,
     amplitudes,
@@ -39,9 +38,9 @@ from noise.training.classifier.friction_sources.modal_body import (
 from noise.training.classifier.friction_sources.slider import Slips, random_drive, slide
 from noise.training.draws import coloured_noise, log_uniform, low_pass, wandering
 
-_TABLE = resources.files(__package__) / "friction_sounds.toml"
-
-FRICTION_SOUNDS: Mapping[str, Mapping[str, Any]] = tomllib.loads(_TABLE.read_text("utf-8"))
+FRICTION_SOUNDS: Mapping[str, Mapping[str, Any]] = packaged_toml(
+    "noise.training.classifier.friction_sources", "friction_sounds.toml"
+)
 """Rows by name."""
 
 _CONTACT = 0.05

@@ -9,11 +9,9 @@ of ``unknown_effects.toml``.
 
 from __future__ import annotations
 
-import tomllib
-from importlib import resources
-
 import numpy as np
 
+from noise.base import packaged_toml
 from noise.training.causes.cases.unknown_effects import mechanics, recorders
 from noise.training.causes.cases.variants import made
 from sim.effects.effect import Effect, Stage
@@ -21,9 +19,7 @@ from sim.parameters import Parameter
 
 __all__ = ["UNKNOWN_EFFECTS", "draw_unknown_effect"]
 
-UNKNOWN_EFFECTS = tomllib.loads(
-    (resources.files(__package__) / "unknown_effects.toml").read_text("utf-8")
-)
+UNKNOWN_EFFECTS = packaged_toml(__name__, "unknown_effects.toml")
 """Rows by name."""
 
 _STRENGTH = {"strength": Parameter(1.0, "", 0.0, 1.0, "nothing at 0")}

@@ -8,15 +8,14 @@ to the diagnosis: their parameters are drawn, nobody sets them. Each is a row of
 from __future__ import annotations
 
 import inspect
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from importlib import resources
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
+from noise.base import packaged_toml
 from noise.diagnosis.cases.draws import draw_numbers
 from noise.training.causes.cases.variants import chain, contact, drive, sensors
 from sim.effects import EFFECTS
@@ -28,7 +27,7 @@ __all__ = ["VARIANTS", "Recipe", "draw_variant", "made"]
 Recipe = Callable[[float, np.random.Generator], Effect]
 """Of a strength from 0 to 1, and a generator."""
 
-_TABLE = tomllib.loads((resources.files(__package__) / "variants.toml").read_text("utf-8"))
+_TABLE = packaged_toml(__name__, "variants.toml")
 _MODULES = (chain, contact, drive, sensors)
 
 
