@@ -21,7 +21,7 @@ from noise.app.requests import number
 from noise.base.files import locked
 from noise.base.labels import LABELS
 from noise.batch.journal import JournalReader
-from noise.batch.work import Done, Job
+from noise.batch.work import Job, JobResult
 from noise.labels.corrections import common_time, place, track, version, with_corrected_rows
 from noise.labels.human_rows import human_rows
 from noise.labels.labelling import Labelling
@@ -590,7 +590,7 @@ def _order(row: Row) -> tuple[int, float]:
     )
 
 
-def _rows(done: Done) -> list[Row]:
+def _rows(done: JobResult) -> list[Row]:
     return [dict(zip(COLUMNS, row, strict=True)) for row in done.rows]
 
 

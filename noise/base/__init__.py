@@ -1,4 +1,4 @@
-"""Foundations of every part of the program: whole files, tables, models, trees, progress."""
+"""Shared foundations: file output, tables, model files, decision trees, processes, progress."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ if TYPE_CHECKING:
     import numpy as np
 
 SURE_90 = 1.645
-"""So many standard deviations of a normal distribution to either side hold 90 % [-]."""
+"""Half-width of the central 90 % interval of a normal distribution, in standard deviations [-]."""
 
 
 def log_uniform(low: float, high: float, rng: np.random.Generator) -> float:
-    """Draw evenly in the logarithm.
+    """Draw a number from a log-uniform distribution.
 
     Parameters
     ----------
     low, high : float
-        Limits, above 0 [any one unit].
+        Bounds, above 0 [any unit].
     rng : numpy.random.Generator
 
     Returns
     -------
     float
-        [unit of the limits]
+        [unit of the bounds]
 
     Examples
     --------
@@ -38,14 +38,14 @@ def log_uniform(low: float, high: float, rng: np.random.Generator) -> float:
 
 
 def packaged_toml(package: str, name: str) -> dict[str, Any]:
-    """Read a TOML file that comes with a package.
+    """Read a TOML file inside a package.
 
     Parameters
     ----------
     package : str
-        Its full name.
+        Full name of the package.
     name : str
-        Of the file.
+        Name of the file.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Types of arrays that most signatures have."""
+"""Type alias of the arrays in most signatures."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,10 +1,9 @@
-"""CSV tables in the form that programs and spreadsheets give them, and written back in that form.
+"""Reader and writer of CSV tables that detect and preserve the dialect of spreadsheets.
 
-Excel in a language with decimal commas writes semicolons between cells and a mark of UTF-8 first,
-its "Unicode text" is UTF-16 with tabs, older versions write a code page; people add comments and
-``sep=;`` above the names of the columns. All of this is read. A table that is written over another
-keeps its separator, decimal sign and ends of lines. A text that a spreadsheet would take for a
-formula has an apostrophe before it.
+Excel in a locale with decimal commas writes semicolons and a UTF-8 byte order mark, its "Unicode
+text" is UTF-16 with tabs, and older versions use a code page. Users add comments and ``sep=;``
+above the header. All of this is read. A table that replaces another keeps its separator, decimal
+sign and line ends. Text that a spreadsheet would evaluate as a formula gets an apostrophe.
 """
 
 from __future__ import annotations
@@ -20,30 +19,30 @@ from itertools import islice
 from typing import NamedTuple, TextIO
 
 Cell = bool | int | float | str | None
-"""A value as every format of a table can hold it."""
+"""Value of a cell that every table format can store."""
 
 _SEPARATORS = ",;\t|"
 _SEPARATOR_LINE = re.compile(r'"?sep=(.)', re.IGNORECASE)
 _FORMULA = re.compile(r"'*[=+\-@\t\r]")
-"""How a text begins that a spreadsheet computes, or that was kept from being one."""
+"""Start of a formula, or of text that an apostrophe protects from being one."""
 
 _NUMBER = re.compile(r"-?\d+(?:([.,])\d+)?(?:[eE][+-]?\d+)?")
-_ROWS_LOOKED_AT = 1000
-"""Rows by which the decimal sign of a table is found."""
+_DECIMAL_ROWS = 1000
+"""Rows from which the decimal sign of a table is detected."""
 
 _SUPPORT, _FIXED = "support_stiffness", "fixed"
-"""How the columns begin whose infinity is the bolted clamp, and what it is called."""
+"""Prefix of the columns in which infinity means the bolted clamp, and the word for it."""
 
 
 class CsvForm(NamedTuple):
-    """The form of a CSV table; by default as programs write it.
+    """Dialect of a CSV table.
 
     Parameters
     ----------
     encoding : str
-        In which it is written.
+        Encoding for writing.
     separator, decimal, line_end : str
-        Between two cells, between whole and parts of a number, and after each row.
+        Cell separator, decimal sign and line terminator.
     """
 
     encoding: str = "utf-8"
@@ -53,14 +52,14 @@ class CsvForm(NamedTuple):
 
 
 def read_csv(content: bytes) -> tuple[CsvForm, Iterator[list[str]]]:
-    r"""Return the form of a CSV table, and names of columns and rows as texts.
+    r"""Return the dialect of a CSV table and its rows of text, header first.
 
     Raises
     ------
     ValueError
-        It is no text.
+        The content is not text.
     csv.Error
-        While rows are read: quotes do not fit together, so that cells would be taken for others.
+        While iterating: quotes are unbalanced, so that cells would be mixed up.
 
     Examples
     --------
@@ -80,18 +79,19 @@ def read_csv(content: bytes) -> tuple[CsvForm, Iterator[list[str]]]:
         at += len(line)
     head = text[at:].partition("\n")[0]
     separator = max(separators, key=lambda one: len(next(csv.reader([head], delimiter=one), ())))
-    looked_at = islice(csv.reader(_file(text, at), delimiter=separator), 1, _ROWS_LOOKED_AT)
-    signs = [sign for row in looked_at for cell in row if (sign := decimal_sign(cell))]
+    sample = islice(csv.reader(_file(text, at), delimiter=separator), 1, _DECIMAL_ROWS)
+    signs = [sign for row in sample for cell in row if (sign := decimal_sign(cell))]
     commas = 2 * signs.count(",") - len(signs)
     decimal = "," if commas > 0 or (not commas and separator == ";") else "."
-    kept = separator if separator in _SEPARATORS else ","  # any other needs its line ``sep=``
-    form = CsvForm(encoding, kept, decimal, "\r\n" if "\r\n" in text else "\n")
+    # Other separators are read only below a line ``sep=``, which is not written.
+    writable = separator if separator in _SEPARATORS else ","
+    form = CsvForm(encoding, writable, decimal, "\r\n" if "\r\n" in text else "\n")
     rows = csv.reader(_file(text, at), delimiter=separator, strict=True)
     return form, ([_without_apostrophe(cell) for cell in row] for row in rows)
 
 
 def _decoded(content: bytes) -> tuple[str, str]:
-    """Text, and the encoding in which it is written back: a code page may lack a letter."""
+    """Return the text and the encoding for writing; a code page is replaced by UTF-8."""
     if content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
         return content.decode("utf-16"), "utf-16"
     marked = content.startswith(codecs.BOM_UTF8)
@@ -102,10 +102,12 @@ def _decoded(content: bytes) -> tuple[str, str]:
 
 
 def _file(text: str, at: int) -> io.StringIO:
+    """Return the text from a position on as a file for the csv module."""
     return io.StringIO(text[at:], newline="")
 
 
 def _without_apostrophe(cell: str) -> str:
+    """Return a cell without the apostrophe that protects it from being a formula."""
     return cell[1:] if cell[:1] == "'" and _FORMULA.match(cell) else cell
 
 
@@ -113,9 +115,9 @@ def write_csv(
     file: TextIO,
     columns: Sequence[str],
     rows: Iterable[Sequence[Cell]],
-    form: CsvForm = CsvForm(),  # noqa: B008  # it cannot be changed
+    form: CsvForm = CsvForm(),  # noqa: B008  # immutable
 ) -> None:
-    """Write a table, by default as programs do.
+    """Write a table in a given dialect.
 
     Examples
     --------
@@ -127,11 +129,11 @@ def write_csv(
     writer = csv.writer(file, delimiter=form.separator, lineterminator=form.line_end)
     writer.writerow(columns)
     for row in rows:
-        writer.writerow([_written(*cell, form.decimal) for cell in zip(columns, row, strict=True)])
+        writer.writerow([_csv_cell(*cell, form.decimal) for cell in zip(columns, row, strict=True)])
 
 
 def decimal_sign(cell: str) -> str | None:
-    """Return what stands between whole and parts of a number; None where a cell is none, or whole.
+    """Return the decimal sign of a cell; None for integers and text.
 
     Examples
     --------
@@ -143,7 +145,7 @@ def decimal_sign(cell: str) -> str | None:
 
 
 def finite_or_fixed(column: str, value: Cell) -> Cell:
-    """Return what people read in a cell; an infinite number is none, but for the bolted clamp.
+    """Return the cell value for people: infinity becomes ``fixed`` for a support, else None.
 
     Examples
     --------
@@ -155,7 +157,8 @@ def finite_or_fixed(column: str, value: Cell) -> Cell:
     return value
 
 
-def _written(column: str, value: Cell, decimal: str) -> Cell:
+def _csv_cell(column: str, value: Cell, decimal: str) -> Cell:
+    """Return a value as it is written into a CSV cell."""
     value = finite_or_fixed(column, value)
     if isinstance(value, str):
         return f"'{value}" if _FORMULA.match(value) and not _NUMBER.fullmatch(value) else value

@@ -1,13 +1,12 @@
-"""Files as results are written: whole or not at all, by one process at a time, one a recording.
+"""Atomic file output, file locks, checks of output paths, and output names per recording.
 
-A batch that is killed half-way must not leave half a file that a later run, or another program,
-takes for a result. So every output is written under another name beside its target, on the same
-volume, and moved over it in one step of the file system. The passing name starts with a dot, which
-folder walks leave out, and ends as the target does, because many writers choose their format by
-that ending. A target that cannot be written is refused before the work whose result it is to hold.
+A killed batch must not leave half a file that a later run, or another program, takes for a result.
+So every output is written to a temporary file in the same folder and then renamed. The temporary
+name starts with a dot, which folder searches skip, and has the suffix of the target, because many
+writers choose their format by it. A target that cannot be written is refused before the work.
 
-A process that is killed while it writes cannot remove what it wrote; who writes into the folder a
-day later does. A lock is freed by the system when a process ends, so none is left behind.
+Temporary files of killed processes are removed by the next process that writes into the folder a
+day later. The operating system releases locks when a process ends.
 """
 
 from __future__ import annotations
@@ -22,29 +21,29 @@ from pathlib import Path, PurePosixPath
 
 from models.errors import ParameterError
 
-_FORGOTTEN = 86_400.0
-"""Age of a file that nobody goes on writing [s]."""
+_STALE = 86_400.0
+"""Age from which on a temporary file is abandoned [s]."""
 
 
 @contextmanager
 def atomic(target: str | Path) -> Iterator[Path]:
-    """Give a temporary path to write to, which becomes `target` when the block ends well.
+    """Write a file atomically: yield a temporary path and rename it to `target` on success.
 
     Parameters
     ----------
     target : str or Path
-        The file to write; parent folders are made, an older file is replaced. Of a link, what it
-        leads to is replaced, and the link stays.
+        File to write; parent folders are made and an existing file is replaced. A symbolic link
+        is kept and the file that it points to is replaced.
 
     Yields
     ------
     Path
-        Where to write. On an error, or an interrupt, it is removed and `target` is left as it was.
+        Temporary path. After an exception it is removed and `target` is unchanged.
 
     Raises
     ------
     ParameterError
-        The file cannot be written there; every `OSError` of the block is taken to say so.
+        The file cannot be written; also for every `OSError` inside the block.
 
     Examples
     --------
@@ -56,97 +55,101 @@ def atomic(target: str | Path) -> Iterator[Path]:
     'speed_rad_s'
     """
     target = Path(target)
-    place = _behind_links(target)
+    place = _link_target(target)
     temporary = place.parent / f".{uuid.uuid4().hex}.part{target.suffix}"
     try:
         if place.is_dir():
             raise ParameterError(f"{target}: is a folder; name a file to write")
         _refuse_device(place, target)
         place.parent.mkdir(parents=True, exist_ok=True)
-        _tidy(place.parent)
+        _remove_stale(place.parent)
         yield temporary
         temporary.replace(place)
     except OSError as error:
         reason = error.strerror or error
         raise ParameterError(f"{target}: cannot be written ({reason})") from error
     finally:
-        with suppress(OSError):  # the folder cannot be used, as the error on its way says
+        with suppress(OSError):  # the original error is already on its way
             temporary.unlink(missing_ok=True)
 
 
 def check_target(path: Path, option: str = "--out") -> None:
-    """Refuse a file, or folder, that cannot be made because of what stands above it.
+    """Refuse an output path that cannot be created.
 
     Parameters
     ----------
     path : Path
+        File or folder to create.
     option : str
-        Of the command line, that names it.
+        Command-line option that names it, for messages.
 
     Raises
     ------
     ParameterError
-        The nearest folder above `path`, or above what it links to, is none or may not be written
-        to; or `path` is a pipe, a device or a link in a circle.
+        The nearest existing parent of `path` (links resolved) is no folder or is not writable; or
+        `path` is a pipe, a device or a circular link.
 
     Examples
     --------
     >>> check_target(Path("new") / "folder" / "table.csv")
     """
     _refuse_device(path, f"{option} {path}")
-    place = _behind_links(path, option)
+    place = _link_target(path, option)
     try:
-        above = next(one for one in place.absolute().parents if one.exists() or one.is_symlink())
+        parent = next(one for one in place.absolute().parents if one.exists() or one.is_symlink())
     except OSError as error:
         raise ParameterError(f"{option} {path}: cannot be written ({error.strerror})") from None
-    if not above.is_dir():
-        kind = "is a file, not a folder" if above.exists() else "links to nothing"
-        raise ParameterError(f"{option} {path}: {above} {kind}")
+    if not parent.is_dir():
+        kind = "is a file, not a folder" if parent.exists() else "links to nothing"
+        raise ParameterError(f"{option} {path}: {parent} {kind}")
     from tempfile import TemporaryFile
 
     try:
-        with TemporaryFile(dir=above):  # what counts is not the permission but whether it works
+        with TemporaryFile(dir=parent):  # permissions alone do not tell, as on network drives
             pass
     except OSError:
-        raise ParameterError(f"{option} {path}: the folder {above} may not be written to") from None
+        raise ParameterError(
+            f"{option} {path}: the folder {parent} may not be written to"
+        ) from None
 
 
-def _refuse_device(place: Path, said: object) -> None:
-    with suppress(OSError):  # what cannot be looked at is refused by who writes it
+def _refuse_device(place: Path, label: object) -> None:
+    """Refuse a pipe or a device; `label` names the path in the message."""
+    with suppress(OSError):  # writing will raise the same error
         if place.exists() and not (place.is_file() or place.is_dir()):
-            raise ParameterError(f"{said}: is a pipe or a device; name a file to write")
+            raise ParameterError(f"{label}: is a pipe or a device; name a file to write")
 
 
-def _behind_links(target: Path, option: str = "") -> Path:
-    """Return the file that a link leads to, which need not be there yet."""
+def _link_target(target: Path, option: str = "") -> Path:
+    """Return the path behind a symbolic link; it need not exist."""
     if not target.is_symlink():
         return target
     try:
         return target.resolve()
     except (OSError, RuntimeError):
-        said = f"{option} {target}".lstrip()
-        raise ParameterError(f"{said}: is a link that leads nowhere") from None
+        label = f"{option} {target}".lstrip()
+        raise ParameterError(f"{label}: is a link that leads nowhere") from None
 
 
 @cache
-def _tidy(folder: Path) -> None:
-    """Remove what processes that were killed left in a folder."""
-    with suppress(OSError):  # a folder that may be written to but not listed
-        for path in folder.glob(f".{'[0-9a-f]' * 32}.part*"):  # as `atomic` names them
-            if time.time() - path.stat().st_mtime > _FORGOTTEN:
+def _remove_stale(folder: Path) -> None:
+    """Remove the temporary files that killed processes left in a folder."""
+    with suppress(OSError):  # a folder may be writable but not readable
+        for path in folder.glob(f".{'[0-9a-f]' * 32}.part*"):  # names that `atomic` gives
+            if time.time() - path.stat().st_mtime > _STALE:
                 path.unlink()
 
 
 @contextmanager
 def locked(target: Path, *, wait: bool = True) -> Iterator[None]:
-    """Keep others who take the same lock from a file until the block ends.
+    """Hold an exclusive lock on a file inside the block.
 
     Parameters
     ----------
     target : Path
-        The file; it need not exist. The lock is a hidden file beside it, which goes with the lock.
+        File to lock; it need not exist. The lock is a temporary hidden file beside it.
     wait : bool
-        Whether to wait for another who has it.
+        Whether to wait while another process holds the lock.
 
     Yields
     ------
@@ -155,7 +158,7 @@ def locked(target: Path, *, wait: bool = True) -> Iterator[None]:
     Raises
     ------
     ParameterError
-        Nothing can be written there, or another has the lock and is not waited for.
+        The folder is not writable, or another process holds the lock and `wait` is False.
 
     Examples
     --------
@@ -163,8 +166,8 @@ def locked(target: Path, *, wait: bool = True) -> Iterator[None]:
     >>> from pathlib import Path
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     with locked(Path(folder) / "labels.csv"):
-    ...         there = [path.name for path in Path(folder).iterdir()]
-    ...     there, list(Path(folder).iterdir())
+    ...         names = [path.name for path in Path(folder).iterdir()]
+    ...     names, list(Path(folder).iterdir())
     (['.labels.csv.lock'], [])
     """
     from filelock import FileLock, Timeout
@@ -183,32 +186,36 @@ def locked(target: Path, *, wait: bool = True) -> Iterator[None]:
     try:
         yield
     finally:
-        with suppress(OSError):  # an open file cannot be removed on Windows
-            path.unlink()  # while it is held; who waited for it makes another
+        with suppress(OSError):  # Windows does not remove open files
+            path.unlink()  # before the release: a waiting process makes its own file
         lock.release()
 
 
 def export_paths(
     target: Path, files: Sequence[str], endings: Sequence[str], option: str
 ) -> dict[str, Path]:
-    """Return where the file of each recording goes.
+    """Return the output path of each recording.
 
     Parameters
     ----------
     target : Path
-        A folder, in which they lie as the recordings do in theirs; or a file of one of the endings,
-        for one recording.
+        Folder, in which the files have the relative paths of the recordings; or, for a single
+        recording, a file with one of the endings.
     files : sequence of str
-        Recordings, as tables call them.
+        Names of the recordings in tables.
     endings : sequence of str
-        That a file may have; in a folder, files have the first.
+        Accepted suffixes; the first is used for files in a folder.
     option : str
-        Of the command line, that names the target.
+        Command-line option that names the target, for messages.
+
+    Returns
+    -------
+    dict of str to Path
 
     Raises
     ------
     ParameterError
-        Two recordings have the same name, or there are several for one file.
+        Two recordings have the same name, or the target is a file for several recordings.
 
     Examples
     --------
@@ -224,19 +231,19 @@ def export_paths(
                 "name a folder"
             )
         return dict.fromkeys(files, target)
-    times = Counter(files)
+    counts = Counter(files)
     for file in files:
-        if times[file] > 1:
+        if counts[file] > 1:
             raise ParameterError(
                 f"{option} {target}: two recordings are called {file}; name the folder that "
                 "holds them both"
             )
         if PurePosixPath(file).is_absolute() or ".." in PurePosixPath(file).parts:
             raise ParameterError(f"{option} {target}: {file} lies outside of the folder named")
-    # Recordings that differ in the ending alone keep it.
-    short = [PurePosixPath(file).with_suffix(endings[0]) for file in files]
-    alike = Counter(short)
+    # Recordings that differ only in their suffix keep it: run07.wav.txt and run07.flac.txt.
+    names = [PurePosixPath(file).with_suffix(endings[0]) for file in files]
+    name_counts = Counter(names)
     return {
-        file: target / (name if alike[name] == 1 else f"{file}{endings[0]}")
-        for file, name in zip(files, short, strict=True)
+        file: target / (name if name_counts[name] == 1 else f"{file}{endings[0]}")
+        for file, name in zip(files, names, strict=True)
     }

@@ -1,7 +1,7 @@
-"""Labels: their names in the one order that all tables and models have, and how they are shown.
+"""Names, order, colours, patterns and abbreviations of the labels.
 
-A label is shown by a colour that no eye takes for another's, by a pattern and by two letters: a
-projector washes colours out, a printer drops them, and one man in twelve does not see them.
+A label has a colour, a pattern and an abbreviation, because projectors wash colours out, printers
+drop them, and one man in twelve is colour-blind.
 """
 
 from __future__ import annotations
@@ -9,31 +9,31 @@ from __future__ import annotations
 from typing import NamedTuple
 
 LABELS = ("creak", "squawk", "squeal", "none", "unknown")
-"""The labels, in the order of all tables of probabilities."""
+"""Labels in the order of all probability tables."""
 
 PERSISTS = "persists"
-"""What a map shows where a vibration goes on, but none breaks out from rest."""
+"""Map label of points where a running vibration persists but none starts from rest."""
 
 MAP_LABELS = (*LABELS, PERSISTS)
-"""What maps of screened points show."""
+"""Labels on the maps of a screening."""
 
 NAMED = LABELS[:3]
-"""Those that are the name of a noise."""
+"""Labels that name a noise."""
 
 
 class Look(NamedTuple):
-    """How one label is shown.
+    """Colours, pattern and abbreviation of a label.
 
     Parameters
     ----------
     colour : str
-        Of an area.
+        Fill colour.
     line : str
-        Of its pattern and of its outline.
+        Colour of pattern and outline.
     pattern : str
         ``stripes``, ``dots``, ``lines``, ``hatches``, ``plain`` or ``crosses``.
     mark : str
-        Where there is no room for the label itself.
+        Abbreviation.
     """
 
     colour: str
@@ -50,14 +50,14 @@ LABEL_LOOKS = {
     PERSISTS: Look("#f3dfae", "#7d5600", "hatches", "P"),
     "unknown": Look("#f6f6f6", "#55606b", "crosses", "?"),
 }
-"""By label, and of where a vibration only persists once started; vermilion and orange are those of
-Okabe and Ito (Color universal design, 2008)."""
+"""Look of each map label; vermilion and orange are those of Okabe and Ito (Color universal design,
+2008)."""
 
 DARK_LABELS = ("creak", "squeal")
-"""On whose colours text is white."""
+"""Labels whose colour needs white text."""
 
 LABEL_COLOURS = {label: LABEL_LOOKS[label].colour for label in LABELS}
-"""Of areas."""
+"""Fill colour of each label."""
 
 SURROUNDINGS = ("any", "car", "rig")
-"""Where recordings are made: what else may be heard there decides how sure a name has to be."""
+"""Places of recording: other sounds to expect there set the confidence needed to name a noise."""

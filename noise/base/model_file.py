@@ -1,7 +1,7 @@
-"""Model files: a header in JSON and plain arrays in one NPZ file, read and written whole.
+"""Model files: one NPZ file with a JSON header and plain arrays.
 
-Opening such a file runs no code. The header says what the model is (``kind``), in which form it is
-kept (``format``), the names of what it takes and gives, and under ``card`` how it was made.
+Opening such a file runs no code. The header holds the type of the model (``kind``), the version of
+the file format (``format``), the names of inputs and outputs, and the origin (``card``).
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ _Model = TypeVar("_Model")
 
 
 class ModelKind(NamedTuple):
-    """A kind of model, and the form in which this version of the program keeps it.
+    """Type of a model and version of its file format.
 
     Parameters
     ----------
     name : str
-        As messages call it.
+        Name in messages.
     version : int
-        Of the form.
+        Version of the file format.
     made_by : str
-        The command that makes such a file, whose name follows.
+        Command that writes such a file, without the file name.
     shipped : tuple of str
-        Package and name of the file that is used where none is named.
+        Package and file name of the default model.
     """
 
     name: str
@@ -51,11 +51,11 @@ class ModelKind(NamedTuple):
 
 
 _LONGEST_HEADER = 16 << 20
-"""As an array of characters; those that are shipped have a hundredth of it [byte]."""
+"""Largest header; those of the shipped models take a hundredth of it [byte]."""
 
 
 def save_model(path: str | Path, kind: ModelKind, header: Header, arrays: Arrays) -> None:
-    """Write a model, whole or not at all.
+    """Write a model file atomically.
 
     Parameters
     ----------
@@ -63,9 +63,9 @@ def save_model(path: str | Path, kind: ModelKind, header: Header, arrays: Arrays
         NPZ file; parent folders are made.
     kind : ModelKind
     header : mapping
-        What JSON can hold: names of what the model takes and gives, and its ``card``.
+        JSON values: names of inputs and outputs, and the ``card``.
     arrays : mapping of str to ndarray
-        Of any shape and unit, by any name but ``header``.
+        Arrays of any shape and unit under any name but ``header``.
 
     Raises
     ------
@@ -90,27 +90,27 @@ def save_model(path: str | Path, kind: ModelKind, header: Header, arrays: Arrays
 def load_model(
     path: str | Path | None, kind: ModelKind, build: Callable[[Header, Arrays], _Model]
 ) -> _Model:
-    """Load a model.
+    """Load a model file.
 
     Parameters
     ----------
     path : path-like or None
-        NPZ file that `save_model` wrote; None is the one that is shipped, which is read once.
+        NPZ file from `save_model`; None is the shipped model, which is cached.
     kind : ModelKind
     build : callable
-        ``build(header, arrays)`` returns the model; it raises ValueError where they do not fit
-        together, in words that go on from "its file".
+        ``build(header, arrays)`` returns the model. It raises ValueError for inconsistent
+        contents, with a message that follows the name of the file.
 
     Raises
     ------
     ParameterError
-        There is no such file, or it holds no model of this kind and form.
+        There is no such file, or it holds another kind of model or format.
     """
     return _shipped(kind, build) if path is None else _read(Path(path), kind, build)
 
 
 def model_digest(path: Path | None, kind: ModelKind) -> str:
-    """Return the SHA-256 of a model's file; None is the one that is shipped."""
+    """Return the SHA-256 of a model file; None is the shipped model."""
     package, name = kind.shipped
     shipped = resources.files(package) / "data" / name if path is None else path
     return hashlib.sha256(shipped.read_bytes()).hexdigest()
@@ -118,25 +118,27 @@ def model_digest(path: Path | None, kind: ModelKind) -> str:
 
 @cache
 def _shipped(kind: ModelKind, build: Callable[[Header, Arrays], _Model]) -> _Model:
+    """Load the shipped model of a kind."""
     package, name = kind.shipped
     with resources.as_file(resources.files(package) / "data" / name) as path:
         return _read(path, kind, build)
 
 
 def _read(path: Path, kind: ModelKind, build: Callable[[Header, Arrays], _Model]) -> _Model:
-    refused = f"{kind.name} {path}"
-    with reading(path, f"file that `{kind.made_by}` wrote", where=refused):
+    """Read a model file and check its kind and format."""
+    where = f"{kind.name} {path}"
+    with reading(path, f"file that `{kind.made_by}` wrote", where=where):
         arrays = read_arrays(path)
-        said = arrays.pop("header")
-        if said.nbytes > _LONGEST_HEADER:
-            raise ExcessError(f"holds a header of {said.nbytes / 1e6:.3g} MB")
-        header = parse_json(str(said))
+        text = arrays.pop("header")
+        if text.nbytes > _LONGEST_HEADER:
+            raise ExcessError(f"holds a header of {text.nbytes / 1e6:.3g} MB")
+        header = parse_json(str(text))
         other = header.get("kind", kind.name)
         if other != kind.name:
-            raise ParameterError(f"{refused}: is a {other}, expected a {kind.name}")
+            raise ParameterError(f"{where}: is a {other}, expected a {kind.name}")
         if header["format"] != kind.version:
             raise ParameterError(
-                f"{refused}: of format {header['format']!r}, expected {kind.version}; make it "
+                f"{where}: of format {header['format']!r}, expected {kind.version}; make it "
                 f"again with `{kind.made_by} {path.name}`"
             )
         return build(header, arrays)

@@ -1,9 +1,8 @@
-"""Processes of this machine that share work, any of which may die.
+"""Process pool that survives the death of its workers.
 
-Each is given one piece at a time, so that when one dies it is known which piece it was at. That one
-is tried once more, in a new process. Where no process can be started the work is done in this one.
-A process ends by itself when the one that it works for is gone, sees no interrupt that is meant for
-that one, and does not run the caller's script again.
+A worker gets one call at a time, so that the call at which it died is known. That call is tried
+once more in a new process. Where no process can be started, the work is done in this one. A worker exits
+when its parent is gone, ignores interrupts, and does not run the caller's script again.
 """
 
 from __future__ import annotations
@@ -24,23 +23,23 @@ from multiprocessing.util import Finalize
 from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
-Given = ParamSpec("Given")
+Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 
 _ATTEMPTS = 2
-_EVERY = 0.5
-"""Between looks at who a process works for [s]."""
+_POLL_INTERVAL = 0.5
+"""Interval at which a worker checks that its parent is alive [s]."""
 
 
 def spread_over_processes(
     perform: Callable[..., Result], calls: Sequence[tuple[Any, ...]], workers: int
 ) -> Generator[tuple[int, Result | None]]:
-    """Do calls in several processes.
+    """Run calls in several processes.
 
     Parameters
     ----------
     perform : callable
-        That can be sent to another process.
+        Function that can be pickled.
     calls : sequence of tuple
         Arguments of each call.
     workers : int
@@ -48,78 +47,71 @@ def spread_over_processes(
 
     Yields
     ------
-    int, object
-        Place of a call and what it returned, in the order in which calls are done; None where two
-        processes died at it.
+    index : int
+        Index of a call, in the order of completion.
+    result : object
+        Return value; None if two processes died at the call.
     """
-    waiting, died = deque(range(len(calls))), Counter[int]()
+    waiting, deaths = deque(range(len(calls))), Counter[int]()
     free = [Worker() for _ in range(min(workers, len(calls)))]
     busy: dict[Future[Result], tuple[Worker, int]] = {}
     try:
         while waiting or busy:
             while waiting and free:
-                worker, place = free.pop(), waiting.popleft()
-                busy[worker.submit(perform, *calls[place])] = worker, place
+                worker, index = free.pop(), waiting.popleft()
+                busy[worker.submit(perform, *calls[index])] = worker, index
             for future in wait(busy, return_when=FIRST_COMPLETED).done:
-                worker, place = busy[future]
+                worker, index = busy.pop(future)
+                free.append(worker)
                 try:
                     result: Result | None = future.result()
                 except BrokenProcessPool:
-                    began = worker.process is not None
+                    started = worker.process is not None
                     worker.end()
-                    worker = Worker()
-                    died[place] += 1
-                    if began and died[place] < _ATTEMPTS:
-                        waiting.appendleft(place)
-                    del busy[future]
-                    free.append(worker)
-                    if began and died[place] < _ATTEMPTS:
+                    free[-1] = Worker()
+                    deaths[index] += 1
+                    if started and deaths[index] < _ATTEMPTS:
+                        waiting.appendleft(index)
                         continue
-                    result = None if began else perform(*calls[place])
-                else:
-                    del busy[future]
-                    free.append(worker)
-                yield place, result
+                    result = None if started else perform(*calls[index])
+                yield index, result
     finally:
         for worker in (*free, *(worker for worker, _ in busy.values())):
             worker.end()
 
 
 class Worker:
-    """A process that does one call at a time, and can be ended at any moment."""
+    """Process that runs one call at a time and can be killed at any moment."""
 
     def __init__(self) -> None:
-        with interrupts_blocked(), _on_its_own():
-            # A new interpreter, not a copy of this one, whose threads a copy would lack.
+        with interrupts_blocked(), _independent_start():
+            # A new interpreter: a forked copy would lack the threads of this one.
             self._executor = ProcessPoolExecutor(
                 1, get_context("spawn"), initializer=_watch, initargs=(os.getpid(),)
             )
-            self._begun = self._submitted(os.getpid)
-        # A process that ends waits for those that it started.
+            self._process_id = self.submit(os.getpid)
+        # Without this the interpreter would wait at exit for a busy worker.
         self._at_exit = Finalize(None, self.end, exitpriority=10)
 
     @property
     def process(self) -> int | None:
-        """Its number; None where it could not be started."""
+        """Process identifier; None if the process could not be started."""
         try:
-            return self._begun.result()
+            return self._process_id.result()
         except BrokenProcessPool:
             return None
 
-    def submit(self, perform: Callable[..., Result], *given: object) -> Future[Result]:
-        """Have a call done; a process that died raises BrokenProcessPool as its result."""
-        return self._submitted(partial(perform, *given))
-
-    def _submitted(self, perform: Callable[[], Result]) -> Future[Result]:
+    def submit(self, perform: Callable[..., Result], *arguments: object) -> Future[Result]:
+        """Start a call; the future of a dead process raises BrokenProcessPool."""
         try:
-            return self._executor.submit(perform)
-        except (BrokenProcessPool, OSError) as error:  # it died before, or cannot be started
+            return self._executor.submit(perform, *arguments)
+        except (BrokenProcessPool, OSError) as error:  # it died, or cannot be started
             failed: Future[Result] = Future()
             failed.set_exception(BrokenProcessPool(str(error)))
             return failed
 
     def end(self) -> None:
-        """End the process, whatever it is at."""
+        """Kill the process."""
         self._at_exit.cancel()
         process = self.process
         self._executor.shutdown(wait=False, cancel_futures=True)
@@ -129,10 +121,10 @@ class Worker:
 
 
 @contextmanager
-def _on_its_own() -> Iterator[None]:
-    """Start a process within that does not run the caller's script, from any process.
+def _independent_start() -> Iterator[None]:
+    """Start processes that do not run the caller's script, even from a daemonic process.
 
-    One of a Dask cluster is not allowed to start others, as nobody would end them.
+    Python forbids daemonic processes, such as Dask workers, to have children.
     """
     script, config = sys.modules["__main__"], current_process()._config  # type: ignore[attr-defined]
     sys.modules["__main__"], daemon = ModuleType("__main__"), config.get("daemon", False)
@@ -145,27 +137,27 @@ def _on_its_own() -> Iterator[None]:
 
 @contextmanager
 def interrupts_blocked() -> Iterator[None]:
-    """Start processes within that never see an interrupt; this one sees it afterwards.
+    """Start processes that ignore interrupts; this process receives them after the block.
 
-    Ctrl-C in a terminal goes to all processes that were started there. While one is loaded it
-    cannot ignore interrupts yet, and would answer with an error of its own.
+    Ctrl-C in a terminal interrupts all processes started there. A process that is still loading
+    cannot ignore it and would print a traceback.
 
     Examples
     --------
     >>> with interrupts_blocked():
     ...     pass
     """
-    if not hasattr(signal, "pthread_sigmask"):  # as on Windows
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
         return
-    # Started by the first process, it would let interrupts in. Of what it cleans up after one that
-    # was killed nobody need read.
-    warned = os.environ.get("PYTHONWARNINGS")
+    # Starting the resource tracker unblocks interrupts, so it is started before. Its warnings about
+    # resources of killed workers are no use to anyone.
+    warning_filters = os.environ.get("PYTHONWARNINGS")
     os.environ["PYTHONWARNINGS"] = "ignore"
     resource_tracker.ensure_running()
     os.environ.pop("PYTHONWARNINGS")
-    if warned is not None:
-        os.environ["PYTHONWARNINGS"] = warned
+    if warning_filters is not None:
+        os.environ["PYTHONWARNINGS"] = warning_filters
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -173,45 +165,50 @@ def interrupts_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def ending_with_this(perform: Callable[Given, Result]) -> Callable[Given, Result]:
-    """Return work whose process ends when this one does, for the processes of joblib.
+def ending_with_parent(perform: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
+    """Wrap a function for joblib so that its worker processes exit with this process.
 
-    They wait for more work for minutes after whoever they work for was killed.
+    Workers of joblib otherwise wait for minutes after their parent was killed.
 
     Parameters
     ----------
     perform : callable
-        That can be sent to another process.
+        Function that can be pickled.
 
     Returns
     -------
     callable
-        Does the same, and in this process no more than that.
+        Function with the same result.
 
     Examples
     --------
-    >>> ending_with_this(max)(1, 2)
+    >>> ending_with_parent(max)(1, 2)
     2
     """
     return partial(_watched, os.getpid(), perform)
 
 
 def _watched(
-    starter: int, perform: Callable[Given, Result], *given: Given.args, **named: Given.kwargs
+    parent: int,
+    perform: Callable[Parameters, Result],
+    *args: Parameters.args,
+    **kwargs: Parameters.kwargs,
 ) -> Result:
-    if os.getppid() == starter:
-        _watch(starter)
-    return perform(*given, **named)
+    """Call a function, and in a child process watch the parent from now on."""
+    if os.getppid() == parent:
+        _watch(parent)
+    return perform(*args, **kwargs)
 
 
 @lru_cache(maxsize=1)
-def _watch(starter: int) -> None:
-    if os.name == "nt":  # there nobody else becomes the parent
+def _watch(parent: int) -> None:
+    """Start a thread that exits the process when its parent is gone."""
+    if os.name == "nt":  # orphans keep their parent's number there
         return
 
     def watch() -> None:
-        while os.getppid() == starter:
-            time.sleep(_EVERY)
+        while os.getppid() == parent:
+            time.sleep(_POLL_INTERVAL)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -1,12 +1,11 @@
-"""Messages and progress bar while the program works, all on standard error.
+"""Messages and progress bars on standard error.
 
-Standard output belongs to results. The bar is drawn on a terminal only; in a log file there is one
-line that says what is being done, and one a second for a program that reads them (`LINES`). Lines
-and bar do not tread on each other, and a standard error that is closed is no reason to stop.
+Standard output is for results. Bars are drawn on terminals only; otherwise one line announces the
+work, and with the environment variable `LINES` one line per second reports progress. A closed
+standard error does not stop the program.
 
-Names of files may hold anything. Bytes that are no UTF-8 cannot be written as text, characters that
-control a terminal can clear it, or write into its title, and those that turn the direction of
-writing make a name look like another; all are shown as a backslash and their code (`readable`).
+File names may contain anything: invalid UTF-8, characters that control a terminal or change the
+direction of writing. `readable` shows these as escape codes.
 """
 
 from __future__ import annotations
@@ -23,21 +22,21 @@ if TYPE_CHECKING:
     from tqdm import tqdm
 
 LINES = "BUSHING_NOISE_PROGRESS_LINES"
-"""Environment variable that asks for lines ``simulating: 120 of 7360`` where there is no bar."""
+"""Environment variable that turns on lines such as ``simulating: 120 of 7360`` without a bar."""
 
-_EVERY = 1.0
-"""Between two such lines [s]."""
+_LINE_INTERVAL = 1.0
+"""Time between two such lines [s]."""
 
 _LONG = 5.0
-"""From which on work is told how long it will take [s]; a bar always tells it."""
+"""Run time from which on these lines estimate the remaining time [s]."""
 
 _Item = TypeVar("_Item")
 
 
 def set_verbosity(*, quiet: bool = False, verbose: bool = False) -> None:
-    """Say less or more: with `quiet` errors alone, with `verbose` the time of each line.
+    """Set how much is printed: `quiet` prints errors only, `verbose` adds the elapsed time.
 
-    Quiet leaves out progress, notes, summaries and the names of what was written.
+    Quiet suppresses progress, notes, summaries and the names of written files.
 
     Examples
     --------
@@ -47,6 +46,8 @@ def set_verbosity(*, quiet: bool = False, verbose: bool = False) -> None:
 
 
 class _Verbosity:
+    """State of `set_verbosity`: whether to be quiet, and the start time for verbose lines [s]."""
+
     quiet = False
     since: float | None = None
 
@@ -57,14 +58,13 @@ _verbosity = _Verbosity()
 def say(text: str, *, error: bool = False) -> None:
     """Print one line on standard error.
 
-    Line breaks inside `text` become spaces, and what would control the terminal is shown as its
-    code.
+    Line breaks become spaces, and control characters are shown as escape codes.
 
     Parameters
     ----------
     text : str
     error : bool
-        Whether it is printed with ``--quiet``, too.
+        Whether to print it with ``--quiet`` as well.
 
     Examples
     --------
@@ -83,14 +83,14 @@ def say(text: str, *, error: bool = False) -> None:
         else:
             sys.stderr.write(line + "\n")
         sys.stderr.flush()
-    except OSError:  # nobody reads on; the work is worth going on with
+    except OSError:  # the reader is gone; the work goes on
         discard(sys.stderr)
 
 
 def report(*lines: object) -> None:
-    """Print what a call has written or found on standard output, a line each, unless quiet.
+    """Print written files or findings on standard output, one line each, unless quiet.
 
-    A result that standard output itself is to hold, as of a call without ``--out``, is printed.
+    Results that go to standard output in any case, as without ``--out``, are printed directly.
 
     Examples
     --------
@@ -99,22 +99,22 @@ def report(*lines: object) -> None:
     """
     if not _verbosity.quiet:
         for line in lines:
-            print(line)  # noqa: T201  # what a command prints
+            print(line)  # noqa: T201  # output of a command
 
 
 def discard(stream: TextIO) -> None:
-    """Point a stream that can no longer be written nowhere, so that nothing is left to fail."""
+    """Redirect a broken stream to the null device, so that later writes do not fail."""
     try:
         number = stream.fileno()
-    except OSError:  # of a notebook, or in memory
+    except OSError:  # a stream of a notebook, or in memory
         return
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, number)
-    os.close(nowhere)
+    null_device = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null_device, number)
+    os.close(null_device)
 
 
 def note(text: str) -> None:
-    """Print one line that the user should know of, though the work goes on.
+    """Print a warning in one line.
 
     Examples
     --------
@@ -124,7 +124,7 @@ def note(text: str) -> None:
 
 
 def counted(number: int, noun: str) -> str:
-    """Return a number with its noun, in the plural where it takes one.
+    """Return a number with its noun in singular or plural.
 
     Examples
     --------
@@ -137,22 +137,22 @@ def counted(number: int, noun: str) -> str:
 def track(
     items: Iterable[_Item], doing: str, *, total: int | None = None, unit: str = "recording"
 ) -> Iterator[_Item]:
-    """Pass items on, showing how far the work is.
+    """Iterate over items and show progress.
 
     Parameters
     ----------
     items : iterable
     doing : str
-        What is being done, such as ``"labelling"``.
+        Name of the work, such as ``"labelling"``.
     total : int, optional
-        How many items there are; by default their length, where they have one.
+        Number of items (default: their length, if they have one).
     unit : str
-        What one item is called, in the singular.
+        Name of an item, in the singular.
 
     Yields
     ------
     object
-        The items, in their order.
+        The items in their order.
 
     Examples
     --------
@@ -167,59 +167,59 @@ def track(
         return
     from tqdm import tqdm
 
-    # The bar goes away at the end: the line that says what came of the work follows.
+    # The bar disappears at the end; a line with the result follows.
     yield from tqdm(items, desc=doing, total=total, unit=f" {unit}", leave=False, file=sys.stderr)
 
 
 class Steps:
-    """Work of a few steps, each told of by a line; a terminal has a bar of how many are done.
+    """Progress of a few steps: a line for each, and on a terminal a bar.
 
     Parameters
     ----------
     bar : tqdm.tqdm, optional
-        Where standard error is a terminal.
+        Progress bar on a terminal.
     """
 
     def __init__(self, bar: tqdm[object] | None = None) -> None:
         self._bar = bar
-        self._begun = 0
+        self._started = 0
 
     def __call__(self, text: str) -> None:
-        """Say that a step begins, or what came of it."""
+        """Print a line at the start of a step."""
         say(text)
-        self._begun += 1
+        self._started += 1
         if self._bar is not None:
-            self._bar.update(self._begun - 1 - self._bar.n)
+            self._bar.update(self._started - 1 - self._bar.n)
             self.expect(self._bar.total)
 
     def expect(self, number: int) -> None:
-        """Know better how many steps there are."""
+        """Correct the expected number of steps."""
         if self._bar is not None:
-            self._bar.total = max(number, self._begun)
+            self._bar.total = max(number, self._started)
             self._bar.refresh()
 
 
 @contextmanager
 def steps(doing: str, number: int) -> Iterator[Steps]:
-    """Show how far work is that consists of steps of any length.
+    """Show the progress of work that has few steps of different length.
 
     Parameters
     ----------
     doing : str
-        What is being done, such as ``"screening"``.
+        Name of the work, such as ``"screening"``.
     number : int
-        Of its steps, as far as that is known; it may turn out to be more or fewer.
+        Expected number of steps; there may be more or fewer.
 
     Yields
     ------
     Steps
-        To be called with a line as each step begins.
+        Function to call with a line of text at the start of each step.
 
     Examples
     --------
-    >>> with steps("screening", 2) as tell:
-    ...     tell("mapping PDMS")
-    ...     tell("grading PDMS")
+    >>> with steps("screening", 2) as progress:
+    ...     progress("mapping PDMS")
+    ...     progress("grading PDMS")
     """
     if not _on_terminal():
         yield Steps()
@@ -231,20 +231,22 @@ def steps(doing: str, number: int) -> Iterator[Steps]:
 
 
 def _on_terminal() -> bool:
+    """Whether to draw bars."""
     return sys.stderr is not None and sys.stderr.isatty() and not _verbosity.quiet
 
 
 def _in_lines(items: Iterable[_Item], doing: str, total: int | None) -> Iterator[_Item]:
-    began = said = time.monotonic()
+    """Iterate over items and print a line of progress per second."""
+    start = last = time.monotonic()
     for number, item in enumerate(items, 1):
         yield item
         now = time.monotonic()
-        if now - said < _EVERY:
+        if now - last < _LINE_INTERVAL:
             continue
-        said, text = now, f"{doing}: {number}"
+        last, text = now, f"{doing}: {number}"
         if total is not None:
-            left = (now - began) * (total - number) / number
-            text += f" of {total}" + f", about {left:.0f} s left" * (now - began >= _LONG)
+            left = (now - start) * (total - number) / number
+            text += f" of {total}" + f", about {left:.0f} s left" * (now - start >= _LONG)
         say(text)
 
 
@@ -252,7 +254,7 @@ _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u206
 
 
 def readable(text: str) -> str:
-    r"""Return a text without what cannot be shown.
+    r"""Return a text with escape codes for all that cannot be displayed.
 
     Examples
     --------
@@ -260,17 +262,15 @@ def readable(text: str) -> str:
     run07.wav \x1b[2J\x07.wav caf\xe9.wav
     """
     if not text.isascii():
-        text = _bytes(text).decode("utf-8", "backslashreplace")
-    return _CONTROL.sub(_code, text)
+        try:
+            content = os.fsencode(text)
+        except UnicodeEncodeError:  # the file system has another encoding
+            content = text.encode("utf-8", "surrogatepass")
+        text = content.decode("utf-8", "backslashreplace")
+    return _CONTROL.sub(_escape, text)
 
 
-def _bytes(text: str) -> bytes:
-    try:
-        return os.fsencode(text)
-    except UnicodeEncodeError:  # of a system whose names are in another code
-        return text.encode("utf-8", "surrogatepass")
-
-
-def _code(found: re.Match[str]) -> str:
-    number = ord(found[0])
+def _escape(match: re.Match[str]) -> str:
+    """Return the escape code of a character."""
+    number = ord(match[0])
     return f"\\x{number:02x}" if number < 0x100 else f"\\u{number:04x}"

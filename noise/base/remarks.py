@@ -1,7 +1,7 @@
-"""Remarks on a rig and its use that the user should know of: one line each, said once.
+"""Remarks on a rig and its operating conditions, one line each.
 
-They go to standard error and into the sidecar of what is made: what lies outside the usual, what
-was not measured but held or interpolated, what cannot change anything.
+They name values outside the usual range, values that are extrapolated or interpolated, and settings
+without effect. Commands print them and write them into sidecars.
 """
 
 from __future__ import annotations
@@ -34,13 +34,17 @@ def use_remarks(
     support_stiffness: Sequence[float],
     temperature: Sequence[float] = (),
 ) -> list[str]:
-    """Remarks on a rig and the conditions that it is used at.
+    """Return remarks on a rig and the conditions at which it is used.
 
     Parameters
     ----------
     rig : Rig
     speed, interference, support_stiffness, temperature : sequence of float
         [rad/s], [m], [Nm/rad], [degree Celsius]
+
+    Returns
+    -------
+    list of str
 
     Examples
     --------
@@ -50,22 +54,23 @@ def use_remarks(
     ['speed 15 rad/s is beyond 13, the fastest that the numbers of fluorocarbon were fitted at']
     """
     finite = [stiffness for stiffness in support_stiffness if math.isfinite(stiffness)]
-    beyond = _speed_remark(rig, speed)
+    speed_remark = _speed_remark(rig, speed)
     fit = CONDITION["interference"]
-    found = [
+    lines = [
         *remarks(rig),
-        beyond or CONDITION["speed"].remark(*speed),
+        speed_remark or CONDITION["speed"].remark(*speed),
         fit.remark(*map(fit.of, interference)),
         CONDITION["support_stiffness"].remark(*finite),
         CONDITION["temperature"].remark(*temperature),
         _support_remark(rig, support_stiffness),
         _anchor_remark(rig, finite),
     ]
-    return [text for text in dict.fromkeys(found) if text]
+    return [text for text in dict.fromkeys(lines) if text]
 
 
-def _speed_remark(rig: Rig, asked: Sequence[float]) -> str:
-    fastest = max(abs(value) for value in asked)
+def _speed_remark(rig: Rig, speeds: Sequence[float]) -> str:
+    """Return a remark on speeds [rad/s] above those of the measurements."""
+    fastest = max(abs(value) for value in speeds)
     if fastest <= rig.fastest_fitted * (1.0 + 1e-9):
         return ""
     return (
@@ -74,45 +79,55 @@ def _speed_remark(rig: Rig, asked: Sequence[float]) -> str:
     )
 
 
-def _support_remark(rig: Rig, asked: Sequence[float]) -> str:
-    given = sorted({support for fit in rig.fits for support in fit.damping})
-    if len(given) == 1:  # one damping for every support
+def _support_remark(rig: Rig, supports: Sequence[float]) -> str:
+    """Return a remark on support stiffnesses [Nm/rad] without a damping of their own."""
+    known = sorted({support for fit in rig.fits for support in fit.damping})
+    if len(known) == 1:  # one damping for every support
         return ""
-    other = [k for k in asked if not any(math.isclose(k, each, rel_tol=0.01) for each in given)]
+    other = [k for k in supports if not any(math.isclose(k, one, rel_tol=0.01) for one in known)]
     if not other:
         return ""
-    named = ", ".join(_stiffness(each) for each in given)
-    outside = [k for k in other if not given[0] <= k <= given[-1]]
-    how = (
-        "that of the nearest is used" if outside == other else "it is interpolated, or held beyond"
-    )
-    how = "it is interpolated between these" if not outside else how
+    outside = [k for k in other if not known[0] <= k <= known[-1]]
+    if not outside:
+        how = "it is interpolated between these"
+    elif outside == other:
+        how = "that of the nearest is used"
+    else:
+        how = "it is interpolated, or held beyond"
     return (
-        f"damping is given for supports of {named}; for "
-        f"{', '.join(_stiffness(k) for k in other)} Nm/rad {how}"
+        f"damping is given for supports of {', '.join(map(_stiffness, known))}; for "
+        f"{', '.join(map(_stiffness, other))} Nm/rad {how}"
     )
 
 
-def _anchor_remark(rig: Rig, asked: Sequence[float]) -> str:
+def _anchor_remark(rig: Rig, supports: Sequence[float]) -> str:
+    """Return a remark on support stiffnesses [Nm/rad] that elastic anchors do not allow."""
     if math.isinf(rig.beams.anchor_rotation) and math.isinf(rig.beams.anchor_translation):
         return ""
     from models.structure.beams import on_anchors
 
-    rigid = [k for k in asked if on_anchors(rig.beams, k, rig.clamp_inertia) is not rig.beams]
+    rigid = [k for k in supports if on_anchors(rig.beams, k, rig.clamp_inertia) is not rig.beams]
     if not rigid:
         return ""
     return (
-        f"on anchors that yield, beams for {', '.join(_stiffness(k) for k in rigid)} Nm/rad would "
-        "have more inertia than the clamp has in all; their anchors are taken as rigid"
+        f"on elastic anchors, beams for {', '.join(map(_stiffness, rigid))} Nm/rad would have more "
+        "inertia than the clamp itself; their anchors are taken as rigid"
     )
 
 
 def _stiffness(value: float) -> str:
+    """Return a support stiffness [Nm/rad] as text."""
     return "fixed" if math.isinf(value) else f"{value:g}"
 
 
-def temperature_remark(rig: Rig, *asked: float | None) -> str:
-    """Say what temperatures that were asked for do to a rig; empty for that of its numbers.
+def temperature_remark(rig: Rig, *temperatures: float | None) -> str:
+    """Return a remark on the effect of temperatures; empty at the rig's reference temperature.
+
+    Parameters
+    ----------
+    rig : Rig
+    *temperatures : float, optional
+        [degree Celsius]; None counts as the reference temperature.
 
     Examples
     --------
@@ -126,30 +141,30 @@ def temperature_remark(rig: Rig, *asked: float | None) -> str:
     'temperature 5 degree Celsius: friction, stiffness and damping of fluorocarbon are those given \
 at 23, shifted by WLF; that is assumed, not measured'
     """
-    depends = rig.temperature
-    reference = depends.reference if depends else math.nan
-    given = sorted({value for value in asked if value is not None and value != reference})
-    if not given:
+    dependence = rig.temperature
+    reference = dependence.reference if dependence else math.nan
+    other = sorted({value for value in temperatures if value is not None and value != reference})
+    if not other:
         return ""
-    said = f"temperature {' to '.join(f'{t:g}' for t in dict.fromkeys((given[0], given[-1])))}"
-    if depends is None:
+    subject = f"temperature {' to '.join(f'{t:g}' for t in dict.fromkeys((other[0], other[-1])))}"
+    if dependence is None:
         return (
-            f"{said} degree Celsius is recorded and changes nothing: {rig.material} states no "
+            f"{subject} degree Celsius is recorded and changes nothing: {rig.material} states no "
             "[temperature]"
         )
-    (low, high), trust = depends.range, "that is assumed, not measured"
-    if given[0] < low:
+    (low, high), trust = dependence.range, "that is assumed, not measured"
+    if other[0] < low:
         trust = f"held at {low:g}, its glass transition, below which it is no elastomer"
-    elif given[-1] > high:
+    elif other[-1] > high:
         trust = f"WLF holds up to {high:g}, 100 K above its glass transition, and is extrapolated"
     return (
-        f"{said} degree Celsius: friction, stiffness and damping of {rig.material} are those given "
-        f"at {reference:g}, shifted by WLF; {trust}"
+        f"{subject} degree Celsius: friction, stiffness and damping of {rig.material} are those "
+        f"given at {reference:g}, shifted by WLF; {trust}"
     )
 
 
 def effect_remarks(rig: Rig, library: Mapping[str, Effect]) -> list[str]:
-    """Name effects of a rig that cannot act on its friction law.
+    """Return remarks on effects of a rig that its friction law makes ineffective.
 
     Examples
     --------
@@ -170,19 +185,19 @@ def effect_remarks(rig: Rig, library: Mapping[str, Effect]) -> list[str]:
 
 
 def constant_remark(rigs: Iterable[Rig], what: str) -> str:
-    """Say what is told of rigs without the irregularity that they state; empty where none does.
+    """Return a remark on results for which random effects of the rigs are left out.
 
     Parameters
     ----------
     rigs : iterable of Rig
     what : str
-        Is told of the constant version: the subject of the sentence, in the plural.
+        Name of the results, in the plural.
 
     Examples
     --------
     >>> from models.rig_file import load_material_rig
     >>> constant_remark([load_material_rig("natural-rubber")], "critical speeds")
-    'critical speeds are of the constant version, without critical_torque_scatter, which ...'
+    'critical speeds are computed without critical_torque_scatter, which varies slips at random'
     >>> constant_remark([load_material_rig("PDMS")], "critical speeds")
     ''
     """
@@ -191,15 +206,12 @@ def constant_remark(rigs: Iterable[Rig], what: str) -> str:
     left_out = dict.fromkeys(spec.name for rig in rigs for spec in irregular_effects(rig))
     if not left_out:
         return ""
-    verb = "makes" if len(left_out) == 1 else "make"
-    return (
-        f"{what} are of the constant version, without {' and '.join(left_out)}, which {verb} one "
-        "slip differ from the next by chance"
-    )
+    verb = "varies" if len(left_out) == 1 else "vary"
+    return f"{what} are computed without {' and '.join(left_out)}, which {verb} slips at random"
 
 
 def sensor_remarks(sensors: Sensors, rate: float) -> list[str]:
-    """Say what of a rig's sensors a simulated recording at a rate [Hz] cannot have.
+    """Return remarks on sensor properties that a simulation at a sampling rate [Hz] leaves out.
 
     Examples
     --------
@@ -207,43 +219,43 @@ def sensor_remarks(sensors: Sensors, rate: float) -> list[str]:
     >>> sensor_remarks(Sensors({"torque": Sensor(antialias=10e3)}), 30e3)
     []
     """
-    found = []
+    lines = []
     if sensors.noise_from_recordings:
-        found.append(
+        lines.append(
             'noise = "from recordings" is estimated where recordings are compared; here, without '
             "any, the noise of good sensors is used"
         )
     corners = (sensor.antialias for sensor in sensors.by_kind.values())
     high = sorted({corner for corner in corners if corner is not None and corner > 0.5 * rate})
     if high:
-        found.append(
+        lines.append(
             f"antialias_hz = {high[0]:g} lies above half the sampling rate, {0.5 * rate:g} Hz; "
             "what such a filter would let through and fold back is left out"
         )
-    return found
+    return lines
 
 
 def clipping_remarks(recording: Recording, sensors: Sensors) -> list[str]:
-    """Say which channels of a recording reach the ends of their sensors' ranges.
+    """Return remarks on channels that reach the limits of their sensors.
 
     Examples
     --------
     >>> import numpy as np
     >>> from models.recording import Channel, Recording
     >>> from models.sensors import Sensor, Sensors
-    >>> held = Recording(np.full((1, 4), 2.0), 1e3, (Channel("torque"),))
-    >>> clipping_remarks(held, Sensors({"torque": Sensor(full_scale=2.0)}))
+    >>> clipped = Recording(np.full((1, 4), 2.0), 1e3, (Channel("torque"),))
+    >>> clipping_remarks(clipped, Sensors({"torque": Sensor(full_scale=2.0)}))
     ['torque reaches the range of its sensor, 2 N m, in 4 of 4 samples']
     """
-    found = []
+    lines = []
     for channel, row in zip(recording.channels, recording.samples, strict=True):
         sensor = sensors.of(channel.kind)
         if sensor.full_scale is None:
             continue
         ends = int((abs(row) >= sensor.full_scale - 1.5 * sensor.step).sum())
         if ends:
-            found.append(
+            lines.append(
                 f"{channel.name} reaches the range of its sensor, {sensor.full_scale:g} "
                 f"{channel.unit}, in {ends} of {row.size} samples"
             )
-    return found
+    return lines

@@ -1,11 +1,10 @@
-"""Tables as files: CSV, Excel, JSON Lines or Parquet by the ending; CSV on standard output.
+"""Reading and writing of tables as CSV, Excel, JSON Lines or Parquet, by the suffix of the file.
 
-One value is written alike in all formats: nothing where there is none (an undefined number is
-none, too, and an infinite one), texts as `noise.base.progress.readable` shows them, ``true`` and
-``false``, and numbers with as many digits as give the same number back. In CSV and in a workbook
-the infinite stiffness of a bolted clamp is the word ``fixed``. CSV that is written over another
-keeps its form, see `noise.base.csv_table`. A table appears whole or not at all, and a target that
-cannot be written is refused before the work whose result it is to hold.
+All formats store the same values: missing, undefined and infinite numbers are empty; text is
+escaped by `noise.base.progress.readable`; numbers have as many digits as reproduce them exactly.
+CSV and Excel write the infinite stiffness of a bolted clamp as ``fixed``. CSV that replaces another
+keeps its dialect, see `noise.base.csv_table`. Tables are written atomically, and a target that
+cannot be written is refused before the work.
 """
 
 from __future__ import annotations
@@ -28,35 +27,35 @@ from noise.base.files import atomic
 from noise.base.progress import readable
 
 TABLE_ENDINGS = (".csv", ".xlsx", ".jsonl", ".parquet")
-"""Endings of the formats that tables are written in."""
+"""Suffixes of the table formats."""
 
 _LIBRARIES = {
     ".xlsx": ("openpyxl", "excel", "an Excel workbook needs"),
     ".parquet": ("pyarrow", "parquet", "Parquet needs"),
 }
-_OF_LABELS = "label_source"
-"""Column that label tables have."""
+_LABEL_COLUMN = "label_source"
+"""Column that identifies a label table."""
 
 _LONGEST_LINE = 1 << 20
-"""Characters of a line of JSON that are looked at for the columns."""
+"""Characters of the first line of a JSON Lines file that are read for the columns."""
 
 
-def check_table_path(path: str | Path | None, columns: Collection[str] = (_OF_LABELS,)) -> None:
-    """Refuse a path that no table can be written to, before the work is done.
+def check_table_path(path: str | Path | None, columns: Collection[str] = (_LABEL_COLUMN,)) -> None:
+    """Refuse a path to which the table cannot be written.
 
     Parameters
     ----------
     path : path-like or None
         None is standard output.
     columns : collection of str
-        Of the table that will be written.
+        Columns of the table.
 
     Raises
     ------
     ParameterError
-        The ending is none of `TABLE_ENDINGS`, the path is a folder, the library that writes the
-        format is not installed, or what is there would be lost: a label table under another
-        table, or the other sheets of a workbook.
+        The suffix is not in `TABLE_ENDINGS`, the path is a folder, the library of the format is
+        not installed, or data would be lost: a label table that another table replaces, or
+        further sheets of a workbook.
 
     Examples
     --------
@@ -68,19 +67,20 @@ def check_table_path(path: str | Path | None, columns: Collection[str] = (_OF_LA
         return
     path = Path(path)
     _check_format(path)
-    if path.suffix.lower() == ".xlsx" and path.is_file() and (others := sheet_names(path)[1:]):
+    if path.suffix.lower() == ".xlsx" and path.is_file() and (others := _sheet_names(path)[1:]):
         raise ParameterError(
             f"{path}: has more sheets than that of the table ({', '.join(others)}), which would "
             "be lost; name another file"
         )
-    there = table_columns(path) if _OF_LABELS not in columns and path.is_file() else ()
-    if _OF_LABELS in {name.strip().casefold() for name in there}:
+    existing = table_columns(path) if _LABEL_COLUMN not in columns and path.is_file() else ()
+    if _LABEL_COLUMN in {name.strip().casefold() for name in existing}:
         raise ParameterError(
             f"{path}: is a label table, in which corrections would be lost; name another file"
         )
 
 
 def _check_format(path: Path) -> None:
+    """Refuse an unknown suffix, a folder, or a format whose library is not installed."""
     ending = path.suffix.lower()
     if ending not in TABLE_ENDINGS:
         raise ParameterError(f"{path}: tables end in .csv, .xlsx, .jsonl or .parquet")
@@ -102,11 +102,12 @@ def write_table(
     Parameters
     ----------
     path : path-like or None
-        Format by its ending, parent folders are made; None writes CSV to standard output.
+        File, with the format by its suffix; parent folders are made. None is CSV on standard
+        output.
     columns : sequence of str
-        All columns in their order; keys of a row that are not among them are left out.
+        Columns in their order; other keys of the rows are ignored.
     rows : iterable of mapping
-        Column to value: a number, a text, a truth value or None. A missing column is None.
+        Column to value: a number, a text, a bool or None. A missing column is None.
 
     Raises
     ------
@@ -122,13 +123,12 @@ def write_table(
     bad.wav,
     """
     ending = "" if path is None else Path(path).suffix.lower()
-    rows = list(rows) if isinstance(rows, Iterator) else rows  # they may be gone through twice
-    known, columns = columns, [readable(column) for column in columns]
-    as_it_is = (date, time) if ending == ".xlsx" else ()
+    keys, columns = columns, [readable(column) for column in columns]
+    native_types = (date, time) if ending == ".xlsx" else ()
 
     def cells() -> Iterator[list[Any]]:
         for row in rows:
-            yield [v if isinstance(v, as_it_is) else _cell(v) for v in map(row.get, known)]
+            yield [v if isinstance(v, native_types) else _table_cell(v) for v in map(row.get, keys)]
 
     if path is None:
         if sys.stdout is None:
@@ -140,16 +140,16 @@ def write_table(
     check_table_path(path, columns)
     with atomic(path) as temporary:
         if ending == ".parquet":
-            write_parquet(temporary, columns, cells())
+            _write_parquet(temporary, columns, cells())
         elif ending == ".xlsx":
-            write_workbook(temporary, columns, cells(), path.stem)
+            _write_workbook(temporary, columns, cells(), path.stem)
         elif ending == ".jsonl":
             with temporary.open("w", encoding="utf-8", newline="") as file:
                 for row in cells():
-                    named = dict(zip(columns, map(finite, row), strict=True))
-                    file.write(json.dumps(named, ensure_ascii=False) + "\n")
+                    record = dict(zip(columns, map(_finite, row), strict=True))
+                    file.write(json.dumps(record, ensure_ascii=False) + "\n")
         else:
-            form = CsvForm()  # that of the table that is there, if it is one
+            form = CsvForm()  # unless a CSV table is replaced, whose dialect is kept
             with suppress(BushingNoiseError), reading(path, "table", largest=LARGEST_TEXT):
                 form = read_csv(path.read_bytes())[0]
             with temporary.open("w", encoding=form.encoding, newline="") as file:
@@ -159,31 +159,31 @@ def write_table(
 def read_table(
     path: Path, known: Collection[str] = (), numbers: Collection[str] = ()
 ) -> tuple[list[str], list[dict[str, object]]]:
-    r"""Read a table as it stands: cells of CSV are text.
+    r"""Read a table without converting the cells: those of CSV are text.
 
     Parameters
     ----------
     path : Path
-        Format by its ending.
+        File, with the format by its suffix.
     known : collection of str
-        Columns whose names are understood in capitals and with spaces about them as well.
+        Column names that are matched regardless of case and surrounding blanks.
     numbers : collection of str
         Columns of numbers, whose decimal commas become points.
 
     Returns
     -------
     columns : list of str
-        Those that the file names before its rows, which JSON Lines does not.
+        Names in the header; empty for JSON Lines.
     rows : list of dict
-        Without those that are empty.
+        Rows that are not empty.
 
     Raises
     ------
     RecordingError
-        It cannot be read, or is no table; two columns have one name, a cell is in no column, or
-        numbers have points and commas.
+        The file cannot be read or is no table; two columns have the same name, a cell is outside
+        the columns, or the decimal sign is ambiguous.
     ParameterError
-        There is no such file, or the library that reads the format is not installed.
+        There is no such file, or the library of the format is not installed.
 
     Examples
     --------
@@ -202,47 +202,48 @@ def read_table(
             with path.open(encoding="utf-8-sig") as file:
                 return [], [parse_json(line) for line in file if line.strip()]
         lines, separator = _lines(path)
-        meant = {name.casefold(): name for name in known}
+        names = {name.casefold(): name for name in known}
         header = [
-            meant.get(name.strip().casefold(), name) for name in map(cell_text, next(lines, ()))
+            names.get(name.strip().casefold(), name) for name in map(_cell_text, next(lines, ()))
         ]
-        return [name for name in header if name], _named(header, lines, numbers, separator)
+        return [name for name in header if name], _row_dicts(header, lines, numbers, separator)
 
 
 def _lines(path: Path) -> tuple[Iterator[Sequence[object]], str]:
-    """Return names of columns and rows, and what stands between the cells of a CSV."""
+    """Return header and rows of a table, and the separator of a CSV."""
     ending = path.suffix.lower()
     if ending != ".csv":
-        return (parquet_lines(path) if ending == ".parquet" else sheet_lines(path)), ""
+        return (_parquet_lines(path) if ending == ".parquet" else _sheet_lines(path)), ""
     form, lines = read_csv(path.read_bytes())
     return lines, form.separator
 
 
-def _named(
+def _row_dicts(
     header: Sequence[str],
     lines: Iterable[Sequence[object]],
     numbers: Collection[str],
     separator: str,
 ) -> list[dict[str, object]]:
-    at = {name: place for place, name in enumerate(header) if name}
-    if len(at) < len(list(filter(None, header))):
+    """Return the rows that are not empty as dictionaries by column."""
+    indices = {name: index for index, name in enumerate(header) if name}
+    if len(indices) < len(list(filter(None, header))):
         raise ExcessError(f"has two columns {max(filter(None, header), key=header.count)!r}")
     rows: list[dict[str, object]] = []
     for line in lines:
-        if not any(map(cell_text, line)):
+        if not any(map(_cell_text, line)):
             continue
-        beyond = (c for i, c in enumerate(line) if i >= len(header) or not header[i])
-        if cell := next(filter(None, map(cell_text, beyond)), ""):
+        outside = (c for i, c in enumerate(line) if i >= len(header) or not header[i])
+        if cell := next(filter(None, map(_cell_text, outside)), ""):
             raise ExcessError(f"row {len(rows) + 1} has {cell!r} in a column without a name")
-        rows.append(
-            {name: line[place] if place < len(line) else None for name, place in at.items()}
-        )
-    _read_commas(rows, [name for name in numbers if name in at], separator)
+        rows.append({name: line[i] if i < len(line) else None for name, i in indices.items()})
+    _replace_commas(rows, [name for name in numbers if name in indices], separator)
     return rows
 
 
-def _read_commas(rows: Sequence[dict[str, object]], numbers: Sequence[str], separator: str) -> None:
-    """Write points for the decimal commas of numbers, where they are no thousands."""
+def _replace_commas(
+    rows: Sequence[dict[str, object]], numbers: Sequence[str], separator: str
+) -> None:
+    """Replace decimal commas by points in place; refuse commas that may separate thousands."""
     cells = [(row, name, str(row[name])) for row in rows for name in numbers]
     signs = {sign: cell for _, _, cell in cells if (sign := decimal_sign(cell.strip()))}
     if "," not in signs:
@@ -261,7 +262,7 @@ def _read_commas(rows: Sequence[dict[str, object]], numbers: Sequence[str], sepa
 
 
 def table_columns(path: Path) -> set[str]:
-    """Return the columns of a table; none where it is no table or cannot be read.
+    """Return the columns of a table; empty if the file is no table or cannot be read.
 
     Examples
     --------
@@ -277,13 +278,13 @@ def table_columns(path: Path) -> set[str]:
                 with path.open(encoding="utf-8-sig") as file:
                     first = parse_json(file.readline(_LONGEST_LINE) or "{}")
                 return set(first) if isinstance(first, dict) else set()
-            return set(map(cell_text, next(_lines(path)[0], ()))) - {""}
+            return set(map(_cell_text, next(_lines(path)[0], ()))) - {""}
     except BushingNoiseError:
         return set()
 
 
 def plain_cell(value: object) -> Cell:
-    """Return a value as one that every format of a table can hold; NaN stays.
+    """Return a value as a plain Python bool, int, float or str; None and NaN stay.
 
     Examples
     --------
@@ -293,7 +294,7 @@ def plain_cell(value: object) -> Cell:
     """
     if value is None or isinstance(value, str | bool):
         return value
-    item = getattr(value, "item", None)  # scalars of numpy
+    item = getattr(value, "item", None)  # numpy scalars
     if callable(item):
         return plain_cell(item())
     if isinstance(value, numbers.Integral):
@@ -301,34 +302,35 @@ def plain_cell(value: object) -> Cell:
     return float(value) if isinstance(value, numbers.Real) else str(value)
 
 
-def _cell(value: object) -> Cell:
+def _table_cell(value: object) -> Cell:
+    """Return a value as it is stored in a table: displayable text, no NaN."""
     plain = plain_cell(value)
-    if isinstance(plain, str):  # such as a name, which may hold what no UTF-8 can
+    if isinstance(plain, str):
         return readable(plain)
     return None if isinstance(plain, float) and math.isnan(plain) else plain
 
 
-# --- Parquet, and workbooks of Excel, of which the first sheet counts ---
+# --- Parquet files, and the first sheet of Excel workbooks ---
 
-_FEW_CELLS, _MOST_CELLS = 200_000, 20
-"""Cells that a workbook or Parquet file may hold: so many, and so many a byte."""
+_MIN_CELLS, _CELLS_PER_BYTE = 200_000, 20
+"""Largest number of cells of a workbook or Parquet file: a constant plus a number per byte."""
 
 _MOST_ROWS, _LONGEST_TEXT = 1_048_576, 32_767
-"""Of a sheet; and of a cell [characters]."""
+"""Limits of Excel: rows of a sheet, and characters of a cell."""
 
 
-def finite(value: Cell) -> Cell:
-    """Return a value as programs read it: an infinite number is none."""
+def _finite(value: Cell) -> Cell:
+    """Return a value with None in place of infinity."""
     return None if isinstance(value, float) and math.isinf(value) else value
 
 
-def cell_text(cell: object) -> str:
-    """Return a cell as a text without blanks about it, empty for none."""
+def _cell_text(cell: object) -> str:
+    """Return a cell as stripped text; empty for None."""
     return "" if cell is None else str(cell).strip()
 
 
-def parquet_lines(path: Path) -> Iterator[Sequence[object]]:
-    """Yield names of columns and rows of a Parquet file."""
+def _parquet_lines(path: Path) -> Iterator[Sequence[object]]:
+    """Yield header and rows of a Parquet file."""
     from pyarrow import parquet
 
     with parquet.ParquetFile(path) as file:
@@ -338,15 +340,15 @@ def parquet_lines(path: Path) -> Iterator[Sequence[object]]:
     yield from zip(*(column.to_pylist() for column in table.columns), strict=True)
 
 
-def write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    """Write a Parquet file; a column of texts and numbers becomes one of texts."""
+def _write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    """Write a Parquet file; columns of mixed types become text."""
     import pyarrow as pa
     from pyarrow import parquet
 
-    cells = [list(map(finite, row)) for row in rows]
+    cells = [list(map(_finite, row)) for row in rows]
     arrays = {}
-    for place, column in enumerate(columns):
-        values = [row[place] for row in cells]
+    for index, column in enumerate(columns):
+        values = [row[index] for row in cells]
         try:
             arrays[column] = pa.array(values)
         except (pa.ArrowInvalid, pa.ArrowTypeError):
@@ -354,39 +356,39 @@ def write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Ce
     parquet.write_table(pa.table(arrays), path)
 
 
-def sheet_names(path: Path) -> list[str]:
-    """Return the names of the sheets of a workbook, none where it cannot be read."""
+def _sheet_names(path: Path) -> list[str]:
+    """Return the sheet names of a workbook; empty if it cannot be read."""
     from openpyxl import load_workbook
 
     try:
         with reading(path, "workbook"), path.open("rb") as file:
             check_inflation(path)
             return list(load_workbook(file, read_only=True).sheetnames)
-    except BushingNoiseError:  # whoever reads it says so
+    except BushingNoiseError:  # reading the table reports it
         return []
 
 
-def sheet_lines(path: Path) -> Iterator[Sequence[object]]:
-    """Yield the rows of the first sheet, from the first that is no comment."""
+def _sheet_lines(path: Path) -> Iterator[Sequence[object]]:
+    """Yield the rows of the first sheet below its leading comments and empty rows."""
     from openpyxl import load_workbook
 
     check_inflation(path)
     with path.open("rb") as file:
         book = load_workbook(file, read_only=True, data_only=True)
-        cells, begun = 0, False
+        cells, in_table = 0, False
         for line in book.worksheets[0].iter_rows(max_row=_MOST_ROWS, values_only=True):
-            cells += 1 + len(line)  # a sheet may claim to hold any number
+            cells += 1 + len(line)  # a small hostile file may claim any number
             _check_size(path, cells)
-            first = next(filter(None, map(cell_text, line)), "")
-            begun = begun or (bool(first) and not first.startswith("#"))
-            if begun:
+            first = next(filter(None, map(_cell_text, line)), "")
+            in_table = in_table or (bool(first) and not first.startswith("#"))
+            if in_table:
                 yield line
 
 
-def write_workbook(
+def _write_workbook(
     path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]], name: str
 ) -> None:
-    """Write one sheet: its header frozen, numbers as numbers, no text ever a formula."""
+    """Write a workbook of one sheet with a frozen header and no formulas."""
     from openpyxl import Workbook
     from openpyxl.cell import WriteOnlyCell
 
@@ -402,9 +404,9 @@ def write_workbook(
     sheet.freeze_panes = "A2"
 
     def text(value: str) -> Any:
-        of_text: Any = WriteOnlyCell(sheet)
-        of_text.value, of_text.data_type = value[:_LONGEST_TEXT], "s"  # never a formula
-        return of_text
+        cell: Any = WriteOnlyCell(sheet)
+        cell.value, cell.data_type = value[:_LONGEST_TEXT], "s"  # never a formula
+        return cell
 
     for line in (columns, *lines):
         sheet.append([text(value) if isinstance(value, str) else value for value in line])
@@ -413,5 +415,6 @@ def write_workbook(
 
 
 def _check_size(path: Path, n_cells: int) -> None:
-    if n_cells > _FEW_CELLS + _MOST_CELLS * path.stat().st_size:
+    """Refuse a file that claims more cells than its size can hold."""
+    if n_cells > _MIN_CELLS + _CELLS_PER_BYTE * path.stat().st_size:
         raise ExcessError(f"claims {n_cells} cells, more than a file of its size holds")

@@ -1,10 +1,9 @@
 # mypy: allow-untyped-decorators
-"""Decision trees as plain arrays: boosted trees, and quantile forests.
+"""Evaluation of boosted trees and quantile regression forests stored as plain arrays.
 
-scikit-learn grows them (`noise.training.trees`); kept are a few arrays. Such a model runs no code
-when it is opened, works under any version of scikit-learn (or none) and gives the same bytes
-everywhere, which a pickle does not. Boosted trees tell classes apart: many weak features tell creak
-from squawk, and a random forest of the same samples errs a sixth more often.
+scikit-learn grows the trees (`noise.training.trees`). Unlike a pickle, the arrays run no code when
+they are loaded and do not depend on the version of scikit-learn. Boosted trees classify the noises;
+a random forest trained on the same samples makes a sixth more errors.
 """
 
 from __future__ import annotations
@@ -21,25 +20,25 @@ from models.compilation import COMPILED, PART
 from models.show import short_repr
 
 LEAF = -1
-"""Stands for the feature of a node that asks for none."""
+"""Feature number of a leaf."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trees:
-    """Decision trees, their nodes one after the other.
+    """Decision trees with concatenated nodes.
 
     Parameters
     ----------
     roots : ndarray of int32, shape (n_trees,)
-        First node of each tree.
+        Root node of each tree.
     feature : ndarray of int16, shape (n_nodes,)
-        Feature that a node looks at; `LEAF` in a leaf.
+        Feature that a node splits; `LEAF` for a leaf.
     threshold : ndarray of float, shape (n_nodes,)
-        Up to it the way goes left [unit of the feature].
+        Largest value that goes to the left child [unit of the feature].
     children : ndarray of int32, shape (n_nodes, 2)
-        Left and right child; none of a leaf counts.
+        Left and right child; ignored for a leaf.
     missing_left : ndarray of bool, shape (n_nodes,)
-        Whether NaN goes left.
+        Whether NaN goes to the left child.
     """
 
     roots: NDArray[np.int32]
@@ -54,29 +53,29 @@ class Trees:
         Parameters
         ----------
         n_features : int
-            Of the samples.
+            Number of features of a sample.
 
         Raises
         ------
         ValueError
-            Some way through them does not end in a leaf, or asks for a feature that there is not.
+            A path does not end in a leaf, or a node splits a feature that does not exist.
         """
         n = len(self.feature)
         lengths = {len(a) for a in (self.threshold, self.children, self.missing_left)}
         if lengths != {n} or self.children.shape[1:] != (2,) or not len(self.roots):
             raise ValueError("its arrays do not fit together")
         if any(a.dtype.kind != "i" for a in (self.roots, self.feature, self.children)):
-            raise ValueError("its nodes are numbered by what are no whole numbers")
+            raise ValueError("its node numbers are not whole numbers")
         inner = np.flatnonzero(self.feature != LEAF)
         descends = (self.children[inner] > inner[:, None]) & (self.children[inner] < n)
         starts = (self.roots >= 0) & (self.roots < n)
         if not (descends.all() and starts.all()):
             raise ValueError("its trees do not end")
         if self.feature.min() < LEAF or self.feature.max() >= n_features:
-            raise ValueError("its trees ask for features that it does not name")
+            raise ValueError("its trees use features that it does not name")
 
     def leaves(self, x: NDArray[np.floating[Any]]) -> NDArray[np.int32]:
-        """Return the leaf that each sample comes to in each tree.
+        """Return the leaf of each sample in each tree.
 
         Parameters
         ----------
@@ -86,18 +85,19 @@ class Trees:
         Returns
         -------
         ndarray of int32, shape (n, n_trees)
-            Nodes.
+            Node numbers.
         """
-        found = np.empty((len(x), len(self.roots)), dtype=np.int32)
-        _lead_to_leaves(self._nodes(), np.ascontiguousarray(x), found)
-        return found
+        leaves = np.empty((len(x), len(self.roots)), dtype=np.int32)
+        _find_leaves(self._nodes(), np.ascontiguousarray(x), leaves)
+        return leaves
 
     def _nodes(self) -> _Nodes:
+        """Return the arrays for compiled functions."""
         return _Nodes(*(getattr(self, name) for name in _Nodes._fields))
 
 
 class _Nodes(NamedTuple):
-    """The arrays of `Trees`, as compiled functions take them."""
+    """Arrays of `Trees` as a tuple, which compiled functions accept."""
 
     roots: NDArray[np.int32]
     feature: NDArray[np.int16]
@@ -108,7 +108,7 @@ class _Nodes(NamedTuple):
 
 @njit(cache=True, **PART)
 def _leaf(node: int, nodes: _Nodes, sample: NDArray[np.floating[Any]]) -> int:
-    """Return the leaf that a sample comes to from a tree's root."""
+    """Return the leaf of a sample below a node."""
     while nodes.feature[node] != LEAF:
         value = sample[nodes.feature[node]]
         right = value > nodes.threshold[node] or (value != value and not nodes.missing_left[node])
@@ -117,11 +117,12 @@ def _leaf(node: int, nodes: _Nodes, sample: NDArray[np.floating[Any]]) -> int:
 
 
 @njit(cache=True, **COMPILED)
-def _lead_to_leaves(nodes: _Nodes, x: NDArray[np.floating[Any]], found: NDArray[np.int32]) -> None:
+def _find_leaves(nodes: _Nodes, x: NDArray[np.floating[Any]], leaves: NDArray[np.int32]) -> None:
+    """Write the leaf of each sample in each tree into `leaves`."""
     # Tree by tree, so that a tree stays in the cache.
     for tree in range(nodes.roots.size):
         for row in range(x.shape[0]):
-            found[row, tree] = _leaf(nodes.roots[tree], nodes, x[row])
+            leaves[row, tree] = _leaf(nodes.roots[tree], nodes, x[row])
 
 
 @njit(cache=True, **COMPILED)
@@ -132,7 +133,8 @@ def _add_leaves(
     added: NDArray[np.float64],
     scores: NDArray[np.float64],
 ) -> None:
-    # Tree by tree: the sums of a row do not depend on how many rows there are.
+    """Add the leaf values of each sample to the scores of their classes."""
+    # Tree by tree: the scores of a row do not depend on the number of rows.
     for tree in range(nodes.roots.size):
         for row in range(x.shape[0]):
             scores[row, classes[tree]] += added[_leaf(nodes.roots[tree], nodes, x[row])]
@@ -141,18 +143,18 @@ def _add_leaves(
 @short_repr
 @dataclass(frozen=True, eq=False)
 class BoostedTrees(Trees):
-    """Trees whose leaves add to the scores of classes.
+    """Gradient-boosted trees for classification.
 
     Parameters
     ----------
     roots, feature, threshold, children, missing_left : ndarray
-        As of `Trees`.
+        See `Trees`.
     classes : ndarray of int16, shape (n_trees,)
-        Class whose score a tree adds to.
+        Class of each tree.
     value : ndarray of float64, shape (n_nodes,)
-        What a leaf adds [-].
+        Contribution of a leaf to the score of the class [-].
     base : ndarray of float64, shape (n_classes,)
-        Scores before any tree [-].
+        Initial scores of the classes [-].
     """
 
     classes: NDArray[np.int16]
@@ -160,12 +162,12 @@ class BoostedTrees(Trees):
     base: NDArray[np.float64]
 
     def check(self, n_features: int) -> None:
-        """Refuse trees that cannot be evaluated, as `Trees.check` does.
+        """Refuse trees that cannot be evaluated.
 
         Raises
         ------
         ValueError
-            As of `Trees.check`, or the leaves hold what cannot be used.
+            As for `Trees.check`, or leaf values or classes are invalid.
         """
         super().check(n_features)
         if self.value.shape != self.feature.shape or self.classes.shape != self.roots.shape:
@@ -174,10 +176,10 @@ class BoostedTrees(Trees):
             raise ValueError("its leaves hold values that are no numbers")
         known = (self.classes >= 0) & (self.classes < self.base.size)
         if self.classes.dtype.kind != "i" or not known.all():
-            raise ValueError("its trees speak for classes that there are not")
+            raise ValueError("its trees belong to classes that do not exist")
 
     def scores(self, x: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Sum of what the trees of each class say.
+        """Return the scores of the classes before the softmax.
 
         Parameters
         ----------
@@ -194,48 +196,48 @@ class BoostedTrees(Trees):
         return scores
 
     def probabilities(self, x: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Probabilities of the classes, not calibrated; arguments as of `scores`."""
+        """Return uncalibrated probabilities of the classes, the softmax of `scores`."""
         scores = self.scores(x)
         p = np.exp(scores - scores.max(axis=1, keepdims=True))
         return np.asarray(p / p.sum(axis=1, keepdims=True))
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """Return the arrays that a model file keeps, by name."""
+        """Return the arrays for a model file by name."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> Self:
-        """Return the trees that a model file keeps among its arrays."""
+        """Return the trees from the arrays of a model file."""
         return cls(**{field.name: arrays[field.name] for field in fields(cls)})
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class QuantileForest(Trees):
-    """Regression trees whose leaves keep what is asked for as a distribution.
+    """Quantile regression forest.
 
-    A forest's leaf holds the training values that came to it; those of all trees together are the
-    distribution of what is asked for, given the features (N. Meinshausen, *Quantile Regression
-    Forests*, Journal of Machine Learning Research 7, 2006, 983-999). Here a leaf keeps a few order
-    statistics of its values in place of all of them, so that the file stays small.
+    A leaf holds the training targets that reached it; those of all trees together approximate the
+    conditional distribution of the target (N. Meinshausen, *Quantile Regression Forests*, Journal
+    of Machine Learning Research 7, 2006, 983-999). To keep the file small, a leaf stores a few
+    order statistics in place of all values.
 
     Parameters
     ----------
     roots, feature, threshold, children, missing_left : ndarray
-        As of `Trees`, the left child being the next node; thresholds of single precision.
-    values : ndarray of float16, shape (n_leaves, n_kept)
-        What the leaves keep [unit of what is asked for], in the order of the leaves.
+        See `Trees`; the left child is the next node, and thresholds have single precision.
+    values : ndarray of float16, shape (n_leaves, n_statistics)
+        Order statistics of each leaf [unit of the target], in the order of the leaves.
     """
 
     values: NDArray[np.float16]
 
     def check(self, n_features: int) -> None:
-        """Refuse trees that cannot be evaluated, as `Trees.check` does.
+        """Refuse trees that cannot be evaluated.
 
         Raises
         ------
         ValueError
-            As of `Trees.check`, or the leaves hold what cannot be used.
+            As for `Trees.check`, or leaf values are invalid.
         """
         super().check(n_features)
         if self.values.ndim != 2 or len(self.values) != np.count_nonzero(self.feature == LEAF):
@@ -244,7 +246,7 @@ class QuantileForest(Trees):
             raise ValueError("its leaves hold values that are no numbers")
 
     def pooled(self, x: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
-        """Values of the leaves that samples come to, in rising order.
+        """Return the sorted values of all leaves that each sample reaches.
 
         Parameters
         ----------
@@ -253,38 +255,38 @@ class QuantileForest(Trees):
 
         Returns
         -------
-        ndarray of float32, shape (n, n_trees * n_kept)
-            [unit of what is asked for]
+        ndarray of float32, shape (n, n_trees * n_statistics)
+            [unit of the target]
         """
-        # As scikit-learn does, features are compared in single precision.
-        found = self.leaves(np.asarray(x, dtype=np.float32))
+        # scikit-learn compares features in single precision.
+        leaves = self.leaves(np.asarray(x, dtype=np.float32))
         rows = np.cumsum(self.feature == LEAF) - 1
-        values = self.values[rows[found]].astype(np.float32)
-        return np.sort(values.reshape(len(found), -1), axis=1)
+        values = self.values[rows[leaves]].astype(np.float32)
+        return np.sort(values.reshape(len(leaves), -1), axis=1)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """Return the arrays that a model file keeps, by name.
+        """Return the arrays for a model file by name.
 
-        One number a node stands for its children: the right child, or the row of a leaf's values.
+        ``following`` replaces the children: the right child, or the row of values of a leaf.
         """
         leaf = self.feature == LEAF
         following = np.where(leaf, np.cumsum(leaf) - 1, self.children[:, 1]).astype(np.int32)
-        kept = ("roots", "feature", "threshold", "missing_left", "values")
-        return {**{name: getattr(self, name) for name in kept}, "following": following}
+        names = ("roots", "feature", "threshold", "missing_left", "values")
+        return {**{name: getattr(self, name) for name in names}, "following": following}
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> Self:
-        """Return the forest that a model file keeps among its arrays.
+        """Return the forest from the arrays of a model file.
 
         Raises
         ------
         ValueError
-            The values of the leaves are not in the leaves' order.
+            The values are not in the order of the leaves.
         """
-        kept = {name: array for name, array in arrays.items() if name != "following"}
+        others = {name: array for name, array in arrays.items() if name != "following"}
         following, leaf = arrays["following"], arrays["feature"] == LEAF
         rows = np.cumsum(leaf) - 1
         if following.shape != rows.shape or not np.array_equal(following[leaf], rows[leaf]):
             raise ValueError("its leaves and their values do not fit together")
         left = np.arange(1, len(following) + 1, dtype=np.int32)
-        return cls(children=np.stack([left, following], axis=1), **kept)
+        return cls(children=np.stack([left, following], axis=1), **others)

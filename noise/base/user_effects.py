@@ -1,7 +1,6 @@
-"""Effects of the user's own, checked, as ``--effects`` and `noise.diagnose` take them.
+"""User-defined effects from Python files, for ``--effects`` and `noise.diagnose`.
 
-They are code that the program has not seen: what goes wrong in them is told with the file, the
-effect and the line, not as a defect of the program.
+Errors in the user's code are reported with file, effect and line.
 """
 
 from __future__ import annotations
@@ -25,12 +24,12 @@ if TYPE_CHECKING:  # compiled functions take a second to load
 
 
 def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
-    """Return the shipped effects and the user's own.
+    """Return the shipped and the user-defined effects by name.
 
     Parameters
     ----------
     paths : Path or sequence of Path, optional
-        Python files, which are run; every `Effect` among their global names is taken.
+        Python files to run; each global `Effect` in them is used.
 
     Returns
     -------
@@ -39,8 +38,8 @@ def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
     Raises
     ------
     ParameterError
-        A file cannot be run or defines no effect, what it defines cannot be used as one, or has the
-        name of a shipped one or of one in another file.
+        A file cannot be run or defines no effect, an effect is invalid, or its name is that of a
+        shipped effect or of one in another file.
 
     Examples
     --------
@@ -53,17 +52,17 @@ def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
     for path in [paths] if isinstance(paths, Path) else paths or ():
         for effect in _defined(path):
             where = f"--effects {path}: effect {str(effect.name)[:40]!r}"
-            with _blaming(f"{where} is not declared as Effect asks"):
+            with _error_location(f"{where} is not a valid Effect"):
                 checked = _checked_effect(effect, path)
             if effect.name in EFFECTS or effect.name in own:
                 other = "a shipped effect" if effect.name in EFFECTS else "defined in another file"
                 raise ParameterError(f"{where} is {other} as well; choose a new name")
             own[effect.name] = checked
-    return ChainMap(own, EFFECTS) if own else EFFECTS  # type: ignore[arg-type]  # only read
+    return ChainMap(own, EFFECTS) if own else EFFECTS  # type: ignore[arg-type]  # read-only use
 
 
 def _defined(path: Path) -> list[Effect]:
-    """Effects that a file defines."""
+    """Run a file and return the effects that it defines."""
     from sim.effects import EFFECTS, Effect
 
     spec = spec_from_file_location(f"_effects_of_{path.stem}", path)
@@ -71,18 +70,18 @@ def _defined(path: Path) -> list[Effect]:
         raise ParameterError(f"--effects {path}: no Python file")
     module = module_from_spec(spec)
     sys.modules[spec.name] = module  # dataclasses look their module up there
-    with _blaming(f"--effects {path}: cannot be run"):
+    with _error_location(f"--effects {path}: cannot be run"):
         spec.loader.exec_module(module)
-    found = {str(one.name): one for one in vars(module).values() if isinstance(one, Effect)}
-    own = [one for name, one in found.items() if one is not EFFECTS.get(name)]
+    effects = {str(one.name): one for one in vars(module).values() if isinstance(one, Effect)}
+    own = [one for name, one in effects.items() if one is not EFFECTS.get(name)]
     if not own:
         raise ParameterError(f"--effects {path}: defines no Effect; see the README for an example")
     return own
 
 
 @contextmanager
-def _blaming(where: str) -> Iterator[None]:
-    """Let what the user's code raises name its place."""
+def _error_location(where: str) -> Iterator[None]:
+    """Prefix errors of the user's code with their location."""
     try:
         yield
     except BushingNoiseError as error:
@@ -92,7 +91,7 @@ def _blaming(where: str) -> Iterator[None]:
 
 
 def _checked_effect(effect: Effect, path: Path) -> Effect:
-    """Return the effect with its functions checked, or raise what is wrong with its declaration."""
+    """Check the declaration of an effect and wrap its functions with `_checked`."""
     from sim.effects.effect import Stage
 
     where = f"--effects {path}: effect {effect.name!r}"
@@ -126,10 +125,11 @@ _HOOKS: dict[str, Callable[[Any], Any] | None] = {
     "contact": None,
     "chain": None,
 }
-"""What the result of each function of an effect is like, made of its first argument."""
+"""Functions of an effect; each value maps the first argument to an array of the result's shape."""
 
 
 def _compile(contact: Any) -> None:
+    """Compile a contact hook and check its signature."""
     from numba.extending import is_jitted
 
     from sim.contact import HOOK_SIGNATURE
@@ -142,14 +142,14 @@ def _compile(contact: Any) -> None:
         return
     if contact.signatures:
         raise ValueError("contact has another signature than HOOK_SIGNATURE")
-    with _blaming("contact cannot be compiled"):
+    with _error_location("contact cannot be compiled"):
         contact.compile(HOOK_SIGNATURE)
 
 
 def _checked(
     function: Callable[..., Any], where: str, path: Path, like: Callable[[Any], Any]
 ) -> Callable[..., Any]:
-    """Return a function whose errors name their place; its result is like something given to it."""
+    """Wrap a function of an effect: locate its errors and check the shape of its result."""
 
     @wraps(function)
     def checked(first: Any, *others: object) -> Any:
@@ -159,8 +159,8 @@ def _checked(
             raise
         except Exception as error:
             frames = traceback.extract_tb(error.__traceback__)
-            own = [frame for frame in frames if Path(frame.filename).name == path.name]
-            place = f"{Path((own or frames)[-1].filename).name}, line {(own or frames)[-1].lineno}"
+            frame = [*frames, *(one for one in frames if Path(one.filename).name == path.name)][-1]
+            place = f"{Path(frame.filename).name}, line {frame.lineno}"
             raise ParameterError(
                 f"{where}: {type(error).__name__}: {one_line(error)} ({place})"
             ) from error
@@ -172,7 +172,7 @@ def _checked(
 
 
 def _fault(result: Any, like: Any) -> str:
-    """Say what is wrong with a result: it has to be an array, or signals, of the same size."""
+    """Return what is wrong with a result; empty if it has the shape and type of `like`."""
     import numpy as np
 
     if isinstance(like, dict):
@@ -182,8 +182,8 @@ def _fault(result: Any, like: Any) -> str:
         return next((f"{fault} for {name!r}" for name, fault in faults.items() if fault), "")
     shape = (getattr(result if like is None else like, "size", 0),)
     if not isinstance(result, np.ndarray) or result.shape != shape:
-        found = getattr(result, "shape", type(result).__name__)
-        return f"must return an array of shape {shape}, not {found}"
+        actual = getattr(result, "shape", type(result).__name__)
+        return f"must return an array of shape {shape}, not {actual}"
     if result.dtype != np.float64 or not np.isfinite(result).all():
         return "must return finite numbers of type float64"
     return ""

@@ -1,5 +1,5 @@
-"""Many recordings, one result each: in this process, in several, or on a cluster.
+"""Resumable batch processing of recordings, in one process, several processes or on a cluster.
 
-Whatever becomes of a process, nothing that was done is lost, nothing is done twice, and the table
-is the same, byte for byte, as that of one process that nobody disturbed.
+However often the work is interrupted, no result is lost or computed twice, and the table is
+identical byte for byte to that of one uninterrupted process.
 """

@@ -1,8 +1,8 @@
-"""Calls on a Dask cluster, whose machines read the recordings themselves, under the same paths.
+"""Execution of calls on a Dask cluster.
 
-Before anything is handed out they are asked which program they run: another version would give
-another table. Dask hands the call of a worker that died to another one, and gives a call up after
-some workers (``distributed.scheduler.allowed-failures``, 3) died at it.
+The workers read the recordings under the same paths. Their versions of the program and its
+libraries are compared first, as others would give another table. Dask repeats the call of a worker
+that died on another one, up to ``distributed.scheduler.allowed-failures`` (3) times.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from noise.batch.journal import RESULTS_VERSION
 
 Result = TypeVar("Result")
 
-_PATIENCE = 10.0
-"""How long scheduler and first worker may take to answer [s]."""
+_TIMEOUT = 10.0
+"""Time for scheduler and first worker to answer [s]."""
 
 
 def check_cluster() -> None:
-    """Refuse the call where the libraries for a cluster are missing.
+    """Refuse the call if Dask is not installed.
 
     Raises
     ------
     ParameterError
-        With the command that installs them.
+        The message holds the command that installs it.
     """
     try:
         import distributed  # noqa: F401
@@ -41,28 +41,28 @@ def check_cluster() -> None:
 
 @contextmanager
 def cluster(scheduler: str) -> Iterator[Callable[..., Generator[tuple[int, Any]]]]:
-    """Give a function that spreads calls over a cluster.
+    """Connect to a cluster and yield a function that runs calls on it.
 
     Parameters
     ----------
     scheduler : str
-        Its address.
+        Address of the scheduler.
 
     Yields
     ------
     callable
-        ``spread(perform, calls)``, as `noise.base.processes.spread_over_processes`.
+        ``spread(perform, calls)``, like `noise.base.processes.spread_over_processes`.
 
     Raises
     ------
     ParameterError
-        There is no scheduler, it has no workers, or they run another version of the program; while
-        it spreads, that the scheduler is gone.
+        The scheduler does not answer, has no workers, or they run another version of the program;
+        also when the scheduler disappears during the work.
     """
     check_cluster()
     import distributed
 
-    dask: Any = distributed  # which has no types
+    dask: Any = distributed  # it has no types
 
     def spread(
         perform: Callable[..., Result], calls: Sequence[tuple[Any, ...]]
@@ -79,17 +79,17 @@ def cluster(scheduler: str) -> Iterator[Callable[..., Generator[tuple[int, Any]]
                 f"--scheduler {scheduler}: went away during the work; call again once it is back"
             ) from None
 
-    # The error says how a scheduler went away; Dask need not.
+    # Dask would log the loss of the scheduler as well as raising it.
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
     try:
-        client: Any = dask.Client(scheduler, timeout=_PATIENCE, set_as_default=False)
-        client.wait_for_workers(1, timeout=_PATIENCE)
+        client: Any = dask.Client(scheduler, timeout=_TIMEOUT, set_as_default=False)
+        client.wait_for_workers(1, timeout=_TIMEOUT)
     except (OSError, ValueError) as error:  # a time-out is an OSError
         reason = str(error).partition("\n")[0]
         raise ParameterError(f"--scheduler {scheduler}: does not answer ({reason})") from None
     with client:
-        for worker, program in client.run(_program, on_error="return").items():
-            if program != _program():
+        for worker, versions in client.run(_versions, on_error="return").items():
+            if versions != _versions():
                 raise ParameterError(
                     f"--scheduler {scheduler}: worker {worker} has no bushing-noise, or another "
                     "version of it, or of numpy and the like; install the same ones there"
@@ -97,5 +97,6 @@ def cluster(scheduler: str) -> Iterator[Callable[..., Generator[tuple[int, Any]]
         yield spread
 
 
-def _program() -> list[object]:
+def _versions() -> list[object]:
+    """Return the versions of the program's results and of the libraries."""
     return [RESULTS_VERSION, *map(version, ("numpy", "scipy", "numba", "librosa", "scikit-learn"))]

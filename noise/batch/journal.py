@@ -1,14 +1,12 @@
-"""The journal of a call: its results so far, kept one by one, for a call that goes on after it.
+"""Journal of a call: an SQLite database of its results so far, which lets the same call resume.
 
-It is an SQLite database, hidden beside the table or folder that the call is to write. Each result
-is a row of its own and in the file before the next is begun, so a process may be killed at any
-moment, and the same call again goes on where it was; where the power fails, the last few may have
-to be done again. Results of other options, or of a program that gives other results, are not used;
-a line says so.
+The journal is a hidden file beside the output. Each result is written before the next computation
+starts, so a killed call resumes where it stopped; after a power failure the last few results may be
+missing. Results of other options or of another `RESULTS_VERSION` are discarded, with a note.
 
-The journal of a table outlives it. A recording in it counts as long as it is the same file as then.
-Refused recordings are not kept: what was at fault may have been put right since without the file
-changing, such as a share that was away or a library that was not installed.
+The journal of a table remains beside it. Its result of a recording is valid as long as the file is
+unchanged. Refusals are not stored, because their cause may go without a change of the file, such as
+an unmounted network drive or a missing library.
 """
 
 from __future__ import annotations
@@ -24,14 +22,14 @@ from typing import Any
 from models.errors import ParameterError
 from noise.base.files import locked
 from noise.base.progress import note
-from noise.batch.work import Done, Job, Work, file_identity
+from noise.batch.work import Job, JobResult, Work, file_identity
 
 RESULTS_VERSION = 1
-"""Of all that a journal holds. To be raised by hand whenever labels, features or screened points
-come out differently for another reason than a model: a change of code or of a library."""
+"""Version of the results in journals. Raise it whenever a change of code or of a library changes
+labels, features or screened points; changes of model files are detected."""
 
-_PATIENCE = 30.0
-"""How long who writes waits for who reads [s]."""
+_TIMEOUT = 30.0
+"""Time that a writer waits for readers [s]."""
 
 _TABLES = """
     create table if not exists call (version integer, identity text, begun text);
@@ -40,34 +38,34 @@ _TABLES = """
 
 
 _TABLE = "table"
-"""Key by which it is known that the table has been written."""
+"""Key of the entry that marks the table as written."""
 
 
 class Journal:
-    """Results by their keys; see `open_journal` and `kept_results`.
+    """Results by key; see `open_journal` and `temporary_journal`.
 
     Parameters
     ----------
     path : Path or None
-        None is a file that goes with the journal.
+        None is a temporary file.
     """
 
     def __init__(self, path: Path | None = None) -> None:
         self._path = path
-        self._database = sqlite3.connect("" if path is None else path, timeout=_PATIENCE)
-        # The system has each result at once, so who is killed loses none; the disk a little later.
+        self._database = sqlite3.connect("" if path is None else path, timeout=_TIMEOUT)
+        # Results reach the operating system at once, which survives a kill; the disk follows.
         self._database.executescript(
             f"pragma journal_mode = wal; pragma synchronous = normal; {_TABLES}"
         )
 
     def begin(self, identity: str, *, fresh: bool = False) -> None:
-        """Forget what is of another call, or all of it."""
+        """Start or resume a call; delete the results of another call, or with `fresh` all."""
         call = (RESULTS_VERSION, identity)
-        found = self._database.execute("select version, identity from call").fetchone()
-        if found == call and not fresh:
+        previous = self._database.execute("select version, identity from call").fetchone()
+        if previous == call and not fresh:
             return
-        if found is not None and not fresh and self._path is not None and len(self):
-            why = "with other options" if found[0] == RESULTS_VERSION else "by another version"
+        if previous is not None and not fresh and self._path is not None and len(self):
+            why = "with other options" if previous[0] == RESULTS_VERSION else "by another version"
             note(f"{self._path}: holds results that were made {why}; all is done again")
         with self._database:
             self._database.execute("delete from call")
@@ -75,85 +73,83 @@ class Journal:
             self._database.execute("insert into call values (?, ?, ?)", (*call, uuid.uuid4().hex))
 
     def get(self, key: str) -> list[Any] | None:
-        """Return the values that are kept by a key; None where there are none."""
-        found = self._database.execute("select value from result where key = ?", (key,)).fetchone()
-        return None if found is None else json.loads(found[0])
+        """Return the values under a key; None if there are none."""
+        row = self._database.execute("select value from result where key = ?", (key,)).fetchone()
+        return None if row is None else json.loads(row[0])
 
     def add(self, key: str, *values: object) -> None:
-        """Keep values as JSON knows them."""
+        """Store JSON values under a key."""
         try:
             with self._database:
                 self._database.execute(
-                    "insert or replace into result values (?, ?)", (_ascii(key), json.dumps(values))
+                    "insert or replace into result values (?, ?)",
+                    (_encodable(key), json.dumps(values)),
                 )
         except sqlite3.Error as error:
             raise ParameterError(f"{self._path}: cannot be written ({error})") from None
 
-    def find(self, job: Job) -> Done | None:
-        """Return what came of a recording, None where it is still to be done."""
-        found = self.get(_key(job))
-        return None if found is None else _done(found, job)
+    def find(self, job: Job) -> JobResult | None:
+        """Return the result of a recording; None if it is missing or the file has changed."""
+        values = self.get(_key(job))
+        return None if values is None else _valid_result(values, job)
 
     def rows(self, job: Job) -> list[list[Any]]:
-        """Return the rows of a recording that was done, whatever has become of its file since."""
-        found = self.get(_key(job))
-        return [] if found is None else found[2]
+        """Return the stored rows of a recording, even if the file has changed."""
+        values = self.get(_key(job))
+        return [] if values is None else values[2]
 
-    def keep(self, job: Job, identity: list[int] | None, done: Done) -> None:
-        """Keep what came of a recording; `identity` is the file's from before it was read."""
-        if done.error is None:
-            self.add(_key(job), identity, done.calibrated, done.rows)
+    def add_result(self, job: Job, identity: list[int] | None, result: JobResult) -> None:
+        """Store the result of a recording with the `file_identity` from before it was read."""
+        if result.error is None:
+            self.add(_key(job), identity, result.calibrated, result.rows)
 
-    def note_table(self) -> None:
-        """Keep that the table is written."""
+    def mark_written(self) -> None:
+        """Mark the table as written."""
         self.add(_TABLE)
 
     def __len__(self) -> int:
         return int(self._database.execute("select count(*) from result").fetchone()[0])
 
     def close(self) -> None:
-        """Let the file go."""
+        """Close the database."""
         self._database.close()
 
 
 class JournalReader:
-    """What comes into the journal of a table while another process writes it.
+    """Reader of new results while another process writes the journal of a table.
 
     Parameters
     ----------
     table : Path
     work : Work
-        Whose journal it is to be; another's tells nothing.
+        Work of the journal; results of other work are ignored.
     """
 
     def __init__(self, table: Path, work: Work) -> None:
-        self._path = journal_path(table)
+        self._address = f"{journal_path(table).absolute().as_uri()}?mode=rw"
         self._identity = _work_identity(work)
         self._begun, self._last = "", 0
 
-    def news(self, jobs: Sequence[Job]) -> dict[int, Done]:
-        """Return what came of recordings since the last call, by their index."""
+    def news(self, jobs: Sequence[Job]) -> dict[int, JobResult]:
+        """Return the results since the previous call, by the index of the recording."""
         by_key = {_key(job): job for job in jobs}
-        found: dict[int, Done] = {}
-        with suppress(sqlite3.Error), closing(self._opened()) as database:
+        results: dict[int, JobResult] = {}
+        with suppress(sqlite3.Error), closing(sqlite3.connect(self._address, uri=True)) as database:
             call = database.execute("select version, identity, begun from call").fetchone()
             if call is None or call[:2] != (RESULTS_VERSION, self._identity):
                 return {}
             if call[2] != self._begun:
                 self._begun, self._last = call[2], 0
             rows = "select rowid, key, value from result where rowid > ? order by rowid"
-            for place, key, value in database.execute(rows, (self._last,)):
-                self._last = place
-                if key in by_key and (done := _done(json.loads(value), by_key[key])):
-                    found[by_key[key].index] = done
-        return found
-
-    def _opened(self) -> sqlite3.Connection:
-        return sqlite3.connect(f"{self._path.absolute().as_uri()}?mode=rw", uri=True)
+            for row_id, key, value in database.execute(rows, (self._last,)):
+                self._last = row_id
+                if key in by_key and (result := _valid_result(json.loads(value), by_key[key])):
+                    results[by_key[key].index] = result
+        return results
 
 
 def written_rows(table: Path) -> list[list[Any]]:
-    """Return the rows that a table had when it was last written, by whatever options.
+    """Return the rows of a table as it was last written, with any options.
 
     Parameters
     ----------
@@ -162,7 +158,7 @@ def written_rows(table: Path) -> list[list[Any]]:
     Returns
     -------
     list of list
-        Empty where the journal does not know them.
+        Empty if the journal does not contain them.
 
     Examples
     --------
@@ -172,7 +168,7 @@ def written_rows(table: Path) -> list[list[Any]]:
     path = journal_path(table)
     if not path.exists():
         return []
-    with suppress(sqlite3.Error), closing(sqlite3.connect(path, timeout=_PATIENCE)) as database:
+    with suppress(sqlite3.Error), closing(sqlite3.connect(path, timeout=_TIMEOUT)) as database:
         version = database.execute("select version from call").fetchone()
         results = dict(database.execute("select key, value from result"))
         if version == (RESULTS_VERSION,) and results.pop(_TABLE, None) is not None:
@@ -182,15 +178,19 @@ def written_rows(table: Path) -> list[list[Any]]:
 
 @contextmanager
 def open_journal(table: Path | None, work: Work, *, fresh: bool = False) -> Iterator[Journal]:
-    """Open the journal of a table, with what of this work is in it.
+    """Open the journal of a table.
 
     Parameters
     ----------
     table : Path or None
-        Parent folders are made; None is a table that is not written, of which nothing stays.
+        Parent folders are made. None is a table that is not written; its journal is temporary.
     work : Work
     fresh : bool
-        Whether to forget what is in it.
+        Whether to delete all earlier results.
+
+    Yields
+    ------
+    Journal
 
     Raises
     ------
@@ -205,11 +205,11 @@ def open_journal(table: Path | None, work: Work, *, fresh: bool = False) -> Iter
     ...     run = Path(folder) / "run07.wav"
     ...     run.touch()
     ...     job, work = Job(0, run, "run07.wav"), Featuring()
-    ...     done = Done([["run07.wav", *[1.5] * (len(work.columns) - 1)]], True)
+    ...     result = JobResult([["run07.wav", *[1.5] * (len(work.columns) - 1)]], True)
     ...     with open_journal(Path(folder) / "t.csv", work) as journal:
-    ...         journal.keep(job, file_identity(run), done)
+    ...         journal.add_result(job, file_identity(run), result)
     ...     with open_journal(Path(folder) / "t.csv", work) as journal:
-    ...         journal.find(job) == done
+    ...         journal.find(job) == result
     True
     """
     if table is None:
@@ -221,42 +221,48 @@ def open_journal(table: Path | None, work: Work, *, fresh: bool = False) -> Iter
 
 
 @contextmanager
-def kept_results(target: Path | None, identity: str) -> Iterator[Journal | None]:
-    """Keep results until the block ends well and has no more need of them.
+def temporary_journal(target: Path | None, identity: str) -> Iterator[Journal | None]:
+    """Store intermediate results in a journal until the call succeeds.
 
     Parameters
     ----------
     target : Path, optional
-        The file that the call is to write. Without it nothing is kept.
+        Output file of the call. Without it there is no journal.
     identity : str
-        Of `call_identity`.
+        Result of `call_identity`.
+
+    Yields
+    ------
+    Journal or None
+        It is deleted after success, or if it is still empty after an error.
 
     Raises
     ------
     ParameterError
-        As of `open_journal`.
+        As for `open_journal`.
     """
     if target is None:
         yield None
         return
-    ended_well, made = False, not target.parent.exists()
+    unneeded, new_folder = False, not target.parent.exists()
     try:
         with _opened(target, identity) as journal:
             try:
                 yield journal
-                ended_well = True
+                unneeded = True
             finally:
-                ended_well |= not len(journal)
+                unneeded |= not len(journal)
     finally:
-        if ended_well:
+        if unneeded:
             journal_path(target).unlink(missing_ok=True)
-            with suppress(OSError):  # there is something in it
-                if made:
+            with suppress(OSError):  # the folder holds the output
+                if new_folder:
                     target.parent.rmdir()
 
 
 @contextmanager
 def _opened(target: Path, identity: str, *, fresh: bool = False) -> Iterator[Journal]:
+    """Lock and open the journal of a target; replace a damaged one."""
     path = journal_path(target)
     with locked(path, wait=False):
         try:
@@ -277,7 +283,7 @@ def _opened(target: Path, identity: str, *, fresh: bool = False) -> Iterator[Jou
 
 
 def journal_path(target: Path) -> Path:
-    """Where the results lie that are kept for a file to be written.
+    """Return the path of the journal of an output file.
 
     Examples
     --------
@@ -288,7 +294,7 @@ def journal_path(target: Path) -> Path:
 
 
 def call_identity(*decisive: object) -> str:
-    """Return what decides the results of a call, as JSON can hold it.
+    """Return a text that identifies all inputs on which the results of a call depend.
 
     Examples
     --------
@@ -299,18 +305,21 @@ def call_identity(*decisive: object) -> str:
 
 
 def _work_identity(work: Work) -> str:
+    """Return the identity of a call with this work."""
     return call_identity(work.doing, list(work.columns), dict(work.identity()))
 
 
 def _key(job: Job) -> str:
-    return _ascii(f"{job.name}\n{job.path.absolute()}")
+    """Return the key of a recording."""
+    return _encodable(f"{job.name}\n{job.path.absolute()}")
 
 
-def _ascii(text: str) -> str:
-    """Return a key that SQLite can hold: names of files may be no text."""
+def _encodable(text: str) -> str:
+    """Return a key that SQLite can store: file names may be invalid UTF-8."""
     return text.encode("utf-8", "backslashreplace").decode()
 
 
-def _done(values: list[Any], job: Job) -> Done | None:
+def _valid_result(values: list[Any], job: Job) -> JobResult | None:
+    """Return a stored result; None if the file has changed since."""
     identity, calibrated, rows = values
-    return Done(rows, calibrated) if identity and identity == file_identity(job.path) else None
+    return JobResult(rows, calibrated) if identity and identity == file_identity(job.path) else None

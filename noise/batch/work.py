@@ -1,10 +1,10 @@
-"""Work on recordings: which they are, what is done with each, where, and what comes of it.
+"""Batch work on recordings: find them, process them in parallel and collect the rows.
 
-A piece of work is a small object that can be sent to another process. What comes back is plain
-numbers and texts in the order of the table's columns, so that it is the same value whether it was
-computed here, in another process, on a cluster, or read back from a journal.
+`Work` is a small object that can be pickled. Its results are plain numbers and texts in the order
+of the columns, so they are identical whether they were computed in this process, in another one, on
+a cluster, or read from a journal.
 
-Linear algebra runs on one thread: on several, sums are split elsewhere and round differently.
+Linear algebra runs on one thread, because several threads sum in another order and round otherwise.
 """
 
 from __future__ import annotations
@@ -24,24 +24,24 @@ from noise.base.tables import plain_cell
 from noise.recordings import find_recordings
 from noise.recordings.sidecar import find_sidecar
 
-if TYPE_CHECKING:  # which keeps what comes of work
+if TYPE_CHECKING:  # it imports this module
     from noise.batch.journal import Journal
 
 DIED = "the processes that worked on it died; is there enough memory?"
-"""Why a recording is refused that no process survives."""
+"""Reason for refusing a recording at which the worker processes die."""
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """One recording of a batch.
+    """Recording of a batch.
 
     Parameters
     ----------
     index : int
-        Its place in the table.
+        Position in the batch.
     path : Path
     name : str
-        What the table calls it.
+        Name in the table.
     """
 
     index: int
@@ -49,16 +49,16 @@ class Job:
     name: str
 
 
-class Done(NamedTuple):
-    """What came of one recording.
+class JobResult(NamedTuple):
+    """Rows of one recording.
 
     Parameters
     ----------
     rows : list of list
-        One a row of the table, in the order of its columns.
+        Cells of each row, in the order of the columns.
     calibrated : bool
     error : str, optional
-        Why it was refused; its one row then says so, too.
+        Reason for a refusal, which the single row contains as well.
     """
 
     rows: list[list[Cell]]
@@ -67,38 +67,38 @@ class Done(NamedTuple):
 
 
 class Work(Protocol):
-    """What is done with each recording; it can be pickled."""
+    """Interface of the processing of a recording; implementations can be pickled."""
 
     @property
     def doing(self) -> str:
-        """Such as ``labelling``."""
+        """Name of the work, such as ``labelling``."""
         ...
 
     @property
     def columns(self) -> Sequence[str]:
-        """Of the table; ``file`` and ``error`` are among them."""
+        """Columns of the table, including ``file`` and ``error``."""
         ...
 
     def prepare(self) -> None:
-        """Load what all recordings need; an error here is one of the call."""
+        """Load models and libraries; an error here ends the whole call."""
         ...
 
     def identity(self) -> Mapping[str, object]:
-        """Return what decides the rows beside the recording and the program."""
+        """Return the options on which the rows depend."""
         ...
 
     def rows(self, path: Path, name: str) -> tuple[Iterable[dict[str, object]], bool]:
-        """Return the rows of a recording, once, and whether it is calibrated."""
+        """Return the rows of a recording, and whether it is calibrated."""
         ...
 
 
 def find_jobs(paths: Sequence[Path]) -> list[Job]:
-    """Find the recordings, each once however often it is named.
+    """Find all recordings, without duplicates.
 
     Parameters
     ----------
     paths : sequence of Path
-        Recordings, or folders that are searched at any depth.
+        Recordings, or folders that are searched recursively.
 
     Returns
     -------
@@ -107,7 +107,7 @@ def find_jobs(paths: Sequence[Path]) -> list[Job]:
     Raises
     ------
     ParameterError
-        A path does not exist, or there are no recordings.
+        A path does not exist, or no recordings are found.
 
     Examples
     --------
@@ -118,37 +118,39 @@ def find_jobs(paths: Sequence[Path]) -> list[Job]:
     ...     [job.name for job in find_jobs([Path(folder)])]
     ['run07.wav']
     """
-    found = {(path.absolute(), name): path for path, name in find_recordings(paths)}
-    if not found:
+    paths_by_key = {(path.absolute(), name): path for path, name in find_recordings(paths)}
+    if not paths_by_key:
         raise ParameterError(f"{', '.join(map(str, paths))}: there are no recordings in it")
-    return [Job(index, path, name) for index, ((_, name), path) in enumerate(found.items())]
+    return [Job(index, path, name) for index, ((_, name), path) in enumerate(paths_by_key.items())]
 
 
 def one_thread() -> AbstractContextManager[object]:
-    """Keep linear algebra to one thread; to be called once its libraries are loaded."""
+    """Limit linear algebra to one thread; call it after its libraries are imported."""
     from threadpoolctl import threadpool_limits
 
     limits: AbstractContextManager[object] = threadpool_limits(1)
     return limits
 
 
-def perform(work: Work, path: Path, name: str) -> Done:
-    """Do the work on one recording; a recording that cannot be used is a row that says so."""
+def perform(work: Work, path: Path, name: str) -> JobResult:
+    """Process one recording; any error becomes a refusal."""
     try:
         rows, calibrated = work.rows(path, name)
         cells = [[plain_cell(row.get(column)) for column in work.columns] for row in rows]
-    except Exception as error:  # whatever it is, the next file may be fine
+    except Exception as error:  # one bad file must not end the batch
         return refusal(work, name, _message(error))
-    return Done(cells, calibrated)
+    return JobResult(cells, calibrated)
 
 
-def refusal(work: Work, name: str, message: str) -> Done:
-    """Return what comes of a recording that is refused."""
-    said = {"file": name, "error": readable(message)}
-    return Done([[said.get(column) for column in work.columns]], calibrated=True, error=message)
+def refusal(work: Work, name: str, message: str) -> JobResult:
+    """Return the result of a refused recording."""
+    row = {"file": name, "error": readable(message)}
+    cells = [row.get(column) for column in work.columns]
+    return JobResult([cells], calibrated=True, error=message)
 
 
 def _message(error: Exception) -> str:
+    """Return the message for an error in one line."""
     if isinstance(error, BushingNoiseError):
         return " ".join(str(error).split("\n"))
     if isinstance(error, MemoryError):
@@ -157,9 +159,9 @@ def _message(error: Exception) -> str:
 
 
 def file_identity(path: Path) -> list[int] | None:
-    """Size [byte] and time of the last change [ns] of a recording, then those of its sidecar.
+    """Return size [byte] and modification time [ns] of a recording and of its sidecar.
 
-    None where the file cannot be looked at.
+    The result is None if the file is not accessible.
 
     Examples
     --------
@@ -180,45 +182,47 @@ def perform_all(
     *,
     workers: int = 1,
     scheduler: str | None = None,
-) -> Generator[tuple[Job, Done]]:
-    """Do the work on all recordings, and keep what comes of each in the journal.
+) -> Generator[tuple[Job, JobResult]]:
+    """Process recordings and store each result in the journal.
 
     Parameters
     ----------
     work : Work
-        Prepared.
+        Its `prepare` has been called.
     jobs : sequence of Job
     journal : Journal
     workers : int
-        Number of processes; with 1 it is this one.
+        Number of processes; 1 is this process alone.
     scheduler : str, optional
-        Address of a Dask cluster that does the work instead.
+        Address of a Dask cluster to use instead.
 
     Yields
     ------
-    Job, Done
-        In the order in which they are done.
+    job : Job
+        In the order of completion.
+    result : JobResult
 
     Raises
     ------
     ParameterError
-        The cluster cannot be used, or the journal not be written.
+        The cluster cannot be used, or the journal cannot be written.
     """
     if not jobs:
         return
-    # What a file is counts from before it was read: it may change meanwhile.
+    # The identity is taken before the content is read, which may change in between.
     identities = [file_identity(job.path) for job in jobs]
     with closing(_results(work, jobs, workers, scheduler)) as results:
-        for place, result in results:
-            job = jobs[place]
-            done = refusal(work, job.name, DIED) if result is None else result
-            journal.keep(job, identities[place], done)
-            yield job, done
+        for index, result in results:
+            job = jobs[index]
+            result = refusal(work, job.name, DIED) if result is None else result
+            journal.add_result(job, identities[index], result)
+            yield job, result
 
 
 def _results(
     work: Work, jobs: Sequence[Job], workers: int, scheduler: str | None
-) -> Generator[tuple[int, Done | None]]:
+) -> Generator[tuple[int, JobResult | None]]:
+    """Yield index and result of each recording as it completes; None if the workers died."""
     calls = [(work, str(job.path), str(job.path.absolute()), job.name) for job in jobs]
     if scheduler is not None:
         from noise.batch.cluster import cluster
@@ -229,40 +233,40 @@ def _results(
         yield from spread_over_processes(_perform_elsewhere, calls, workers)
     else:
         with one_thread():
-            for place, job in enumerate(jobs):
-                yield place, perform(work, job.path, job.name)
+            for index, job in enumerate(jobs):
+                yield index, perform(work, job.path, job.name)
 
 
-_READY: dict[object, Work] = {}
+_PREPARED: dict[object, Work] = {}
 
 
-def _perform_elsewhere(work: Work, as_given: str, absolute: str, name: str) -> Done:
-    """Do the work in another process, on a machine whose working folder may be another."""
-    # Prepared once a process, which may live longer than a classifier's file.
+def _perform_elsewhere(work: Work, original: str, absolute: str, name: str) -> JobResult:
+    """Process a recording in another process, whose working folder may differ."""
+    # Prepared once per process; the identity notices a model file that changes meanwhile.
     key = work, *map(str, work.identity().values())
-    if key not in _READY:
+    if key not in _PREPARED:
         work.prepare()
-        _READY[key] = work
+        _PREPARED[key] = work
     with one_thread():
-        done = perform(_READY[key], Path(absolute), name)
-    if done.error is None:
-        return done
-    # Messages name files as the caller named them; that of a sidecar differs in the ending only.
-    stem, stem_as_given = (str(Path(path).with_suffix("")) for path in (absolute, as_given))
-    return refusal(work, name, done.error.replace(stem, stem_as_given))
+        result = perform(_PREPARED[key], Path(absolute), name)
+    if result.error is None:
+        return result
+    # Messages show the path of the call, also that of a sidecar, which has the same stem.
+    stem, original_stem = (str(Path(path).with_suffix("")) for path in (absolute, original))
+    return refusal(work, name, result.error.replace(stem, original_stem))
 
 
 class BatchRows:
-    """Rows of a table, each read from the journal when it is its turn.
+    """Rows of a table, read from the journal one recording at a time.
 
     Parameters
     ----------
     columns : sequence of str
     journal : Journal
     jobs : iterable of Job
-        In the order of the table, those that are done.
-    refused : mapping of int to Done
-        By the index of the recording; these are not in the journal.
+        Completed recordings, in the order of the table.
+    refused : mapping of int to JobResult
+        Refusals by the index of the recording; the journal does not store them.
     """
 
     def __init__(
@@ -270,7 +274,7 @@ class BatchRows:
         columns: Sequence[str],
         journal: Journal,
         jobs: Iterable[Job],
-        refused: dict[int, Done],
+        refused: dict[int, JobResult],
     ) -> None:
         self._columns, self._journal = columns, journal
         self._jobs, self._refused = list(jobs), refused

@@ -21,7 +21,7 @@ from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_nu
 
 if TYPE_CHECKING:
     from noise.batch.journal import Journal
-    from noise.batch.work import BatchRows, Done, Job, Work
+    from noise.batch.work import BatchRows, Job, JobResult, Work
     from noise.recordings.meaning import PascalPerFullScale
 
     Rows = Iterable[dict[str, object]]
@@ -92,7 +92,7 @@ def run_batch(
     to_read = out is None and lines is not None and sys.stdout is not None and sys.stdout.isatty()
     check_table_path(out, work.columns)
     work.prepare()
-    outcomes: dict[int, Done] = {}
+    outcomes: dict[int, JobResult] = {}
     stopped = 0
     with open_journal(out, work, fresh=options.fresh) as journal:
         try:
@@ -109,7 +109,7 @@ def run_batch(
         there = [job for job in jobs if job.index in outcomes]
         made = BatchRows(work.columns, journal, there, refused)
         rows, written = _write(options, work, made, also, keep, table=not to_read)
-        journal.note_table()
+        journal.mark_written()
     read = f"{len(outcomes)} of " * bool(stopped) + counted(len(jobs), "recording")
     say(f"{'interrupted: ' * bool(stopped)}{read}, {len(refused)} refused")
     if lines is not None and out is not None:
@@ -127,7 +127,7 @@ def run_batch(
 
 def _progress(
     options: Namespace, work: Work, jobs: Sequence[Job], journal: Journal
-) -> Iterator[tuple[Job, Done]]:
+) -> Iterator[tuple[Job, JobResult]]:
     """First what earlier calls did, then the rest as it is done."""
     from noise.batch.work import perform_all
 
@@ -168,7 +168,7 @@ def _write(
     return rows, [*([] if out is None else [out]), *also(rows)]
 
 
-def _note_uncalibrated(outcomes: Iterable[Done]) -> None:
+def _note_uncalibrated(outcomes: Iterable[JobResult]) -> None:
     number = sum(not done.calibrated for done in outcomes)
     if number:
         note(

@@ -73,7 +73,7 @@ def run(options: Namespace) -> int:
     """Screen; print the ranking, write tables and pictures."""
     if options.out is not None:
         check_folder(options.out, file="map.csv")
-    from noise.batch.journal import call_identity, kept_results
+    from noise.batch.journal import call_identity, temporary_journal
     from noise.screening.design import load_designs
     from noise.screening.environments import environment
 
@@ -85,7 +85,7 @@ def run(options: Namespace) -> int:
     of_each = 2 if options.no_tolerances else 4  # map, advice, parts, sensitivities
     n_steps = 1 + of_each * len(options.designs) * len(environments)
     table = None if options.out is None else options.out / "map.csv"
-    with kept_results(table, call_identity("screening")) as kept:
+    with temporary_journal(table, call_identity("screening")) as kept:
         with steps("screening", n_steps) as tell:
             found = _screened(options, given, environments, tell, kept)
         from noise.screening.summary import summary_lines

@@ -15,7 +15,7 @@ from noise.base.labels import SURROUNDINGS
 from noise.base.model_file import model_digest
 from noise.base.tables import check_table_path
 from noise.batch.journal import open_journal
-from noise.batch.work import BatchRows, Done, find_jobs, perform_all
+from noise.batch.work import BatchRows, JobResult, find_jobs, perform_all
 from noise.classifier import Classifier, load_classifier
 from noise.classifier.model import CLASSIFIER
 from noise.inference import Inference, load_inference
@@ -113,7 +113,7 @@ def label(
     if out is not None:
         sign_corrections(Path(out), [job.name for job in jobs])
     with open_journal(None if out is None else Path(out), work, fresh=fresh) as journal:
-        refused: dict[int, Done] = {}
+        refused: dict[int, JobResult] = {}
         left = [job for job in jobs if journal.find(job) is None]
         performed = perform_all(work, left, journal, workers=workers, scheduler=scheduler)
         with closing(performed):
@@ -127,7 +127,7 @@ def label(
         with locked(Path(out)):
             table = LabelTable(with_corrections(Path(out), rows))
             table.write(out)
-            journal.note_table()
+            journal.mark_written()
     return table
 
 

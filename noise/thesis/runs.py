@@ -108,7 +108,7 @@ def constant_note() -> str:
     Examples
     --------
     >>> constant_note()
-    'numbers of the calibrated materials are of the constant version, without ...'
+    'numbers of the calibrated materials are computed without critical_torque_scatter, which ...'
     """
     materials = map(load_material_rig, material_names())
     return constant_remark(materials, "numbers of the calibrated materials")

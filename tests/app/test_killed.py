@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from noise.batch.journal import open_journal
-from noise.batch.work import Done, file_identity, find_jobs
+from noise.batch.work import JobResult, file_identity, find_jobs
 from noise.labels.labelling import Labelling, label
 from noise.labels.table import read_label_table
 from tests.helpers.labelled_folder import made_row, write_folder
@@ -31,7 +31,7 @@ def labelled_journal(folder):
     with open_journal(folder / "labels.csv", Labelling()) as journal:
         for job in find_jobs([folder]):
             rows = [list(made_row(job.name).values())]
-            journal.keep(job, file_identity(job.path), Done(rows, True))
+            journal.add_result(job, file_identity(job.path), JobResult(rows, True))
 
 
 def kill_while_correcting(folder, rng):

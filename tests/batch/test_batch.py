@@ -12,8 +12,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 
 from models.errors import ParameterError
-from noise.batch.journal import Journal, JournalReader, journal_path, kept_results, open_journal
-from noise.batch.work import DIED, Done, file_identity, perform_all
+from noise.batch.journal import (
+    Journal,
+    JournalReader,
+    journal_path,
+    open_journal,
+    temporary_journal,
+)
+from noise.batch.work import DIED, JobResult, file_identity, perform_all
 from tests.helpers.batch_work import Counting, in_order, make_jobs
 
 NAMES = ("a", "bad", "c", "d", "e", "f")
@@ -132,7 +138,7 @@ def test_a_full_disk_says_that_it_is_the_journal_and_what_is_in_it_can_be_gone_o
 ):
     import resource
 
-    table, long = tmp_path / "t.csv", Done([["x" * 100_000, 1.0, None]], calibrated=True)
+    table, long = tmp_path / "t.csv", JobResult([["x" * 100_000, 1.0, None]], calibrated=True)
     _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     with open_journal(table, work) as journal:
         list(perform_all(work, jobs[:1], journal))
@@ -140,7 +146,7 @@ def test_a_full_disk_says_that_it_is_the_journal_and_what_is_in_it_can_be_gone_o
         resource.setrlimit(resource.RLIMIT_FSIZE, (size + 50, hard))
         try:
             with pytest.raises(ParameterError, match=r"\.t\.csv\.journal: cannot be written"):
-                journal.keep(jobs[2], file_identity(jobs[2].path), long)
+                journal.add_result(jobs[2], file_identity(jobs[2].path), long)
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
     assert [done is None for done in keep(table, work, jobs)] == [False, *[True] * 5]
@@ -163,7 +169,7 @@ def test_who_watches_a_journal_gets_each_recording_once(work, jobs, tmp_path):
 
 def call(target, identity, end=None):
     """Keep one result, then end; return what was there before."""
-    with kept_results(target, identity) as journal:
+    with temporary_journal(target, identity) as journal:
         there = journal.get("a")
         journal.add("a", [0.1, float("inf")], "said")
         if end is not None:
@@ -195,6 +201,6 @@ def test_results_of_another_version_are_not_used_and_a_line_says_so(tmp_path, mo
 def test_a_call_that_is_refused_before_it_has_results_leaves_nothing(tmp_path):
     (tmp_path / "there").mkdir()
     for folder in ("there", "new"):
-        with pytest.raises(ParameterError), kept_results(tmp_path / folder / "set", "same"):
+        with pytest.raises(ParameterError), temporary_journal(tmp_path / folder / "set", "same"):
             raise ParameterError("no such design")
     assert [path.name for path in tmp_path.rglob("*")] == ["there"]

@@ -31,7 +31,7 @@ def test_the_missing_library_is_named_with_the_command_that_installs_it(
 
 def test_a_scheduler_that_is_not_there_is_named(tmp_path, monkeypatch):
     pytest.importorskip("distributed")
-    monkeypatch.setattr("noise.batch.cluster._PATIENCE", 0.5)
+    monkeypatch.setattr("noise.batch.cluster._TIMEOUT", 0.5)
     jobs = make_jobs(tmp_path, ["a"])
     with pytest.raises(ParameterError, match="does not answer"):
         performed(Counting(tmp_path / "log"), jobs, scheduler="tcp://127.0.0.1:9")

@@ -14,12 +14,12 @@ ROOT = Path(__file__).parents[2]
 SCRIPT = """
 import os, sys, time
 from joblib import Parallel, delayed
-from noise.base.processes import ending_with_this
+from noise.base.processes import ending_with_parent
 def rest(seconds):
     time.sleep(seconds)
     return os.getpid()
 def both(seconds, n):
-    return set(Parallel(n_jobs=2)(delayed(ending_with_this(rest))(seconds) for _ in range(n)))
+    return set(Parallel(n_jobs=2)(delayed(ending_with_parent(rest))(seconds) for _ in range(n)))
 while len(both(0.05, 8)) < 2:  # one may have done it all while the other was loaded
     pass
 print("ready", flush=True)

@@ -121,7 +121,7 @@ def test_a_rig_file_may_name_the_users_effect(effects_file, tmp_path, capsys):
         (OFFSET.replace("0.5,", "[0.5],"), "offset = [0.5] is no number"),
         (
             OFFSET.replace('("constant",), OFFSET', '("constant",), 5'),
-            "not declared as Effect asks",
+            "not a valid Effect",
         ),
         (ECCENTRIC.replace("@njit(HOOK_SIGNATURE)", ""), "contact is not compiled"),
         (ECCENTRIC.replace("math.cos", "mathematics.cos"), "'mathematics' is not defined"),

@@ -19,7 +19,7 @@ from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from noise.base.labels import LABELS, SURROUNDINGS
-from noise.base.processes import ending_with_this
+from noise.base.processes import ending_with_parent
 from noise.base.trees import BoostedTrees
 from noise.classifier.model import Calibration, Classifier, Thresholds, has_more_than_sound
 from noise.labels.segmentation import NOISES, clearest, named as labels_named
@@ -104,7 +104,7 @@ def grown(
     known: NDArray[np.bool_] = np.asarray(np.isfinite(x).any(axis=0))
     x = x[:, known]
     real = np.array([isinstance(sound, OwnSample) for sound in sounds])[owner]
-    grow = ending_with_this(_summed_trees)
+    grow = ending_with_parent(_summed_trees)
     growing = Parallel(n_jobs=-1, return_as="generator")(
         delayed(grow)(x[rows], y[rows], weight[rows], real[rows], seed, _N_ROUNDS)
         for rows in (part[owner] != k for k in range(N_FOLDS + 1))  # the last has all

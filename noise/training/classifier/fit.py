@@ -37,7 +37,7 @@ from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
-from noise.base.processes import ending_with_this
+from noise.base.processes import ending_with_parent
 from noise.classifier.model import Classifier
 from noise.labels.windows import FEATURE_NAMES, columns_of, window_features
 from noise.recordings import read_recording
@@ -294,7 +294,7 @@ def train(
     total = n_made_up + n_training + n_test
     seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
     seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
-    draw = ending_with_this(draw_sample)
+    draw = ending_with_parent(draw_sample)
     drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
         delayed(draw)(one, bushings=i >= n_made_up) for i, one in enumerate(seeds)
     )

@@ -11,7 +11,7 @@ from models.errors import ParameterError, RecordingError
 from noise.app.labels import Correction, read_corrections
 from noise.base.tables import write_table
 from noise.batch.journal import open_journal
-from noise.batch.work import Done, file_identity, find_jobs
+from noise.batch.work import JobResult, file_identity, find_jobs
 from noise.labels.corrections import version, with_corrections
 from noise.labels.labelling import Labelling
 from noise.labels.table import COLUMNS
@@ -60,7 +60,7 @@ def test_rows_arrive_from_the_journal_and_never_over_a_correction(folder):
     with open_journal(folder / "labels.csv", work) as journal:
         for job in jobs[:2]:
             rows = [list(row(job.name, "creak").values())]
-            journal.keep(job, file_identity(job.path), Done(rows, True))
+            journal.add_result(job, file_identity(job.path), JobResult(rows, True))
         assert [one["label"] for one in labels.summaries()] == ["creak", "squawk", None]
     assert labels_of(folder).rows(0)[0]["label"] == "creak"
     assert labels.undo()[1][0]["label"] == "creak"
