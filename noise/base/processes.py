@@ -1,8 +1,8 @@
 """Process pool that survives the death of its workers.
 
 A worker gets one call at a time, so that the call at which it died is known. That call is tried
-once more in a new process. Where no process can be started, the work is done in this one. A worker exits
-when its parent is gone, ignores interrupts, and does not run the caller's script again.
+once more in a new process. Where no process can be started, the work is done in this one. A worker
+exits when its parent is gone, ignores interrupts, and does not run the caller's script again.
 """
 
 from __future__ import annotations
