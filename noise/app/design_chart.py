@@ -25,11 +25,12 @@ from noise.screening.vibration import Condition
 
 
 class ChartRequest(NamedTuple):
-    """Rig, support stiffness [Nm/rad] and temperature [degree Celsius] of a chart."""
+    """Rig, support stiffness [Nm/rad], temperature [degree Celsius] and detail of a chart."""
 
     rig: Rig
     support_stiffness: float
     temperature: float
+    detail: int = 2
 
 
 class SuggestionRequest(NamedTuple):
@@ -40,10 +41,9 @@ class SuggestionRequest(NamedTuple):
     speed: float
 
 
-_STEP, _FITS = 0.25, 5
-"""Of speeds [rad/s], as fine as a boundary is followed; interferences."""
+_DETAIL = (2.0, 2, 0), (0.5, 3, 30), (0.25, 5, 100)
+"""Step of speeds [rad/s], interferences and simulations: each takes about three times as long."""
 
-_SIMULATIONS = 100
 _HEIGHT = 200.0
 """Of its drawing [px]."""
 
@@ -68,15 +68,16 @@ def chart_of(asked: ChartRequest) -> dict[str, object]:
     rig = asked.rig
     low, high = rig.interference_range
     fastest = rig.fastest_fitted if math.isfinite(rig.fastest_fitted) else _FASTEST
+    step, n_fits, simulations = _DETAIL[asked.detail]
     use = Use(
-        speed=tuple((_STEP * np.arange(1, round(fastest / _STEP) + 1)).tolist()),
-        interference=tuple(np.linspace(low, high, _FITS).tolist()) if high > low else (low,),
+        speed=tuple((step * np.arange(1, round(fastest / step) + 1)).tolist()),
+        interference=tuple(np.linspace(low, high, n_fits).tolist()) if high > low else (low,),
         support_stiffness=(asked.support_stiffness,),
         temperature=(asked.temperature,),
     )
     grid = shared_grid([Screened("design", rig)], use)
     with batch_evaluator(workers=1) as evaluate:
-        found = map_design(rig, grid, evaluate, design="design", most=_SIMULATIONS)
+        found = map_design(rig, grid, evaluate, design="design", most=simulations)
     speed, fit = np.meshgrid(grid.speed, 1e3 * np.array(grid.interference))
     cells, labels = cells_of(speed.ravel(), fit.ravel().round(6)), found.label[0, 0]
     across = axis_of(cells.speed_edges, edges=True)
@@ -103,7 +104,5 @@ def suggestions_of(asked: SuggestionRequest) -> dict[str, object]:
     at = Condition(asked.speed, asked.interference, chart.support_stiffness, chart.temperature)
     found = evaluate_point(chart.rig, at)
     offers = advise(chart.rig, at, workers=1) if found.label in NAMED else ()
-    changes = [
-        {"name": one.name, "factor": one.factor, "steady": True} for one in offers if one.ends
-    ]
+    changes = [{"name": one.name, "factor": one.factor} for one in offers if one.ends]
     return {"noise": found.label, "speed_rad_s": asked.speed, "changes": changes}

@@ -10,9 +10,11 @@ from __future__ import annotations
 import gc
 import signal
 import struct
+import sys
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from multiprocessing import get_context
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
@@ -25,6 +27,7 @@ from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
+    from multiprocessing.context import BaseContext
 
 RATE = 48000
 """Of the sound [Hz]."""
@@ -37,11 +40,6 @@ _NICE = 10
 def block_impulse_responses(setting: Setting) -> ImpulseResponses:
     """Return the impulse responses of a setting at the rate of its blocks."""
     return paths_of(setting, RATE)
-
-
-def impulse_response_worker() -> WorkerProcess[Setting, ImpulseResponses]:
-    """Return a process that computes impulse responses."""
-    return WorkerProcess(f"{__name__}:block_impulse_responses", _NICE)
 
 
 class LiveTransferPaths:
@@ -160,11 +158,19 @@ class _Run:
 
 
 class Player:
-    """Runs that go on, by number."""
+    """Runs that go on, by number.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    context : multiprocessing.context.BaseContext, optional
+        In which the process that computes impulse responses is started.
+    """
+
+    def __init__(self, context: BaseContext | None = None) -> None:
         self._runs: dict[int, _Run] = {}
-        self.beside = impulse_response_worker()
+        self.beside: WorkerProcess[Setting, ImpulseResponses] = WorkerProcess(
+            f"{__name__}:block_impulse_responses", _NICE, context
+        )
 
     def start(self, number: int, serial: int, setting: Setting) -> None:
         """Begin a run.
@@ -243,9 +249,9 @@ def refusal(serial: int, error: ParameterError | str) -> bytes:
     return HEADER.pack(REFUSED, serial, len(why), 0, 0.0) + why
 
 
-def warmed() -> Player:
-    """Return a player that has compiled what it will use."""
-    player = Player()
+def warmed(context: BaseContext | None = None) -> Player:
+    """Return a player, as of its `context`, that has compiled what it will use."""
+    player = Player(context)
     setting = Setting(load_material_rig("fluorocarbon"), ConstantSpeed(5.0), 0.3e-3, 2214.0)
     player.beside.ask(setting)
     player.start(0, 0, setting)
@@ -271,7 +277,8 @@ def play(link: Connection) -> None:
     with suppress(ValueError):  # a key in the terminal is for the server
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     with one_thread(), suppress(EOFError, OSError):
-        player = warmed()
+        # A copy of this process, which has no threads yet, is there at once.
+        player = warmed(get_context("fork") if sys.platform == "linux" else None)
         try:
             while True:
                 due = player.due(time.perf_counter())

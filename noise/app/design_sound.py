@@ -13,7 +13,6 @@ from collections.abc import AsyncIterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
-from multiprocessing import get_context
 from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +26,8 @@ from noise.app.design import Design, design_of
 from noise.app.design_controls import Base
 from noise.app.design_player import BLOCK, HEADER, RATE, REFUSED, play
 from noise.app.requests import number
-from noise.app.worker_process import WorkerProcess
+from noise.app.worker_process import WorkerProcess, process_context
+from noise.base.processes import interrupts_blocked
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _METER = RATE // BLOCK
 """Blocks of the second whose level and noise are shown."""
 
-_NICE = 12
+_NICE = 5
 """By how much the sound goes before its name."""
 
 _MOST_RUNS = 4
@@ -90,16 +90,17 @@ class LiveSounds:
         with self._lock:
             if self._link is not None:
                 return
-            context = get_context("spawn")  # a copy of this process would lack its threads
+            context = process_context()
             self._link, theirs = context.Pipe()
             # No daemon, since it has a process beside itself; it ends with the link.
-            process = context.Process(target=play, args=(theirs,))
-            process.start()
+            with interrupts_blocked():
+                context.Process(target=play, args=(theirs,)).start()  # type: ignore[attr-defined]
             theirs.close()
             sound_levels(np.zeros(RATE), RATE)  # compiled now, not while it plays
             gc.collect()
             gc.freeze()  # or all that is loaded is walked through while it plays
             Thread(target=self._read, args=(self._link,), daemon=True).start()
+        self._names.ask((0, 0.0, bytes(4 * RATE)))  # the first name is not to wait for the model
 
     def stop(self) -> None:
         """End all streams and the player."""

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 
 _CHARTS = "noise.app.design_chart"
-_NICE = 15
-"""Whoever listens goes first."""
+_NICE = 2
+"""Whoever listens goes first, but whoever waits for a map is served on a busy machine, too."""
 
 _SLOWEST, _FASTEST = 0.05, 200.0
 """At which a noise is looked for [rad/s]."""
@@ -81,7 +81,9 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return JSONResponse(sounds.levels(int(run)))
 
     def charted(_: Request, asked: dict[str, Any]) -> Response:
-        return _waited(charts.answer_to(_chart(design_of(asked, bases).setting)))
+        question = _chart(design_of(asked, bases).setting)
+        detail = int(number(asked, "detail", 0, 2, 2, whole=True))
+        return _waited(charts.answer_to(question._replace(detail=detail)))
 
     def helped(_: Request, asked: dict[str, Any]) -> Response:
         setting = design_of(asked, bases).setting

@@ -7,12 +7,15 @@ that wait. The process ends with the server, however that ends.
 from __future__ import annotations
 
 import os
+import sys
 import time
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
+from multiprocessing import get_context
+from multiprocessing.context import BaseContext
 from threading import RLock
 from typing import Any, Generic, TypeVar
 
@@ -23,8 +26,21 @@ from noise.batch.work import one_thread
 _REST = 0.5
 """Longest rest between answers, as long as one took: half a processor is left to the sound [s]."""
 
+_LOADED = ("noise.app.design_sound", "noise.app.design_chart", "noise.labels.segments")
+"""Modules that take seconds to be loaded."""
+
 _Question = TypeVar("_Question")
 _Answer = TypeVar("_Answer")
+
+
+@cache
+def process_context() -> BaseContext:
+    """Return a context of processes that begin with all modules loaded; of new ones off Linux."""
+    if sys.platform != "linux":
+        return get_context("spawn")
+    context = get_context("forkserver")
+    context.set_forkserver_preload(list(_LOADED))
+    return context
 
 
 class WorkerProcess(Generic[_Question, _Answer]):
@@ -36,10 +52,12 @@ class WorkerProcess(Generic[_Question, _Answer]):
         ``module:function`` from question to answer: only the process imports it, once it is nice.
     nice : int
         By how much everything else goes first, as of the command ``nice``.
+    context : multiprocessing.context.BaseContext, optional
+        In which it is started, by default `process_context`.
     """
 
-    def __init__(self, answer: str, nice: int = 0) -> None:
-        self._answer, self._nice = answer, nice
+    def __init__(self, answer: str, nice: int = 0, context: BaseContext | None = None) -> None:
+        self._answer, self._nice, self._context = answer, nice, context
         self._lock = RLock()
         self._worker: Worker | None = None
         self._wanted: tuple[_Question] | None = None
@@ -84,7 +102,7 @@ class WorkerProcess(Generic[_Question, _Answer]):
     def _go_on(self) -> None:
         if self._stopped or self._current is not None or self._wanted is None:
             return
-        self._worker = self._worker or Worker()
+        self._worker = self._worker or Worker(self._context or process_context())
         self._current, self._wanted = self._wanted, None
         self._worker.submit(_answered, self._answer, self._nice, *self._current).add_done_callback(
             self._take

@@ -18,7 +18,8 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from functools import lru_cache, partial
-from multiprocessing import current_process, get_context, resource_tracker
+from multiprocessing import current_process, get_context, parent_process, resource_tracker
+from multiprocessing.context import BaseContext
 from multiprocessing.util import Finalize
 from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
@@ -81,13 +82,19 @@ def spread_over_processes(
 
 
 class Worker:
-    """Process that runs one call at a time and can be killed at any moment."""
+    """Process that runs one call at a time and can be killed at any moment.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    context : multiprocessing.context.BaseContext, optional
+        In which it starts; by default in a new interpreter: a forked copy would lack the threads
+        of this one.
+    """
+
+    def __init__(self, context: BaseContext | None = None) -> None:
         with interrupts_blocked(), _independent_start():
-            # A new interpreter: a forked copy would lack the threads of this one.
             self._executor = ProcessPoolExecutor(
-                1, get_context("spawn"), initializer=_watch, initargs=(os.getpid(),)
+                1, context or get_context("spawn"), initializer=_exit_with_starter
             )
             self._process_id = self.submit(os.getpid)
         # Without this the interpreter would wait at exit for a busy worker.
@@ -198,6 +205,18 @@ def _watched(
     if os.getppid() == parent:
         _watch(parent)
     return perform(*args, **kwargs)
+
+
+def _exit_with_starter() -> None:
+    """Start a thread that exits the process when the one that asked for it is gone."""
+    starter = parent_process()
+
+    def wait_for_end() -> None:
+        if starter is not None:
+            starter.join()
+            os._exit(1)
+
+    threading.Thread(target=wait_for_end, daemon=True).start()
 
 
 @lru_cache(maxsize=1)

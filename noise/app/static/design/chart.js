@@ -2,8 +2,10 @@
 import { api } from "../api.js";
 import { made } from "../dom.js";
 
-const AGAIN = 700, AFTER = 1000; // ms
-const USUAL = 30; // that the first map takes [s]
+const AGAIN = 500, AFTER = 1000; // ms
+const FIRST = 3, WORK = [1, 3, 9]; // that the coarsest map takes at first [s]; how many times as long each takes
+const SEARCH = 10; // that advice takes at first [s]
+const QUESTION = "What would end the noise?";
 
 export class Chart {
   constructor(panel, design) {
@@ -11,8 +13,8 @@ export class Chart {
     this.box = made("div", { className: "chart" });
     this.said = made("p", { className: "soft" });
     this.progress = made("progress", { max: 1, ariaLabel: "Map", hidden: true });
-    this.took = USUAL;
-    this.ask = made("button", { type: "button", textContent: "What would end the noise?", onclick: () => this.help() });
+    this.took = { map: FIRST, search: SEARCH }; // [s]
+    this.ask = made("button", { type: "button", textContent: QUESTION, onclick: () => this.help() });
     this.helps = made("ul", { className: "helps" });
     panel.append(made("section", { className: "shown" }, made("h2", { textContent: "Map" }), this.box, this.progress, this.said),
       made("section", {}, made("h2", { textContent: "What to change" }), made("div", { className: "tools" }, this.ask), this.helps));
@@ -21,33 +23,37 @@ export class Chart {
   // A design has changed: the map follows when there is time.
   changed() {
     clearTimeout(this.later);
-    this.box.classList.toggle("old", Boolean(this.known));
+    this.following = null;
+    this.box.classList.toggle("old", this.box.hasChildNodes());
     this.helps.replaceChildren();
+    this.progress.hidden = true;
+    this.said.textContent = `Map updates about ${Math.ceil(this.took.map)} s after the last change.`;
     this.later = setTimeout(() => this.#follow(), AFTER);
-    if (!this.progress.hidden) return;
-    this.said.textContent = `Map updates about ${Math.ceil(this.took)} s after the last change.`;
     this.point();
   }
 
+  // A coarse map first, which is soon there.
   async #follow() {
     const stated = this.design.stated(), mine = this.following = {};
-    const began = performance.now();
-    const answer = await asked("design/chart", stated, () => {
-      if (mine !== this.following || this.design.hidden()) return false;
-      const since = (performance.now() - began) / 1000, left = Math.ceil(this.took - since);
-      Object.assign(this.progress, { hidden: false, value: Math.min(0.95, since / this.took) });
-      this.said.textContent = left > 0 ? `Computing the map: about ${left} s left.` : "Computing the map: it takes longer than expected.";
-      return true;
-    });
-    if (!answer) return;
-    this.progress.hidden = true;
-    this.took = Math.max(2, (performance.now() - began) / 1000);
-    this.said.textContent = answer.error || `${answer.found.legend}. At constant speed, for this support and temperature; partly simulated, partly from stability analysis.`;
-    if (!answer.found) return;
-    this.known = true;
-    this.box.classList.remove("old");
-    this.box.innerHTML = answer.found.html; // as pages have it
-    this.point();
+    const wanted = () => mine === this.following && !this.design.hidden();
+    for (const [detail, work] of WORK.entries()) {
+      const words = detail ? `${this.legend} Computing a finer map` : "Computing the map";
+      const answer = await asked("design/chart", { ...stated, detail }, wanted, (since) => {
+        const all = this.took.map * work;
+        Object.assign(this.progress, { hidden: false, value: Math.min(0.95, since / all) });
+        this.said.textContent = `${words}: ${left(all, since)}`;
+      });
+      if (!answer) return;
+      this.progress.hidden = true;
+      this.said.textContent = answer.error;
+      if (!answer.found) return;
+      this.took.map = Math.max(0.5, answer.took / work);
+      this.legend = `${answer.found.legend}.`;
+      this.box.classList.remove("old");
+      this.box.innerHTML = answer.found.html; // as pages have it
+      this.point();
+    }
+    this.said.textContent = `${this.legend} At constant speed, for this support and temperature; partly simulated, partly from stability analysis.`;
   }
 
   // Where on the map it is.
@@ -64,40 +70,45 @@ export class Chart {
   }
 
   async help() {
-    const stated = this.design.stated(), mine = this.helping = {}, heard = this.design.speed;
-    const constant = this.design.controls.values.get("motion") === "constant";
+    const stated = this.design.stated(), mine = this.helping = {}, { speed: heard, controls: { values } } = this.design;
+    const about = values.get("motion") === "constant" || !heard ? stated : { ...stated, speed: Number(heard.toFixed(2)) };
+    const wanted = () => mine === this.helping && JSON.stringify(stated) === JSON.stringify(this.design.stated());
     this.ask.disabled = true;
-    this.ask.textContent = "Searching, some seconds ...";
-    const answer = await asked("design/helps", constant || !heard ? stated : { ...stated, speed: Number(heard.toFixed(2)) }, () => mine === this.helping && JSON.stringify(stated) === JSON.stringify(this.design.stated()));
+    const answer = await asked("design/helps", about, wanted, (since) => {
+      this.ask.textContent = `Searching: ${left(this.took.search, since)}`;
+    });
     this.ask.disabled = false;
-    this.ask.textContent = "What would end the noise?";
+    this.ask.textContent = QUESTION;
     if (!answer) return;
-    if (!answer.found) {
-      this.helps.replaceChildren(made("li", { textContent: answer.error }));
-      return;
-    }
-    const { noise, speed_rad_s: speed, changes } = answer.found, at = `at a constant ${Number(speed.toPrecision(3))} rad/s`;
+    this.took.search = Math.max(1, answer.took);
+    this.helps.replaceChildren(...(answer.found ? this.#offers(answer.found, stated) : [made("li", { textContent: answer.error })]));
+  }
+
+  #offers({ noise, speed_rad_s: speed, changes }, stated) {
+    const at = `at a constant ${Number(speed.toPrecision(3))} rad/s`, { declared, values } = this.design.controls;
     if (!changes.length) {
-      const why = ["creak", "squawk", "squeal"].includes(noise) ? `No single change of a plausible size ends the ${noise} ${at}.` : `There is no noise to end ${at}.`;
-      this.helps.replaceChildren(made("li", { textContent: why }));
-      return;
+      const isNoise = ["creak", "squawk", "squeal"].includes(noise);
+      return [made("li", { textContent: isNoise ? `No single change of a plausible size ends the ${noise} ${at}.` : `There is no noise to end ${at}.` })];
     }
-    this.helps.replaceChildren(...changes.map(({ name, factor, steady }) => {
+    return changes.map(({ name, factor }) => {
       const key = { support_stiffness: "support", interference: "interference" }[name] ?? `change.${name}`;
-      const { label, unit } = this.design.controls.declared.get(key), percent = 100 * (factor - 1);
-      const textContent = `${label} ${percent > 0 ? "+" : "−"}${Math.abs(percent).toFixed(1)} %`;
-      const value = Number((this.design.controls.values.get(key) * factor).toPrecision(4));
+      const percent = 100 * (factor - 1), value = Number((values.get(key) * factor).toPrecision(4));
+      const textContent = `${declared.get(key).label} ${percent > 0 ? "+" : "−"}${Math.abs(percent).toFixed(1)} %`;
       const press = made("button", { type: "button", textContent, onclick: () => this.design.put({ ...stated, values: { ...stated.values, [key]: value } }) });
-      return made("li", {}, press, ` ends the ${noise} ${at}${steady ? "" : "; a slightly larger change brings it back"}`);
-    }));
+      return made("li", {}, press, ` ends the ${noise} ${at}`);
+    });
   }
 }
 
-// Ask until it is known, or nobody wants to know any more.
-async function asked(path, stated, wanted) {
+const left = (all, since) => (since < all ? `about ${Math.ceil(all - since)} s left` : `${Math.floor(since)} s so far, longer than expected`);
+
+// Ask until it is known, or nobody wants to know any more; meanwhile say since when [s].
+async function asked(path, stated, wanted, tell) {
+  const began = performance.now(), since = () => (performance.now() - began) / 1000;
   while (wanted()) {
+    tell(since());
     const answer = await api(path, stated, () => {}).catch((error) => ({ known: true, found: null, error: error.message }));
-    if (answer.known) return wanted() ? answer : null;
+    if (answer.known) return wanted() ? { ...answer, took: since() } : null;
     await new Promise((resolve) => { setTimeout(resolve, AGAIN); });
   }
   return null;

@@ -12,6 +12,7 @@ const LEVELS_EVERY = 500, FACTS_AFTER = 200; // ms
 
 export async function mount(panel) {
   for (const name of ["./design.css", "../shared/maps.css"]) stylesheet(new URL(name, import.meta.url));
+  panel.replaceChildren(made("p", { className: "empty", textContent: "Loading the design view ..." }));
   const about = await api("design");
   const view = made("div", { className: "design-view" });
   const left = made("div", { className: "left" }), right = made("div", { className: "right" });
@@ -21,7 +22,7 @@ export async function mount(panel) {
   const copy = made("button", { type: "button", onclick: () => copied() });
   const reset = made("button", { type: "button", textContent: "Reset to base", onclick: () => toBase() });
   const tools = made("div", { className: "tools", role: "group", ariaLabel: "Play and compare" });
-  tools.append(play, made("span", { className: "group" }, ...slots), copy, reset, made("span", { className: "soft", textContent: "Keys: Space, A, B" }));
+  tools.append(play, made("span", { className: "group" }, ...slots), copy, reset);
   const start = made("div", { className: "row choice" }, made("label", { htmlFor: "design-base", textContent: "Base" }), base);
   const rows = made("div", { className: "controls" });
   const name = made("p", { className: "name" }), level = made("p", { className: "level" }), gain = made("span", { className: "gain" });
@@ -36,7 +37,6 @@ export async function mount(panel) {
   right.append(tools, refusal, made("section", { className: "shown heard", ariaLabel: "What is heard" }, name, level, remarks),
     made("section", { className: "shown" }, made("h2", { textContent: "Spectrum" }), spectrum));
   view.append(left, right);
-  panel.replaceChildren(view);
 
   const controls = new Controls(rows), sound = new Sound(about), drawings = new Drawings(about, sound, torque, spectrum);
   const design = { sound, controls, drawings, about };
@@ -181,11 +181,12 @@ export async function mount(panel) {
 
   function silent() {
     name.textContent = "Not playing";
-    level.textContent = "Press Play to hear the design and to see its name and level.";
+    level.textContent = "Press Play or Space to hear the design and to see its name and level. A and B switch between two designs.";
   }
   silent();
   new ResizeObserver(() => drawings.draw()).observe(right);
   await put({ base: about.bases[0].id, values: {} });
+  panel.replaceChildren(view); // all of it at once
   play.disabled = false;
   design.ready = true;
   return design;
