@@ -145,7 +145,7 @@ def run_criteria(run: Run) -> NoiseCriteria:
     >>> run_criteria(simulate(load_material_rig("PDMS"), 5.0)).swing < 1e-3
     True
     """
-    settled = run.motion.since(run.motion.torque.size // 2)
+    settled = run.motion.part(run.motion.torque.size // 2)
     return noise_criteria(settled, run.pressure, run.pulse_pressure)
 
 

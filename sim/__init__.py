@@ -1,8 +1,8 @@
-"""The simulator: from how the shaft turns to what the sensors record."""
+"""Simulator of the rig: from the motion of the shaft to the samples of the sensors."""
 
 import lazy_loader
 
-import models  # noqa: F401  # which names the folder for compiled code
+import models  # noqa: F401  # sets the folder for compiled code
 
-# What is exported stands once, in the stub beside this file; it is loaded when it is first used.
+# Exports are listed once, in the stub beside this file, and loaded at first use.
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,18 +1,20 @@
 # mypy: allow-untyped-decorators
-"""The rig's data acquisition: anti-alias filter, sampling, noise, and the converter.
+"""Data acquisition: anti-alias filter, sampling, noise and converter.
 
-A signal goes through it in the order of a laboratory's: a Butterworth low-pass filter of order 8,
-as dedicated anti-alias filters have (assumed; 3 dB down at the corner that `models.sensors.Sensor`
-states, causal, made discrete by the bilinear transform at the rate of the computation with the
-corner kept; it starts settled at its first sample), the sampling with a steep linear-phase filter
-of its own, the noise, and the converter, which rounds to its steps and clips at its range. A corner
-at half the rate of the computation or above changes nothing that is sampled and is left out; what
-an analogue filter lets through above half the sampling rate is not folded back.
+A signal passes, as in a laboratory,
 
-Gains and range of the thesis's are those of Section 3.1.2 and Appendices B to E: 12 bits over
-+-1.25 V, 82 Nm/V, 781.4 m/s2/V, 23.088 Pa/V, 9.9 rad/V. One bit is then 0.05 Nm, 0.48 m/s2, 14 mPa
-(53.9 dB re 20 uPa rms were it a sine) and 6 mrad, so that converter is an option: it would hide a
-quiet sound.
+1. an analogue anti-alias filter: Butterworth, order 8 (assumed), 3 dB down at the corner that
+   `models.sensors.Sensor` states. It is causal, made discrete by the bilinear transform at the rate
+   of the computation with the corner preserved, and starts settled at its first sample. A corner at
+   or above half that rate has no effect on the samples and is left out.
+2. the sampling, with a steep linear-phase filter of its own. What the analogue filter passes above
+   half the sampling rate is not folded back.
+3. the noise.
+4. the converter, which rounds to its steps and clips at its range.
+
+Gains and range of the thesis's converter are those of Section 3.1.2 and Appendices B to E: 12 bits
+over +-1.25 V, 82 Nm/V, 781.4 m/s2/V, 23.088 Pa/V, 9.9 rad/V. One bit is 0.05 Nm, 0.48 m/s2, 14 mPa
+(53.9 dB re 20 uPa rms for a sine) and 6 mrad. It is an option, because it would hide a quiet sound.
 """
 
 from __future__ import annotations
@@ -36,7 +38,7 @@ CONVERTER_GAIN = {
     "pressure": 23.088,
     "angle": 9.9,
 }
-"""Units per volt of each transducer (Appendices B to E)."""
+"""Gain of each transducer in units per volt (Appendices B to E)."""
 
 _CONVERTER_RANGE = 1.25
 """Largest voltage of the converter, either sign [V]."""
@@ -47,22 +49,22 @@ THESIS_CONVERTER = Sensors(
         for kind, gain in CONVERTER_GAIN.items()
     }
 )
-"""The board that the thesis recorded with (3.1.2)."""
+"""Converter board of the thesis (3.1.2)."""
 
 _FILTER_ORDER = 8
-"""Of the analogue anti-alias filter; assumed."""
+"""Order of the analogue anti-alias filter; assumed."""
 
 _FILTER_HALF_LENGTH = 10
-"""Of the anti-alias filter, in samples kept."""
+"""Half length of the linear-phase anti-alias filter, in output samples."""
 
 _AT_ONCE = 512
-"""Values that are filtered together: what they are made of stays in the processor's cache."""
+"""Output values filtered together, so that their inputs stay in the processor's cache."""
 
 
 @short_repr
 @dataclass(frozen=True)
 class Acquisition:
-    """How signals become samples.
+    """Sampling rate, noise and sensors of a recording.
 
     Parameters
     ----------
@@ -72,7 +74,7 @@ class Acquisition:
         Standard deviation of the white noise on each kind of channel, in its unit. The defaults
         are a quiet room (32 dB re 20 uPa up to 15 kHz) and good amplifiers; assumed.
     sensors : Sensors
-        What they are recorded through; a noise that these state is the one that counts.
+        Sensors of the channels; a noise that they state takes precedence over `noise`.
 
     Examples
     --------
@@ -92,7 +94,7 @@ class Acquisition:
     sensors: Sensors = field(default_factory=Sensors)
 
     def over(self, sensors: Sensors) -> Acquisition:
-        """Return it with what it does not say of its sensors taken from those of a rig."""
+        """Return the acquisition with sensors that it does not state taken from a rig's."""
         return replace(self, sensors=self.sensors.over(sensors))
 
 
@@ -102,17 +104,17 @@ def sample(
     acquisition: Acquisition,
     rng: np.random.Generator,
 ) -> dict[str, NDArray[np.float64]]:
-    """Sample signals as the rig's data acquisition does.
+    """Sample and digitise signals as the rig's data acquisition does.
 
     Parameters
     ----------
     signals : mapping of str to ndarray, shape (n,)
         By kind of channel, at `decimation` times the sampling rate.
     decimation : int
-        Every so many samples one is kept, after a linear-phase anti-alias filter.
+        Ratio of the rates.
     acquisition : Acquisition
     rng : numpy.random.Generator
-        Of the noise.
+        Generator of the noise.
 
     Returns
     -------
@@ -121,8 +123,8 @@ def sample(
     Examples
     --------
     >>> quiet = Acquisition(noise={})
-    >>> held = sample({"torque": np.full(80, 3.0)}, 4, quiet, np.random.default_rng(0))
-    >>> held["torque"].shape, held["torque"].round(6).max()
+    >>> samples = sample({"torque": np.full(80, 3.0)}, 4, quiet, np.random.default_rng(0))
+    >>> samples["torque"].shape, samples["torque"].round(6).max()
     ((20,), np.float64(3.0))
     """
     fine = decimation * acquisition.rate
@@ -138,22 +140,22 @@ def sample(
 def decimate_sensed(
     signal: NDArray[np.float64], factor: int, rate: float, sensor: Sensor
 ) -> NDArray[np.float64]:
-    """Filter a signal as a sensor's anti-alias filter does, and decimate it.
+    """Apply a sensor's anti-alias filter to a signal, and decimate it.
 
     Parameters
     ----------
     signal : ndarray, shape (n,)
         In any [unit].
     factor : int
-        Of the rates.
+        Ratio of the rates.
     rate : float
-        Of `signal` [Hz].
+        Rate of `signal` [Hz].
     sensor : Sensor
 
     Returns
     -------
     ndarray, shape (ceil(n / factor),)
-        In the signal's own [unit].
+        In the unit of the signal [unit].
 
     Examples
     --------
@@ -166,16 +168,17 @@ def decimate_sensed(
 def digitise(
     values: NDArray[np.float64], kind: str, acquisition: Acquisition, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Add the noise of a channel, and convert.
+    """Add the noise of a channel, and apply its converter.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Of a kind of channel, at the sampling rate [unit of the channel].
+        Samples at the sampling rate [unit of the channel].
     kind : str
+        Kind of channel.
     acquisition : Acquisition
     rng : numpy.random.Generator
-        Of the noise.
+        Generator of the noise.
 
     Returns
     -------
@@ -203,13 +206,13 @@ def digitise(
 def analogue_filter(
     corner: float | None, rate: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    """Low-pass filter of a corner [Hz] for signals at a rate [Hz], and its state in a steady one.
+    """Return the low-pass filter of a corner [Hz] at a rate [Hz], and its steady state.
 
     Returns
     -------
     tuple of (ndarray, shape (4, 6), ndarray, shape (4, 2)) or None
-        Second-order sections [-], and their state at a steady value of one; None where the corner
-        is too high to change anything.
+        Second-order sections [-], and their state at a constant value of one; None if the corner is
+        too high to have an effect.
 
     Examples
     --------
@@ -223,7 +226,9 @@ def analogue_filter(
 
 
 def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
-    """Keep every so many samples, after the anti-alias filter; beyond its ends a signal goes on.
+    """Decimate a signal after a linear-phase anti-alias filter.
+
+    Beyond its ends the signal is extended by a straight line.
 
     Parameters
     ----------
@@ -235,7 +240,7 @@ def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (ceil(n / factor),)
-        In the signal's own [unit].
+        In the unit of the signal [unit].
 
     Examples
     --------
@@ -245,15 +250,15 @@ def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
     if factor == 1 or signal.size == 1:
         return signal
     taps = anti_alias_filter(factor)
-    before, n, kept = taps.size // 2, signal.size, -(-signal.size // factor)
+    before, n, n_out = taps.size // 2, signal.size, -(-signal.size // factor)
     slope = (signal[-1] - signal[0]) / max(n - 1, 1)
-    going_on = np.empty(factor * (kept + -(-taps.size // factor)))
-    after = going_on.size - before - n
-    going_on[:before] = signal[0] + np.arange(-before, 0) * slope
-    going_on[before : before + n] = signal
-    going_on[before + n :] = signal[-1] + np.arange(1, after + 1) * slope
-    decimated = np.empty(kept)
-    _filter_phases(np.ascontiguousarray(going_on.reshape(-1, factor).T), taps, decimated)
+    extended = np.empty(factor * (n_out + -(-taps.size // factor)))
+    after = extended.size - before - n
+    extended[:before] = signal[0] + np.arange(-before, 0) * slope
+    extended[before : before + n] = signal
+    extended[before + n :] = signal[-1] + np.arange(1, after + 1) * slope
+    decimated = np.empty(n_out)
+    _filter_phases(np.ascontiguousarray(extended.reshape(-1, factor).T), taps, decimated)
     return decimated
 
 
@@ -261,25 +266,25 @@ def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
 def _filter_phases(
     phases: NDArray[np.float64], taps: NDArray[np.float64], values: NDArray[np.float64]
 ) -> None:
-    """Filter a signal that is given as every so many of its samples, one row a phase.
+    """Filter a signal whose samples are split by phase, one row per phase.
 
-    Tap by tap over many values at once, in the order of `scipy.signal.resample_poly` and to its
-    last bit.
+    The sum runs tap by tap over many values at once, in the order of `scipy.signal.resample_poly`
+    and equal to it to the last bit.
     """
     for first in range(0, values.size, _AT_ONCE):
-        kept = values[first : first + _AT_ONCE]
-        kept[:] = 0.0
+        chunk = values[first : first + _AT_ONCE]
+        chunk[:] = 0.0
         for i in range(taps.size):
             start = first + i // phases.shape[0]
-            source = phases[i % phases.shape[0], start : start + kept.size]
+            source = phases[i % phases.shape[0], start : start + chunk.size]
             tap = taps[taps.size - 1 - i]
-            for k in range(kept.size):
-                kept[k] += tap * source[k]
+            for k in range(chunk.size):
+                chunk[k] += tap * source[k]
 
 
 @lru_cache(maxsize=8)
 def anti_alias_filter(factor: int) -> NDArray[np.float64]:
-    """Linear-phase low-pass filter ahead of a decimation.
+    """Return the linear-phase low-pass filter of a decimation.
 
     Parameters
     ----------
@@ -289,7 +294,7 @@ def anti_alias_filter(factor: int) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (20 * factor + 1,)
-        What `scipy.signal.resample_poly` designs by default.
+        The default design of `scipy.signal.resample_poly`.
 
     Examples
     --------
@@ -298,21 +303,21 @@ def anti_alias_filter(factor: int) -> NDArray[np.float64]:
     """
     size = 2 * _FILTER_HALF_LENGTH * factor + 1
     taps = np.asarray(firwin(size, 1.0 / factor, window=("kaiser", 5.0)), np.float64)
-    taps.flags.writeable = False  # shared by all that ask for it
+    taps.flags.writeable = False  # shared by all callers
     return taps
 
 
 class AnalogueFilter:
-    """The anti-alias filter of a sensor, as `sim.acquisition.decimate_sensed` has it.
+    """Block-wise analogue anti-alias filter of a sensor.
 
     Parameters
     ----------
     corner : float, optional
-        [Hz]; without one, signals pass as they are.
+        [Hz]; without a corner, signals pass unchanged.
     rate : float
-        Of the signal [Hz].
+        Rate of the signal [Hz].
     skip : int
-        Samples at the start that pass as they are: the filter starts settled at the one after.
+        Samples at the start that pass unchanged; the filter starts settled at the one after.
 
     Examples
     --------
@@ -322,35 +327,35 @@ class AnalogueFilter:
     """
 
     def __init__(self, corner: float | None, rate: float, skip: int = 0) -> None:
-        self._found, self._skip = analogue_filter(corner, rate), skip
+        self._filter, self._skip = analogue_filter(corner, rate), skip
         self._state: NDArray[np.float64] | None = None
 
     def __call__(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the next samples, as many as `block` has."""
-        if self._found is None:
+        if self._filter is None:
             return block
         before, rest = block[: self._skip], block[self._skip :]
         self._skip -= before.size
         if not rest.size:
             return before
-        sections, settled = self._found
+        sections, settled = self._filter
         state = settled * rest[0] if self._state is None else self._state
         passed, self._state = sosfilt(sections, rest, zi=state)
         return np.concatenate([before, passed])
 
 
 class Decimation:
-    """Anti-alias filter and decimation as `sim.acquisition.sample` does them.
+    """Block-wise decimation after a linear-phase anti-alias filter.
 
-    What it returns lags behind what it is given by half the filter's length. Before its first
-    sample the signal is taken to go on straight, by its first two.
+    The output lags behind the input by half the filter's length. Before its first sample the signal
+    is extended by the straight line through its first two.
 
     Parameters
     ----------
     factor : int
-        Every so many samples one is kept.
+        Ratio of the rates.
     skip : int
-        Samples at the start that only the filter is to see.
+        Samples at the start that only serve the filter.
 
     Examples
     --------
@@ -363,22 +368,22 @@ class Decimation:
         self._factor, self._skip = factor, skip
         self._filter = anti_alias_filter(factor) if factor > 1 else np.ones(1)
         self._half = self._filter.size // 2
-        self._held: NDArray[np.float64] | None = None
+        self._pending: NDArray[np.float64] | None = None
 
     def __call__(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return those of the next samples that are known by now."""
-        if self._held is None:
+        """Return the output samples that the input so far determines."""
+        if self._pending is None:
             before = np.arange(-self._half, 0)
-            self._held = block[0] + before * (block[1:2] - block[:1])
-        held = np.concatenate([self._held, block])
-        dropped = min(self._skip, held.size)
-        held, self._skip = held[dropped:], self._skip - dropped
-        count = (held.size - 2 * self._half - 1) // self._factor + 1
+            self._pending = block[0] + before * (block[1:2] - block[:1])
+        pending = np.concatenate([self._pending, block])
+        dropped = min(self._skip, pending.size)
+        pending, self._skip = pending[dropped:], self._skip - dropped
+        count = (pending.size - 2 * self._half - 1) // self._factor + 1
         if count <= 0 or self._skip > 0:
-            self._held = held
+            self._pending = pending
             return np.empty(0)
-        used = held[: (count - 1) * self._factor + 2 * self._half + 1]
-        kept = upfirdn(self._filter, used, 1, self._factor)
+        used = pending[: (count - 1) * self._factor + 2 * self._half + 1]
+        filtered = upfirdn(self._filter, used, 1, self._factor)
         first = 2 * self._half // self._factor
-        self._held = held[count * self._factor :]
-        return np.asarray(kept[first : first + count])
+        self._pending = pending[count * self._factor :]
+        return np.asarray(filtered[first : first + count])

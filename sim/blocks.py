@@ -1,18 +1,19 @@
-"""A run of the rig block by block: long recordings, and a rig that is changed while it turns.
+"""Block-wise simulation of the rig: long recordings, and designs that change while they run.
 
-Solver, structure, plate and filters carry their state from block to block, so what does not change
-is the run that `sim.run.simulate` gives, without holding it. Three things differ: each channel's
-noise is a stream of its own, effects that scatter draw other numbers, and the filter of the
-decimation sees the signal before the first and after the last sample where the other extends it by
-a line (10 samples at either end).
+Solver, structure, plate and filters carry their state from block to block, so without changes the
+result is that of `sim.run.simulate`, in bounded memory. Three things differ: each channel has its
+own noise stream, effects that scatter draw other numbers, and the decimation filter reads the real
+signal before the first and after the last sample, where `simulate` extends it by a straight line
+(10 samples at either end).
 
-A change takes effect over one block: speeds go from one to the other, what moves goes on from where
-it is in the rig as it was and as it is now, and the torques cross over; so do the impulse responses
+A change of setting takes one block: the speed is cross-faded, the motion continues from its state
+in the old rig and in the new one, and their torques are cross-faded, as are the impulse responses
 from torque to sound. Nothing jumps, so nothing clicks.
 
-The sound lags behind the motion by a look-ahead, in which a slip shows how far the torque falls: an
-effect that makes a force of the motion sees so much of what is to come, where a whole run shows it
-all. Effects of drive and sensors that need a run as a whole cannot act here.
+The sound lags behind the motion by a look-ahead, because an effect that turns slips into forces
+needs to know how far the torque falls. Such an effect sees this stretch of the future only, whereas
+in `simulate` it sees the whole run. Effects of drive and sensors that need the whole run cannot act
+here.
 """
 
 from __future__ import annotations
@@ -33,19 +34,20 @@ from models.recording import Channel
 from models.rig import Rig
 from sim.acquisition import Acquisition, AnalogueFilter, Decimation, digitise
 from sim.analysis.regime import SlidingWatch
-from sim.chain import changed_chain
+from sim.chain import apply_chain_effects
 from sim.effects.effect import (
     ActiveEffect,
     Effect,
     Memories,
     Signals,
-    begun,
     drive_block,
+    initial_memories,
     sensors_block,
 )
-from sim.filters import Convolution, crossing
-from sim.motion import Motion, MotionSolver, blaming_the_unusual, steps_beyond
-from sim.run import SIMULATION, Plan, plan_run, pulse_force, sensor_channels
+from sim.filters import Convolution, fade_in
+from sim.motion import Motion, MotionSolver, lookahead_samples, unusual_values_first
+from sim.plan import SIMULATION, Plan, plan_run
+from sim.run import pulse_force, sensor_channels
 from sim.shaft import ShaftMotion
 from sim.temperature import at_temperature
 
@@ -53,28 +55,28 @@ KINDS = ("torque", "acceleration", "pressure", "angle")
 """Channels of a recording, in the order of their noise."""
 
 LOOKAHEAD = 0.005
-"""By which the sound lags behind the motion where a rig is changed [s]."""
+"""Lag of the sound behind the motion where a rig is changed [s]."""
 
 _MARGIN = 0.5
-"""Of the motion, to both sides of a block of a recording, that a force is made of [s]."""
+"""Motion before and after a block of a recording that effects which exert a force see [s]."""
 
-_SEEN = 0.2
-"""Of the motion before a block, where a rig is changed [s]."""
+_HISTORY = 0.2
+"""Motion before a block that these effects see where a rig is changed [s]."""
 
 _LONGEST_RESPONSE = 3.0
-"""From torque to sound [s]."""
+"""Longest impulse response from torque to sound [s]."""
 
 
 @dataclass(frozen=True)
 class Setting:
-    """What can be changed while a rig turns.
+    """Rig, drive and condition: everything that can be changed during a run.
 
     Parameters
     ----------
     rig : Rig
     shaft : ShaftMotion
-        Of a kind that can be compared. Its clock goes on where only its numbers change, and starts
-        anew where it is of another kind.
+        A motion that can be compared by ``==``. Its clock continues where only its numbers change,
+        and restarts where its class changes.
     interference : float
         [m]
     support_stiffness : float
@@ -90,7 +92,7 @@ class Setting:
     temperature: float = 23.0
 
     def moves_as(self, other: Setting) -> bool:
-        """Whether nothing but the motion of the shaft differs."""
+        """Return whether two settings differ in the motion of the shaft at most."""
         return replace(self, shaft=other.shaft) == other
 
 
@@ -99,14 +101,14 @@ PathsOf = Callable[[Setting], ImpulseResponses | None]
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """What came next.
+    """Samples of one block.
 
     Parameters
     ----------
     samples : dict of str to ndarray, shape (n,)
         By kind of channel, as recorded [unit of the channel].
     speed : float
-        Of the shaft at the end [rad/s].
+        Speed of the shaft at the end of the block [rad/s].
     """
 
     samples: Signals
@@ -115,7 +117,7 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class BlockRun:
-    """A recording that is computed while it is read.
+    """Recording that is computed while it is read.
 
     Parameters
     ----------
@@ -124,11 +126,11 @@ class BlockRun:
     channels : tuple of Channel
     condition : Condition
     n_samples : int
-        Of all blocks together.
+        Number of samples of all blocks together.
     blocks : iterator of ndarray, shape (n_channels, n)
-        In the units of the channels [unit]; can be run through once.
+        In the units of the channels [unit]; can be iterated once.
     watch : SlidingWatch
-        Of the contact; knows as much of the run as has been read of the blocks.
+        Monitor of the contact, over the blocks read so far.
     """
 
     rate: float
@@ -158,9 +160,9 @@ def simulate_blocks(
     Parameters
     ----------
     block_seconds : float
-        Length of a block [s]; the memory that is needed grows with it.
+        Length of a block [s]; the memory needed is proportional to it.
     rig, shaft, interference, support_stiffness, temperature, seconds, acquisition, settling
-        As for `sim.run.simulate`; `seconds` is not bounded.
+        As for `sim.run.simulate`; `seconds` has no upper limit.
     library, rng
         As for `sim.run.simulate`.
 
@@ -222,32 +224,33 @@ def simulate_blocks(
 
 
 def whole_run_effects(effects: Sequence[ActiveEffect]) -> list[str]:
-    """Names of the effects that need the whole run at once."""
+    """Return the names of the effects that need the whole run at once."""
     return [active.effect.name for active in effects if active.effect.needs_whole_run]
 
 
 class BlockEngine:
-    """One run of the rig that goes on as long as it is asked to, also while it is changed.
+    """Open-ended block-wise simulation of the rig, whose setting can change between blocks.
 
     Parameters
     ----------
     setting : Setting
-        That it starts with; a shaft of constant speed has turned for a while, as in a recording.
+        Setting at the start; at constant speed the rig settles first, as in a recording.
     acquisition : Acquisition, optional
         As for `sim.run.simulate`; by default at 48 kHz.
     n : int
         Samples of a block.
     kinds : tuple of str
-        Channels that are asked for, of `KINDS`.
+        Channels to compute, of `KINDS`.
     library, rng, settling
         As for `sim.run.simulate`.
     ahead, back : float
-        Of the motion after and before a block, that effects which make a force see [s].
+        Motion after and before a block that effects which exert a force see [s].
     paths : callable, optional
-        From setting to impulse responses, at the rate of the computation, or to None while they are
-        not known, for which those before stay; by default they are computed at once.
+        Function of a setting that returns impulse responses at the rate of the computation, or None
+        while they are being computed, in which case the previous ones stay; by default they are
+        computed at once.
     watch : SlidingWatch, optional
-        Sees the motion of the contact, as far as it is recorded.
+        Monitor that the recorded motion is passed to.
 
     Raises
     ------
@@ -278,7 +281,7 @@ class BlockEngine:
         rng: np.random.Generator | None = None,
         settling: float | None = None,
         ahead: float = LOOKAHEAD,
-        back: float = _SEEN,
+        back: float = _HISTORY,
         paths: PathsOf | None = None,
         watch: SlidingWatch | None = None,
     ) -> None:
@@ -294,14 +297,14 @@ class BlockEngine:
         self._plan = plan_of(setting, self._acquisition.rate, library, settling)
         self._n_settling = self._plan.n_settling
         self._solver = self._solver_of(self._plan, float(setting.shaft.speed(np.zeros(1))[0]))
-        self._driving: Memories = {}  # what effects of the drive keep, and those of the sensors
-        self._sensing: Memories = {}
-        self._sensed_by = self._plan.effects
-        self._time = 0  # of the shaft's clock, in samples of the computation
-        self._seen = round(back * self._rate)
-        self._paths = paths or self._known_paths
-        self._known: tuple[tuple[object, ...], ImpulseResponses] | None = None
-        self.responses = self._paths(setting) or self._known_paths(setting)
+        self._drive_memories: Memories = {}
+        self._sensor_memories: Memories = {}
+        self._sensor_effects = self._plan.effects
+        self._time = 0  # clock of the shaft, in samples of the computation
+        self._n_history = round(back * self._rate)
+        self._paths = paths or self._computed_paths
+        self._cached: tuple[tuple[object, ...], ImpulseResponses] | None = None
+        self.responses = self._paths(setting) or self._computed_paths(setting)
         self._convolution = Convolution(
             self._impulse_responses(self.responses), self._block,
             round(_LONGEST_RESPONSE * self._rate),
@@ -312,51 +315,51 @@ class BlockEngine:
             for kind in kinds
         ]
         self._decimations = [Decimation(factor, self._n_settling) for _ in kinds]
-        self._ready = np.zeros((len(kinds), 0))
-        self._held = self._advance(max(1, round(ahead * self._rate)))
-        self._sent = 0  # samples that have gone out: of `held`, and of the run
+        self._unread = np.zeros((len(kinds), 0))
+        self._motion = self._advance(max(1, round(ahead * self._rate)))
+        self._sent = 0  # samples passed to the sensors: of the stored motion, and of the run
         self._position = 0
-        self._first_torque, self._start_angle = float(self._held.torque[0]), 0.0
+        self._first_torque, self._start_angle = float(self._motion.torque[0]), 0.0
 
     @property
     def setting(self) -> Setting:
-        """As it is now."""
+        """Current setting."""
         return self._setting
 
     def block(self, setting: Setting | None = None) -> Block:
-        """Return the next samples, in which another setting takes over if one is given.
+        """Return the next samples, changing to another setting if one is passed.
 
         Raises
         ------
         ParameterError
-            If the setting cannot be used, or the friction not be followed; the run can go on as it
-            was.
+            If the setting cannot be used, or the solver cannot follow the friction; the run can
+            continue with the previous setting.
         """
         change = setting is not None and setting != self._setting
-        while self._ready.shape[1] < self._n:
+        while self._unread.shape[1] < self._n:
             motion = self._changed(setting) if change and setting else self._advance(self._block)
             change = False
-            self._send(motion)
-        values, self._ready = self._ready[:, : self._n], self._ready[:, self._n :]
+            self._sample(motion)
+        values, self._unread = self._unread[:, : self._n], self._unread[:, self._n :]
         samples = {}
         for kind, row in zip(self._kinds, values, strict=True):
             signal = row - self._start_angle if kind == "angle" else row
             samples[kind] = digitise(signal, kind, self._acquisition, self._noise[kind])
-        return Block(samples, float(self._held.shaft_speed[-1]))
+        return Block(samples, float(self._motion.shaft_speed[-1]))
 
-    def _send(self, motion: Motion) -> None:
-        """Send a block that is known by the next one of motion to the sensors, and sample it."""
-        drop = max(0, self._sent - self._seen)
-        self._held = self._held.since(drop).followed_by(motion)
+    def _sample(self, motion: Motion) -> None:
+        """Store the next block of motion, and pass the block before it through the sensors."""
+        drop = max(0, self._sent - self._n_history)
+        self._motion = self._motion.part(drop).followed_by(motion)
         start = self._sent - drop
         self._sent = start + self._block
-        part = self._held.part(start, self._sent)
-        first = self._n_settling - self._position  # of what is recorded
+        part = self._motion.part(start, self._sent)
+        first = self._n_settling - self._position  # first sample of the recording
         self._position += self._block
         if 0 <= first < self._block:
             self._start_angle = float(part.shaft_angle[first])
         if self._watch is not None:
-            self._watch.see(part.since(max(0, first)))
+            self._watch.update(part.part(max(0, first)))
         responses = self._paths(self._setting)
         if responses is not None and responses is not self.responses:
             self.responses = responses
@@ -364,89 +367,93 @@ class BlockEngine:
         sound = self._convolution([part.torque - self._first_torque, self._force(start)])
         signals = {"torque": part.torque, "angle": part.shaft_angle}
         signals |= dict(zip(self._sounds, sound, strict=True))
-        signals = self._sensed({kind: signals[kind] for kind in self._kinds}, max(0, first))
+        signals = self._apply_sensor_effects(
+            {kind: signals[kind] for kind in self._kinds}, max(0, first)
+        )
         rows = [
             decimate(low_pass(signals[kind]))
             for kind, low_pass, decimate in zip(
                 self._kinds, self._filters, self._decimations, strict=True
             )
         ]
-        self._ready = np.hstack([self._ready, np.stack(rows)])
+        self._unread = np.hstack([self._unread, np.stack(rows)])
 
     @property
     def _sounds(self) -> list[str]:
         return [kind for kind in ("acceleration", "pressure") if kind in self._kinds]
 
     def _impulse_responses(self, paths: ImpulseResponses) -> list[list[NDArray[np.float64]]]:
-        """From torque and force, one row of what is to be computed each."""
+        """Return the responses to torque and to force, one row per channel of `_sounds`."""
         by_kind = {
             "acceleration": [paths.torque_to_acceleration, paths.pulse_to_acceleration],
             "pressure": [paths.torque_to_pressure, paths.pulse_to_pressure],
         }
         return [by_kind[kind] for kind in self._sounds]
 
-    def _known_paths(self, setting: Setting) -> ImpulseResponses:
-        """Impulse responses of a setting; those of the last one are known."""
+    def _computed_paths(self, setting: Setting) -> ImpulseResponses:
+        """Compute the impulse responses of a setting; those of the last one are cached."""
         key = paths_key(setting)
-        if self._known is None or self._known[0] != key:
+        if self._cached is None or self._cached[0] != key:
             rate = self._acquisition.rate
             rng = deepcopy(self._chain_rng)
-            self._known = key, paths_of(setting, rate, library=self._library, rng=rng)
-        return self._known[1]
+            self._cached = key, paths_of(setting, rate, library=self._library, rng=rng)
+        return self._cached[1]
 
     def _force(self, start: int) -> NDArray[np.float64]:
-        """Force of the effects over a block of what is held [N]."""
+        """Return the force of the effects over a block of the stored motion [N]."""
         if all(active.effect.force is None for active in self._plan.effects):
             return np.zeros(self._block)
-        return pulse_force(_ended(self._held), self._plan.effects)[start : start + self._block]
+        return pulse_force(_with_end_of_fall(self._motion), self._plan.effects)[
+            start : start + self._block
+        ]
 
-    def _sensed(self, signals: Signals, first: int) -> Signals:
-        """Signals of a block as effects on sensors change them; effects that differ cross over."""
-        effects, before = self._plan.effects, self._sensed_by
+    def _apply_sensor_effects(self, signals: Signals, first: int) -> Signals:
+        """Apply the effects on sensors to a block; effects that changed are cross-faded."""
+        effects, before = self._plan.effects, self._sensor_effects
         if first >= self._block or not (effects or before):
             return signals
         recorded = {kind: signal[first:] for kind, signal in signals.items()}
-        memories = begun(effects, self._seed, self._sensing)
-        made, kept = sensors_block(recorded, self._rate, effects, memories)
+        memories = initial_memories(effects, self._seed, self._sensor_memories)
+        changed, later_memories = sensors_block(recorded, self._rate, effects, memories)
         if before != effects:
-            memories = begun(before, self._seed, self._sensing)
+            memories = initial_memories(before, self._seed, self._sensor_memories)
             old, _ = sensors_block(recorded, self._rate, before, memories)
-            coming = crossing(self._block - first)
-            made = {name: old[name] + coming * (made[name] - old[name]) for name in made}
-        self._sensed_by = effects
-        self._sensing = kept
-        return {kind: np.concatenate([signals[kind][:first], made[kind]]) for kind in signals}
+            weight = fade_in(self._block - first)
+            changed = {name: old[name] + weight * (changed[name] - old[name]) for name in changed}
+        self._sensor_effects = effects
+        self._sensor_memories = later_memories
+        return {kind: np.concatenate([signals[kind][:first], changed[kind]]) for kind in signals}
 
     def _advance(self, n: int) -> Motion:
-        even = self._drive(self._setting.shaft, n + steps_beyond(self._rate))
-        drive, driving = self._uneven(even, n, self._plan.effects)
-        with blaming_the_unusual(self._plan.rig):
+        even = self._drive(self._setting.shaft, n + lookahead_samples(self._rate))
+        drive, memories = self._uneven(even, n, self._plan.effects)
+        with unusual_values_first(self._plan.rig):
             motion = self._solver.advance(drive, n)
         self._time += n
-        self._driving = driving
+        self._drive_memories = memories
         return motion
 
     def _changed(self, setting: Setting) -> Motion:
-        """Motion of a block in which a setting takes over."""
-        before, n, beyond = self._setting, self._block, steps_beyond(self._rate)
+        """Return the motion of a block that changes to another setting."""
+        before, n, beyond = self._setting, self._block, lookahead_samples(self._rate)
         restarted = type(setting.shaft) is not type(before.shaft)
         plan = plan_of(setting, self._acquisition.rate, self._library)
-        coming = np.concatenate([crossing(n), np.ones(beyond)])
+        weight = np.concatenate([fade_in(n), np.ones(beyond)])
         old = self._drive(before.shaft, n + beyond)
         new = self._drive(setting.shaft, n + beyond, 0 if restarted else self._time)
-        even = old + coming * (new - old)
-        drive, driving = self._uneven(even, n, plan.effects)
+        even = old + weight * (new - old)
+        drive, memories = self._uneven(even, n, plan.effects)
         if plan.effects != self._plan.effects:
             uneven, _ = self._uneven(even, n, self._plan.effects)
-            drive = uneven + coming * (drive - uneven)
+            drive = uneven + weight * (drive - uneven)
         solver = self._solver_of(plan, float(drive[0]))
-        solver.go_on_from(self._solver, float(drive[0]))
-        with blaming_the_unusual(plan.rig):
+        solver.continue_from(self._solver, float(drive[0]))
+        with unusual_values_first(plan.rig):
             motion = solver.advance(drive, n)
         if not setting.moves_as(before):
-            motion = _crossed(self._solver.advance(drive, n), motion)
+            motion = _cross_faded(self._solver.advance(drive, n), motion)
         self._setting, self._plan, self._solver = setting, plan, solver
-        self._driving = driving
+        self._drive_memories = memories
         self._time = n if restarted else self._time + n
         return motion
 
@@ -457,11 +464,11 @@ class BlockEngine:
     def _uneven(
         self, even: NDArray[np.float64], n: int, effects: Sequence[ActiveEffect]
     ) -> tuple[NDArray[np.float64], Memories]:
-        memories = begun(effects, self._seed, self._driving)
+        memories = initial_memories(effects, self._seed, self._drive_memories)
         return drive_block(even, n, self._rate, effects, memories)
 
     def _solver_of(self, plan: Plan, start_speed: float) -> MotionSolver:
-        with blaming_the_unusual(plan.rig):
+        with unusual_values_first(plan.rig):
             return MotionSolver(
                 plan.rig, plan.interference, plan.support_stiffness, plan.rate, plan.effects,
                 deepcopy(self._effect_rng), start_speed=start_speed, tolerance=None,
@@ -474,12 +481,12 @@ def plan_of(
     library: Mapping[str, Effect] | None = None,
     settling: float | None = None,
 ) -> Plan:
-    """Plan the run of a setting at a sampling rate [Hz], of effects those that act on blocks."""
+    """Return the plan of a setting at a sampling rate [Hz], with the effects that act on blocks."""
     plan = plan_run(
         **vars(setting), seconds=max(1.0, 2.0 / rate), rate=rate, settling=settling, library=library
     )
-    kept = [active for active in plan.effects if not active.effect.needs_whole_run]
-    return replace(plan, effects=kept)
+    effects = [active for active in plan.effects if not active.effect.needs_whole_run]
+    return replace(plan, effects=effects)
 
 
 def paths_of(
@@ -489,16 +496,16 @@ def paths_of(
     library: Mapping[str, Effect] | None = None,
     rng: np.random.Generator | None = None,
 ) -> ImpulseResponses:
-    """Impulse responses of a setting for a sampling rate [Hz], as the rig's effects change them."""
+    """Return the impulse responses of a setting for a sampling rate [Hz], effects included."""
     plan = plan_of(setting, rate, library)
     paths = impulse_responses(plan.rig, plan.interference, plan.support_stiffness, plan.rate)
-    return changed_chain(
+    return apply_chain_effects(
         paths, plan.effects, rng or np.random.default_rng(0).spawn(2)[1].spawn(1)[0]
     )
 
 
 def paths_key(setting: Setting) -> tuple[object, ...]:
-    """All that the impulse responses depend on: two settings of one key share them.
+    """Return everything that the impulse responses depend on, as a key: equal keys share them.
 
     Examples
     --------
@@ -524,15 +531,15 @@ def paths_key(setting: Setting) -> tuple[object, ...]:
     )
 
 
-def _crossed(old: Motion, new: Motion) -> Motion:
-    coming = crossing(new.torque.size)
+def _cross_faded(old: Motion, new: Motion) -> Motion:
+    weight = fade_in(new.torque.size)
     pairs = zip(old.arrays, new.arrays, strict=True)
-    return Motion(new.rate, *(before + coming * (after - before) for before, after in pairs))
+    return Motion(new.rate, *(before + weight * (after - before) for before, after in pairs))
 
 
-def _ended(held: Motion) -> Motion:
-    """Return a motion whose last fall of the torque is over, for what waits to count it."""
-    last = held.part(held.torque.size - 1)
+def _with_end_of_fall(motion: Motion) -> Motion:
+    """Append a rise of the torque, so that effects count a fall that is still in progress."""
+    last = motion.part(motion.torque.size - 1)
     way = -1.0 if last.shaft_speed[0] < 0.0 else 1.0
-    risen = last.torque + way * float(np.ptp(held.torque))
-    return held.followed_by(replace(last, torque=risen))
+    risen = last.torque + way * float(np.ptp(motion.torque))
+    return motion.followed_by(replace(last, torque=risen))

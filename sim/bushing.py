@@ -1,4 +1,4 @@
-"""The lumped bushing at one condition: the numbers of the two-degree-of-freedom model (Figure 4.1).
+"""Lumped two-degree-of-freedom model of a bushing at one operating condition (Figure 4.1).
 
 J_E theta1'' = T - T_E, J_C theta2'' = T_E - k_B theta2 - c_B theta2', with the torque of the
 elastomer T_E = k_E (theta1 - theta2) + c (theta1' - theta2'). The thesis splits the measured
@@ -42,7 +42,7 @@ class LumpedBushing:
         return math.isinf(self.support_stiffness)
 
     def packed(self) -> NDArray[np.float64]:
-        """Return the parameters for compiled code, shape (6,); a fixed clamp has k_B = -1 [SI]."""
+        """Return the parameters for compiled code, shape (6,) [SI]; a fixed clamp has k_B = -1."""
         support = -1.0 if self.clamp_is_fixed else self.support_stiffness
         return np.array(
             [
@@ -56,9 +56,9 @@ class LumpedBushing:
         )
 
     def natural_frequencies(self, *, stuck: bool = False) -> NDArray[np.float64]:
-        """Undamped natural frequencies [Hz], rising; `stuck` with the surface held by the shaft.
+        """Return the undamped natural frequencies in rising order [Hz], shape (0,), (1,) or (2,).
 
-        Of shape (1,) or (2,), as many as can move.
+        With `stuck`, the bushing's surface is held by the shaft.
 
         Examples
         --------
@@ -80,7 +80,7 @@ class LumpedBushing:
 
 
 def lumped_bushing(rig: Rig, interference: float, support_stiffness: float) -> LumpedBushing:
-    """Return the lumped model of a rig.
+    """Return the lumped model of a rig at one condition.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def lumped_bushing(rig: Rig, interference: float, support_stiffness: float) -> L
 def packed_systems(
     rig: Rig, interference: NDArray[np.float64], support_stiffness: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Numbers of the lumped model and its friction torques at many conditions at once.
+    """Return the lumped models and friction torques of a rig at many conditions.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def packed_systems(
     Returns
     -------
     ndarray, shape (n, 8)
-        Rows as from `LumpedBushing.packed`, with T_crit and T_kin [Nm] after them.
+        Rows of `LumpedBushing.packed`, followed by T_crit and T_kin [Nm].
 
     Raises
     ------

@@ -1,8 +1,8 @@
-"""The linear way from torque to sound as effects change it.
+"""Effects on the linear path from torque to sound, and helpers that effects share.
 
-An effect of structure or radiation gives other impulse responses rather than other signals. So it
-acts on the run in memory and on the one in blocks alike, and such effects can be combined in any
-order. They draw their random numbers from a stream of their own, for the same reason.
+An effect of structure or radiation changes the impulse responses and not the signals. So it acts
+alike on a run in memory and on a run in blocks, and such effects can be combined in any order. They
+draw their random numbers from a stream of their own, for the same reason.
 """
 
 import math
@@ -23,22 +23,22 @@ HIGHEST_SHARE = 0.45
 """Modes above this share of the sampling rate are left out."""
 
 _LONGEST = 2.0
-"""A resonance is followed so long at most [s]."""
+"""Longest impulse response of a resonance [s]."""
 
 
-def changed_chain(
+def apply_chain_effects(
     paths: ImpulseResponses, effects: Sequence[ActiveEffect], rng: np.random.Generator
 ) -> ImpulseResponses:
-    """Apply all effects that act on the chain.
+    """Apply all effects on the path from torque to sound.
 
     Parameters
     ----------
     paths : ImpulseResponses
-        Of the plain model.
+        Impulse responses of the plain model.
     effects : sequence of ActiveEffect
-        Those without a part in the chain are passed over.
+        Effects that do not act on the path are ignored.
     rng : numpy.random.Generator
-        Of effects that scatter.
+        Generator of effects that scatter.
 
     Returns
     -------
@@ -51,7 +51,7 @@ def changed_chain(
     >>> one = np.ones(1)
     >>> plain = ImpulseResponses(48e3, one, one, one, one)
     >>> floor = EFFECTS["room_reflections"].active({"form": "floor"})
-    >>> changed = changed_chain(plain, [floor], np.random.default_rng(0))
+    >>> changed = apply_chain_effects(plain, [floor], np.random.default_rng(0))
     >>> changed.torque_to_acceleration.size, changed.torque_to_pressure.size
     (1, 254)
     """
@@ -64,7 +64,7 @@ def changed_chain(
 def resonance(
     numerator: Sequence[float], frequency: float, damping_ratio: float, rate: float
 ) -> NDArray[np.float64]:
-    """Impulse response of a mode, until it has died away.
+    """Return the impulse response of a mode until it has decayed.
 
     Parameters
     ----------
@@ -92,20 +92,20 @@ def resonance(
     share = frequency / rate
     c = 1.0 / math.tan(math.pi * share)
     b, a = _bilinear(numerator, c), _bilinear((1.0, 2.0 * damping_ratio, 1.0), c)
-    dying = DECAY_EXPONENT / (2.0 * np.pi * share * damping_ratio)
-    unit = np.zeros(int(min(dying, _LONGEST * rate)) + 2)
+    decay = DECAY_EXPONENT / (2.0 * np.pi * share * damping_ratio)
+    unit = np.zeros(int(min(decay, _LONGEST * rate)) + 2)
     unit[0] = 1.0
     return np.asarray(lfilter(b, a, unit))
 
 
 def _bilinear(p: Sequence[float], c: float) -> list[float]:
-    """Polynomial of second order in s, times (z + 1)^2, for s = c (z - 1) / (z + 1)."""
+    """Return a polynomial of second order in s times (z + 1)^2, for s = c (z - 1) / (z + 1)."""
     high, middle, low = p[0] * c * c, p[1] * c, p[2]
     return [high + middle + low, 2.0 * (low - high), high - middle + low]
 
 
 def padded_sum(signals: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Sum of responses of different lengths, each of shape (n,) and in one [unit].
+    """Return the sum of responses of different lengths, each of shape (n,) and in one [unit].
 
     Examples
     --------
@@ -120,7 +120,7 @@ def padded_sum(signals: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
 
 
 def filter_pressure(paths: ImpulseResponses, taps: NDArray[np.float64]) -> ImpulseResponses:
-    """Send both paths to the pressure through a further filter; nothing else changes.
+    """Return impulse responses whose pressure is filtered further.
 
     Parameters
     ----------
@@ -149,12 +149,12 @@ def filter_pressure(paths: ImpulseResponses, taps: NDArray[np.float64]) -> Impul
 
 
 def channel_level(name: str, values: Mapping[str, float]) -> float:
-    """Root mean square in a channel, in its unit; 0 where nothing is stated.
+    """Return the root mean square of a disturbance in a channel, in its unit; 0 if none is stated.
 
     Parameters
     ----------
     name : str
-        Of the channel; ``torque_2`` is of the kind ``torque``.
+        Name of the channel; ``torque_2`` is of the kind ``torque``.
     values : mapping of str to float
         ``pressure_level`` [dB re 20 uPa], ``acceleration``, ``torque`` and ``angle``.
 
@@ -171,14 +171,14 @@ def channel_level(name: str, values: Mapping[str, float]) -> float:
 
 
 def channel_shares(what: str, low: float = -1.0, **shares: float) -> dict[str, Parameter]:
-    """Declare the share of an effect's strength that each kind of channel gets.
+    """Return the parameters for the share of an effect's strength on each kind of channel.
 
     Parameters
     ----------
     what : str
         The strength in words.
     low : float
-        Lowest share that may be set [-]; the highest is 1.
+        Lowest share allowed [-]; the highest is 1.
     **shares : float
         Default by kind of channel [-].
 
@@ -199,7 +199,7 @@ def change_channels(
     strength: str,
     change: Callable[[NDArray[np.float64], float], NDArray[np.float64]],
 ) -> Signals:
-    """Let an effect change each channel by its share of the strength.
+    """Change each channel by its share of an effect's strength.
 
     Parameters
     ----------

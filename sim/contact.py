@@ -1,9 +1,9 @@
-"""The two small arrays that solver, friction laws and effects share while a motion is solved.
+"""Arrays shared by solver, friction laws and effects during the solution of a motion.
 
-Effects read the *context*, what goes on at this instant, and change the *contact*, what bushing
-and elastomer are at this instant. Friction laws read the contact. Compiled functions with these
-signatures are called through pointers, so that one compiled solver serves all laws and effects;
-what they are given are pointers to the first of so many numbers, which costs less than arrays do.
+Effects read the *context*, the kinematics at the current instant, and change the *contact*, the
+current properties of contact and elastomer. Friction laws read the contact. Compiled functions with
+these signatures are called through pointers, so one compiled solver serves all laws and effects.
+Their arguments are pointers to the first element, which cost less than arrays.
 """
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
 # mypy: allow-untyped-calls
@@ -16,50 +16,51 @@ from llvmlite import ir  # type: ignore[import-untyped]
 from numba import float64, int64, njit, types
 from numba.extending import intrinsic as numba_intrinsic
 
-intrinsic: Any = numba_intrinsic  # its context is not among the arguments of a call
+intrinsic: Any = numba_intrinsic  # untyped, since calls leave out the context argument
 
 # Context.
 TIME = 0
-"""Since the start [s]."""
+"""Time since the start [s]."""
 SHAFT_ANGLE = 1
-"""Of the drive [rad]."""
+"""Angle of the drive [rad]."""
 SHAFT_SPEED = 2
-"""At the bushing [rad/s]."""
+"""Speed of the shaft at the bushing [rad/s]."""
 SLIDING_SPEED = 3
-"""Of the shaft over the bushing's surface [rad/s]; in stick that of the creep."""
+"""Speed of the shaft over the bushing's surface [rad/s]; in stick, the speed of the creep."""
 STICK_TIME = 4
-"""Since the contact began to stick [s]; that of the last stick while it slides. With a law that has
-an inner state nothing begins to stick, and this is `TIME`: such laws carry the age of their contact
-as a state, and effects that need one have their own for them, as `static_ageing` does."""
+"""Time since the contact began to stick [s]; in sliding, the duration of the last stick. With a law
+that has an inner state there is no beginning of stick, and this is `TIME`: such laws have the age
+of their contact as a state, and effects that need an age have a state of their own for them, like
+`static_ageing`."""
 STICKS = 5
-"""How often the contact has begun to stick; 0 throughout with a law that has an inner state."""
+"""Number of sticks so far; always 0 with a law that has an inner state."""
 TWIST = 6
-"""Of the elastomer, theta1 - theta2 [rad]."""
+"""Twist of the elastomer, theta1 - theta2 [rad]."""
 TWIST_RATE = 7
-"""[rad/s]"""
+"""Rate of the twist [rad/s]."""
 TORQUE = 8
-"""In the elastomer, before effects [Nm]."""
+"""Torque in the elastomer before effects [Nm]."""
 SHAFT_LAG = 9
 """Angle by which the shaft at the bushing lags behind its drive [rad]."""
 SHAFT_LAG_RATE = 10
-"""[rad/s]"""
+"""Rate of the lag [rad/s]."""
 N_CONTEXT = 11
 
 # Contact.
 CRITICAL = 0
-"""Torque at which it breaks [Nm]."""
+"""Torque at which the contact breaks [Nm]."""
 KINETIC = 1
-"""Torque while it slides [Nm]."""
+"""Torque while the contact slides [Nm]."""
 STIFFNESS = 2
-"""Of the elastomer [Nm/rad]."""
+"""Stiffness of the elastomer [Nm/rad]."""
 ELASTOMER_TORQUE = 3
-"""What the elastomer adds to stiffness and damping [Nm]."""
+"""Torque of the elastomer beyond that of stiffness and damping [Nm]."""
 CREEP = 4
 """Share of the shaft's speed at which the contact slips while it sticks."""
 SHAFT_INERTIA = 5
-"""Of the shaft's end on a compliant shaft [kg m2]; infinite on a rigid one."""
+"""Inertia of the end of a compliant shaft [kg m2]; infinite for a rigid one."""
 SHAFT_TORQUE = 6
-"""Of the compliant shaft on its end [Nm]."""
+"""Torque of a compliant shaft on its end [Nm]."""
 N_CONTACT = 7
 
 _POINTER = types.CPointer(float64)
@@ -77,7 +78,7 @@ law_torque = njit(LAW_SIGNATURE, cache=True, error_model="numpy")
 
 @intrinsic
 def pointer(_context, address):
-    """Pointer to numbers at an address, as `ndarray.ctypes` has it; for compiled code."""
+    """Return a pointer to numbers at an address, like `ndarray.ctypes`; for compiled code."""
 
     def cast(context, builder, signature, arguments):  # noqa: ANN202
         return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
@@ -123,13 +124,13 @@ def _address_of(function):  # noqa: ANN202
     return _address(function)
 
 
-@cache  # looking it up takes longer than many a run
+@cache  # the look-up can take longer than a run
 def address_of(function: Any) -> int:
-    """Address of an effect's or a law's compiled function, for compiled code; 0 for None."""
+    """Return the address of an effect's or a law's compiled function; 0 for None."""
     return 0 if function is None else _address_of(function)
 
 
 @njit(cache=True)
 def slipless(context):
-    """Whether a contact has not slipped since the start, or its law knows no slips."""
+    """Return whether a contact has not slipped yet, or its law has no discrete slips."""
     return context[STICKS] == 0.0 and context[STICK_TIME] == context[TIME]

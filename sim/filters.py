@@ -1,7 +1,7 @@
-"""Linear filters that go on from block to block: convolution, anti-alias filter, decimation.
+"""Block-wise convolution whose impulse responses can be exchanged while it runs.
 
-All carry what the next block needs, so that the blocks joined are what one call over the whole
-signal gives, to rounding.
+It carries its state from block to block, so the joined blocks equal the convolution of the whole
+signal to rounding.
 """
 
 from collections.abc import Sequence
@@ -11,33 +11,32 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 
-def crossing(n: int) -> NDArray[np.float64]:
-    """Weights of what comes over `n` samples in place of something else [-], shape (n,).
+def fade_in(n: int) -> NDArray[np.float64]:
+    """Return the weights of a fade-in over `n` samples, a squared sine [-], shape (n,).
 
     Examples
     --------
-    >>> crossing(2).round(3)
+    >>> fade_in(2).round(3)
     array([0.146, 0.854])
     """
     return np.asarray(np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / n) ** 2)
 
 
 class Convolution:
-    """Causal convolution of several signals, whose sums come out, one or more.
+    """Causal block-wise convolution of several signals, summed into one or more outputs.
 
-    Responses can be exchanged while it runs. They are cut into as many parts as they have blocks
-    (uniformly partitioned overlap-save), so that a block costs what its length costs and not what
-    the responses' lengths do. What has gone in is kept as spectra: other responses take over as if
-    they had always been there, over one block.
+    Each response is cut into parts of one block (uniformly partitioned overlap-save), so the
+    latency is one block whatever the responses' lengths. Past input is stored as spectra: exchanged
+    responses act as if they had always been there, faded in over one block.
 
     Parameters
     ----------
     responses : sequence of sequence of ndarray, shape (m,)
-        For each output one a signal [unit of the output over that of the signal].
+        For each output one response per signal [unit of the output over that of the signal].
     block : int
         Samples of each block.
     longest : int
-        Samples that are remembered: responses that are longer are cut there.
+        Samples of past input that are stored; longer responses are cut there.
 
     Examples
     --------
@@ -51,33 +50,35 @@ class Convolution:
     ) -> None:
         self._block, self._parts = block, -(-longest // block)
         self._before = np.zeros((len(responses[0]), block))
-        self._seen = np.zeros((self._parts, len(responses[0]), block + 1), dtype=np.complex128)
+        self._input_spectra = np.zeros(
+            (self._parts, len(responses[0]), block + 1), dtype=np.complex128
+        )
         self._newest = 0
-        self._now = [self._spectra(own) for own in responses]
+        self._current = [self._spectra(own) for own in responses]
         self._next: list[NDArray[np.complex128]] | None = None
 
     def exchange(self, responses: Sequence[Sequence[NDArray[np.float64]]]) -> None:
-        """Let other responses, shape (m,) each and as many as before, take over within a block."""
+        """Fade to other responses over the next block; shape (m,) each, as many as before."""
         self._next = [self._spectra(own) for own in responses]
 
     def __call__(self, signals: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
         """Return the next samples, shape (n_outputs, block), for a block of each signal."""
         blocks = np.stack(list(signals))
         self._newest = (self._newest - 1) % self._parts
-        self._seen[self._newest] = rfft(np.hstack([self._before, blocks]))
+        self._input_spectra[self._newest] = rfft(np.hstack([self._before, blocks]))
         self._before = blocks
-        made = np.stack([self._through(own) for own in self._now])
+        outputs = np.stack([self._convolved(own) for own in self._current])
         if self._next is not None:
-            coming = np.stack([self._through(own) for own in self._next])
-            made += crossing(self._block) * (coming - made)
-            self._now, self._next = self._next, None
-        return made
+            following = np.stack([self._convolved(own) for own in self._next])
+            outputs += fade_in(self._block) * (following - outputs)
+            self._current, self._next = self._next, None
+        return outputs
 
-    def _through(self, spectra: NDArray[np.complex128]) -> NDArray[np.float64]:
+    def _convolved(self, spectra: NDArray[np.complex128]) -> NDArray[np.float64]:
         order = (self._newest + np.arange(len(spectra))) % self._parts
         total = np.zeros(self._block + 1, dtype=np.complex128)
         for part, own in zip(order, spectra, strict=True):
-            total += np.einsum("jk,jk->k", self._seen[part], own)
+            total += np.einsum("jk,jk->k", self._input_spectra[part], own)
         return np.asarray(irfft(total)[self._block :])
 
     def _spectra(self, responses: Sequence[NDArray[np.float64]]) -> NDArray[np.complex128]:
@@ -85,7 +86,6 @@ class Convolution:
         parts = -(-size // self._block)
         cut = np.zeros((len(responses), parts * self._block))
         for row, response in zip(cut, responses, strict=True):
-            kept = response[:size]
-            row[: kept.size] = kept
+            row[: min(response.size, size)] = response[:size]
         by_part = cut.reshape(len(responses), parts, self._block).transpose(1, 0, 2)
         return np.asarray(rfft(by_part, 2 * self._block))

@@ -1,4 +1,4 @@
-"""The motion of shaft, bushing and clamp at one condition: the simulator's core."""
+"""Motion of shaft, bushing and clamp at one operating condition: the core of the simulator."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ class Motion:
     rate : float
         [Hz]
     torque : ndarray, shape (n,)
-        Torque that the bushing puts into the clamp, T_E [Nm]; what the thesis plots and the
-        torque cell is taken to read.
+        Torque of the bushing on the clamp, T_E [Nm]; the thesis plots it, and the torque cell is
+        assumed to read it.
     friction_torque : ndarray, shape (n,)
-        Torque in the contact [Nm]; differs from `torque` by the inertia of the elastomer.
+        Torque in the contact [Nm]; it differs from `torque` by the inertia torque of the elastomer.
     shaft_angle, shaft_speed : ndarray, shape (n,)
         [rad], [rad/s]
     interface_angle, interface_speed : ndarray, shape (n,)
-        Of the bushing's surface: how far it has been carried along [rad], [rad/s].
+        Angle and speed of the bushing's surface [rad], [rad/s].
     clamp_angle, clamp_speed : ndarray, shape (n,)
         [rad], [rad/s]
     """
@@ -62,30 +62,26 @@ class Motion:
 
     @property
     def sliding_speed(self) -> NDArray[np.float64]:
-        """Speed of the shaft over the bushing's surface [rad/s], shape (n,)."""
+        """Sliding speed of the shaft over the bushing's surface [rad/s], shape (n,)."""
         return self.shaft_speed - self.interface_speed
 
     def part(self, start: int, stop: int | None = None) -> Motion:
         """Return the motion from sample `start` to before `stop`, by default to its end."""
         return Motion(self.rate, *(values[start:stop] for values in self.arrays))
 
-    def since(self, first: int) -> Motion:
-        """Return the motion from sample `first` on."""
-        return self.part(first)
-
     def followed_by(self, *later: Motion) -> Motion:
-        """Return the motion with what comes after it."""
+        """Return the motion joined with the motions that follow it."""
         parts = zip(self.arrays, *(one.arrays for one in later), strict=True)
         return Motion(self.rate, *(np.concatenate(part) for part in parts))
 
     @property
     def arrays(self) -> list[NDArray[np.float64]]:
-        """All that moves, in the order of the fields; each of shape (n,)."""
+        """All signals in the order of the fields, each of shape (n,)."""
         return [getattr(self, field.name) for field in fields(self) if field.name != "rate"]
 
     @property
     def stuck(self) -> NDArray[np.bool_]:
-        """Where the contact sticks: slides slower than `STICK_SPEED_SHARE` of the shaft's speed."""
+        """Whether the contact sticks: it slides slower than a share of the shaft's speed."""
         slow = np.abs(self.sliding_speed) <= STICK_SPEED_SHARE * np.abs(self.shaft_speed)
         return np.asarray(slow & (self.shaft_speed != 0.0))
 
@@ -102,7 +98,7 @@ def simulate_motion(
     rng: np.random.Generator | None = None,
     tolerance: float | None = None,
 ) -> Motion:
-    """Simulate the rig from rest.
+    """Simulate the motion of a rig from rest.
 
     Parameters
     ----------
@@ -115,17 +111,17 @@ def simulate_motion(
     seconds : float
         Length [s].
     rate : float
-        Of the output [Hz]. At constant and ramped speed the solution does not depend on it; other
-        motions of the shaft are linear between its samples, which moves events by some 5e-9 s at
-        30 kHz, and by the square of the step.
+        Rate of the output [Hz]. At constant and ramped speed the solution does not depend on it;
+        other motions of the shaft are taken as linear between samples, which shifts events by some
+        5e-9 s at 30 kHz, in proportion to the square of the step.
     effects : sequence of ActiveEffect, optional
-        Those of drive and friction act, in this order; the others are left to others. By default
-        the rig's, among those of `sim.effects`.
+        Active effects, of which those on drive and friction act, in this order; by default the
+        rig's, from `sim.effects`.
     rng : numpy.random.Generator, optional
-        Of effects that scatter; by default seeded with 0.
+        Generator of effects that scatter; by default seeded with 0.
     tolerance : float, optional
         Error of a step where the motion has no exact solution [-]; by default that of the friction
-        law, which is less than regimes and spectra need.
+        law, which is smaller than regimes and spectra need.
 
     Returns
     -------
@@ -153,8 +149,8 @@ def simulate_motion(
     drive = shaft.speed(np.arange(n, dtype=np.float64) * (1.0 / rate))
     effects = activated(rig.effects, EFFECTS) if effects is None else effects
     for active in effects:
-        drive = active.driven(drive, rate, {"rng": rng, "whole": True})
-    with blaming_the_unusual(rig):
+        drive = active.apply_drive(drive, rate, {"rng": rng, "whole": True})
+    with unusual_values_first(rig):
         solver = MotionSolver(
             rig, interference, support_stiffness, rate, effects, rng,
             start_speed=float(drive[0]), tolerance=tolerance,
@@ -162,26 +158,31 @@ def simulate_motion(
         return solver.advance(drive, n)
 
 
-def steps_beyond(rate: float) -> int:
-    """Return by how many samples at a rate [Hz] the solver's steps may reach beyond a block.
+def lookahead_samples(rate: float) -> int:
+    """Return the number of samples by which a solver step may reach beyond a block.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
 
     Examples
     --------
-    >>> steps_beyond(30e3)
+    >>> lookahead_samples(30e3)
     4
     """
     return math.ceil(LONGEST_STEP / (1.0 / rate)) + 1
 
 
 class MotionSolver:
-    """The rig from rest, solved as many samples at a time as is asked for.
+    """Block-wise solver of the rig's motion from rest.
 
     Parameters
     ----------
     rig, interference, support_stiffness, rate, effects, rng, tolerance
-        As for `simulate_motion`; effects of the drive have acted already.
+        As for `simulate_motion`; effects on the drive are already applied.
     start_speed : float
-        Of the drive [rad/s].
+        Speed of the drive at the start [rad/s].
     """
 
     def __init__(
@@ -214,11 +215,10 @@ class MotionSolver:
                 name=_friction(law.name, effects), tolerance=tolerance or law.tolerance,
             )  # fmt: skip
 
-    def go_on_from(self, before: MotionSolver, shaft_speed: float) -> None:
-        """Start where another rig has come to, at a speed of the shaft [rad/s].
+    def continue_from(self, before: MotionSolver, shaft_speed: float) -> None:
+        """Start from the current state of another solver, at a speed of the shaft [rad/s].
 
-        Its motion goes on, and so do the inner states that both have; the forces may jump, as
-        those of a rig do that is changed while it turns.
+        The motion and the inner states that both have continue; the forces may jump.
         """
         self._angle = before._angle
         if self._contact is None:
@@ -232,16 +232,16 @@ class MotionSolver:
             motion = before._state[:N_MOTION].copy()
             self._contact.start_from(motion, before._state[DIRECTION], before._angle)
         else:
-            self._contact.go_on_from(before._contact, shaft_speed)
+            self._contact.continue_from(before._contact, shaft_speed)
         if self._system.clamp_is_fixed:
-            self._hold_clamp()
-
-    def _hold_clamp(self) -> None:
-        held = self._state if self._contact is None else self._contact.end_state
-        held[3] = 0.0
+            state = self._state if self._contact is None else self._contact.end_state
+            state[3] = 0.0  # speed of the clamp
 
     def advance(self, drive: NDArray[np.float64], n: int) -> Motion:
-        """Solve the next `n` samples; `drive`, shape (m,), goes beyond them unless the run ends."""
+        """Solve the next `n` samples.
+
+        `drive`, shape (m,) [rad/s], reaches beyond them unless the run ends.
+        """
         if self._contact is None:
             states, _, _ = advance_stick_slip(
                 self._packed, *self._torques, drive[: n + 1], self._step, self._state, n
@@ -277,7 +277,7 @@ def _integral(speed: NDArray[np.float64], step: float) -> NDArray[np.float64]:
 
 
 def contact_hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> tuple[Hook, ...]:
-    """List what acts on the contact, in the order of the effects."""
+    """Return the compiled functions of the effects on the contact, in their order."""
     return tuple(
         Hook(active.effect.contact, active.packed(rng), active.effect.n_states)
         for active in effects
@@ -291,13 +291,13 @@ def _friction(law: str, effects: Sequence[ActiveEffect]) -> str:
 
 
 @contextmanager
-def blaming_the_unusual(rig: Rig) -> Iterator[None]:
-    """Let a refusal begin with what of the rig lies outside the usual, most likely its cause.
+def unusual_values_first(rig: Rig) -> Iterator[None]:
+    """Prefix errors with the rig's values outside the usual range, their most likely cause.
 
     Examples
     --------
     >>> from models.rig_file import load_material_rig
-    >>> with blaming_the_unusual(load_material_rig("PDMS").changed(critical_torque="x1000")):
+    >>> with unusual_values_first(load_material_rig("PDMS").changed(critical_torque="x1000")):
     ...     raise ParameterError("no step is short enough")
     Traceback (most recent call last):
     models.errors.ParameterError: critical_torque_Nm = 3000 is outside the usual ...

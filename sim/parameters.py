@@ -1,6 +1,6 @@
-"""Declared parameters of friction laws and effects: unit, default, range, meaning.
+"""Declared parameters of friction laws and effects (unit, default, range, meaning), and registries.
 
-A declaration gives one uniform message for every value that cannot be used, and the help text.
+Help texts and all messages about unusable values follow from the declarations.
 """
 
 import math
@@ -15,7 +15,7 @@ from models.errors import ParameterError
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number that a friction law or an effect takes.
+    """Declaration of a numeric parameter of a friction law or an effect.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ class Parameter:
         [`unit`]
     unit : str
     low, high : float
-        Admitted range, both ends included [`unit`].
+        Allowed range, both ends included [`unit`].
     meaning : str
         One line.
     """
@@ -36,14 +36,14 @@ class Parameter:
 
 
 def resolve(
-    owner: str, declared: Mapping[str, Parameter], given: Mapping[str, float | str]
+    owner: str, declared: Mapping[str, Parameter], values_set: Mapping[str, float | str]
 ) -> dict[str, float]:
-    """Return the values of all declared parameters, defaults where nothing is given.
+    """Return the values of all declared parameters, with defaults for those not set.
 
     Raises
     ------
     ParameterError
-        For a name that is not declared, a value that is no number, or one out of range.
+        If a name is not declared, or a value is not a number or out of range.
 
     Examples
     --------
@@ -51,13 +51,13 @@ def resolve(
     >>> resolve("slip_pulse", declared, {"duration": 1e-4})
     {'duration': 0.0001}
     """
-    for name in given:
+    for name in values_set:
         if name not in declared:
             known = ", ".join(declared) or "none"
             raise ParameterError(f"{owner}: no parameter {name!r}; it has {known}")
     values = {}
     for name, parameter in declared.items():
-        raw = given.get(name, parameter.default)
+        raw = values_set.get(name, parameter.default)
         try:
             value = float(raw)
         except (TypeError, ValueError):
@@ -75,18 +75,18 @@ _Item = TypeVar("_Item")
 
 
 class Library(Mapping[str, _Item], Generic[_Item]):
-    """What the modules of a package offer, by name, imported when it is looked up.
+    """Lazy registry of the entries of a package, by name: a module is imported at first use.
 
     Parameters
     ----------
     package : str
-        Its full name.
+        Full name of the package.
     path : list of str
         Its ``__path__``.
     attribute : str
-        Name of the object in each module.
+        Name of the entry in each module.
     besides : tuple of str
-        Modules that offer none.
+        Modules without an entry.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Effects of a rig: which can act on its friction law, which make one slip differ by chance."""
+"""Queries on the effects of a rig: which can act on its friction law, which are random per slip."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,7 +11,7 @@ from sim.friction import friction_law
 
 
 def can_act(active: ActiveEffect, friction: LawSpec) -> bool:
-    """Whether an effect can change a run with a friction law.
+    """Return whether an effect can change a run with a friction law.
 
     A law with an inner state solves the contact itself, so it never reads the creep of true stick.
 
@@ -38,13 +38,13 @@ def can_act(active: ActiveEffect, friction: LawSpec) -> bool:
 
 
 def constant_version(rig: Rig, library: Mapping[str, Effect] = EFFECTS) -> Rig:
-    """Return a rig without the effects by which one slip differs from the next by chance.
+    """Return a rig without the effects that make slips differ at random.
 
     Parameters
     ----------
     rig : Rig
     library : mapping of str to Effect
-        Effects that the rig's can be found among; one that is not there is kept.
+        Effects by name; an effect that is not among them stays on.
 
     Returns
     -------
@@ -64,7 +64,7 @@ def constant_version(rig: Rig, library: Mapping[str, Effect] = EFFECTS) -> Rig:
 
 
 def irregular_effects(rig: Rig, library: Mapping[str, Effect] = EFFECTS) -> tuple[LawSpec, ...]:
-    """Return what the constant version of a rig is without."""
+    """Return the effects that `constant_version` removes from a rig."""
     return tuple(
         spec for spec in rig.effects if spec.name in library and library[spec.name].irregular
     )

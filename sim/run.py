@@ -1,22 +1,20 @@
-"""One run of the rig: from an operating condition to a recording, as the rig's computer has it.
+"""Simulation of one run of the rig: from an operating condition to a recording.
 
-`simulate` goes through the stages of a run in one block: motion, force and sound, what reaches the
-sensors, what these and the data acquisition make of it. Each is a function of what the one before
-gave, and of a generator where it scatters, so who needs only some of them, or keeps what they give,
-calls those. `sim.blocks` sends blocks through the same solver, effects and filters.
+`simulate` computes the stages of a run in one block: motion, forces and sound, signals at the
+sensors, samples. Each stage is a function of the one before, and of a random generator where it
+scatters, so callers that need only some stages call those. `sim.blocks` sends a run through the
+same solver, effects and filters block by block.
 """
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import reduce
-from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.condition import Condition
 from models.drawing import BLUE, ORANGE, axes_or_new, thinned
 from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses, radiate
@@ -24,127 +22,20 @@ from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
 from models.rig import Rig
 from models.show import short_repr
-from models.units import ABSOLUTE_ZERO
 from sim.acquisition import Acquisition, sample
-from sim.chain import changed_chain
-from sim.effects import EFFECTS
-from sim.effects.effect import ActiveEffect, Effect, Signals, activated
+from sim.chain import apply_chain_effects
+from sim.effects.effect import ActiveEffect, Effect, Signals
 from sim.motion import Motion, simulate_motion
-from sim.shaft import ConstantSpeed, ShaftMotion
-from sim.temperature import at_temperature
+from sim.plan import SIMULATION, Plan, plan_run
+from sim.shaft import ShaftMotion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LONGEST_RUN = 600.0
-"""[s]; the whole run is held in memory. `sim.blocks` has no such limit."""
-
-
-@dataclass(frozen=True)
-class Timing:
-    """Rate and settling of a kind of run.
-
-    Parameters
-    ----------
-    least_rate : float
-        Motion and sound are computed at a multiple of the sampling rate no lower than this [Hz].
-    settling : float
-        How long a shaft at constant speed has turned before a run is kept [s].
-    tolerance : float, optional
-        Error of a step of the solver where the motion has no exact solution [-]; by default that
-        of the friction law.
-
-    Examples
-    --------
-    >>> SIMULATION.rate(30e3), SIMULATION.rate(48e3), DIAGNOSIS.rate(25.6e3)
-    (90000.0, 96000.0, 76800.0)
-    """
-
-    least_rate: float
-    settling: float
-    tolerance: float | None = None
-
-    def decimation(self, sampling_rate: float) -> int:
-        """By what the rate of motion and sound is divided for a sampling rate [Hz]."""
-        return math.ceil(self.least_rate / sampling_rate)
-
-    def rate(self, sampling_rate: float) -> float:
-        """Rate of motion and sound for a sampling rate [Hz]."""
-        return self.decimation(sampling_rate) * sampling_rate
-
-
-SIMULATION = Timing(least_rate=90e3, settling=0.5)
-"""Of recordings that are simulated to be kept: sound is right up to 20 kHz and beyond."""
-
-DIAGNOSIS = Timing(least_rate=75e3, settling=0.25, tolerance=3e-6)
-"""Of the many runs that a diagnosis compares with recordings: settled as long as structures are
-followed to ring on, torques right to four digits. The shipped posterior of causes was fitted to
-runs of exactly these, so they change with it only."""
-
-LEARNING = replace(DIAGNOSIS, least_rate=60e3)
-"""Of the cases that it was fitted to: usual rates are still at least halved, so that what lies
-above half of them is filtered out as in a recording and does not fold back."""
-
-REGIME_RATE = 15e3
-"""Of a motion of which only the regime and slow lines are asked [Hz]; it resolves stick, and the
-solution does not depend on it."""
-
-
-@dataclass(frozen=True, eq=False)
-class Plan:
-    """A run before it is computed.
-
-    Parameters
-    ----------
-    rig : Rig
-        Its friction at the ambient temperature.
-    shaft : ShaftMotion
-    interference : float
-        [m]
-    support_stiffness : float
-        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
-    effects : sequence of ActiveEffect
-        In the order in which they act.
-    rate : float
-        Of motion and sound [Hz].
-    n_settling, n_kept : int
-        Samples at that rate from rest to where the run is kept, and those that are kept.
-    temperature : float, optional
-        Ambient [degree Celsius], for the record.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> plan = Plan(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0, (), 90e3, 0, 9)
-    >>> plan.condition.speed, run_motion(plan).torque.size
-    (5.0, 9)
-    """
-
-    rig: Rig
-    shaft: ShaftMotion
-    interference: float
-    support_stiffness: float
-    effects: Sequence[ActiveEffect]
-    rate: float
-    n_settling: int
-    n_kept: int
-    temperature: float | None = None
-
-    @property
-    def condition(self) -> Condition:
-        """What the engineer sets on the rig; without a speed where it varies."""
-        return Condition(
-            speed=self.shaft.value if isinstance(self.shaft, ConstantSpeed) else None,
-            interference=self.interference,
-            support_stiffness=self.support_stiffness,
-            material=self.rig.material,
-            temperature=self.temperature,
-        )
-
 
 @dataclass(frozen=True, eq=False)
 class Sound:
-    """What a motion makes accelerometer and microphone see, before any noise; shapes (n,).
+    """Acceleration and sound pressure that a motion causes, before any noise.
 
     Parameters
     ----------
@@ -153,7 +44,7 @@ class Sound:
     pressure : ndarray, shape (n,)
         At the microphone [Pa].
     pulse_pressure : ndarray, shape (n,)
-        The part of `pressure` that slip pulses make through the plate [Pa].
+        Part of `pressure` that slip pulses cause through the plate [Pa].
     """
 
     acceleration: NDArray[np.float64]
@@ -164,13 +55,13 @@ class Sound:
 def run_motion(
     plan: Plan, rng: np.random.Generator | None = None, *, tolerance: float | None = None
 ) -> Motion:
-    """Simulate the motion of a plan from rest; `rng` and `tolerance` as of `simulate_motion`."""
+    """Simulate the motion of a plan from rest; `rng` and `tolerance` as for `simulate_motion`."""
     return simulate_motion(
         plan.rig,
         plan.shaft,
         interference=plan.interference,
         support_stiffness=plan.support_stiffness,
-        seconds=(plan.n_settling + plan.n_kept) / plan.rate,
+        seconds=(plan.n_settling + plan.n_recorded) / plan.rate,
         rate=plan.rate,
         effects=plan.effects,
         rng=rng,
@@ -179,7 +70,7 @@ def run_motion(
 
 
 def pulse_force(motion: Motion, effects: Sequence[ActiveEffect]) -> NDArray[np.float64]:
-    """Force that a motion makes the effects exert in the anchors' joint [N], shape (n,)."""
+    """Return the force that the effects exert in the anchors' joint [N], shape (n,)."""
     force = np.zeros_like(motion.torque)
     for active in effects:
         if active.effect.force is not None:
@@ -190,15 +81,15 @@ def pulse_force(motion: Motion, effects: Sequence[ActiveEffect]) -> NDArray[np.f
 def radiate_motion(
     motion: Motion, paths: ImpulseResponses, effects: Sequence[ActiveEffect] = ()
 ) -> Sound:
-    """Send torque and pulses of a motion through structure and plate.
+    """Compute the sound of a motion: its torque and slip pulses through structure and plate.
 
     Parameters
     ----------
     motion : Motion
     paths : ImpulseResponses
-        At the motion's rate, as effects have changed them.
+        At the motion's rate, already changed by effects.
     effects : sequence of ActiveEffect
-        Of which some make pulses.
+        Those that exert a force add slip pulses.
 
     Returns
     -------
@@ -209,14 +100,14 @@ def radiate_motion(
     force = pulse_force(motion, effects)
     pulse_pressure = np.zeros_like(pressure)
     if np.any(force):
-        struck, pulse_pressure = radiate(paths, force, "pulse")
-        acceleration += struck
+        pulse_acceleration, pulse_pressure = radiate(paths, force, "pulse")
+        acceleration += pulse_acceleration
         pressure += pulse_pressure
     return Sound(acceleration, pressure, pulse_pressure)
 
 
 def sensor_signals(motion: Motion, sound: Sound, n_settling: int) -> Signals:
-    """Return what reaches the sensors while the run is kept, by channel; the angle from 0 on."""
+    """Return the signals at the sensors after settling, by channel; the angle starts at 0."""
     return {
         "torque": motion.torque[n_settling:],
         "acceleration": sound.acceleration[n_settling:],
@@ -228,12 +119,9 @@ def sensor_signals(motion: Motion, sound: Sound, n_settling: int) -> Signals:
 def apply_sensor_effects(
     signals: Signals, effects: Sequence[ActiveEffect], rate: float, rng: np.random.Generator
 ) -> Signals:
-    """Let the effects on sensors change signals of a run in one block, in their order.
-
-    The sampling rate is that of the signals [Hz].
-    """
+    """Apply effects on sensors, in order, to the signals of a whole run at a rate [Hz]."""
     for active in effects:
-        signals = active.sensed(signals, rate, {"rng": rng, "whole": True})
+        signals = active.apply_sensors(signals, rate, {"rng": rng, "whole": True})
     return signals
 
 
@@ -245,37 +133,37 @@ def record_motions(
     noise_rng: np.random.Generator,
     effect_rng: np.random.Generator,
 ) -> tuple[Signals, list[Sound]]:
-    """Record the motions of one or several bushings, which one microphone hears together.
+    """Record the motions of one or more bushings with one microphone.
 
     Parameters
     ----------
     plan : Plan
-        Of each.
+        Plan of every bushing.
     motions : sequence of Motion
-        From rest on.
+        Motion of each bushing from rest.
     rigs : sequence of Rig
-        What carries and radiates each.
+        Rig that carries each bushing and radiates its sound.
     acquisition : Acquisition
     noise_rng, effect_rng : numpy.random.Generator
-        Of the sensors' noise, and of effects that scatter.
+        Generators of the sensors' noise and of effects that scatter.
 
     Returns
     -------
     samples : dict of str to ndarray, shape (n,)
-        By channel, in its unit; ``torque_2`` and so on are of the second bushing.
+        By channel, in its unit; ``torque_2`` and so on belong to the second bushing.
     sounds : list of Sound
-        Of each motion alone, before any noise.
+        Sound of each motion alone, before any noise.
     """
-    sounds, seen = list[Sound](), list[Signals]()
+    sounds, sensor_inputs = list[Sound](), list[Signals]()
     for motion, rig in zip(motions, rigs, strict=True):
         paths = impulse_responses(rig, plan.interference, plan.support_stiffness, plan.rate)
-        paths = changed_chain(paths, plan.effects, effect_rng.spawn(1)[0])
+        paths = apply_chain_effects(paths, plan.effects, effect_rng.spawn(1)[0])
         sounds.append(radiate_motion(motion, paths, plan.effects))
-        seen.append(sensor_signals(motion, sounds[-1], plan.n_settling))
-    together = {"pressure": reduce(np.add, [signals["pressure"] for signals in seen])}
+        sensor_inputs.append(sensor_signals(motion, sounds[-1], plan.n_settling))
+    together = {"pressure": reduce(np.add, [signals["pressure"] for signals in sensor_inputs])}
     decimation = SIMULATION.decimation(acquisition.rate)
     samples: Signals = {}
-    for number, signals in enumerate(seen, start=1):
+    for number, signals in enumerate(sensor_inputs, start=1):
         sensed = apply_sensor_effects(signals | together, plan.effects, plan.rate, effect_rng)
         for kind, values in sample(sensed, decimation, acquisition, noise_rng).items():
             if number == 1:
@@ -288,20 +176,20 @@ def record_motions(
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What a simulated run gives.
+    """Result of a simulated run.
 
     Parameters
     ----------
     recording : Recording
-        What the sensors recorded.
+        Samples of the sensors.
     motion : Motion
-        What moved, including what no sensor sees; at the rate of the computation.
+        Motion and torques at the rate of the computation, including what no sensor measures.
     pressure : ndarray, shape (n,)
         Sound pressure at the microphone at ``motion.rate``, free of noise [Pa].
     pulse_pressure : ndarray, shape (n,)
-        The part of `pressure` that slip pulses make through the plate [Pa].
+        Part of `pressure` that slip pulses cause through the plate [Pa].
     settling : float
-        How long the rig has run before all this [s].
+        Time that the rig ran before the recording starts [s].
 
     Examples
     --------
@@ -320,14 +208,14 @@ class Run:
     def plot(
         self, ax: "Axes | None" = None, *, start: float | None = None, end: float | None = None
     ) -> "Axes":
-        """Draw the torques in contact and elastomer over time.
+        """Plot the torques in contact and elastomer over time.
 
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Where to draw; by default a new figure.
+            Axes to draw into; by default a new figure.
         start, end : float, optional
-            What is shown [s]; by default the last tenth of a second.
+            Time range [s]; by default the last tenth of a second.
 
         Returns
         -------
@@ -336,7 +224,7 @@ class Run:
         Raises
         ------
         ParameterError
-            There is nothing of the run between them.
+            The run has no samples between them.
 
         Examples
         --------
@@ -347,13 +235,13 @@ class Run:
         'PDMS, 0.279 mm, 2214 Nm/rad, 5 rad/s'
         """
         motion = self.motion
-        lasting = motion.torque.size / motion.rate
-        end = lasting if end is None else end
+        duration = motion.torque.size / motion.rate
+        end = duration if end is None else end
         start = max(0.0, end - _SHOWN) if start is None else start
         part = slice(math.ceil(max(0.0, start) * motion.rate), round(end * motion.rate))
         if not motion.torque[part].size:
             raise ParameterError(
-                f"start = {start:g} s and end = {end:g} s hold nothing of a run of {lasting:g} s"
+                f"start = {start:g} s and end = {end:g} s hold nothing of a run of {duration:g} s"
             )
         time = np.arange(motion.torque.size)[part] / motion.rate
         with axes_or_new(ax) as axes:
@@ -385,25 +273,25 @@ def simulate(
     ----------
     rig : Rig
     shaft : ShaftMotion or float
-        How the shaft turns; a number is a constant speed [rad/s].
+        Motion of the shaft; a number is a constant speed [rad/s].
     interference : float
         [m]
     support_stiffness : float
         [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
     temperature : float
-        Ambient [degree Celsius]; recorded, and acts where the rig's material says how.
+        Ambient temperature [degree Celsius]; it acts if the rig's material states a dependence.
     seconds : float
         Length of the recording [s].
     acquisition : Acquisition, optional
-        Sampling rate, noise and sensors; by default 30 kHz. What it does not say of the sensors is
+        Sampling rate, noise and sensors; by default 30 kHz. Sensors that it does not state are
         the rig's.
     settling : float, optional
-        How long the rig has run before the recording starts [s]; by default that of
-        `SIMULATION` at constant speed, else none.
+        Time that the rig runs before the recording starts [s]; by default 0.5 at constant speed,
+        otherwise 0.
     library : mapping of str to Effect, optional
-        Effects that the rig's can be found among; by default `sim.effects.EFFECTS`.
+        Effects by name, in which the rig's are looked up; by default `sim.effects.EFFECTS`.
     rng : numpy.random.Generator, optional
-        Of the sensors' noise and of effects that scatter; by default seeded with 0.
+        Generator of the sensors' noise and of effects that scatter; by default seeded with 0.
 
     Returns
     -------
@@ -445,75 +333,13 @@ def simulate(
         channels=sensor_channels(rig),
         condition=plan.condition,
     )
-    kept = slice(plan.n_settling, None)
+    recorded = slice(plan.n_settling, None)
     return Run(
         recording=recording,
-        motion=motion.since(plan.n_settling),
-        pressure=sound.pressure[kept],
-        pulse_pressure=sound.pulse_pressure[kept],
+        motion=motion.part(plan.n_settling),
+        pressure=sound.pressure[recorded],
+        pulse_pressure=sound.pulse_pressure[recorded],
         settling=plan.n_settling / plan.rate,
-    )
-
-
-def plan_run(
-    rig: Rig,
-    shaft: ShaftMotion | float,
-    *,
-    interference: float,
-    support_stiffness: float,
-    temperature: float,
-    seconds: float,
-    rate: float,
-    settling: float | None,
-    library: Mapping[str, Effect] | None,
-) -> Plan:
-    """Check what is asked of a run, and plan it.
-
-    Parameters
-    ----------
-    rig, shaft, interference, support_stiffness, temperature, seconds, settling, library
-        As for `simulate`.
-    rate : float
-        Of the recording [Hz].
-
-    Returns
-    -------
-    Plan
-        At a multiple of `rate`, as `SIMULATION` has it.
-
-    Raises
-    ------
-    ParameterError
-        If a value cannot be used, or the shaft is neither a number nor a motion.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> plan = plan_run(
-    ...     load_material_rig("PDMS"), 5, interference=0.279e-3, support_stiffness=2214.0,
-    ...     temperature=23.0, seconds=1.0, rate=30e3, settling=None, library=None,
-    ... )
-    >>> plan.shaft, plan.rate, plan.n_settling, plan.n_kept
-    (ConstantSpeed(value=5.0), 90000.0, 45000, 90000)
-    """
-    if isinstance(shaft, Real):
-        shaft = ConstantSpeed(float(shaft))
-    if not isinstance(shaft, ShaftMotion):
-        raise ParameterError(f"shaft = {shaft!r}: give a speed in rad/s, or a motion of sim.shaft")
-    if settling is None:
-        settling = SIMULATION.settling if isinstance(shaft, ConstantSpeed) else 0.0
-    _check(seconds, settling, rate, interference, temperature)
-    rig = at_temperature(rig, temperature)
-    return Plan(
-        rig=rig,
-        shaft=shaft,
-        interference=interference,
-        support_stiffness=support_stiffness,
-        effects=activated(rig.effects, library or EFFECTS),
-        rate=SIMULATION.rate(rate),
-        n_settling=round(settling * SIMULATION.rate(rate)),
-        n_kept=round(seconds * rate) * SIMULATION.decimation(rate),
-        temperature=temperature,
     )
 
 
@@ -527,36 +353,16 @@ def sensor_channels(rig: Rig) -> tuple[Channel, ...]:
     )
 
 
-def _check(
-    seconds: float, settling: float, rate: float, interference: float, temperature: float
-) -> None:
-    if not (0.0 < seconds <= LONGEST_RUN and 0.0 <= settling <= LONGEST_RUN):
-        raise ParameterError(
-            f"seconds = {seconds:g} must be above 0, settling = {settling:g} at least 0, both at "
-            f"most {LONGEST_RUN:g}"
-        )
-    if not 1e3 <= rate <= 400e3:
-        raise ParameterError(f"rate = {rate:g} Hz must lie between 1000 and 400000")
-    if round(seconds * rate) < 2:
-        raise ParameterError(f"seconds = {seconds:g} holds no two samples at {rate:g} Hz")
-    if not ABSOLUTE_ZERO <= temperature < 1e4:
-        raise ParameterError(f"temperature = {temperature:g} degree Celsius is none")
-    if not 0.0 < interference < 1e-2:
-        raise ParameterError(
-            f"interference = {1e3 * interference:g} mm must be above 0 and below 10"
-        )
-
-
 _SHOWN = 0.1
-"""A run is drawn from so long before its end [s]: slips can still be told apart."""
+"""Time that a plot shows by default [s]: single slips are still visible."""
 
 
 Curve = tuple[NDArray[np.float64], str, str, float]
-"""Values, colour, label (empty for none) and line width."""
+"""Values, colour, label (empty for none) and line width of a curve."""
 
 
 def torque_curves(motion: Motion, part: slice) -> list[Curve]:
-    """Return the torques of a part of a motion, the more important one later and so on top.
+    """Return the torque curves of a part of a motion; the more important one is drawn last.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Motions of the shaft: at constant speed, on a ramp, to and fro, or as it was logged."""
+"""Motions of the shaft: constant speed, ramp, oscillation, or a logged speed."""
 
 import math
 from dataclasses import dataclass
@@ -12,20 +12,20 @@ from models.errors import ParameterError
 
 @runtime_checkable
 class ShaftMotion(Protocol):
-    """Anything that knows the shaft's angular speed at given times, and the largest."""
+    """Interface of a motion of the shaft: its angular speed over time, and its largest speed."""
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s], both of one shape."""
+        """Return the angular speed [rad/s] at `time` [s], in the shape of `time`."""
         ...
 
     def top_speed(self, seconds: float) -> float:
-        """Largest speed of either sign in the first `seconds` [rad/s]."""
+        """Return the largest magnitude of the speed in the first `seconds` [rad/s]."""
         ...
 
 
 @dataclass(frozen=True)
 class ConstantSpeed:
-    """The rig's own way of turning.
+    """Constant speed, as on the rig.
 
     Parameters
     ----------
@@ -41,17 +41,17 @@ class ConstantSpeed:
     value: float
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s], both of one shape."""
+        """Return the angular speed [rad/s] at `time` [s], in the shape of `time`."""
         return np.full(time.shape, float(self.value))
 
     def top_speed(self, seconds: float = math.inf) -> float:  # noqa: ARG002
-        """Largest speed of either sign in the first `seconds` [rad/s]."""
+        """Return the largest magnitude of the speed in the first `seconds` [rad/s]."""
         return abs(float(self.value))
 
 
 @dataclass(frozen=True)
 class SpeedRamp:
-    """A run-up: the speed changes linearly, and stays at its end.
+    """Run-up: the speed changes linearly, then stays constant.
 
     Parameters
     ----------
@@ -71,17 +71,17 @@ class SpeedRamp:
     duration: float
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s], both of one shape."""
+        """Return the angular speed [rad/s] at `time` [s], in the shape of `time`."""
         return self.start + (self.end - self.start) * np.clip(time / self.duration, 0.0, 1.0)
 
     def top_speed(self, seconds: float = math.inf) -> float:
-        """Largest speed of either sign in the first `seconds` [rad/s]."""
+        """Return the largest magnitude of the speed in the first `seconds` [rad/s]."""
         return float(np.abs(self.speed(np.array([0.0, seconds]))).max())
 
 
 @dataclass(frozen=True)
 class Oscillation:
-    """A stabilizer bar on the road: the angle swings as ``amplitude * sin(2 pi frequency t)``.
+    """Oscillation of the angle as ``amplitude * sin(2 pi frequency t)``, like a stabilizer bar's.
 
     Parameters
     ----------
@@ -112,17 +112,17 @@ class Oscillation:
             )
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s], both of one shape."""
+        """Return the angular speed [rad/s] at `time` [s], in the shape of `time`."""
         omega = 2.0 * math.pi * self.frequency
         return np.asarray(self.amplitude * omega * np.cos(omega * time))
 
     def top_speed(self, seconds: float = math.inf) -> float:  # noqa: ARG002
-        """Largest speed of either sign in the first `seconds` [rad/s]: that at the start."""
+        """Return the largest magnitude of the speed in the first `seconds` [rad/s]."""
         return abs(self.amplitude) * 2.0 * math.pi * self.frequency
 
 
 class LoggedSpeed:
-    """Speed as logged, linear between the samples and held beyond them.
+    """Logged speed, linear between the samples and constant beyond them.
 
     Parameters
     ----------
@@ -167,11 +167,11 @@ class LoggedSpeed:
         )
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s], both of one shape."""
+        """Return the angular speed [rad/s] at `time` [s], in the shape of `time`."""
         return np.asarray(np.interp(time, self._time, self._speed))
 
     def top_speed(self, seconds: float = math.inf) -> float:
-        """Largest speed of either sign in the first `seconds` [rad/s]."""
+        """Return the largest magnitude of the speed in the first `seconds` [rad/s]."""
         inside = self._speed[(self._time >= 0.0) & (self._time <= seconds)]
         ends = self.speed(np.array([0.0, seconds]))
         return float(np.abs(np.concatenate([inside, ends])).max())

@@ -1,18 +1,18 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any
 # ruff: noqa: ANN001
-"""A car's stabilizer bar in its two bushings: motion, loads, and the recording of a run.
+"""Simulation of a stabilizer bar in its two bushings: motion, loads and recording.
 
-The drive is the travel of the wheels, as the angle that it asks of an arm. Each bushing is the
-lumped model as `sim.solvers.contact_rates` has it, with the bar at its place for a shaft; what its
-surface takes is taken from the bar. Links load the bushings, and where that lifts the bar off a
-part of one, its torques rise (`torque_gain`). Only friction laws with an inner state are solved:
-they stick by themselves, where constant torques would need an event at each contact. Steps are
-those of `sim.solvers.tsitouras`, as long as their error allows.
+The drive is the travel of the wheels, expressed as the angle of an arm. Each bushing is the lumped
+model of `sim.solvers.contact_rates`, whose shaft is the bar at its place; its friction torque acts
+back on the bar. Links load the bushings, and where the load lifts the bar off a part of a bushing,
+its torques rise (`torque_gain`). Only friction laws with an inner state are supported, since
+constant torques would need event location at each contact. Steps are those of
+`sim.solvers.tsitouras` with error control.
 
-Every bushing sends its torque through clamp, beams and plate as the rig's does, at its own place on
-the plate; accelerometers sit at both, and the microphone hears the sum. The brackets act on each
-other through the bar alone.
+The torque of each bushing excites clamp, beams and plate as on the rig, at its own place on the
+plate. Each bushing has an accelerometer, and one microphone records the sum. The brackets are
+coupled through the bar only.
 """
 
 import math
@@ -34,9 +34,10 @@ from sim.bushing import lumped_bushing
 from sim.contact import CRITICAL, KINETIC
 from sim.effects.effect import Effect
 from sim.friction import friction_law
-from sim.motion import Motion, blaming_the_unusual, contact_hooks
+from sim.motion import Motion, contact_hooks, unusual_values_first
 from sim.parameters import resolve
-from sim.run import Plan, plan_run, record_motions
+from sim.plan import Plan, plan_run
+from sim.run import record_motions
 from sim.shaft import ShaftMotion
 from sim.solvers import contact_rates as at
 from sim.solvers.contact_rates import contact_rates
@@ -44,22 +45,22 @@ from sim.solvers.contact_solver import LONGEST_STEP, contact_record, hooks_recor
 from sim.solvers.tsitouras import ERROR, NODES, factor_of_step, fill_between, fill_stage
 
 LONGEST_SUSPENSION_RUN = 20.0
-"""All that moves is held in memory [s]."""
+"""Longest run [s], since the whole motion is in memory."""
 
 _STRONGEST = 1e9
-"""Shear stress that no spring steel bears: 1.7 GPa in tension, over the root of 3 [Pa]."""
+"""Shear strength beyond that of any spring steel: 1.7 GPa in tension over sqrt(3) [Pa]."""
 
 _TURN_SHARE = 0.1
-"""Of the law's tolerance: where the sliding turns is left to the error, not sought."""
+"""Share of the law's tolerance, since reversals of sliding are left to the error control."""
 
 _FIRST_STEP = 1e-6
-"""[s]"""
+"""First step [s]."""
 
 _LEAST_STEP = 1e-10
-"""At which an error is accepted: something jumps [s]."""
+"""Step at which any error is accepted, since something jumps [s]."""
 
 _GRACE = 2e-3
-"""Time that is granted before steps are counted [s]."""
+"""Time at the start that does not count towards the average step [s]."""
 
 _NEWTON_STEPS = 12
 
@@ -71,11 +72,11 @@ class SuspensionMotion:
     Parameters
     ----------
     bushings : tuple of Motion
-        Left and right; the shaft of each is the bar at its place.
+        Left and right bushing; the shaft of each is the bar at its place.
     load : ndarray, shape (n_bushings, n)
-        Normal force on each by the links [N].
+        Normal force of the links on each bushing [N].
     angle : ndarray, shape (n_inertias, n)
-        Of the bar along its length [rad].
+        Angle of the bar along its length [rad].
     """
 
     bushings: tuple[Motion, ...]
@@ -85,17 +86,17 @@ class SuspensionMotion:
 
 @dataclass(frozen=True, eq=False)
 class SuspensionRun:
-    """What a run of a suspension gives.
+    """Result of a simulated run of a suspension.
 
     Parameters
     ----------
     recording : Recording
-        ``torque``, ``acceleration`` and ``angle`` are those of the left bushing, ``torque_2`` and
-        so on those of the right one; ``pressure`` is of both.
+        ``torque``, ``acceleration`` and ``angle`` of the left bushing, ``torque_2`` and so on of
+        the right one; ``pressure`` of both together.
     motion : SuspensionMotion
-        At the rate of the computation, from rest on.
+        Motion from rest at the rate of the computation.
     remarks : tuple of str
-        What a user should know of it, a line each.
+        Notes for the user, one line each.
     """
 
     recording: Recording
@@ -121,7 +122,7 @@ def run_suspension(
     ----------
     suspension : Suspension
     shaft : ShaftMotion or float
-        Travel of the wheels, as the speed that it asks of an arm [rad/s].
+        Travel of the wheels, as the speed of an arm [rad/s].
     interference, support_stiffness, temperature, seconds, acquisition, library, rng
         As for `sim.run.simulate`.
 
@@ -177,11 +178,11 @@ def run_suspension(
 
 
 def _simulated(suspension: Suspension, plan: Plan, rng: np.random.Generator) -> SuspensionMotion:
-    """Simulate bar and bushings from rest; refuse a bar that would be twisted beyond its stress."""
+    """Simulate bar and bushings from rest; raise if the bar's shear stress exceeds any strength."""
     bar, rate = suspension.bar, plan.rate
-    speed = plan.shaft.speed(np.arange(plan.n_settling + plan.n_kept) / rate)
+    speed = plan.shaft.speed(np.arange(plan.n_settling + plan.n_recorded) / rate)
     for active in plan.effects:
-        speed = active.driven(speed, rate, {"rng": rng, "whole": True})
+        speed = active.apply_drive(speed, rate, {"rng": rng, "whole": True})
     chain = torsion_chain(
         bar, suspension.spacing, suspension.link_stiffness, suspension.link_damping,
         suspension.wheels,
@@ -194,7 +195,7 @@ def _simulated(suspension: Suspension, plan: Plan, rng: np.random.Generator) -> 
             f"a shear stress of {stress / 1e6:.0f} MPa where steel bears {_STRONGEST / 1e6:.0f}; "
             'let it swing less (--oscillate), or the wheels go together (wheels = "together")'
         )
-    with blaming_the_unusual(plan.rig):
+    with unusual_values_first(plan.rig):
         return solve_chain(chain, plan, speed, suspension.preload(plan.interference), rng)
 
 
@@ -206,26 +207,26 @@ def solve_chain(
     rng: np.random.Generator,
     tolerance: float | None = None,
 ) -> SuspensionMotion:
-    """Solve a bar in any number of bushings.
+    """Solve the motion of a bar in any number of bushings.
 
     Parameters
     ----------
     chain : TorsionChain
     plan : Plan
-        Its rig is that of every bushing.
+        Plan of the run; all bushings are those of its rig.
     speed : ndarray, shape (n,)
-        Of the travel, linear between the samples [rad/s].
+        Speed of the travel, linear between the samples [rad/s].
     preload : float
         Contact pressure times radius and length of a bushing [N].
     rng : numpy.random.Generator
-        Of effects that scatter, for each bushing by itself.
+        Generator of effects that scatter, independently for each bushing.
     tolerance : float, optional
         Error of a step [-]; by default a share of that of the friction law.
 
     Raises
     ------
     ParameterError
-        The friction law is one of constant torques, or no steps follow the motion.
+        The friction law has constant torques, or no steps can follow the motion.
     """
     rig, rate = plan.rig, plan.rate
     law = friction_law(rig.friction.name)
@@ -248,7 +249,7 @@ def solve_chain(
     )
     n, start = speed.size, np.zeros(first + block * len(places))
     start[1:first:2] = chain.start * speed[0]
-    # Errors of angles and speeds go with the twist at the critical torque, and what it releases.
+    # Scales of angles and speeds: the twist at the critical torque, and the speed it releases.
     scale = np.zeros(start.size)
     twist = max(torque_limits) / system.elastomer_stiffness
     scales = twist, twist * math.sqrt(system.elastomer_stiffness / system.elastomer_inertia)
@@ -303,7 +304,7 @@ def _remarks(
         else "is carried by the contact pressure and leaves its torque as it is"
     )
     sleeve = suspension.rig.sleeve
-    assert sleeve is not None  # a suspension has one
+    assert sleeve is not None  # checked by `Suspension`
     torque = suspension.rig.fit(interference).kinetic_torque
     coefficient = torque / (2.0 * np.pi * sleeve.inner_radius * preload)
     pressure = suspension.contact_pressure(interference)
@@ -329,24 +330,24 @@ def _integral(speed: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
 
 @njit(cache=True, error_model="numpy")
 def torque_gain(load) -> float:
-    r"""Torque of a loaded bushing over that without load [-].
+    r"""Return the torque of a loaded bushing over that without load [-].
 
-    A radial load R presses the sleeve as p0 (1 + rho cos(phi)). As long as rho < 1 what one side
-    gains the other loses, and the torque, which goes with the integral of the pressure, stays.
-    Rubber that is not glued to the bar does not pull: beyond, only |phi| < phi0 touches, where
-    cos(phi0) = -1 / rho, with
+    A radial load R changes the pressure to p0 (1 + rho cos(phi)). For rho < 1 the increase on one
+    side balances the decrease on the other, so the torque, which is proportional to the integral of
+    the pressure, does not change. Rubber that is not bonded to the bar cannot pull: for rho > 1
+    only |phi| < phi0 touches, where cos(phi0) = -1 / rho, with
 
     .. math::
         R / (p_0 a L) &= 2 \sin\varphi_0 + \rho (\varphi_0 + \sin\varphi_0 \cos\varphi_0) \\
         T / T_0 &= (\varphi_0 + \rho \sin\varphi_0) / \pi
 
-    an elastic foundation (Johnson, Contact Mechanics, 4.3) that touches in part. Limits: R up to
-    pi p0 a L, T = T0; without interference the cosine pressure of a journal, T = 4 / pi mu R a.
+    an elastic foundation (Johnson, Contact Mechanics, 4.3) in partial contact. Limits: T = T0 for R
+    up to pi p0 a L; T = 4 / pi mu R a without interference, the cosine pressure of a journal.
 
     Parameters
     ----------
     load : float
-        R / (p0 a L), of either sign [-].
+        R / (p0 a L), signed [-].
 
     Examples
     --------
@@ -357,7 +358,7 @@ def torque_gain(load) -> float:
     if not load > math.pi:
         return 1.0
     rho = load / math.pi
-    for _ in range(_NEWTON_STEPS):  # from below, on a curve that bends downwards
+    for _ in range(_NEWTON_STEPS):  # monotone from below, since the curve is concave
         cosine = -1.0 / rho
         sine = math.sqrt(1.0 - cosine * cosine)
         angle = math.acos(cosine)
@@ -374,7 +375,7 @@ def torque_gain(load) -> float:
 def _fill_rates(
     stage, since, i, time, u, k, chain, bushings, hooks, rows, drive, place, preload, limits, out
 ) -> None:
-    """Fill the rates `k` of the state `u` at a stage; `out` gets friction, elastomer, load."""
+    """Fill the rates `k` of the state `u` at a stage, and friction, elastomer and load in `out`."""
     n = chain.inertia.size
     wheel = drive.speed[i] + drive.slope[i] * since
     angle = drive.angle[i] + since * (drive.speed[i] + 0.5 * drive.slope[i] * since)
@@ -419,7 +420,7 @@ def _fill_rates(
 
 @njit(**PART)
 def _step_error(k, h, start, end, scale) -> float:
-    """Largest error of a step over its scale [-]; a scale of 0 is what the variable itself is."""
+    """Return the largest error of a step over its scale [-]; 0 stands for the variable's size."""
     largest = 0.0
     for j in range(end.size):
         error = 0.0
@@ -437,20 +438,20 @@ def _solve(
     chain, bushings, hooks, rows, drive, place, steps, preload, limits, start, scale, states,
     torques,
 ) -> None:  # fmt: skip
-    """Write states and torques at the samples of the drive; not a number where it is given up."""
+    """Fill states and torques at the samples of the drive; NaN where the solution is aborted."""
     d, n, step = start.size, states.shape[0], drive.step
     k, u, following = np.zeros((d, at.N_STAGES + 1)), np.empty(d), np.empty(d)
     torques_now = np.empty((len(bushings), 3))
     last = n - 2
-    t, h, sample, n_done, error_before = 0.0, _FIRST_STEP, 0, 0.0, 0.0
+    t, h, sample, n_steps, error_before = 0.0, _FIRST_STEP, 0, 0.0, 0.0
     # `int64`, since a function is compiled once more for a literal.
     _fill_rates(
         np.int64(0), 0.0, np.int64(0), 0.0, start, k, chain, bushings, hooks, rows, drive, place,
         preload, limits, torques_now,
     )  # fmt: skip
     while sample < n:
-        n_done += 1.0
-        if n_done * at.SHORTEST_STEP > _GRACE + t:
+        n_steps += 1.0
+        if n_steps * at.SHORTEST_STEP > _GRACE + t:
             states[sample:] = math.nan
             return
         for stage in range(1, at.N_STAGES):

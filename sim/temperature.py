@@ -1,9 +1,9 @@
 # mypy: allow-untyped-defs, allow-untyped-decorators, allow-untyped-calls
 # ruff: noqa: ANN001, ANN202
-"""A rig at an ambient temperature: its stiffness, damping and friction by `models.bushing`.
+"""Temperature dependence of a rig's stiffness, damping and friction, by `models.bushing`.
 
-A simulated condition calls `at_temperature` once. Friction acts through the contact, as effects do,
-so that it holds with any law; a law that is a master curve itself has its speeds shifted instead.
+A simulated condition calls `at_temperature` once. Friction changes through an effect on the
+contact, so it works with any law; a law that is itself a master curve has its speeds shifted.
 """
 
 import math
@@ -22,13 +22,13 @@ from sim.friction.shared import FASTEST
 from sim.parameters import Parameter, resolve
 
 _SLOWEST = 0.25
-"""Speed below which the bell's factor is held, the slowest the rig turned at (5.1.2) [rad/s]; it is
-that of a contact at rest too, whose creep has no bell that was measured."""
+"""Speed below which the bell's factor is constant [rad/s]: the slowest of the measurements (5.1.2).
+It also applies to a contact at rest, for whose creep no bell was measured."""
 
 _MEMORY = 3e-4
-"""Sliding within which a contact follows its speed, 4.5 um on the shaft [rad]: one distance for all
-fits, among those over which the fluorocarbon's contact is renewed, 0.7e-4 rad at 0.178 mm, 1.4e-4
-at 0.279 mm and 6.4e-4 at 0.381 mm. Steady sliding does not depend on it."""
+"""Sliding angle over which the factor follows the speed, 4.5 um on the shaft [rad]: one value for
+all fits, within the range over which the fluorocarbon's contact is renewed (0.7e-4 rad at 0.178 mm,
+1.4e-4 at 0.279 mm, 6.4e-4 at 0.381 mm). Steady sliding does not depend on it."""
 
 
 def _pack(_form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.float64]:
@@ -40,7 +40,7 @@ def _pack(_form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.f
 
 @njit(cache=True, error_model="numpy")
 def _log_factor(v, values):
-    """Logarithm of the bell's height at a sliding speed over that at the reference temperature."""
+    """Return the logarithm of the bell's height over that at the reference temperature."""
     speed = 0.5 * math.log10(v * v + _SLOWEST * _SLOWEST)
     before = (speed - values[0]) / values[2]
     now = (speed - values[1]) / values[2]
@@ -67,7 +67,7 @@ FRICTION_SHIFT = Effect(
     forms=("bell",),
     parameters={
         "log_shift": Parameter(0.0, "", -30.0, 30.0, "log10 a_T from the reference temperature"),
-        "peak": Parameter(1.0, "rad/s", 1e-12, 1e12, "v_p: of most friction at the reference"),
+        "peak": Parameter(1.0, "rad/s", 1e-12, 1e12, "v_p: of highest friction at the reference"),
         "width": Parameter(2.24, "", 1e-3, 20.0, "w: decades from the peak to 0.61 of its height"),
         "floor": Parameter(0.3, "", 0.0, 1.0, "p_0: share of friction far from the peak"),
     },
@@ -76,23 +76,23 @@ FRICTION_SHIFT = Effect(
     pack=_pack,
     n_states=1,
 )
-"""The condition's temperature on the torques; not one of `sim.effects`, which rigs may list."""
+"""Effect of the ambient temperature on the torques; not one of `sim.effects`, which rigs list."""
 
 
 def at_temperature(rig: Rig, temperature: float | None) -> Rig:
-    """Return a rig as it is at an ambient temperature.
+    """Return a rig with the properties that it has at an ambient temperature.
 
     Parameters
     ----------
     rig : Rig
     temperature : float, optional
-        [degree Celsius]; unknown, it is the reference temperature.
+        [degree Celsius]; by default the reference temperature.
 
     Returns
     -------
     Rig
-        The same where its material states no dependence, or at the reference temperature; what it
-        then is at another temperature no longer follows from it.
+        The same rig if its material states no dependence, or at the reference temperature;
+        otherwise a rig without a temperature dependence.
 
     Examples
     --------
@@ -132,11 +132,11 @@ def _scaled(fit: Fit, stiffness: float, damping: float) -> Fit:
 def _friction(
     rig: Rig, depends: TemperatureDependence, temperature: float
 ) -> tuple[LawSpec, tuple[LawSpec, ...]]:
-    """Friction law at a temperature, and the shift of its torques where it has no speeds of one."""
+    """Return the friction law at a temperature, and the effect on its torques if it needs one."""
     shift, law = depends.log_shift(temperature), friction_law(rig.friction.name)
     if law.master_speeds:
         values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
-        moved = {name: _held(values[name] * 10.0**-shift, law.parameters[name])
+        moved = {name: _within_range(values[name] * 10.0**-shift, law.parameters[name])
                  for name in law.master_speeds}  # fmt: skip
         return LawSpec(law.name, {**rig.friction.parameters, **moved}), ()
     if depends.friction_peak is None or shift == 0.0:
@@ -150,5 +150,5 @@ def _friction(
     return rig.friction, (LawSpec(FRICTION_SHIFT.name, values),)
 
 
-def _held(value: float, parameter: Parameter) -> float:
+def _within_range(value: float, parameter: Parameter) -> float:
     return min(max(value, parameter.low), parameter.high)

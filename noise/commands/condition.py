@@ -124,7 +124,7 @@ def is_long(arguments: Mapping[str, Any]) -> bool:
     """Whether a run is better written in blocks than held in memory."""
     from sim.blocks import whole_run_effects
     from sim.effects.effect import activated
-    from sim.run import LONGEST_RUN
+    from sim.plan import LONGEST_RUN
 
     effects = activated(arguments["rig"].effects, arguments["library"])
     seconds = arguments["seconds"]

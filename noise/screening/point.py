@@ -43,7 +43,7 @@ from noise.screening.vibration import (
 from sim.acquisition import Acquisition, sample
 from sim.analysis.regime import Regime
 from sim.analysis.slips import motion_slips
-from sim.chain import changed_chain
+from sim.chain import apply_chain_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import Motion, simulate_motion
@@ -189,7 +189,7 @@ def _levels(pressure: NDArray[np.float64]) -> WeightedLevels:
 
 def _last_part(motion: Motion, judged: float = JUDGED) -> Motion:
     """Cut to the part that is judged [s], and before it what still rings in it."""
-    return motion.since(max(0, motion.torque.size - round((judged + _RINGING) * RATE)))
+    return motion.part(max(0, motion.torque.size - round((judged + _RINGING) * RATE)))
 
 
 def heard_of(
@@ -218,7 +218,7 @@ def heard_of(
     else:
         motion = _last_part(motion, judged)
         start = motion.torque.size - round(judged * RATE)
-    intervals = fast_intervals(motion.since(start), swings=swings)
+    intervals = fast_intervals(motion.part(start), swings=swings)
     if all(oscillation(interval.torque) <= 1.0 for interval in intervals):
         return SILENT
     rig = at_temperature(rig, at.temperature)
@@ -226,7 +226,7 @@ def heard_of(
     pressure, pulses = sound.pressure[start:], sound.pulse_pressure[start:]
     levels = _levels(pressure)
     criteria, interval = _liveliest(pressure, pulses, intervals)
-    slips = motion_slips(interval.since(-round(_REGIME * RATE))).times.size > 0
+    slips = motion_slips(interval.part(-round(_REGIME * RATE))).times.size > 0
     physics = criteria.label
     if swings and physics == "creak" and criteria.blows < 0.0:
         physics = "squawk"  # lines that follow the speed, which no single spectrum shows
@@ -268,7 +268,7 @@ def _label(rig: Rig, at: Condition, motion: Motion, sound: Sound, start: int) ->
 def _sound(rig: Rig, at: Condition, motion: Motion) -> Sound:
     effects = activated(rig.effects, EFFECTS)
     paths = _paths(rig, at.interference, at.support_stiffness)
-    paths = changed_chain(paths, effects, np.random.default_rng(0))
+    paths = apply_chain_effects(paths, effects, np.random.default_rng(0))
     return radiate_motion(motion, paths, effects)
 
 

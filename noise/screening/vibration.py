@@ -36,7 +36,7 @@ from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.stability import sliding_growth
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.motion import Motion, MotionSolver, steps_beyond
+from sim.motion import Motion, MotionSolver, lookahead_samples
 from sim.temperature import at_temperature
 
 BREAKS_OUT = "breaks out"
@@ -350,7 +350,7 @@ def running(
     """
     if started is not None:
         solver = _solver(rig, at)
-        solver.go_on_from(started.solver, started.speed)
+        solver.continue_from(started.solver, started.speed)
         apart = abs(at.speed - started.speed) / at.speed
         seconds = max(_LEAST_RAMP, _RAMP * apart) if apart else 0.0
         ramp = np.linspace(started.speed, at.speed, round(seconds * RATE))
@@ -400,12 +400,14 @@ def _followed(
     n = round(BLOCK * RATE)
     before = np.empty(0) if approach is None else approach
     first, last = before.size // n, before.size // n + round(LONGEST / BLOCK)
-    drive = np.concatenate([before, np.full((last - first) * n + steps_beyond(RATE), at.speed)])
+    drive = np.concatenate(
+        [before, np.full((last - first) * n + lookahead_samples(RATE), at.speed)]
+    )
     parts: deque[Motion] = deque(maxlen=_KEPT)
     sizes: list[float] = []
     certain = None
     for block in range(last):
-        ahead = drive[block * n : (block + 1) * n + steps_beyond(RATE)]
+        ahead = drive[block * n : (block + 1) * n + lookahead_samples(RATE)]
         parts.append(solver.advance(ahead, n))
         torque = parts[-1].torque
         if block >= first:
@@ -443,7 +445,7 @@ def _outcome(sizes: NDArray[np.float64], growth: float, patience: float) -> bool
 def gone_on(course: Course, seconds: float) -> Motion:
     """Return the motion of a course that goes on at its speed for `seconds` [s]."""
     n = round(seconds * RATE)
-    drive = np.full(n + steps_beyond(RATE), course.speed)
+    drive = np.full(n + lookahead_samples(RATE), course.speed)
     return course.motion.followed_by(course.solver.advance(drive, n))
 
 

@@ -144,7 +144,7 @@ def _damped(material: str, case: Case) -> Rig:
 
 
 def _settled(run: Motion) -> Motion:
-    return run.since(run.torque.size // 4)
+    return run.part(run.torque.size // 4)
 
 
 def oscillation(material: str, case: Case) -> float:

@@ -273,7 +273,7 @@ class SettledRun:
         self, rig: Rig, speed: float, interference: float, support_stiffness: float
     ) -> None:
         motion = motion_from_rest(rig, speed, interference, support_stiffness, seconds=_SECONDS)
-        last = motion.since(motion.torque.size // 2)
+        last = motion.part(motion.torque.size // 2)
         self.slips = motion_slips(last)
         self.mean_torque = float(np.mean(last.torque))
         deviation = float(np.std(last.torque))

@@ -1,8 +1,7 @@
-"""Damping that just ends stick-slip, found by root search (6.3.2 does it by hand).
+"""Critical damping: the largest damping with stick-slip, by bisection (6.3.2 does it by hand).
 
-Whether the contact sticks is yes or no, so the root is bracketed and halved. It need not be the
-only change: a little less damping can end stick-slip again where the clamp's phase is unlucky.
-What is sought is the largest damping with stick, so the search comes from above.
+There may be several changes between stick and no stick, since slightly less damping can end
+stick-slip again at an unlucky phase of the clamp. So the search comes from above.
 """
 
 import math
@@ -16,16 +15,16 @@ from sim.analysis.critical_speeds import regime_at
 from sim.analysis.regime import Regime
 
 _LEAST = declared(Fit)["damping"].value.low
-"""Of a fit [Nm s/rad]."""
+"""Smallest damping of a fit [Nm s/rad]."""
 
 _STEP = 0.01
-"""Of the search for a bracket [Nm s/rad]."""
+"""Step of the search for a bracket [Nm s/rad]."""
 
 
 def with_damping(rig: Rig, damping: float) -> Rig:
-    """Return the rig with another damping c_E [Nm s/rad] for all fits and supports.
+    """Return a rig with a damping c_E [Nm s/rad] for all fits and supports.
 
-    None at all, where a search begins, is as little as a fit can have.
+    Zero becomes the smallest damping of a fit.
 
     Examples
     --------
@@ -48,14 +47,14 @@ def critical_damping(
     tolerance: float = 1e-5,
     seconds: float = 1.0,
 ) -> float:
-    """Find the largest damping c_E at which a rig still sticks and slips.
+    """Find the largest damping c_E at which a rig has stick-slip.
 
     Parameters
     ----------
     rig : Rig
-        Its own damping does not matter, its share in the elastomer does.
+        Its own damping is not used, except for its share in the elastomer.
     speed : float
-        Of the shaft [rad/s].
+        Speed of the shaft [rad/s].
     interference : float
         [m]
     support_stiffness : float
@@ -70,7 +69,7 @@ def critical_damping(
     Returns
     -------
     float
-        [Nm s/rad]; 0 if it never sticks, ``inf`` if it sticks even at `highest`.
+        [Nm s/rad]; 0 if there is no stick-slip, ``inf`` if there is even at `highest`.
 
     Raises
     ------
@@ -79,7 +78,7 @@ def critical_damping(
 
     Examples
     --------
-    The thesis prints 0.7599, with a misplaced point, for what its own program gives as 0.0760:
+    The thesis prints 0.7599 with a misplaced point; its own program gives 0.0760:
 
     >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
@@ -98,12 +97,12 @@ def critical_damping(
 
 
 def largest_sticking(sticks: Callable[[float], bool], highest: float, tolerance: float) -> float:
-    """Find the largest damping at which `sticks` is true, by steps from above and then by halves.
+    """Find the largest damping at which `sticks` is true, by steps from above and bisection.
 
     Parameters
     ----------
     sticks : callable
-        Of a damping [Nm s/rad].
+        Function of a damping [Nm s/rad].
     highest, tolerance : float
         [Nm s/rad]
 

@@ -1,13 +1,12 @@
-"""Critical speeds: where stick-slip ends (V_crit1), and where vibration ends (V_crit2).
+"""Critical speeds: the last speed of stick-slip (V_crit1) and of vibration (V_crit2).
 
-Tables 5.1 and 5.2 give speeds found by ear and eye. To be compared they need a definition: the rig
-runs from rest for a second or more, at speeds 0.25 rad/s apart, and is judged on the last half by
-`sim.analysis.regime`. V_crit1 is the last speed of stick-slip ("the maximum velocity at which
-stick-slip occurs", 5.1.1), V_crit2 the last at which the torque oscillates, islands included, of
-measured and of simulated rigs alike: a design is free of either only beyond. The first torsional
-mode dies slowly: in 0.2 s an oscillation
-that is about to die out still looks alive. Speeds are tried from the fastest down, so that what
-lies below both critical speeds costs nothing. All runs are those of the rig's constant version
+Tables 5.1 and 5.2 give speeds determined by ear and eye. For a comparison they need a definition:
+the rig runs from rest for a second or more, at speeds 0.25 rad/s apart, and `sim.analysis.regime`
+judges the last half. V_crit1 is the last speed of stick-slip ("the maximum velocity at which
+stick-slip occurs", 5.1.1), V_crit2 the last at which the torque oscillates, islands included, for
+measured and simulated rigs alike. The first torsional mode decays slowly: after 0.2 s a decaying
+oscillation is not yet distinct from a lasting one. The search starts at the highest speed, so
+speeds below both critical speeds cost nothing. All runs use the rig's constant version
 (`sim.rig_effects`).
 """
 
@@ -20,24 +19,24 @@ from models.errors import ParameterError
 from models.rig import Rig
 from sim.analysis.regime import Regime, friction_regime
 from sim.motion import Motion, simulate_motion
+from sim.plan import REGIME_RATE
 from sim.rig_effects import constant_version
-from sim.run import REGIME_RATE
 from sim.shaft import ConstantSpeed
 
 SPEEDS = tuple(0.25 * i for i in range(1, 53))
-"""From 0.25 to 13 rad/s, the range of the measurements."""
+"""Speeds of the search, from 0.25 to 13 rad/s, the range of the measurements."""
 
 _SECONDS = 1.0
 
 
 @dataclass(frozen=True)
 class CriticalSpeeds:
-    """Where the regimes end.
+    """Critical speeds of a rig at one condition.
 
     Parameters
     ----------
     v_crit1 : float
-        Last speed of stick-slip [rad/s]; 0 if there is none, ``inf`` if it is the fastest tried.
+        Last speed of stick-slip [rad/s]; 0 if there is none, ``inf`` if it is the highest speed.
     v_crit2 : float
         Last speed at which the torque oscillates [rad/s]; likewise.
     """
@@ -64,7 +63,7 @@ def critical_speeds(
     support_stiffness : float
         [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
     speeds : sequence of float
-        To try [rad/s], positive and rising.
+        Speeds of the search [rad/s], positive and rising.
     seconds : float
         Length of each run [s].
 
@@ -90,10 +89,10 @@ def critical_speeds(
         regime = regime_at(rig, speed, interference, support_stiffness, seconds=seconds)
         if regime is Regime.STEADY_SLIDING:
             continue
-        found = math.inf if speed == speeds[-1] else speed
-        v_crit2 = max(v_crit2, found)
+        last = math.inf if speed == speeds[-1] else speed
+        v_crit2 = max(v_crit2, last)
         if regime is Regime.STICK_SLIP:
-            return CriticalSpeeds(found, v_crit2)
+            return CriticalSpeeds(last, v_crit2)
     return CriticalSpeeds(0.0, v_crit2)
 
 
@@ -105,13 +104,13 @@ def regime_at(
     *,
     seconds: float = _SECONDS,
 ) -> Regime:
-    """Return the regime in which a rig that starts from rest ends up.
+    """Return the regime that a rig reaches from rest.
 
     Parameters
     ----------
     rig : Rig
     speed : float
-        Of the shaft [rad/s].
+        Speed of the shaft [rad/s].
     interference : float
         [m]
     support_stiffness : float
@@ -138,7 +137,7 @@ def motion_from_rest(
     *,
     seconds: float = _SECONDS,
 ) -> Motion:
-    """Run the constant version of a rig from rest at constant speed, as regimes are judged by.
+    """Simulate the constant version of a rig from rest at constant speed.
 
     Parameters, with their units, and errors are as for `regime_at`.
 
@@ -166,7 +165,7 @@ def motion_from_rest(
 def falls_below(
     limit: float, speed: float, value: float, next_speed: float, next_value: float
 ) -> float:
-    """Interpolate where a measure falls below its limit, on logarithmic scales [rad/s].
+    """Interpolate the speed at which a measure falls below its limit, on logarithmic scales.
 
     A measure that falls below a tenth of the limit counts as a tenth of it.
 
@@ -177,7 +176,7 @@ def falls_below(
     speed, next_speed : float
         [rad/s]
     value, next_value : float
-        Of the measure there, above the limit and below it [-].
+        Values of the measure there, above the limit and below it [-].
 
     Examples
     --------

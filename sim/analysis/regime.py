@@ -1,15 +1,15 @@
 """Friction regimes of a motion: stick-slip, quasi-harmonic, steady sliding (Section 5.1).
 
-They are told by what a rig measures, the torque, and not by what the solver calls stick:
+They are defined by the torque, which a rig measures, and not by the solver's stick:
 
 - *steady sliding*: its standard deviation is no more than a hundredth of its mean;
-- *stick-slip*: it rises with time, and then suddenly drops, faster than a contact that sticks could
+- *stick-slip*: it rises with time, and then suddenly drops, faster than a sticking contact could
   load it; `sim.analysis.slips` has the equation and its limits;
-- *quasi-harmonic*: all other oscillations, harmonic, triangular or of several frequencies, grazing
-  contact or not.
+- *quasi-harmonic*: any other oscillation, harmonic, triangular or with several frequencies, with
+  grazing contact or without.
 
-Both limits lie in gaps: over the cells of Tables 5.1 and 5.2, twice or half of either moves no
-critical speed by more than the 0.25 rad/s between the speeds that are tried.
+The limits are not critical: over the cells of Tables 5.1 and 5.2, twice or half of either shifts no
+critical speed by more than 0.25 rad/s, the spacing of the speeds.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from sim.motion import Motion
 
 LEAST_OSCILLATION = 0.01
-"""The torque oscillates if its standard deviation exceeds this share of its mean."""
+"""Standard deviation of the torque over its mean above which it oscillates [-]."""
 
 
 class Regime(StrEnum):
-    """The three regimes that the thesis observed."""
+    """Friction regimes observed in the thesis."""
 
     STICK_SLIP = "stick-slip"
     QUASI_HARMONIC = "quasi-harmonic"
@@ -39,7 +39,7 @@ class Regime(StrEnum):
 
 
 def friction_regime(motion: Motion) -> Regime:
-    """Return the regime that a motion at constant speed has settled to, judged on its last half.
+    """Return the regime of the last half of a motion at constant speed.
 
     Parameters
     ----------
@@ -63,26 +63,26 @@ def friction_regime(motion: Motion) -> Regime:
 
 
 _CARRIED_ALONG = 0.2
-"""Of the shaft's fastest speed: a contact that slides slower has not let go.
+"""Share of the shaft's highest speed below which a sliding contact has not broken loose.
 
-One with an inner state, or that creeps, yields by up to 0.16 while it winds up, and passes the
-shaft's speed when it lets go (the shipped materials, turning and swinging).
+A contact with an inner state, or with creep, yields by up to 0.16 while it is loaded, and exceeds
+the shaft's speed when it breaks loose (shipped materials, rotation and oscillation).
 """
 
 _START = 5e-3
-"""In which a contact that was at rest takes up what the shaft does [s]."""
+"""Time in which a contact at rest takes up the motion of the shaft [s]."""
 
 
 @dataclass
 class SlidingWatch:
-    """What tells whether the contact ever lets go, of a motion that may come in parts.
+    """Monitor of whether the contact ever slips, for a motion that may come in parts.
 
     Parameters
     ----------
     shaft_speed, sliding_speed : float
-        Fastest so far, the latter after the start [rad/s].
+        Highest speeds so far, the latter after the start [rad/s].
     seconds : float
-        Seen so far [s].
+        Duration so far [s].
 
     Examples
     --------
@@ -91,7 +91,7 @@ class SlidingWatch:
     >>> motion = simulate(load_material_rig("fluorocarbon-thesis"), 5.0, seconds=0.1).motion
     >>> watch = SlidingWatch()
     >>> for part in (motion.part(0, 900), motion.part(900)):
-    ...     watch.see(part)
+    ...     watch.update(part)
     >>> watch.never_slips
     False
     """
@@ -100,8 +100,8 @@ class SlidingWatch:
     sliding_speed: float = 0.0
     seconds: float = 0.0
 
-    def see(self, motion: Motion) -> None:
-        """Take in a motion, or its next part."""
+    def update(self, motion: Motion) -> None:
+        """Add a motion, or its next part."""
         first = max(0, math.ceil((_START - self.seconds) * motion.rate))
         later = np.abs(motion.sliding_speed[first:])
         self.shaft_speed = max(self.shaft_speed, float(np.abs(motion.shaft_speed).max(initial=0.0)))
@@ -110,13 +110,13 @@ class SlidingWatch:
 
     @property
     def never_slips(self) -> bool:
-        """Whether the contact carried the bushing's surface along from first to last."""
+        """Whether the contact has carried the bushing's surface along all the time."""
         turned = self.shaft_speed > 0.0 and self.seconds > _START
         return turned and self.sliding_speed <= _CARRIED_ALONG * self.shaft_speed
 
 
 def never_slips(motion: Motion) -> bool:
-    """Whether the contact carries the bushing's surface along from first to last.
+    """Return whether the contact carries the bushing's surface along all the time.
 
     Parameters
     ----------
@@ -133,12 +133,12 @@ def never_slips(motion: Motion) -> bool:
     True
     """
     watch = SlidingWatch()
-    watch.see(motion)
+    watch.update(motion)
     return watch.never_slips
 
 
 def regime_measures(motion: Motion) -> tuple[float, float]:
-    """Measure what the regimes are told by, on the last half of a motion.
+    """Return the two measures that define the regime, over the last half of a motion.
 
     Parameters
     ----------
@@ -147,9 +147,9 @@ def regime_measures(motion: Motion) -> tuple[float, float]:
     Returns
     -------
     sudden : float
-        Share of the torque's falls that is sudden [-], as `sim.analysis.slips` has it.
+        Sudden share of the torque's falls [-], by `sim.analysis.slips`.
     oscillation : float
-        Standard deviation of the torque over its mean [-]; infinite where that is zero.
+        Standard deviation of the torque over its mean [-]; infinite for a mean of zero.
 
     Examples
     --------
@@ -161,7 +161,7 @@ def regime_measures(motion: Motion) -> tuple[float, float]:
     >>> round(sudden, 1), round(oscillation, 1)
     (0.7, 0.1)
     """
-    last = motion.since(motion.torque.size // 2)
+    last = motion.part(motion.torque.size // 2)
     deviation, mean = float(np.std(last.torque)), abs(float(np.mean(last.torque)))
     oscillation = deviation / mean if mean > 0.0 else math.inf if deviation > 0.0 else 0.0
     return motion_slips(last).sudden_share, oscillation

@@ -1,30 +1,31 @@
-"""Slips of a bushing, as its torque shows them: it falls faster than the shaft could load it.
+"""Slips of a bushing in its torque: falls that are faster than the shaft could load it.
 
-Section 5.1.1 of the thesis tells stick-slip by a torque "which increased with time, and then
-suddenly dropped", and (5.1) gives the scale of sudden: a contact that sticks loads the elastomer at
-k_E times the shaft's speed, and nothing on the rig loads it faster while the clamp is at rest. So a
-fall is *sudden* where torque over k_E, the elastomer's twist, falls faster than the shaft turns,
+Section 5.1.1 of the thesis defines stick-slip by a torque "which increased with time, and then
+suddenly dropped", and (5.1) gives the scale of "suddenly": a sticking contact loads the elastomer
+at k_E times the shaft's speed, and nothing on the rig loads it faster while the clamp is at rest.
+So a fall is *sudden* where torque over k_E, the elastomer's twist, falls faster than the shaft
+turns,
 
     -dT/dt / k_E > omega,
 
-and the measure of stick-slip is the share of all that the torque falls which it falls beyond that,
-the integral of max(0, -dT/dt - k_E omega) over that of max(0, -dT/dt). Its limits are known:
+and the measure of stick-slip is the *sudden share* of the falls, the integral of
+max(0, -dT/dt - k_E omega) over that of max(0, -dT/dt). Its limits are known:
 
-- Harmonic or triangular, without stick: the surface never goes back faster than the shaft goes
-  forward, however often it grazes the shaft's speed, and the share is nil.
-- Stick and slip of one undamped degree of freedom, with x = (T_crit - T_kin) omega_n / (k_E omega):
-  a slip of duration 2 (pi - atan x) / omega_n after a stick of 2 x / omega_n, and the share is
-  (x - atan x) / sqrt(1 + x^2), from x^3 / 3 where stick is about to end to 1 for a sawtooth; less
-  by up to 0.1 as it is measured, since the torque is smoothed to 2 kHz.
-- A sawtooth that falls in the share q of its period: (1 - 2 q) / (1 - q), nil where it falls as
+- Harmonic or triangular oscillation without stick: the surface never moves back faster than the
+  shaft moves forward, however often it grazes the shaft's speed, and the share is zero.
+- Stick-slip of one undamped degree of freedom, with x = (T_crit - T_kin) omega_n / (k_E omega): a
+  slip of duration 2 (pi - atan x) / omega_n after a stick of 2 x / omega_n; the share is
+  (x - atan x) / sqrt(1 + x^2), from x^3 / 3 where stick vanishes to 1 for a sawtooth; the measured
+  share is lower by up to 0.1, since the torque is smoothed to 2 kHz.
+- A sawtooth that falls in the share q of its period: (1 - 2 q) / (1 - q), zero where it falls as
   slowly as it rises.
 
-A *slip* is a sudden fall. One that is much weaker than the others is the swing of a clamp or an
-elastomer after a slip. One that follows within an own period 2 pi / omega_n of the elastomer is the
-same slip swinging once more: with a stick between them, slips are 2 (x - atan x) / omega_n further
-apart than that. With true stick, slips are those of the solver. None of this is what the solver
-calls stick, `Motion.stuck`, which no sensor sees: a surface that grazes the shaft's speed at every
-swing is in stick for a few percent of the time, and neither sticks nor slips.
+A *slip* is a sudden fall. A fall much weaker than the others is a swing of clamp or elastomer after
+a slip. A fall within one natural period 2 pi / omega_n of the elastomer is a swing of the same
+slip: with a stick between them, slips are 2 (x - atan x) / omega_n further apart than that. With
+true stick, slips are those of the solver. The definition is independent of the solver's stick,
+`Motion.stuck`, which no sensor measures: a surface that grazes the shaft's speed at every swing is
+in stick for a few percent of the time, and neither sticks nor slips.
 """
 
 import math
@@ -36,38 +37,38 @@ from numpy.typing import ArrayLike, NDArray
 from sim.motion import Motion
 
 LEAST_SUDDEN = 0.06
-"""Stick-slip: the torque falls suddenly by more than this share of all its falls. Over the cells of
-Tables 5.1 and 5.2 few speeds lie near: most stick-slip above 0.2, all that grazes below 0.025."""
+"""Sudden share of the torque's falls above which there is stick-slip [-]. Over the cells of Tables
+5.1 and 5.2 few speeds lie near: most stick-slip lies above 0.2, all grazing below 0.025."""
 
 _SMOOTHING = math.sqrt(math.log(2.0) / 2.0) / math.pi / 2_000.0
-"""Standard deviation of a Gaussian that halves 2 kHz [s]: the torque has little above (5.2.3)."""
+"""Standard deviation of a Gaussian that halves 2 kHz [s]; the torque has little above (5.2.3)."""
 
 _LEAST_STRENGTH = 1.0 / 3.0
-"""Of a slip re their mean, each weighed by itself; the counts are the same from a quarter on."""
+"""Least strength of a slip over their self-weighted mean; from 0.25 on the counts are the same."""
 
 _SWING = 1.2
-"""Slips are further apart than so many own periods. Where nothing holds the swings are 1.03 to 1.15
-apart, for the contact yields; those of true stick are seldom nearer than 1.25."""
+"""Least interval of slips, in natural periods of the elastomer. Without stick, swings are 1.03 to
+1.15 apart, since the contact yields; with true stick, slips are seldom nearer than 1.25."""
 
 _ALIKE = 0.02
-"""Slips whose strengths and intervals differ by less, re their means, are alike."""
+"""Relative difference of strengths and intervals below which slips repeat."""
 
 _LONGEST_PATTERN = 4
 
 
 @dataclass(frozen=True, eq=False)
 class Slips:
-    """Slips in a torque.
+    """Times and strengths of the slips in a torque.
 
     Parameters
     ----------
     times : ndarray, shape (n_slips,)
-        When the torque begins to fall, from the start of the signal [s]; empty where `sudden_share`
-        is no more than `LEAST_SUDDEN`.
+        Time at which each fall of the torque begins, from the start of the signal [s]; empty if
+        `sudden_share` does not exceed `LEAST_SUDDEN`.
     strengths : ndarray, shape (n_slips,)
-        By how much the twist falls faster than the shaft turns, at most [rad/s].
+        Largest excess of the twist's falling speed over the shaft's speed [rad/s].
     sudden_share : float
-        Of all that the torque falls, what it falls faster than the shaft could load it [-].
+        Share of the torque's falls that is faster than the shaft could load it [-].
     """
 
     times: NDArray[np.float64]
@@ -76,14 +77,14 @@ class Slips:
 
     @property
     def rate(self) -> float:
-        """Slips a second [Hz], from the first to the last; NaN for fewer than two."""
+        """Mean rate of the slips [Hz]; NaN for fewer than two."""
         if self.times.size < 2:
             return math.nan
         return float((self.times.size - 1) / (self.times[-1] - self.times[0]))
 
     @property
     def pattern(self) -> int:
-        """After how many slips they repeat: 1, 2 where the period has doubled, to 4; 0 for none."""
+        """Number of slips after which they repeat: 1 to 4 (2 is period doubling); 0 for none."""
         described = self.strengths[1:], np.diff(self.times)
         for lag in range(1, _LONGEST_PATTERN + 1):
             if self.times.size <= 2 * lag + 1:
@@ -102,13 +103,13 @@ def find_slips(
     Parameters
     ----------
     twist : array_like, shape (n,)
-        Of the elastomer [rad]: the torque over its stiffness k_E.
+        Twist of the elastomer [rad]: the torque over its stiffness k_E.
     shaft_speed : array_like, shape (n,) or a number
-        [rad/s]; of either sign.
+        [rad/s], signed.
     rate : float
         Sampling rate [Hz].
     own_period : float
-        Of the elastomer on the clamp at rest, 2 pi sqrt(J_E / k_E) [s].
+        Natural period of the elastomer on the clamp at rest, 2 pi sqrt(J_E / k_E) [s].
 
     Returns
     -------
@@ -118,8 +119,8 @@ def find_slips(
     --------
     >>> time = np.arange(30000) / 30e3
     >>> sawtooth = 5.0 / 150.0 * ((150.0 * time) % 1.0)
-    >>> found = find_slips(sawtooth, 5.0, 30e3, own_period=1e-3)
-    >>> round(found.rate), found.pattern, found.sudden_share > 0.9
+    >>> slips = find_slips(sawtooth, 5.0, 30e3, own_period=1e-3)
+    >>> round(slips.rate), slips.pattern, slips.sudden_share > 0.9
     (150, 1, True)
     >>> find_slips(4.9 / 943 * np.sin(943 * time), 5.0, 30e3, own_period=1e-3).times.size
     0
@@ -149,9 +150,8 @@ def find_slips(
 def motion_slips(motion: Motion) -> Slips:
     """Find the slips of a simulated motion.
 
-    Its twist needs no stiffness, and its own period follows from what turns the surface,
-    J_E theta1'' = T - T_E, and from T_E over the twist, both by least squares; within 1 % from
-    30 kHz on.
+    The twist is that of the motion. The natural period follows from J_E theta1'' = T - T_E and from
+    T_E over the twist, both by least squares, within 1 % from 30 kHz on.
 
     Parameters
     ----------
@@ -167,8 +167,8 @@ def motion_slips(motion: Motion) -> Slips:
     >>> from sim.rig_effects import constant_version
     >>> from sim.run import simulate
     >>> rig = constant_version(load_material_rig("fluorocarbon"))
-    >>> found = motion_slips(simulate(rig, 2.5).motion)
-    >>> round(found.rate), found.pattern
+    >>> slips = motion_slips(simulate(rig, 2.5).motion)
+    >>> round(slips.rate), slips.pattern
     (250, 1)
     """
     twist = motion.interface_angle - motion.clamp_angle

@@ -1,13 +1,13 @@
-"""Sound power that the rig's plate radiates during a simulated run, in one-third octaves.
+"""Sound power of the rig's plate during a simulated run, in one-third octaves.
 
-The torque in the bushing, and the pulses of the anchors where there are some, become forces and
-moments of the anchors on the plate, as they do for the sound at the microphone
-(`models.radiation.rig_response`). Their cross-spectra, means over the run, drive the plate's modes,
-and `models.radiation.sound_power` gives the power of its upper side in a rigid baffle, as the
-microphone's sound is computed too. A plate that stands free is quieter below its critical
-frequency, by 2 to 17 dB in a band. A single line of the torque beside a resonance of the plate may
-come out 1 dB off. Not in it are the sound of beams and clamp, the room, responses that were
-measured, and effects on the path of sound.
+The torque of the bushing, and the pulses of the anchors if there are any, become forces and moments
+of the anchors on the plate, as for the sound at the microphone (`models.radiation.rig_response`).
+Their cross-spectra, averaged over the run, drive the plate's modes, and
+`models.radiation.sound_power` gives the power of its upper side in a rigid baffle, the model of the
+microphone's sound too. A free-standing plate is quieter below its critical frequency, by 2 to 17 dB
+in a band. The power of a single line of the torque beside a resonance of the plate may be 1 dB off.
+The sound of beams and clamp, the room, measured responses, and effects on the path of sound are not
+included.
 """
 
 import math
@@ -32,10 +32,10 @@ from sim.motion import Motion
 from sim.run import pulse_force
 
 SHORTEST = 0.25
-"""Run whose lines are told apart well enough for the band at 50 Hz [s]."""
+"""Shortest run, whose frequency resolution suffices for the band at 50 Hz [s]."""
 
 SEGMENT = 1.0
-"""Length of the parts whose spectra are averaged over the run [s]."""
+"""Length of the segments whose spectra are averaged [s]."""
 
 
 def motion_sound_power(
@@ -51,20 +51,20 @@ def motion_sound_power(
     Parameters
     ----------
     rig : Rig
-        That was simulated.
+        Simulated rig.
     motion : Motion
-        Of 0.25 s or more; its transient, if it has one, is a part of the mean.
+        Motion of 0.25 s or more; a transient is part of the mean.
     interference : float
         [m]
     support_stiffness : float
         [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
     library : mapping of str to Effect, optional
-        Effects that the rig's can be found among; by default `sim.effects.EFFECTS`.
+        Effects by name; by default `sim.effects.EFFECTS`.
 
     Returns
     -------
     BandPower
-        Mean over the run, bands from 50 Hz to 10 kHz.
+        Mean over the run in bands from 50 Hz to 10 kHz.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def motion_sound_power(
             HIGHEST_PLATE_FREQUENCY,
         )
         transfer[:, 0] = beams.frequency_response(frequency)[[ANCHOR_FORCE, ANCHOR_MOMENT], TORQUE]
-        transfer[0, 1] = 1.0  # a pulse is passed on by the anchor that it strikes
+        transfer[0, 1] = 1.0  # the anchor passes a pulse on to the plate
     spectra = np.einsum("iaf,abf,jbf->ijf", transfer, inputs, transfer.conj(), optimize=True)
 
     return third_octave_power(modes, drives, partial(_sets, frequency, spectra))
@@ -115,7 +115,7 @@ def motion_sound_power(
 def _cross_spectra(
     signals: NDArray[np.float64], rate: float
 ) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
-    """Frequencies [Hz] and cross-spectral densities of signals, shape (n, n, n_frequencies)."""
+    """Return frequencies [Hz] and cross-spectral densities of signals, shape (n, n, n_freqs)."""
     length = min(signals.shape[1], round(SEGMENT * rate))
     frequency, density = csd(signals[None], signals[:, None], rate, nperseg=length)
     return frequency, density
@@ -124,9 +124,9 @@ def _cross_spectra(
 def _sets(
     frequency: NDArray[np.float64], spectra: NDArray[np.complex128], middle: NDArray[np.float64]
 ) -> NDArray[np.complex128]:
-    """Uncorrelated sets of drives with the mean cross-spectra of cells about some frequencies.
+    """Return uncorrelated sets of drives with the mean cross-spectra of cells about frequencies.
 
-    The power of a line of the torque lies in the cell that holds it, however narrow the line is.
+    The power of a line of the torque lies in its cell, however narrow the line is.
     """
     half = math.sqrt(middle[1] / middle[0])
     edges = np.append(middle / half, middle[-1] * half)

@@ -1,4 +1,4 @@
-r"""Linear stability of steady sliding: whether a vibration that is small grows.
+r"""Linear stability of steady sliding: the growth rate of a small vibration.
 
 About steady sliding at the shaft's speed the lumped model is linear in the motion of surface and
 clamp and in the inner state s of the friction law,
@@ -8,16 +8,16 @@ clamp and in the inner state s of the friction law,
         + \frac{\partial T}{\partial s} \delta s - \delta T_E, \qquad
     \delta \dot s = \frac{\partial f}{\partial v} \delta v + \frac{\partial f}{\partial s} \delta s,
 
-with delta v = -theta1'. Where an eigenvalue has a positive real part, nothing keeps the shaft
-sliding steadily: it vibrates at any start. Where all are negative a small disturbance dies, which
-does not exclude that a large one, such as the first breaking loose, goes on as stick-slip; nor
-does it tell how large a vibration grows, hence whether it sticks. A constant kinetic torque has no
-slope: with it steady sliding is stable at any speed, and stick-slip is wholly of the large kind.
+with delta v = -theta1'. Where an eigenvalue has a positive real part, steady sliding is unstable:
+the bushing vibrates after any start. Where all are negative a small disturbance decays, but a large
+one, such as the first breaking loose, may go on as stick-slip; nor does linear stability give the
+amplitude of a vibration, hence whether it sticks. A constant kinetic torque has no slope: with it
+steady sliding is stable at any speed, and stick-slip always needs a large disturbance.
 
-Slopes are central differences of the compiled law itself, so that a new law needs nothing here.
-Effects on the contact count as they are at each speed where they have no state, and else by their
-mean along steady sliding; what a temperature does, as if the contact followed its speed at once. A
-shaft that yields and an elastomer with a memory do not count.
+Slopes are central differences of the compiled law itself, so a new law needs nothing here. Effects
+on the contact without a state act as they do at each speed; those with a state act by their mean
+along steady sliding; the effect of temperature acts as if the contact followed its speed at once.
+Compliance of the shaft and memory of the elastomer are ignored.
 """
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any
@@ -62,14 +62,14 @@ from sim.solvers.contact_solver import Hook
 from sim.temperature import FRICTION_SHIFT
 
 _MOMENTS = 48
-"""Of steady sliding, over which effects with a state are averaged."""
+"""Moments of steady sliding over which effects with a state are averaged."""
 
 
 _STEP = 1e-5
-"""Of the differences, as a share of what is changed."""
+"""Relative step of the differences."""
 
-_GONE = -1e6
-"""Eigenvalue in place of a clamp that cannot move [1/s]."""
+_FIXED_CLAMP = -1e6
+"""Eigenvalue that stands for a fixed clamp [1/s]."""
 
 
 def sliding_growth(
@@ -78,21 +78,20 @@ def sliding_growth(
     interference: ArrayLike = 0.279e-3,
     support_stiffness: ArrayLike = 2214.0,
 ) -> NDArray[np.float64]:
-    """Return how fast a small vibration about steady sliding grows, at many conditions at once.
+    """Return the growth rate of a small vibration about steady sliding at many conditions.
 
     Parameters
     ----------
     rig : Rig
     speed : array_like
-        Of the shaft, other than zero [rad/s]; either sign is alike.
+        Speed of the shaft, not zero [rad/s]; its sign does not matter.
     interference, support_stiffness : array_like
         [m] and [Nm/rad]; all three are broadcast against each other.
 
     Returns
     -------
     ndarray, shape (...)
-        Largest real part of an eigenvalue [1/s]; positive where the vibration grows, with no slope
-        at all never.
+        Largest real part of an eigenvalue [1/s]; positive where the vibration grows.
 
     Raises
     ------
@@ -120,12 +119,12 @@ def sliding_growth(
 def growth_of_parts(
     parts: Sequence[tuple[Rig, float, float]], speed: ArrayLike
 ) -> NDArray[np.float64]:
-    """Return how fast a small vibration grows in many rigs, those of one friction law at once.
+    """Return the growth rate of a small vibration in many rigs, batched by friction law.
 
     Parameters
     ----------
     parts : sequence of (Rig, float, float)
-        With interference [m] and support stiffness [Nm/rad].
+        Rig, interference [m] and support stiffness [Nm/rad].
     speed : array_like, shape (n_speeds,)
         [rad/s]
 
@@ -139,12 +138,12 @@ def growth_of_parts(
     >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon")
     >>> damped = rig.changed(damping="x3")
-    >>> found = growth_of_parts([(rig, 3e-4, 2214.0), (damped, 3e-4, 2214.0)], [5.0, 9.0])
-    >>> bool((found[0] > found[1]).all())
+    >>> growth = growth_of_parts([(rig, 3e-4, 2214.0), (damped, 3e-4, 2214.0)], [5.0, 9.0])
+    >>> bool((growth[0] > growth[1]).all())
     True
     """
     v = np.abs(np.asarray(speed, dtype=np.float64))
-    found = np.empty((len(parts), v.size))
+    rates = np.empty((len(parts), v.size))
     alike: dict[str, list[int]] = {}
     for i, (rig, _, _) in enumerate(parts):
         alike.setdefault(repr((rig.friction, rig.effects)), []).append(i)
@@ -155,12 +154,12 @@ def growth_of_parts(
         ]
         repeated = np.repeat(np.concatenate(systems), v.size, axis=0)
         growth = _growth(parts[of_law[0]][0], repeated, np.tile(v, len(of_law)))
-        found[of_law] = growth.reshape(len(of_law), v.size)
-    return found
+        rates[of_law] = growth.reshape(len(of_law), v.size)
+    return rates
 
 
 def _growth(rig: Rig, systems: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the growth of systems, one a speed `v` [rad/s], with a rig's friction and effects."""
+    """Return the growth rates of systems at speeds `v` [rad/s], with a rig's law and effects."""
     law = friction_law(rig.friction.name)
     values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
     acting = activated(constant_version(rig).effects, EFFECTS)
@@ -173,13 +172,13 @@ def _growth(rig: Rig, systems: NDArray[np.float64], v: NDArray[np.float64]) -> N
 def _contacts(
     hooks: tuple[Hook, ...], systems: NDArray[np.float64], speed: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Contact at each speed, somewhat above it, and somewhat below; shape (3, n, N_CONTACT)."""
+    """Return the contact at each speed, slightly above and below it, shape (3, n, N_CONTACT)."""
     contacts = np.zeros((3, speed.size, N_CONTACT))
     contacts[:, :, CRITICAL], contacts[:, :, KINETIC] = systems[:, 6], systems[:, 7]
     contacts[:, :, STIFFNESS] = systems[:, 2]
     contacts[:, :, SHAFT_INERTIA] = math.inf
     for hook in hooks:
-        follows = hook.function is FRICTION_SHIFT.contact  # its state is that of the speed
+        follows = hook.function is FRICTION_SHIFT.contact  # its state is a function of the speed
         if hook.n_states and not follows:
             before = contacts[0, :, :SHAFT_INERTIA].copy()
             _averaged(hook, _MOMENTS, speed, contacts[0])
@@ -198,7 +197,7 @@ def _linearised(
     v: NDArray[np.float64],
     contacts: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Return the matrix of each condition: theta1, theta1', theta2, theta2', inner state."""
+    """Return the system matrix of each condition: theta1, theta1', theta2, theta2', inner state."""
     rest = law.state()
     n, (contact, above, below), dv = rest.size, contacts, _STEP * v
     a = np.zeros((v.size, 4 + n, 4 + n))
@@ -211,16 +210,16 @@ def _linearised(
         def law_at(
             v: NDArray[np.float64], contact: NDArray[np.float64], state: NDArray[np.float64]
         ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-            """Rates of the state and, after them, the torque; their slopes over the state."""
-            found, slopes = np.empty((v.size, n + 1)), np.empty((v.size, n + 1, n))
-            compiled(address, coefficients, v, contact, state, found, slopes, work, work.copy())
-            return found, slopes
+            """Return the rates of the state and the torque, and their slopes over the state."""
+            rates, slopes = np.empty((v.size, n + 1)), np.empty((v.size, n + 1, n))
+            compiled(address, coefficients, v, contact, state, rates, slopes, work, work.copy())
+            return rates, slopes
 
         state, moving, pause = np.tile(rest, (v.size, 1)), np.arange(v.size), 1e-7
-        for _ in range(80):  # backward Euler by ever longer steps, until each state stays
-            found, slopes = law_at(v[moving], contact[moving], state[moving])
+        for _ in range(80):  # backward Euler with growing steps, until each state is steady
+            rates, slopes = law_at(v[moving], contact[moving], state[moving])
             stiff = np.eye(n) / pause - slopes[:, :n]
-            step = np.linalg.solve(stiff, found[:, :n, np.newaxis])[:, :, 0]
+            step = np.linalg.solve(stiff, rates[:, :n, np.newaxis])[:, :, 0]
             state[moving] += step
             pause *= 1.6
             if pause > 1.0:
@@ -243,39 +242,40 @@ def _linearised(
     a[:, 3, 2], a[:, 3, 3] = -(k_e + k_b) / j_c, -(c_e + c_b) / j_c
     fixed = k_b < 0.0
     a[fixed, 2:4], a[fixed, :, 2:4] = 0.0, 0.0
-    a[fixed, 2, 2] = a[fixed, 3, 3] = _GONE
+    a[fixed, 2, 2] = a[fixed, 3, 3] = _FIXED_CLAMP
     return a
 
 
 @njit(cache=True, **COMPILED)
-def _fill_slopes(law, c, speeds, contacts, states, found, slopes, high, low) -> None:
+def _fill_slopes(law, c, speeds, contacts, states, rates, slopes, high, low) -> None:
+    """Fill rates and torque of a law, and their slopes over the state, at each condition."""
     n = states.shape[1]
     for run in range(speeds.size):
         v, contact, state = speeds[run], contacts[run].ctypes, states[run]
         at = state.ctypes
-        found[run, n] = call_law_at(law, v, c.ctypes, contact, at, found[run].ctypes)
+        rates[run, n] = call_law_at(law, v, c.ctypes, contact, at, rates[run].ctypes)
         for j in range(n):
-            kept = state[j]
-            change = _STEP * abs(kept) + 1e-12
-            state[j] = kept + change
+            value = state[j]
+            change = _STEP * abs(value) + 1e-12
+            state[j] = value + change
             high[n] = call_law_at(law, v, c.ctypes, contact, at, high.ctypes)
-            state[j] = kept - change
+            state[j] = value - change
             low[n] = call_law_at(law, v, c.ctypes, contact, at, low.ctypes)
-            state[j] = kept
+            state[j] = value
             for i in range(n + 1):
                 slopes[run, i, j] = (high[i] - low[i]) / (2.0 * change)
 
 
 _LONG = 1.0
-"""Steady sliding over which effects with a state are averaged [s]."""
+"""Time of steady sliding over which effects with a state are averaged [s]."""
 
 
 def _averaged(
     hook: Hook, moments: int, speed: NDArray[np.float64], contacts: NDArray[np.float64]
 ) -> None:
-    """Replace the contact at each speed by the mean over the last half of steady sliding.
+    """Replace the contact at each speed by its mean over the last half of steady sliding.
 
-    Each step of the state is exact where its rate is linear in it; the mean is that of the moments.
+    Each step is exact for a rate that is linear in the state.
     """
     step, first = _LONG / moments, moments // 2
     context = np.zeros((speed.size, N_CONTEXT))
@@ -302,8 +302,9 @@ def _averaged(
     contacts[:] = mean
 
 
-@njit(cache=True, **COMPILED)  # when the first effect needs it
+@njit(cache=True, **COMPILED)  # compiled at the first call
 def _call_hook(hook, values, contexts, states, rates, contacts) -> None:
+    """Call an effect's compiled function at each condition."""
     for i in range(len(contexts)):
         call_hook_at(
             hook, contexts[i].ctypes, values.ctypes, states[i].ctypes, rates[i].ctypes,

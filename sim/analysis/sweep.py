@@ -1,4 +1,4 @@
-"""Runs over many operating conditions in one call: a table of features, and a plot."""
+"""Sweep of simulated motions over operating conditions: a table of features, and a plot."""
 
 from __future__ import annotations
 
@@ -33,23 +33,23 @@ FEATURES = {
     "torque_max": "Largest torque [Nm]",
     "clamp_speed_rms": "Speed of the clamp, rms [rad/s]",
 }
-"""Features of a motion, in words. Slips are those of `sim.analysis.slips`, their frequency is NaN
-for fewer than two, and stick is that of `sim.motion.Motion.stuck`."""
+"""Features of a motion, with axis labels. Slips are those of `sim.analysis.slips`, their frequency
+is NaN for fewer than two, and stick is that of `sim.motion.Motion.stuck`."""
 
 
 _RATE = 30e3
-"""Of the samples [Hz]."""
+"""Rate of the motions [Hz]."""
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """Features of runs over conditions that are broadcast against each other.
+    """Features of motions at many operating conditions.
 
     Parameters
     ----------
     conditions : ndarray of KnownCondition, shape (...)
-        In SI units, as `KnownCondition` has them.
+        Conditions in SI units.
     features : dict of str to ndarray, shape (...)
         By the names of `FEATURES`, in their units.
 
@@ -68,7 +68,7 @@ class Sweep:
         return self.features[name]
 
     def to_pandas(self) -> DataFrame:
-        """Return one row per run, with its condition and features, as a data frame of pandas."""
+        """Return a pandas data frame with one row per run: its condition and features."""
         rows: list[dict[str, Any]] = []
         for index, at in enumerate(self.conditions.ravel()):
             support = at.support_stiffness
@@ -82,14 +82,14 @@ class Sweep:
         return data_frame([*rows[0]] if rows else [*self.features], rows)
 
     def plot(self, feature: str = "slip_frequency", ax: Axes | None = None) -> Axes:
-        """Draw a feature over the speed, a curve for each of the other conditions.
+        """Plot a feature over the speed, with one curve for each of the other conditions.
 
         Parameters
         ----------
         feature : str
             One of `FEATURES`.
         ax : matplotlib.axes.Axes, optional
-            Where to draw; by default a new figure.
+            Axes to draw into; by default a new figure.
 
         Returns
         -------
@@ -134,7 +134,7 @@ def sweep(
     speed, interference, support_stiffness : array_like
         [rad/s], [m] and [Nm/rad]. They and `rig` are broadcast against each other.
     seconds, settling : float
-        How long each run is looked at, and how long it has run before, from rest [s].
+        Duration that is evaluated, and duration before it, from rest [s].
 
     Returns
     -------
@@ -149,8 +149,8 @@ def sweep(
     --------
     >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> found = sweep(rig, [1.0, 12.0], support_stiffness=[[2214.0], [3745.0]], seconds=0.2)
-    >>> found["slip_frequency"].round()
+    >>> result = sweep(rig, [1.0, 12.0], support_stiffness=[[2214.0], [3745.0]], seconds=0.2)
+    >>> result["slip_frequency"].round()
     array([[153.,  nan],
            [150.,  nan]])
     """
@@ -175,21 +175,21 @@ def sweep(
             support_stiffness=at.support_stiffness, seconds=settling + seconds, rate=_RATE,
             rng=np.random.default_rng(stream),
         )  # fmt: skip
-        return motion_features(motion.since(round(settling * _RATE)))
+        return motion_features(motion.part(round(settling * _RATE)))
 
     streams = np.random.SeedSequence(0).spawn(len(runs))
     rows = Parallel(n_jobs=-1, prefer="threads")(
         delayed(features)(*run, stream) for run, stream in zip(runs, streams, strict=True)
     )
-    found, shape = np.array(rows).reshape(len(runs), len(FEATURES)), columns[0].shape
+    table, shape = np.array(rows).reshape(len(runs), len(FEATURES)), columns[0].shape
     return Sweep(
         np.array([at for _, at in runs], dtype=object).reshape(shape),
-        {name: found[:, i].reshape(shape) for i, name in enumerate(FEATURES)},
+        {name: table[:, i].reshape(shape) for i, name in enumerate(FEATURES)},
     )
 
 
 def motion_features(motion: Motion) -> NDArray[np.float64]:
-    """Values of `FEATURES` for one motion, shape (8,), in their units [Hz, Nm, rad/s and -]."""
+    """Return the values of `FEATURES` for a motion, shape (8,) [Hz, Nm, rad/s, -]."""
     slips, torque = motion_slips(motion), motion.torque
     return np.array([
         slips.times.size, slips.rate, np.mean(motion.stuck), np.mean(torque), np.std(torque),

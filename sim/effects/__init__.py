@@ -1,7 +1,7 @@
-"""Effects: all that a rig does beyond its friction law, one effect a file.
+"""Effects that extend the plain model of the rig, one file each.
 
-A new effect is a file with an ``EFFECT`` that is named as the file is; a user's own is a file
-anywhere, read by `noise.base.user_effects`.
+A new effect is a file with an ``EFFECT`` of the same name; users' own effects are files anywhere,
+read by `noise.base.user_effects`.
 """
 
 from sim.effects.effect import Effect

@@ -1,4 +1,4 @@
-r"""The elastomer is softer the further it is deformed to and fro (Payne effect).
+r"""Stiffness of the elastomer that falls with the amplitude of its deformation (Payne effect).
 
 .. math::
     T_E &= k_E [\bar\theta + (\theta - \bar\theta) (1 - s g(x))] + c\dot\theta, \qquad
@@ -6,14 +6,14 @@ r"""The elastomer is softer the further it is deformed to and fro (Payne effect)
     t_m \dot{\bar\theta} = \theta - \bar\theta \\
     g &= \frac{x}{1 + x}, \quad 1 - e^{-x}, \quad \frac{x^2}{1 + x^2}
 
-theta is the twist, with a bar its slow mean. Forms rational and quadratic are those of Kraus
+theta is the twist, and with a bar its slow mean. Forms rational and quadratic are those of Kraus
 (1984), with m = 1/2 and 1; exponential falls off sooner. A filled rubber's network breaks down
-with the amplitude of the deformation and heals when that is small, whatever load it carries
-statically: so the departure from a slow mean softens, and the mean torque does not. The departure
-of the instant stands for the amplitude; unlike one held over the cycle it also makes odd harmonics.
+with the amplitude of the deformation and recovers at small amplitude, whatever its static load: so
+the deviation from a slow mean softens, and the mean torque does not. The instantaneous deviation
+stands for the amplitude; unlike an amplitude constant over the cycle it also causes odd harmonics.
 
 Limits: s = 0 is the plain model, and so are small vibrations; large ones feel k_E (1 - s). The
-torque rises with the departure everywhere as s <= 0.8.
+torque rises with the deviation everywhere, since s <= 0.8.
 """
 
 import math
@@ -25,9 +25,9 @@ from sim.effects.effect import Effect, Parameter, Stage
 @contact_hook
 def _contact(context, values, state, state_rates, contact):
     mean = state[0]
-    departure = context[TWIST] - mean
-    state_rates[0] = departure / values[2]
-    x = abs(departure) / values[1]
+    deviation = context[TWIST] - mean
+    state_rates[0] = deviation / values[2]
+    x = abs(deviation) / values[1]
     if values[3] == 0.0:
         g = x / (1.0 + x)
     elif values[3] == 1.0:

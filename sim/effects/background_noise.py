@@ -1,15 +1,15 @@
-"""Random noise on the channels: the room, the amplifiers, whatever else runs in the laboratory.
+"""Random noise on the channels: of the room, the amplifiers and other machines.
 
 Gaussian noise n(t), independent on each channel, with the power spectral density
 S(f) proportional to f**(-b): white (b = 0, amplifiers), pink (b = 1, contacts, machines far away)
 and brown (b = 2, ventilation, vibration of the building), constant below 20 Hz. It is white noise
-shaped through its Fourier transform (Timmer & Koenig 1995, Astron. Astrophys. 300, 707), scaled
-such that the *expected* rms from 20 Hz to 20 kHz is the level given: levels hold for any sampling
-rate, and a recording at 30 kHz shows 1.4 dB less of the white one. A loudness of the room comes in
-dB re 20 uPa, as a sound level meter shows it unweighted; the others as rms in the channel's unit.
-The defaults are an ordinary workshop and plain amplifiers; assumed. Amount zero is no noise. The
-angle's is that of a potentiometer as the thesis's, 10 rad to the volt (Appendix B), behind an
-amplifier of 0.1 mV; an encoder counts lines and has none, which ``angle=0`` says.
+shaped through its Fourier transform (Timmer & Koenig 1995, Astron. Astrophys. 300, 707), scaled so
+that the *expected* rms from 20 Hz to 20 kHz is the level: levels hold for any sampling rate, and a
+recording at 30 kHz shows 1.4 dB less of white noise. The level of the sound is in dB re 20 uPa,
+unweighted; the others are rms values in the channel's unit. The defaults are those of an ordinary
+workshop and plain amplifiers (assumed). Amount zero is no noise. The default of the angle is that
+of a potentiometer like the thesis's, 10 rad/V (Appendix B), behind an amplifier with 0.1 mV of
+noise; an encoder counts lines and has none (``angle=0``).
 
 >>> quiet = {"pressure": np.zeros(90_000)}
 >>> values = {"amount": 1.0, "pressure_level": 50.0, "acceleration": 0.2, "torque": 0.05,
@@ -28,10 +28,10 @@ from sim.chain import channel_level
 from sim.effects.effect import Effect, Memory, Parameter, Signals, Stage, Values
 
 _LOWEST, _HIGHEST = 20.0, 20e3
-"""Band that levels are those of [Hz]."""
+"""Band of the levels [Hz]."""
 
 _STRETCH = 0.3
-"""Length of noise that is made at once, at least, of a run that goes on [s]."""
+"""Length of a stretch of noise in a run of several blocks [s]."""
 
 _EXPONENTS = {"white": 0.0, "pink": 1.0, "brown": 2.0}
 
@@ -45,10 +45,10 @@ def _sensors(signals: Signals, rate: float, form: str, values: Values, memory: M
 
 
 def _next_noise(n: int, rate: float, form: str, name: str, memory: Memory) -> NDArray[np.float64]:
-    """Return what follows of a channel's noise.
+    """Return the next samples of a channel's noise.
 
-    Stretches that know nothing of each other overlap by half; the squares of their weights add up
-    to one, so that the level is the same everywhere. A run in one block is one stretch.
+    Independent stretches overlap by half; the squares of their weights add up to one, so the level
+    is constant. A run in one block is one stretch.
     """
     if "whole" in memory:
         return _noise(n, rate, _EXPONENTS[form], memory["rng"])
@@ -57,21 +57,21 @@ def _next_noise(n: int, rate: float, form: str, name: str, memory: Memory) -> ND
     key = f"{name} {form}"
     fading, ready = memory.get(key, (None, np.empty(0)))
     while ready.size < n:
-        made = _noise(2 * half, rate, _EXPONENTS[form], memory["rng"])
+        stretch = _noise(2 * half, rate, _EXPONENTS[form], memory["rng"])
         if fading is not None:
-            ready = np.append(ready, fading * np.cos(angle) + made[:half] * np.sin(angle))
-        fading = made[half:]
+            ready = np.append(ready, fading * np.cos(angle) + stretch[:half] * np.sin(angle))
+        fading = stretch[half:]
     memory[key] = fading, ready[n:]
     return np.asarray(ready[:n])
 
 
 def _noise(n: int, rate: float, exponent: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Noise with the expected rms 1 in the band of levels."""
+    """Return noise with the expected rms 1 in the band of levels."""
     length = next_fast_len(n, real=True)
     frequency = rfftfreq(length, 1.0 / rate)
     gain = np.maximum(frequency, _LOWEST) ** (-0.5 * exponent)
-    # Mean square of white noise: each line but the first and the last stands for two, and for what
-    # is nearer to it than to the next, of which part may be out of the band.
+    # Mean square of white noise: each line but the first and the last counts twice, and covers the
+    # frequencies nearest to it, of which part may be out of the band.
     width = rate / length
     counted = np.clip((frequency - _LOWEST) / width + 0.5, 0.0, 1.0)
     counted *= np.clip((_HIGHEST - frequency) / width + 0.5, 0.0, 1.0)

@@ -1,22 +1,22 @@
 """Further modes of clamp, beams and anchors, from the torque to the acceleration.
 
 The model has the modes in which clamp and beams turn. A real structure has more: sideways motion,
-twisting beams, anchors that ring. Each adds r q'' to the acceleration, where
+twisting beams, ringing anchors. Each adds r q'' to the acceleration, where
 
-    q'' + 2 zeta omega q' + omega**2 q = T,
+    q'' + 2 zeta omega q' + omega**2 q = T
 
-r being its modal constant. Its anchors push on the plate with the force m r omega**2 q, m being the
-mass that the anchors feel for what the accelerometer sees, and so each mode is heard too:
+and r is its modal constant. Its anchors push on the plate with the force m r omega**2 q, where m is
+the ratio of the anchor force to the acceleration at the accelerometer; so each mode radiates too:
 
 - single: one mode.
-- pair: a second one a third higher in frequency, in the opposite sense; 4500 and 6000 Hz are what
-  the thesis measured with 12.3 cm (5.2.2).
-- ladder: the bending modes of a beam that is clamped at both ends, omega rising as (2 n + 1)**2,
-  up to 20 kHz, in alternating senses and with r falling as 1 / n.
+- pair: a second one a third higher in frequency, with the opposite sign; the thesis measured 4500
+  and 6000 Hz with 12.3 cm (5.2.2).
+- ladder: the bending modes of a beam clamped at both ends, omega rising as (2 n + 1)**2, up to
+  20 kHz, with alternating signs and r falling as 1 / n.
 
-At amount zero there is none of them. The torque is what it was: the contact does not feel them.
-With the clamp bolted to the baseplate there are no beams, and nothing changes. The defaults of r
-and m are assumed: a third of the first torsional mode's constant, half of a beam's mass.
+Amount zero leaves them out. The torque does not change: there is no feedback to the contact. With
+the clamp bolted to the baseplate there are no beams, and nothing changes. The defaults of r and m
+are assumed: a third of the first torsional mode's constant, half of a beam's mass.
 
 >>> from models.radiation.impulse_responses import ImpulseResponses
 >>> none, one = np.zeros(1), np.ones(1)
@@ -39,10 +39,10 @@ from sim.chain import HIGHEST_SHARE, padded_sum, resonance
 from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _SECOND = 4.0 / 3.0
-"""Frequency of the second mode of a pair over the first: 6000 over 4500 Hz."""
+"""Frequency of the second mode of a pair over the first: 6000 / 4500 Hz."""
 
 _HIGHEST = 20e3
-"""Of a ladder [Hz]."""
+"""Highest frequency of a ladder [Hz]."""
 
 _LONGEST_LADDER = 12
 
@@ -62,16 +62,16 @@ def _chain(
         forces.append(values["anchor_mass"] * constant * resonance([0.0, 0.0, 1.0], *mode))
     if not forces:
         return paths
-    heard = fftconvolve(padded_sum(forces), paths.pulse_to_pressure)
+    radiated = fftconvolve(padded_sum(forces), paths.pulse_to_pressure)
     return replace(
         paths,
         torque_to_acceleration=padded_sum(accelerations),
-        torque_to_pressure=padded_sum([paths.torque_to_pressure, heard]),
+        torque_to_pressure=padded_sum([paths.torque_to_pressure, radiated]),
     )
 
 
 def _modes(form: str, first: float) -> list[tuple[float, float]]:
-    """Frequency [Hz] of each mode, and its sense and weight."""
+    """Return the frequency [Hz] and the signed weight of each mode."""
     if form == "single":
         return [(first, 1.0)]
     if form == "pair":

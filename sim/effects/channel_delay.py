@@ -2,17 +2,16 @@
 
 A channel reads x(t - d(t)), with D the delay times the channel's share:
 
-- constant: d = D, as between two front-ends, or behind a filter of constant delay.
-- drift: d = D t / T, from none at the start of the recording to D at its end T: a sampling rate
-  that is wrong by the share D / T.
-- jitter: d is an Ornstein-Uhlenbeck process of rms D about zero with the corner `bandwidth`, as of
-  packets over a network (Gillespie 1996, Phys. Rev. E 54, 2084).
+- constant: d = D, as between two front-ends, or after a filter of constant delay.
+- drift: d = D t / T, from zero at the start of the recording to D at its end T: a sampling rate
+  with the relative error D / T.
+- jitter: d is an Ornstein-Uhlenbeck process of rms D about zero with the corner `bandwidth`, as for
+  packets in a network (Gillespie 1996, Phys. Rev. E 54, 2084).
 
 Values between samples come from splines of the fifth degree (Unser 1999, IEEE Signal Process. Mag.
 16(6), 22), whose error at a sixth of the sampling rate is of the order of 1e-4; before the first
-and after the last sample the nearest is held. Shares are signed. A microphone at 1 m is late by
-2.9 ms through the air already, which is no fault: the delay here comes on top. At delay zero all
-are the signal itself.
+and after the last sample the signal is constant. Shares are signed. The delay adds to the travel
+time through air (2.9 ms at 1 m), which is no fault. Delay zero leaves the signal unchanged.
 
 >>> values = {"delay": 2e-3, "bandwidth": 30.0, "acceleration": 1.0, "pressure": -1.0,
 ...           "torque": 0.0, "angle": 0.0}
@@ -47,19 +46,19 @@ def _sensors(
 
 
 def _course(n: int, form: str, bandwidth: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Delay over time, of size one; `bandwidth` in cycles a sample."""
+    """Return the delay over time for a delay of one; `bandwidth` in cycles per sample."""
     if form == "drift":
         return np.linspace(0.0, 1.0, n)
     if form == "jitter":
         decay = math.exp(-2.0 * math.pi * bandwidth)
-        kicks = rng.standard_normal(n) * math.sqrt(1.0 - decay**2)
-        kicks[0] = rng.standard_normal()
-        return np.asarray(lfilter([1.0], [1.0, -decay], kicks))
+        increments = rng.standard_normal(n) * math.sqrt(1.0 - decay**2)
+        increments[0] = rng.standard_normal()
+        return np.asarray(lfilter([1.0], [1.0, -decay], increments))
     return np.ones(n)
 
 
 def _late(signal: NDArray[np.float64], samples: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Read a signal so many samples late."""
+    """Return a signal delayed by a number of samples."""
     when = np.clip(np.arange(signal.size) - samples, 0.0, signal.size - 1.0)
     return np.asarray(map_coordinates(signal, [when], order=_DEGREE, mode="mirror"))
 

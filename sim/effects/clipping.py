@@ -1,8 +1,8 @@
-"""Clipping: an amplifier runs out of voltage before the signal has reached its peak.
+"""Clipping: an amplifier saturates below the peak of the signal.
 
 With the largest magnitude M of a channel and the magnitude m of its mean, the peak is read as
-M - a (M - m), in every form, so that one amount means one overload whatever the form, the level
-and the offset; for a sound that is (1 - a) M, and a torque keeps its mean.
+M - a (M - m), in every form, so that an amount is the same overload whatever the form, level and
+offset; for a sound that is (1 - a) M, and a torque keeps its mean.
 
 - hard: min(max(x, -L), L) with L = M - a (M - m), an amplifier at its supply.
 - soft: L tanh(x / L), with the L that gives the peak its reading; tanh is the transfer curve of a
@@ -10,8 +10,8 @@ and the offset; for a sound that is (1 - a) M, and a torque keeps its mean.
 - asymmetric: as hard, but on the side of M alone: a sensor with its supply on the signal's wire
   whose bias has wandered.
 
-At amount zero all are the signal itself. Clipping comes before the anti-alias filter, which rounds
-the corners; what the converter clips is left to `sim.acquisition`. The angle is never clipped.
+Amount zero leaves the signal unchanged. Clipping comes before the anti-alias filter, which rounds
+the corners; `sim.acquisition` clips at the converter's range. The angle is never clipped.
 
 >>> values = {"amount": 0.25, "acceleration": 1.0, "pressure": 1.0, "torque": 1.0}
 >>> signals = {"pressure": np.array([-2.5, -1.5, 4.0])}
@@ -50,12 +50,12 @@ def _clipped(signal: NDArray[np.float64], form: str, amount: float) -> NDArray[n
 
 
 def _overdrive(cut: float) -> float:
-    """M / L of the soft form: where tanh(u) / u has fallen to 1 - cut."""
-    kept = 1.0 - max(cut, 1e-9)  # below, rounding hides the root
-    most = 1.0 / kept
-    if np.tanh(most) >= kept * most:  # so much is cut off that the root is there to rounding
+    """Return M / L of the soft form: the root u of tanh(u) / u = 1 - cut."""
+    remaining = 1.0 - max(cut, 1e-9)  # below 1e-9 rounding hides the root
+    most = 1.0 / remaining
+    if np.tanh(most) >= remaining * most:  # the root equals the bound to rounding
         return most
-    return float(brentq(lambda u: np.tanh(u) - kept * u, 1e-6, most))
+    return float(brentq(lambda u: np.tanh(u) - remaining * u, 1e-6, most))
 
 
 EFFECT = Effect(

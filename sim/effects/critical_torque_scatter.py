@@ -1,27 +1,28 @@
-r"""Scatter of the critical torque: no two sticks break at the same torque.
+r"""Scatter of the critical torque from stick to stick.
 
 .. math::
     T_{crit} = T_{kin} + (T_{crit,0} - T_{kin}) \max(0, 1 + s g z)
 
-z has mean 0 and variance 1: of stick number i, drawn as normal, uniform, or correlated,
+z has mean 0 and variance 1; for stick number i it is drawn as normal, uniform, or correlated,
 z_i = rho z_(i-1) + sqrt(1 - rho^2) times a normal draw. "The contact area must change since T_crit
-varies slightly throughout the experiment" (6.3). The scatter is a share of the drop, on which
-alone the vibration depends.
+varies slightly throughout the experiment" (6.3). The scatter is a share of the drop, the only part
+of the torque that the vibration depends on.
 
-Where a law counts its sticks, g = 1. Where it has an inner state there are none to count: what has
-slipped in a burst forms anew, elsewhere; what slides evenly renews itself bit by bit, and evens
-out. A burst is sliding faster than twice the shaft's speed, as an oscillation about that speed
-never does without a stop. With p how many patches of `patch_angle` lambda the bursts have passed,
-between whose draws z passes smoothly, and g how much of the contact has formed at once,
+For a law that counts its sticks, g = 1. A law with an inner state has no sticks to count. There, a
+contact that slips in a burst forms anew elsewhere, and a contact that slides evenly is renewed
+gradually, which averages the scatter. A burst is sliding faster than twice the shaft's speed, which
+an oscillation about that speed never reaches without a stop. With p the number of patches of
+`patch_angle` lambda that the bursts have passed, between whose draws z is interpolated smoothly,
+and g the share of the contact that has formed at once,
 
 .. math::
     \lambda \dot p = \max(v - 2 \Omega, 0), \qquad
     \lambda \dot g = (1 - g) \max(v - 2 \Omega, 0) - g \min(v, 2 \Omega) / 15
 
-so that the critical torque holds through a stick and its creep, differs after a slip, and scatters
-neither in steady sliding nor in harmonic vibration. The 15 patches after which even sliding has
-forgotten a slip are assumed; with 40 the scatter ends vibrations near the critical speeds, with 1
-it is forgotten in the creep before the next slip. Draws repeat after 4096.
+so that the critical torque is constant through a stick and its creep, differs after a slip, and
+scatters neither in steady sliding nor in harmonic vibration. The 15 patches of even sliding that
+erase the effect of a slip are assumed; with 40 the scatter ends vibrations near the critical
+speeds, with 1 it is erased by the creep before the next slip. Draws repeat after 4096.
 Limits: s = 0 is the plain model, and so is a contact with T_crit = T_kin.
 """
 
@@ -45,8 +46,8 @@ from sim.effects.effect import Effect, Parameter, Stage, Values
 _FORMS = ("normal", "uniform", "correlated")
 _N_DRAWS = 4096
 _HEADER = 1
-_FORGOTTEN = 15.0
-"""Patches of even sliding after which a slip is forgotten."""
+_FADING_PATCHES = 15.0
+"""Patches of even sliding that erase the effect of a slip."""
 
 
 def _pack(form: str, values: Values, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -64,7 +65,7 @@ def _pack(form: str, values: Values, rng: np.random.Generator) -> NDArray[np.flo
 
 @njit(cache=True, error_model="numpy")
 def _draw(place, values):
-    """Return s z between the draws."""
+    """Return s z, interpolated between the draws."""
     i = int(place)
     x = place - i
     x = x * x * (3.0 - 2.0 * x)
@@ -76,7 +77,7 @@ def _contact(context, values, state, state_rates, contact):
     if slipless(context):
         sliding, even = abs(context[SLIDING_SPEED]), 2.0 * abs(context[SHAFT_SPEED])
         burst = max(sliding - even, 0.0) / values[0]
-        fading = min(sliding, even) / (_FORGOTTEN * values[0])
+        fading = min(sliding, even) / (_FADING_PATCHES * values[0])
         share = max(0.0, 1.0 + state[1] * _draw(state[0], values))
         state_rates[0] = burst
         state_rates[1] = burst * (1.0 - state[1]) - fading * state[1]

@@ -1,9 +1,9 @@
-"""The small interface behind which every effect stands.
+"""Interface of an effect, and its application to blocks of a run.
 
-An effect is what a real rig does and the plain model does not. It is one file with one `Effect`
-named ``EFFECT``, and acts in one stage of the signal's way. Most come in several functional forms,
-because nobody knows the form that the real one has; ``form=NAME`` chooses. At strength zero an
-effect is the plain model to rounding.
+An effect is a behaviour of a real rig that the plain model lacks. Each is one file with one
+`Effect` named ``EFFECT``, and acts in one stage of the signal path. Most have several functional
+forms, because the real one is unknown; ``form=NAME`` selects one. At strength zero an effect leaves
+the plain model, to rounding.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Values = Mapping[str, float]
 Signals = dict[str, "NDArray[np.float64]"]
 Memory = dict[str, Any]
 Memories = dict[str, Memory]
-"""What effects keep from block to block, by their names."""
+"""State of effects from block to block, by name of the effect."""
 
 DriveFunction = Callable[["NDArray[np.float64]", float, str, Values, Any], "NDArray[np.float64]"]
 ForceFunction = Callable[["Motion", str, Values], "NDArray[np.float64]"]
@@ -44,7 +44,7 @@ PackFunction = Callable[[str, Values, "np.random.Generator"], "NDArray[np.float6
 
 
 class Stage(StrEnum):
-    """The stages of a signal's way, in its order."""
+    """Stages of the signal path, in order."""
 
     DRIVE = "drive"
     FRICTION = "friction"
@@ -56,7 +56,7 @@ class Stage(StrEnum):
 @short_repr
 @dataclass(frozen=True)
 class Effect:
-    """An effect: what it is called, where it acts, what can be set, and how it acts.
+    """Effect: its name, stage, forms, parameters and functions.
 
     Parameters
     ----------
@@ -66,34 +66,34 @@ class Effect:
         Functional forms, the first being the default.
     parameters : mapping of str to Parameter
     strength : str
-        The parameter that, at zero, leaves the plain model.
+        Name of the parameter that leaves the plain model at zero.
     drive : callable, optional
-        ``drive(speed, rate, form, values, rng)``: another shaft speed [rad/s].
+        ``drive(speed, rate, form, values, rng)`` returns the changed shaft speed [rad/s].
     contact : compiled function, optional
-        Changes the contact while the motion is solved, by `sim.contact.HOOK_SIGNATURE`.
+        Function that changes the contact during the solution, by `sim.contact.HOOK_SIGNATURE`.
     pack : callable, optional
-        ``pack(form, values, rng)``: the numbers that `contact` reads. By default the values of all
-        parameters in their order, and after them the place of the form among `forms`.
+        ``pack(form, values, rng)`` returns the numbers that `contact` reads; by default the values
+        of all parameters in order, followed by the index of the form among `forms`.
     n_states : int
-        Inner states of `contact`, zero at the start.
+        Number of inner states of `contact`, zero at the start.
     changes_only : int, optional
-        The entry of the contact (``CREEP`` or ``CRITICAL`` of `sim.contact`) that `contact` changes
-        where it changes no other: with a law that does not read it the effect cannot act.
+        The only entry of the contact (``CREEP`` or ``CRITICAL`` of `sim.contact`) that `contact`
+        changes, if there is one: with a law that does not read it the effect cannot act.
     force : callable, optional
-        ``force(motion, form, values)``: force of blows in the anchors' joint [N].
+        ``force(motion, form, values)`` returns the force of impacts in the anchors' joint [N].
     chain : callable, optional
-        ``chain(response, form, values, rng)``: other impulse responses from torque and blows to
-        acceleration and pressure; they may be longer.
+        ``chain(response, form, values, rng)`` returns changed impulse responses from torque and
+        impacts to acceleration and pressure; they may be longer.
     sensors : callable, optional
-        ``sensors(signals, rate, form, values, rng)``: other signals, by name of the channel.
+        ``sensors(signals, rate, form, values, rng)`` returns changed signals by channel name.
     in_blocks : bool
-        Whether `drive` and `sensors` act on a run block by block, as long runs and live designs
-        need it. They are then given ``memory`` in place of ``rng``: a dictionary that has the
-        generator as ``rng``, is the block's before, and keeps what the next block needs; a run in
-        one block has the entry ``whole``. Else they act on runs in one block alone.
+        Whether `drive` and `sensors` can act block by block, as long runs and live designs need.
+        Their last argument is then ``memory`` instead of ``rng``: a dictionary with the generator
+        as ``rng`` that passes state from block to block; a run in one block has the entry
+        ``whole``. Otherwise they act on whole runs only.
     irregular : bool
-        Whether it does nothing but make one slip differ from the next by chance, so that the rig
-        has a version without (`sim.rig_effects.constant_version`).
+        Whether it only makes slips differ at random, so that the rig has a version without it
+        (`sim.rig_effects.constant_version`).
     """
 
     name: str
@@ -114,18 +114,18 @@ class Effect:
 
     @property
     def needs_whole_run(self) -> bool:
-        """Whether it acts on runs in one block alone."""
+        """Whether the effect acts on whole runs only."""
         return not self.in_blocks and (self.drive is not None or self.sensors is not None)
 
-    def active(self, given: Mapping[str, float | str]) -> ActiveEffect:
-        """Return the effect with these parameters, the others at their defaults.
+    def active(self, parameters: Mapping[str, float | str]) -> ActiveEffect:
+        """Return the effect with parameters set; the others have their defaults.
 
         Raises
         ------
         ParameterError
-            A parameter or form that it does not have, or a value out of range.
+            The effect has no such parameter or form, or a value is out of range.
         """
-        values = dict(given)
+        values = dict(parameters)
         form = str(values.pop("form", self.forms[0]))
         if form not in self.forms:
             raise ParameterError(
@@ -136,7 +136,7 @@ class Effect:
 
 @dataclass(frozen=True)
 class ActiveEffect:
-    """An effect with a form and the values of all its parameters."""
+    """Effect with its form and the values of all its parameters."""
 
     effect: Effect
     form: str
@@ -144,44 +144,44 @@ class ActiveEffect:
 
     @property
     def is_off(self) -> bool:
-        """Whether its strength is zero."""
+        """Whether the strength is zero."""
         return self.values[self.effect.strength] == 0.0
 
-    def driven(
+    def apply_drive(
         self, speed: NDArray[np.float64], rate: float, memory: Memory
     ) -> NDArray[np.float64]:
-        """Speed of the shaft as the effect makes it over the next block [rad/s], shape (n,)."""
+        """Return the changed speed of the shaft over the next block [rad/s], shape (n,)."""
         if self.effect.drive is None:
             return speed
-        given = memory if self.effect.in_blocks else memory["rng"]
-        return self.effect.drive(speed, rate, self.form, self.values, given)
+        state = memory if self.effect.in_blocks else memory["rng"]
+        return self.effect.drive(speed, rate, self.form, self.values, state)
 
-    def sensed(self, signals: Signals, rate: float, memory: Memory) -> Signals:
-        """Signals of the next block, at a rate [Hz], as the effect makes sensors read them."""
+    def apply_sensors(self, signals: Signals, rate: float, memory: Memory) -> Signals:
+        """Return the changed signals of the next block at a rate [Hz], by channel."""
         if self.effect.sensors is None:
             return signals
-        given = memory if self.effect.in_blocks else memory["rng"]
-        return self.effect.sensors(signals, rate, self.form, self.values, given)
+        state = memory if self.effect.in_blocks else memory["rng"]
+        return self.effect.sensors(signals, rate, self.form, self.values, state)
 
     def packed(self, rng: np.random.Generator) -> NDArray[np.float64]:
-        """Return the numbers that its compiled function reads, shape (n,), units by the effect."""
+        """Return the numbers that the compiled function reads, shape (n,), units by the effect."""
         effect = self.effect
         if effect.pack is not None:
             return effect.pack(self.form, self.values, rng)
-        import numpy as np  # help names the effects, and has no need of it
+        import numpy as np  # not imported by `--help`, which lists the effects
 
         return np.array([*self.values.values(), effect.forms.index(self.form)])
 
 
 def activated(specs: tuple[LawSpec, ...], effects: Mapping[str, Effect]) -> list[ActiveEffect]:
-    """Return the effects that specifications name, without those of strength zero.
+    """Return the active effects of specifications, without those of strength zero.
 
     Raises
     ------
     ParameterError
-        An effect that is unknown, or one that is named twice.
+        An effect is unknown, or named twice.
     """
-    found: list[ActiveEffect] = []
+    effects_on: list[ActiveEffect] = []
     names = [spec.name for spec in specs]
     for spec in specs:
         effect = effect_named(spec.name, effects)
@@ -189,21 +189,21 @@ def activated(specs: tuple[LawSpec, ...], effects: Mapping[str, Effect]) -> list
             raise ParameterError(f"effect {spec.name!r} is named {names.count(spec.name)} times")
         active = effect.active(spec.parameters)
         if not active.is_off:
-            found.append(active)
-    return found
+            effects_on.append(active)
+    return effects_on
 
 
 def effect_named(name: str, effects: Mapping[str, Effect]) -> Effect:
-    """Return an effect by its name, or what a condition adds to a rig's, which no library has.
+    """Return an effect by its name, including the one that a temperature adds to a rig.
 
     Raises
     ------
     ParameterError
-        There is none; the message has those that there are.
+        There is none; the message lists the known ones.
     """
     if name in effects:
         return effects[name]
-    from sim.temperature import FRICTION_SHIFT  # itself an effect
+    from sim.temperature import FRICTION_SHIFT  # imports this module
 
     if name == FRICTION_SHIFT.name:
         return FRICTION_SHIFT
@@ -213,16 +213,15 @@ def effect_named(name: str, effects: Mapping[str, Effect]) -> Effect:
     )
 
 
-def begun(effects: Sequence[ActiveEffect], seed: int, kept: Memories | None = None) -> Memories:
-    """Return the memory, by name, that each effect goes on with; each has its own random numbers.
-
-    Effects that have none in `kept` begin.
-    """
+def initial_memories(
+    effects: Sequence[ActiveEffect], seed: int, memories: Memories | None = None
+) -> Memories:
+    """Return the memory of each effect by name: from `memories`, or a new one with its own rng."""
     import numpy as np
 
     names = [active.effect.name for active in effects if active.effect.in_blocks]
-    begin = {name: {"rng": np.random.default_rng([seed, *name.encode()])} for name in names}
-    return begin | {name: memory for name, memory in (kept or {}).items() if name in begin}
+    initial = {name: {"rng": np.random.default_rng([seed, *name.encode()])} for name in names}
+    return initial | {name: memory for name, memory in (memories or {}).items() if name in initial}
 
 
 def drive_block(
@@ -232,67 +231,67 @@ def drive_block(
     effects: Sequence[ActiveEffect],
     memories: Memories,
 ) -> tuple[NDArray[np.float64], Memories]:
-    """Speed of the shaft over a block as effects make it [rad/s], and what they keep of it.
+    """Apply effects to the speed of the shaft over a block [rad/s], and return their memories.
 
     Parameters
     ----------
     even : ndarray, shape (m,)
-        Speed as it is set [rad/s].
+        Speed without the effects [rad/s].
     n : int
-        Samples of this block; those beyond are seen now, and come again.
+        Samples of this block; those beyond are a preview of the next one.
     rate : float
         [Hz]
     effects : sequence of ActiveEffect
     memories : dict of str to dict
-        What they kept of the block before, by name; they stay as they are.
+        Memories after the block before, by name; not changed.
 
     Examples
     --------
     >>> import numpy as np
     >>> from sim.effects import EFFECTS
     >>> uneven = [EFFECTS["speed_fluctuation"].active({"frequency": 10.0})]
-    >>> start = begun(uneven, 0)
-    >>> first, kept = drive_block(np.full(9, 5.0), 6, 100.0, uneven, start)
-    >>> second, _ = drive_block(np.full(6, 5.0), 6, 100.0, uneven, kept)
+    >>> start = initial_memories(uneven, 0)
+    >>> first, later = drive_block(np.full(9, 5.0), 6, 100.0, uneven, start)
+    >>> second, _ = drive_block(np.full(6, 5.0), 6, 100.0, uneven, later)
     >>> bool(np.allclose(first[6:], second[:3]))
     True
     """
     import numpy as np
 
-    kept = deepcopy(memories)
+    memories = deepcopy(memories)
     for active in effects:
         if active.effect.drive is None:
             continue
-        memory = kept.get(active.effect.name, {})
-        blocks = [active.driven(even[:n], rate, memory)]
+        memory = memories.get(active.effect.name, {})
+        blocks = [active.apply_drive(even[:n], rate, memory)]
         if even.size > n:
-            blocks.append(active.driven(even[n:], rate, deepcopy(memory)))
+            blocks.append(active.apply_drive(even[n:], rate, deepcopy(memory)))
         even = np.concatenate(blocks)
-    return even, kept
+    return even, memories
 
 
 def sensors_block(
     signals: Signals, rate: float, effects: Sequence[ActiveEffect], memories: Memories
 ) -> tuple[Signals, Memories]:
-    """Signals of a block as effects on sensors change them, and what these keep of it.
+    """Apply effects on sensors to the signals of a block, and return their memories.
 
     Parameters
     ----------
     signals : dict of str to ndarray, shape (n,)
     rate, effects, memories
-        As of `drive_block`.
+        As for `drive_block`.
 
     Examples
     --------
     >>> import numpy as np
     >>> from sim.effects import EFFECTS
     >>> hum = [EFFECTS["mains_hum"].active({"form": "sine", "pressure_level": 94.0})]
-    >>> start = begun(hum, 0)
-    >>> read, kept = sensors_block({"pressure": np.zeros(960)}, 48e3, hum, start)
-    >>> round(float(read["pressure"].std()), 2), sorted(kept["mains_hum"])
+    >>> start = initial_memories(hum, 0)
+    >>> read, later = sensors_block({"pressure": np.zeros(960)}, 48e3, hum, start)
+    >>> round(float(read["pressure"].std()), 2), sorted(later["mains_hum"])
     (1.0, ['pressure', 'rng'])
     """
-    kept = deepcopy(memories)
+    memories = deepcopy(memories)
     for active in effects:
-        signals = active.sensed(signals, rate, kept.get(active.effect.name, {}))
-    return signals, kept
+        signals = active.apply_sensors(signals, rate, memories.get(active.effect.name, {}))
+    return signals, memories

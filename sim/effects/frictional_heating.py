@@ -1,22 +1,22 @@
-r"""Friction heats the surface, and a warmer contact carries less torque.
+r"""Frictional heating: a warmer contact carries less torque.
 
 .. math::
     T_{kin}, T_{crit} \to h(\Delta) \, T_{kin}, T_{crit}, \qquad
     \Delta(t) = \int_0^t P(t') \, G(t - t') \, dt', \qquad P = T_{kin} |v|
 
-with h = exp(-b Delta), for which the thesis has no figure, so b is free. Every form's kernel G is a
-sum of exponentials, each with one state:
+with h = exp(-b Delta), where b is free since the thesis has no figure for it. The kernel G of each
+form is a sum of exponentials with one state each:
 
 - half_space: G = 1 / (A e sqrt(pi t)), the two half-spaces of Appendix G with the effusivities
   k / sqrt(alpha) of steel and rubber together, e = 8116 W s^(1/2) / (m2 K). Eight exponentials,
   fitted to the step response, match it within 1 % from 2 ms to a minute; later they saturate.
 - lumped: G = (R / tau) exp(-t / tau), one heat capacity.
-- two_layer: half_space, and in series the paint of the shaft, which the appendix leaves out: for
-  the steel's share of the heat, d / (k A) more, within 4 d2 / (pi2 alpha), its slowest mode.
+- two_layer: half_space in series with the paint of the shaft, which the appendix leaves out: it
+  adds d / (k A) for the steel's share of the heat, within 4 d2 / (pi2 alpha), its slowest mode.
 - linear_with_floor: half_space with h = max(1 - b Delta, h0).
 
 300 W on A = 7.7e-4 m2, a fifth of the apparent area, for 0.23 s give the 26 K of the appendix.
-Limits: b = 0 is the plain model, and so is a contact that never slides.
+Limits: b = 0 is the plain model, as is a contact that never slides.
 """
 
 import math
@@ -31,21 +31,21 @@ _FORMS = ("half_space", "lumped", "two_layer", "linear_with_floor")
 
 _STEEL_EFFUSIVITY = 14.9 / math.sqrt(3.95e-6)
 _RUBBER_EFFUSIVITY = 0.16 / math.sqrt(6.69e-8)
-"""Table G1 [W s^(1/2) / (m2 K)]"""
+"""Thermal effusivities of Table G1 [W s^(1/2) / (m2 K)]."""
 
 _RATES = 2000.0 * 6.0 ** -np.arange(8)
-"""Of the half-space's exponentials [1/s]."""
+"""Decay rates of the half-space's exponentials [1/s]."""
 
 _PAINT_CONDUCTIVITY = 0.25
-"""Of epoxy [W/(m K)]."""
+"""Thermal conductivity of epoxy paint [W/(m K)]."""
 _PAINT_DIFFUSIVITY = 1.2e-7
-"""[m2/s]"""
+"""Thermal diffusivity of epoxy paint [m2/s]."""
 
 _HEADER = 4
 
 
 def _half_space(area: float) -> NDArray[np.float64]:
-    """Rise per energy of each exponential [K/J], by least squares of the relative error."""
+    """Return the temperature rise per energy of each exponential [K/J], by least squares."""
     time = np.geomspace(1e-3, 60.0, 100)[:, None]
     step = -np.expm1(-_RATES * time) / _RATES
     weights, *_ = np.linalg.lstsq(step / (2.0 * np.sqrt(time / np.pi)), np.ones(100), rcond=None)

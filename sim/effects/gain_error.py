@@ -1,17 +1,17 @@
-"""Gain error: a channel whose sensitivity is not what it is taken for.
+"""Gain error: a sensitivity that differs from the calibration.
 
 With e the error times the channel's share:
 
 - constant: (1 + e) x, a wrong calibration factor.
-- drift: (1 + e t / T) x, from none at the start of the recording to e at its end T: an amplifier
-  or a strain gauge that warms up.
-- shelf: x + e times its first-order high-pass at the `corner`: right for slow signals, on which a
-  static calibration is done, and wrong by e far above, as a microphone behind its grid or a
-  charge amplifier on a long cable; H(s) = (1 + (1 + e) s / omega_c) / (1 + s / omega_c).
+- drift: (1 + e t / T) x, from no error at the start of the recording to e at its end T: an
+  amplifier or a strain gauge that warms up.
+- shelf: x + e times its first-order high-pass at the `corner`: correct for slow signals, which a
+  static calibration uses, and wrong by e far above, as for a microphone behind its grid or a charge
+  amplifier on a long cable; H(s) = (1 + (1 + e) s / omega_c) / (1 + s / omega_c).
 
-Shares are signed: `torque=-1` reads low what the others read high. A calibration
-(ISO 16063-21 for accelerometers) leaves a few per cent; a wrong factor may be anything. At error
-zero all are the signal itself.
+Shares are signed: with `torque=-1` the torque reads low where the others read high. A calibration
+(ISO 16063-21 for accelerometers) leaves a few per cent; a wrong factor may have any size. Error
+zero leaves the signal unchanged.
 
 >>> values = {"error": 0.1, "corner": 1e3, "acceleration": 1.0, "pressure": 1.0, "torque": -0.5,
 ...           "angle": 0.0}
@@ -39,7 +39,7 @@ def _sensors(
 
 
 def _excess(signal: NDArray[np.float64], form: str, corner: float) -> NDArray[np.float64]:
-    """Return what is read too much at an error of one; `corner` in cycles a sample."""
+    """Return the excess of the reading at an error of one; `corner` in cycles per sample."""
     if form == "drift":
         return signal * np.linspace(0.0, 1.0, signal.size)
     if form == "shelf":

@@ -1,19 +1,18 @@
 """Mains hum: the disturbance that cables pick up from the mains.
 
 A periodic signal c h(2 pi f t + phi) is added to each channel, where f is the frequency of the
-mains, c the channel's rms, and phi the generator's, as every cable lies its own way. All forms
-have the rms 1:
+mains, c the channel's rms, and phi a random phase of the channel. All forms have the rms 1:
 
 - sine: h = sqrt(2) sin, the electric field of a wire.
-- harmonics: sum of sin(n .) / n over n = 1, 3, 5, 7, 9, the stray field of a transformer, whose
-  core saturates in both directions alike; IEC 61000-3-2 bounds the same harmonics of appliances.
+- harmonics: sum of sin(n .) / n over n = 1, 3, 5, 7, 9, the stray field of a transformer with a
+  symmetrically saturating core; IEC 61000-3-2 limits the same harmonics of appliances.
 - rectifier: a short half-cosine in each half-wave, less its mean: the ripple of a supply whose
   capacitors are charged only near the peaks (Schade 1943, Proc. IRE 31, 341); lines at 2 f, 4 f ...
 
-The default frequency is Europe's; 60 Hz are those of the thesis's laboratory in the United States,
-16.7 Hz of railways, 400 Hz of aircraft. Levels are assumed. Amount zero is no hum. An encoder
-counts lines and picks up none, so the angle has none by default; a potentiometer as the thesis's,
-10 rad to the volt (Appendix B), reads 1e-3 rad for 0.1 mV.
+The default frequency is Europe's; the thesis's laboratory in the United States has 60 Hz, railways
+have 16.7 Hz, aircraft 400 Hz. Levels are assumed. Amount zero is no hum. An encoder counts lines
+and picks up none, so the angle has none by default; a potentiometer like the thesis's, 10 rad/V
+(Appendix B), reads 1e-3 rad for 0.1 mV.
 
 >>> values = {"amount": 1.0, "frequency": 50.0, "pressure_level": 94.0, "acceleration": 0.1,
 ...           "torque": 0.05, "angle": 1e-3}
@@ -51,7 +50,7 @@ def _sensors(signals: Signals, rate: float, form: str, values: Values, memory: M
 
 
 def _hum(form: str, turns: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Hum of rms 1 over the periods of the mains that have passed."""
+    """Return hum of rms 1 at a phase in periods of the mains."""
     if form == "rectifier":
         from_peak = (2.0 * turns) % 1.0 - 0.5
         pulse = np.where(
@@ -73,7 +72,7 @@ EFFECT = Effect(
     parameters={
         "amount": Parameter(1.0, "", 0.0, 100.0, "factor on the hum of all channels"),
         "frequency": Parameter(50.0, "Hz", 15.0, 450.0, "of the mains"),
-        "pressure_level": Parameter(60.0, "dB re 20 uPa", -40.0, 130.0, "what the hum reads as"),
+        "pressure_level": Parameter(60.0, "dB re 20 uPa", -40.0, 130.0, "level of the hum"),
         "acceleration": Parameter(0.5, "m/s2", 0.0, 1e3, "rms"),
         "torque": Parameter(0.1, "Nm", 0.0, 100.0, "rms"),
         "angle": Parameter(0.0, "rad", 0.0, 1.0, "rms; none of an encoder"),

@@ -1,4 +1,4 @@
-"""Resonance of a sensor on a soft mount, which moves by itself.
+"""Resonance of a sensor on a soft mount.
 
 With G(s) = s**2 / (s**2 + 2 zeta omega s + omega**2), the reading is H(s) times the true signal:
 
@@ -9,11 +9,11 @@ With G(s) = s**2 / (s**2 + 2 zeta omega s + omega**2), the reading is H(s) times
   passes far above.
 - double: H = 1 - a (2 G(omega) + G(2.3 omega)) / 3: the sensor also rocks.
 
-All read true far below the resonance, and everywhere at amount a = 0. ISO 5348 has the mounts of
+All are 1 far below the resonance, and everywhere at amount a = 0. ISO 5348 covers the mounts of
 accelerometers: a stud resonates near 30 kHz, wax and adhesives a little below, a magnet near 7
-kHz, a hand-held tip at 2 kHz. The share of each kind of channel makes the same of torque cells
-and microphones on flexible stands. Filters are the bilinear transform, true at the resonance, and
-start as if the first value had lasted for ever.
+kHz, a hand-held tip at 2 kHz. The share of each kind of channel extends this to torque cells and
+to microphones on flexible stands. Filters are bilinear transforms, exact at the resonance, in the
+steady state of the first value at the start.
 
 >>> values = {"amount": 1.0, "frequency": 5e3, "damping_ratio": 0.05, "acceleration": 1.0,
 ...           "pressure": 0.0, "torque": 0.0}
@@ -38,7 +38,7 @@ _SECOND = 2.3
 _SOFT = 2.0
 """Corner of the adhesive over the frequency of the mode; assumed."""
 
-_SEEN = 0.45
+_HIGHEST_SHARE = 0.45
 """Modes above this share of the sampling rate are left out."""
 
 
@@ -55,8 +55,8 @@ def _sensors(
 def _lost(
     signal: NDArray[np.float64], form: str, frequency: float, damping: float
 ) -> NDArray[np.float64]:
-    """Return what a fully participating mount takes away; `frequency` in cycles a sample."""
-    if frequency > _SEEN:
+    """Return what a fully participating mount removes; `frequency` in cycles per sample."""
+    if frequency > _HIGHEST_SHARE:
         return np.zeros_like(signal)
     if form == "double":
         first = _lost(signal, "single", frequency, damping)
@@ -75,7 +75,7 @@ def _filtered(
     denominator: list[float],
     frequency: float,
 ) -> NDArray[np.float64]:
-    """Filter by a quotient of polynomials in s / omega."""
+    """Filter a signal by a quotient of polynomials in s / omega."""
     b, a = bilinear(numerator, denominator, fs=0.5 / math.tan(math.pi * frequency))
     filtered, _ = lfilter(b, a, signal, zi=lfilter_zi(b, a) * signal[0])
     return np.asarray(filtered)

@@ -1,23 +1,24 @@
-r"""The contact lets go gradually: it creeps while it sticks, the more the nearer it is to slip.
+r"""Partial slip: the contact creeps while it sticks, faster the nearer it is to slip.
 
 .. math::
     \dot\theta_1 = \omega_s [1 - s f(r)], \quad r = |T| / T_{crit}, \qquad
     f = r^n, \quad \frac{e^{n r} - 1}{e^n - 1}, \quad 1 - (1 - r)^{1/3}
 
-Forms power, exponential and mindlin. On the rig torque rises ever more slowly during stick
-(5.1.1). The third is a round contact's: its tangential stiffness is k_0 (1 - r)^(1/3) (Cattaneo
-1938, Mindlin 1949). What it yields beyond an unloaded contact, in series with an elastomer of
-stiffness k_0, is just the share f of the shaft's motion. Unloading is stick (Mindlin and
-Deresiewicz 1953): f = 0 where the shaft turns against the torque. T is the elastomer's torque
-without the inertia of the bushing's surface, of which it differs only while the shaft accelerates.
+Forms power, exponential and mindlin. On the rig the torque rises ever more slowly during stick
+(5.1.1). The third form is that of a round contact, whose tangential stiffness is k_0 (1 - r)^(1/3)
+(Cattaneo 1938, Mindlin 1949): in series with an elastomer of stiffness k_0, its extra compliance is
+the share f of the shaft's motion. Unloading is stick (Mindlin and Deresiewicz 1953): f = 0 where
+the shaft turns against the torque. T is the torque of the elastomer without the inertia of the
+bushing's surface; the two differ only while the shaft accelerates.
 
-In the third form r stops at 0.999, where its slope would become infinite.
+In the third form r stops at 0.999, since its slope would become infinite.
 
-A stick breaks into a slip that starts at the speed of its creep, and a slip is caught where it has
-slowed to that: the surface's speed is continuous. The damper of the elastomer feels the creep.
+A stick breaks into a slip that starts at the speed of its creep, and a slip ends where it has
+slowed to that speed, so the speed of the surface is continuous. The creep relieves the elastomer's
+damper.
 
-It acts on true stick alone: laws with an inner state release gradually themselves.
-Limits: s = 0 is true stick; s -> 1 never breaks, but passes into sliding at T_crit.
+The effect acts on true stick only: laws with an inner state release gradually by themselves.
+Limits: s = 0 is true stick; s -> 1 never breaks, but changes into sliding at T_crit.
 """
 
 import math
@@ -26,7 +27,7 @@ from sim.contact import CREEP, CRITICAL, SHAFT_SPEED, TORQUE, contact_hook
 from sim.effects.effect import Effect, Parameter, Stage
 
 _MOST = 0.999
-"""Of r, so that the creep rises with a slope that the integration can follow."""
+"""Largest r, so that the integration can follow the slope of the creep."""
 
 
 @contact_hook

@@ -1,19 +1,19 @@
-"""Further resonances of what radiates: other modes of the plate, a guard, a panel that rings along.
+"""Further resonances of the radiation: more modes of the plate, a guard, a panel.
 
-Torque and acceleration stay as they are; the pressure p becomes p + a sum(s_r B_r p) with the
+Torque and acceleration do not change; the pressure p becomes p + a sum(s_r B_r p) with the
 resonances
 
     B(s) = 2 zeta omega s / (s**2 + 2 zeta omega s + omega**2),
 
-each of peak 1, so that amount a = 1 doubles the sound at a lonely resonance (6 dB):
+each with a peak of 1, so that amount a = 1 doubles the sound at an isolated resonance (6 dB):
 
-- single: one of them, a panel.
-- even: at equal distances from the first one up to 16 kHz, in alternating senses; a plate's mean
-  density of modes is constant over frequency (Cremer and Heckl, *Structure-Borne Sound*, 4.3).
-- scattered: the same mean distance, but gaps as they come by chance (exponentially distributed),
-  strengths of Gaussian chance: a plate of which nothing is known but its size.
+- single: one resonance, as of a panel.
+- even: equally spaced from the first one up to 16 kHz, with alternating signs; the mean modal
+  density of a plate is constant over frequency (Cremer and Heckl, *Structure-Borne Sound*, 4.3).
+- scattered: the same mean spacing, with exponentially distributed gaps and normally distributed
+  strengths: a plate of which only the size is known.
 
-At amount zero there is none of them.
+Amount zero leaves them out.
 
 >>> from models.radiation.impulse_responses import ImpulseResponses
 >>> one = np.ones(1)
@@ -33,7 +33,7 @@ from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
 from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _HIGHEST = 16e3
-"""[Hz], as for the plate's own modes."""
+"""Highest frequency [Hz], as for the plate's own modes."""
 
 
 def _chain(
@@ -53,7 +53,7 @@ def _chain(
 def _resonances(
     form: str, values: Values, rng: np.random.Generator
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Frequency [Hz] of each, and its sense and strength."""
+    """Return the frequency [Hz] and the signed strength of each resonance."""
     first, spacing = values["frequency"], values["spacing"]
     count = 1 if form == "single" else 1 + max(0, int((_HIGHEST - first) / spacing))
     steps = np.full(count, spacing)

@@ -1,6 +1,6 @@
-"""Sound that reaches the microphone by way of the room.
+"""Sound that reaches the microphone by reflections in the room.
 
-The model has the direct sound alone. A room adds reflections, which follow from its size, its
+The plain model has the direct sound only. A room adds reflections, which follow from its size, its
 reverberation time T and the distance r of the microphone. Walls reflect 1 - alpha of the energy,
 alpha = 1 - exp(-0.161 V / (T S)) (Eyring 1930, J. Acoust. Soc. Am. 1, 217), at all frequencies:
 
@@ -12,15 +12,15 @@ alpha = 1 - exp(-0.161 V / (T S)) (Eyring 1930, J. Acoust. Soc. Am. 1, 217), at 
   4 V / (S c); 16 pi r**2 / A times the energy of the direct sound, A = 0.161 V / T (Kuttruff, *Room
   Acoustics*, chapter 5). The noise differs from seed to seed.
 
-Levels are relative to the direct sound as it is, which neither its directivity nor its distance in
-the rig changes: `distance` is the room's own. At amount zero there is no room.
+Levels are relative to the direct sound, independent of its directivity and of the microphone's
+distance in the rig: `distance` belongs to the room. Amount zero is no room.
 
 >>> from models.radiation.impulse_responses import ImpulseResponses
 >>> one = np.ones(1)
 >>> values = {name: parameter.default for name, parameter in EFFECT.parameters.items()}
 >>> plain = ImpulseResponses(96e3, one, one, one, one)
->>> heard = _chain(plain, "floor", values, np.random.default_rng(0))
->>> float(heard.torque_to_pressure[0]), int(heard.torque_to_pressure[1:].argmax()) + 1
+>>> response = _chain(plain, "floor", values, np.random.default_rng(0))
+>>> float(response.torque_to_pressure[0]), int(response.torque_to_pressure[1:].argmax()) + 1
 (1.0, 503)
 """
 
@@ -35,13 +35,13 @@ from sim.chain import filter_pressure
 from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _SOURCE_HEIGHT = 0.9
-"""Of the rig on its bench over the floor [m]; assumed."""
+"""Height of the rig on its bench above the floor [m]; assumed."""
 
 _ALONG, _ACROSS = 0.42, 0.37
-"""Where the rig stands, as shares of length and width; out of the middle, as rigs do; assumed."""
+"""Place of the rig, as shares of length and width, away from the middle; assumed."""
 
 _EARLY = 0.1
-"""Reflections of the shoebox are followed so long after the direct sound [s]."""
+"""Latest reflection of the shoebox after the direct sound [s]."""
 
 
 def _chain(
@@ -58,7 +58,7 @@ def _chain(
 
 
 def _surface(values: Values) -> tuple[float, float, float]:
-    """Volume [m3], surface [m2], and the walls' reflection of the pressure."""
+    """Return the volume [m3], the surface [m2] and the walls' reflection factor of pressure [-]."""
     x, y, z = values["length"], values["width"], values["height"]
     volume, surface = x * y * z, 2.0 * (x * y + y * z + z * x)
     absorption = 0.161 * volume / (values["reverberation_time"] * surface)
@@ -66,13 +66,13 @@ def _surface(values: Values) -> tuple[float, float, float]:
 
 
 def _floor(values: Values) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Way [m] of the reflection, and its gain over the direct sound."""
+    """Return the path length of the reflection [m], and its gain over the direct sound."""
     way = values["distance"] + 2.0 * _SOURCE_HEIGHT
     return np.array([way]), np.array([_surface(values)[2] * values["distance"] / way])
 
 
 def _images(values: Values) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Way [m] of each reflection in the shoebox, and its gain."""
+    """Return the path length of each reflection in the shoebox [m], and its gain."""
     sides = np.array([values["length"], values["width"], values["height"]])
     source = np.array([_ALONG * sides[0], _ACROSS * sides[1], _SOURCE_HEIGHT])
     microphone = source + np.array([0.0, 0.0, values["distance"]])
@@ -86,16 +86,16 @@ def _images(values: Values) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         bounces.append(np.abs(n))
     way = np.sqrt(offsets[0][:, None, None] + offsets[1][:, None] + offsets[2]).ravel()
     walls = (bounces[0][:, None, None] + bounces[1][:, None] + bounces[2]).ravel()
-    kept = (walls > 0) & (way < farthest)
-    return way[kept], _surface(values)[2] ** walls[kept] * values["distance"] / way[kept]
+    near = (walls > 0) & (way < farthest)
+    return way[near], _surface(values)[2] ** walls[near] * values["distance"] / way[near]
 
 
 def _echoes(
     detour: NDArray[np.float64], gain: NDArray[np.float64], rate: float
 ) -> NDArray[np.float64]:
-    """Taps of echoes that come later by a detour [m], between samples by Lagrange's cubic."""
+    """Return the taps of echoes by their detour [m], between samples by Lagrange's cubic."""
     time = detour * (rate / SOUND_SPEED)
-    # The cubic needs a sample before; the direct sound, at the first one, stays first.
+    # The cubic needs a sample before; the direct sound stays the first tap.
     sample = np.maximum(np.floor(time).astype(np.int64), 2)
     f = np.maximum(time - sample, 0.0)
     taps = np.zeros(int(sample.max()) + 3)
@@ -106,13 +106,13 @@ def _echoes(
 
 def _tail(values: Values, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     volume, surface, _ = _surface(values)
-    lasting = values["reverberation_time"]
-    energy = 16.0 * np.pi * values["distance"] ** 2 * lasting / (0.161 * volume)
+    reverberation = values["reverberation_time"]
+    energy = 16.0 * np.pi * values["distance"] ** 2 * reverberation / (0.161 * volume)
     start = max(1, round(4.0 * volume / (surface * SOUND_SPEED) * rate))
-    decay = math.log(1e6) / (lasting * rate)  # of energy, a sample
-    time = np.arange(start, start + round(lasting * rate))
+    decay = math.log(1e6) / (reverberation * rate)  # of energy, a sample
+    time = np.arange(start, start + round(reverberation * rate))
     taps = np.zeros(time[-1] + 1)
-    # The energy is that of a decay which begins with the direct sound.
+    # The energy is that of a decay that begins with the direct sound.
     taps[time] = np.sqrt(energy * decay) * np.exp(-0.5 * decay * time)
     taps[time] *= rng.standard_normal(time.size)
     return taps

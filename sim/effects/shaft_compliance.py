@@ -1,4 +1,4 @@
-r"""The shaft is no rigid drive: its end turns on a torsional spring.
+r"""Compliance of the shaft: its end turns on a torsional spring.
 
 .. math::
     J \ddot\lambda = J \dot\omega_s + T - T_s(\lambda, \dot\lambda), \qquad
@@ -7,16 +7,16 @@ r"""The shaft is no rigid drive: its end turns on a torsional spring.
     + c \dot\lambda, \quad \frac{\lambda}{\kappa} + c_2 |\dot\lambda| \dot\lambda
 
 lambda is the angle by which the end lags, T the friction torque, kappa the compliance. Forms
-linear, stiffening, and quadratic_damping, whose c_2 dissipates what c does in a vibration of the
-shaft's own frequency that swings its torque by T_r to each side.
+linear, stiffening, and quadratic_damping, whose c_2 dissipates as much as c in a vibration at the
+shaft's natural frequency with a torque amplitude of T_r.
 
 Defaults: a half-inch schedule 80 pipe of stainless steel (3.1.1; outer diameter 21.3 mm, inner
 13.9 mm) whose free-free mode at 8131 Hz (Table 3.1) makes it 0.19 m long: 6750 Nm/rad. The inertia
-is what gives the fixed-free 1568 Hz with that: the end piece's, J_o of (A15), and a third of the
-pipe's. So the rig as built is nearly rigid, while a vehicle's stabilizer bar is not.
+reproduces the fixed-free mode at 1568 Hz: that of the end piece, J_o of (A15), and a third of the
+pipe's. So the rig is nearly rigid, whereas a vehicle's stabilizer bar is not.
 
 Limits: kappa = 0 is the rigid drive. Where the end alone would vibrate above 8 kHz, its inertia is
-raised to stay there, which the integration can resolve; its motion is then quasi-static anyway.
+raised to give 8 kHz, which the integration can resolve; its motion is then quasi-static anyway.
 """
 
 import math
@@ -30,7 +30,7 @@ from sim.effects.effect import Effect, Parameter, Stage, Values
 _FORMS = ("linear", "stiffening", "quadratic_damping")
 
 _HIGHEST = 2.0 * math.pi * 8e3
-"""[rad/s]"""
+"""Highest natural frequency of the shaft's end [rad/s]."""
 
 
 def _pack(form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.float64]:
@@ -38,11 +38,11 @@ def _pack(form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.fl
     inertia = max(values["inertia"], stiffness / _HIGHEST**2)
     damping = 2.0 * values["damping_ratio"] * math.sqrt(stiffness * inertia)
     cubic = quadratic = 0.0
-    reference = values["reference_torque"] / stiffness  # of the lag [rad]
+    reference = values["reference_torque"] / stiffness  # lag [rad]
     if form == "stiffening":
         cubic = stiffness / reference**2
     elif form == "quadratic_damping":
-        swing = reference * math.sqrt(stiffness / inertia)  # of its rate [rad/s]
+        swing = reference * math.sqrt(stiffness / inertia)  # rate of the lag [rad/s]
         quadratic = 3.0 * math.pi / 8.0 * damping / swing
         damping = 0.0
     return np.array([inertia, stiffness, cubic, damping, quadratic])

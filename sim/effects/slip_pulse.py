@@ -1,13 +1,12 @@
-"""A short pulse of force at each slip, in the joint between beam and anchor.
+"""Short pulse of force at each slip, in the joint between beam and anchor.
 
 The lumped model's anchor force above 5 kHz is some 100 dB too small to creak, and the torque cell
 shows little above 2 kHz; bolting the clamp to the baseplate ends the creak (5.2.3). So the source
-lies downstream of the torque cell, in clamp, beam or anchor: a micro-impact that the slip sets
-off. One law for all fits: nothing below a threshold of the torque's drop, as the joint holds; above
-it a half-sine whose peak grows with the root of what the drop exceeds it by, as the speed of a
-part that has come loose does with its energy, through `amplitude` at the drop of the creaking fit
-(6.94 Nm at 0.381 mm). Limits: amplitude zero is no pulse at all, and a drop below the threshold
-makes none.
+lies downstream of the torque cell, in clamp, beam or anchor: a micro-impact triggered by the slip.
+One law covers all fits: no pulse below a threshold of the torque's drop, since the joint holds;
+above it a half-sine whose peak grows with the square root of the excess, like the speed of a loose
+part with its energy, and reaches `amplitude` at the drop of the creaking fit (6.94 Nm at 0.381 mm).
+Limits: amplitude zero is no pulse, and neither is a drop below the threshold.
 """
 
 import itertools
@@ -27,7 +26,7 @@ _REFERENCE_DROP = 6.94
 def torque_drops(
     torque: NDArray[np.float64], least: float
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Find where a torque falls, by more than `least` between two turning points.
+    """Find the falls of a torque by more than `least` between two turning points.
 
     Parameters
     ----------
@@ -39,9 +38,9 @@ def torque_drops(
     Returns
     -------
     where : ndarray of int, shape (n_drops,)
-        Sample of the steepest fall.
+        Sample of the steepest slope of each fall.
     size : ndarray, shape (n_drops,)
-        From the maximum before to the minimum after [Nm].
+        Fall from the maximum before to the minimum after [Nm].
 
     Examples
     --------
@@ -51,7 +50,9 @@ def torque_drops(
     change = np.diff(torque)
     moves = np.flatnonzero(change)
     rises = change[moves] > 0.0
-    points = np.append(moves[1:][rises[1:] != rises[:-1]], torque.size - 1)  # of turning, and last
+    points = np.append(
+        moves[1:][rises[1:] != rises[:-1]], torque.size - 1
+    )  # turning points and the last sample
     falls, sizes = list[int](), list[float]()
     falling, start, top, extreme = False, 0, 0.0, float(torque[0])
     for i, value in zip(points.tolist(), torque[points].tolist(), strict=True):
@@ -72,8 +73,8 @@ def _force(motion: Motion, form: str, values: Mapping[str, float]) -> NDArray[np
     force = np.zeros_like(motion.torque)
     threshold = values["threshold"]
     shape = _shape(form, values["duration"], motion.rate)
-    # Each stretch of one direction on its own: where the shaft turns back the torque turns too,
-    # and that is no slip.
+    # Each stretch of one direction on its own: the torque also falls where the shaft reverses,
+    # which is no slip.
     turns = np.flatnonzero(np.diff(np.signbit(motion.shaft_speed))) + 1
     edges = [0, *turns, force.size]
     for first, last in itertools.pairwise(edges):
@@ -88,7 +89,7 @@ def _force(motion: Motion, form: str, values: Mapping[str, float]) -> NDArray[np
 
 
 def _shape(form: str, duration: float, rate: float) -> NDArray[np.float64]:
-    """Course of a pulse with unit peak: its mean over each sample, so that none is lost between."""
+    """Return a pulse of unit peak as its mean over each sample, which keeps its impulse."""
     length = 6.0 if form == "exponential" else 1.0
     x = np.arange(math.ceil(length * duration * rate) + 1) / (duration * rate)
     return np.diff(_IMPULSE[form](np.minimum(x, length))) * duration * rate
@@ -108,7 +109,7 @@ EFFECT = Effect(
     forms=("half_sine", "exponential", "triangle"),
     parameters={
         "amplitude": Parameter(60.0, "N", 0.0, 1e4, "peak force at a torque drop of 6.94 Nm"),
-        "threshold": Parameter(5.2, "Nm", 0.0, 6.9, "torque drop below which nothing happens"),
+        "threshold": Parameter(5.2, "Nm", 0.0, 6.9, "torque drop below which there is no pulse"),
         "duration": Parameter(
             50e-6, "s", 1e-5, 1e-3, "of the pulse; its time constant if exponential"
         ),

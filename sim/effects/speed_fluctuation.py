@@ -1,21 +1,21 @@
-"""Fluctuation of the shaft's speed: it does not turn evenly.
+"""Fluctuation of the shaft's speed about its set value.
 
 The speed becomes Omega(t) (1 + d q(t)), where d is the depth and q has the rms of a sine of
-amplitude one, whatever the form, so that one depth means one degree of irregularity; that of a
-sine, (max - min) / mean, is 2 d. Being relative, it leaves the turning points of a shaft that
-swings where they are, and at depth zero the speed itself.
+amplitude one in every form; the degree of irregularity of a sine, (max - min) / mean, is 2 d. Since
+it is relative, an oscillating shaft keeps its turning points, and depth zero leaves the speed
+unchanged.
 
-- sine: q = sin(phi + phi_0), from an eccentric coupling or a belt. phi is `order` times the angle
-  of the even motion, so that it follows run-ups and reversals; with a `frequency` above zero,
-  phi = 2 pi frequency t, as of a motor that is fed from the mains.
-- harmonics: sum of sin(h phi + phi_h) / h over h = 1 ... 4, as of gears and poles.
+- sine: q = sin(phi + phi_0), as from an eccentric coupling or a belt. phi is `order` times the
+  angle of the undisturbed motion, so it follows run-ups and reversals; with a `frequency` above
+  zero, phi = 2 pi frequency t, as for a motor on the mains.
+- harmonics: sum of sin(h phi + phi_h) / h over h = 1 ... 4, as from gears and poles.
 - random: an Ornstein-Uhlenbeck process, dq = -q dt / tau + sqrt(1 / tau) dW with tau = 1 / (2 pi
-  bandwidth), stationary from the start, as of a controller that hunts (Uhlenbeck & Ornstein 1930;
-  stepped without error by Gillespie 1996, Phys. Rev. E 54, 2084). Its acceleration grows with the
-  root of the rate: 2 % of 5 rad/s at 10 Hz give 0.004 Nm rms on the elastomer's inertia at 90 kHz.
+  bandwidth), stationary from the start, as of a hunting controller (Uhlenbeck & Ornstein 1930;
+  exact steps by Gillespie 1996, Phys. Rev. E 54, 2084). Its acceleration grows with the square root
+  of the rate: 2 % of 5 rad/s at 10 Hz give 0.004 Nm rms on the elastomer's inertia at 90 kHz.
 
-Phases are those of the generator, as a recording starts anywhere. What the thesis's motor did is
-not known; all is assumed.
+Phases are random, since a recording starts at any time. The fluctuation of the thesis's motor is
+unknown; all values are assumed.
 
 >>> even = np.full(90_000, 5.0)
 >>> uneven = _drive(even, 90e3, "sine", {"depth": 0.1, "order": 1.0, "frequency": 10.0,
@@ -65,7 +65,7 @@ def _phase(
 
 
 def _harmonics(phase: NDArray[np.float64], count: int, memory: Memory) -> NDArray[np.float64]:
-    """Sum of harmonics with the rms of a sine of amplitude one."""
+    """Return a sum of harmonics with the rms of a sine of amplitude one."""
     starts = memory.setdefault("starts", [])
     while len(starts) < count:
         starts.append(memory["rng"].uniform(0.0, 2.0 * math.pi))
@@ -76,13 +76,13 @@ def _harmonics(phase: NDArray[np.float64], count: int, memory: Memory) -> NDArra
 
 
 def _random(n: int, bandwidth: float, memory: Memory) -> NDArray[np.float64]:
-    """Ornstein-Uhlenbeck process with the rms of a sine of amplitude one."""
+    """Return an Ornstein-Uhlenbeck process with the rms of a sine of amplitude one."""
     rng, decay = memory["rng"], math.exp(-2.0 * math.pi * bandwidth)
-    kicks = rng.standard_normal(n) * math.sqrt(1.0 - decay**2)
+    increments = rng.standard_normal(n) * math.sqrt(1.0 - decay**2)
     if "last" not in memory:
-        kicks[0] = rng.standard_normal()
+        increments[0] = rng.standard_normal()
     before = decay * memory.get("last", 0.0)
-    course, _ = lfilter([math.sqrt(0.5)], [1.0, -decay], kicks, zi=[before])
+    course, _ = lfilter([math.sqrt(0.5)], [1.0, -decay], increments, zi=[before])
     memory["last"] = float(course[-1])
     return np.asarray(course)
 

@@ -1,4 +1,4 @@
-r"""The contact grows stronger the longer it sticks.
+r"""Static ageing: the critical torque grows with the time of stick.
 
 .. math::
     T_{crit}(t) &= T_{kin} + (T_{crit} - T_{kin}) \, [1 - s + s f(x)], \quad
@@ -7,14 +7,15 @@ r"""The contact grows stronger the longer it sticks.
     1 - (1 + x)^{-1/2}
 
 Forms exponential, logarithmic (Dieterich 1979), complete at 10 tau, and power. Rabinowicz and
-Brockley hold ageing necessary for stick-slip (Section 2): the faster the shaft, the shorter the
+Brockley consider ageing necessary for stick-slip (Section 2): the faster the shaft, the shorter the
 stick and the smaller the drop, so that stick-slip ends at a lower speed.
 
-Where a law has an inner state there are no instants at which stick begins. Then the age grows with
-time and shrinks as the contact is renewed by sliding, d(age)/dt = 1 - |v| age / D (Ruina 1983),
-and takes the place of t_stick; from rest on and in true stick the two are the same.
+In a law with an inner state, stick has no sharp beginning. There an age replaces t_stick: it grows
+with time and shrinks as sliding renews the contact, d(age)/dt = 1 - |v| age / D (Ruina 1983). From
+rest and in true stick the two are equal.
 
-Limits: s = 0 is the plain model; s = 1 breaks at T_kin at once and at T_crit after long stick.
+Limits: s = 0 is the plain model; with s = 1 the contact breaks at T_kin at once and at T_crit after
+a long stick.
 """
 
 import math
@@ -25,10 +26,10 @@ from sim.effects.effect import Effect, Parameter, Stage
 
 @contact_hook
 def _contact(context, values, state, state_rates, contact):
-    stick_time, own_age = max(context[STICK_TIME], 0.0), max(state[0], 0.0)
+    stick_time, state_age = max(context[STICK_TIME], 0.0), max(state[0], 0.0)
     unslipped = slipless(context)
-    age = own_age if unslipped else stick_time
-    renewal = 1.0 - abs(context[SLIDING_SPEED]) * own_age / values[2]
+    age = state_age if unslipped else stick_time
+    renewal = 1.0 - abs(context[SLIDING_SPEED]) * state_age / values[2]
     state_rates[0] = renewal if unslipped else 0.0
     x = age / values[1]
     if values[3] == 0.0:

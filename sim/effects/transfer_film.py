@@ -1,4 +1,4 @@
-r"""Film of rubber on the shaft: more torque, less of a drop, and random friction.
+r"""Film of rubber on the shaft, which raises the torque, reduces its drop and adds random friction.
 
 .. math::
     \chi &= \chi_0 + (1 - \chi_0) f(x), \quad x = \int |v| \, dt / \varphi_f, \qquad
@@ -7,14 +7,14 @@ r"""Film of rubber on the shaft: more torque, less of a drop, and random frictio
     T_{kin} &\to T_{kin} [1 + s\chi (a - 1)] (1 + s \chi \epsilon n(t)), \qquad
     T_{crit} - T_{kin} \to (T_{crit} - T_{kin}) [1 - s\chi (1 - d)]
 
-Forms exponential, linear and logistic, with L(y) = 1 / (1 + e^-y): the film chi forms with the
-angle slid, as rubber is transferred only where it is rubbed. A film of natural rubber raised the
-mean torque three to four times, a = 3.5, and left random friction of very small amplitude from 250
-to 1500 Hz at any speed (5.1.3, 5.2.2): n(t) is noise of that band and unit variance, in time,
-repeated after 1.4 s. `formed` is the film chi_0 that is there at the start.
+Forms exponential, linear and logistic, with L(y) = 1 / (1 + e^-y): the film chi grows with the
+sliding angle, since rubber is transferred only by rubbing. A film of natural rubber raised the mean
+torque three to four times, a = 3.5, and left random friction of very small amplitude from 250 to
+1500 Hz at any speed (5.1.3, 5.2.2): n(t) is noise in that band with unit variance, which repeats
+after 1.4 s. `formed` is the film chi_0 at the start.
 
-Limits: s = 0, no part of the shaft covered, is the plain model; with d = 0 a complete film leaves
-no drop and so no stick-slip.
+Limits: s = 0, a shaft without film, is the plain model; with d = 0 a complete film leaves no drop
+and so no stick-slip.
 """
 
 import math
@@ -29,10 +29,10 @@ from sim.effects.effect import Effect, Parameter, Stage, Values
 _FORMS = ("exponential", "linear", "logistic")
 
 _BAND = 250.0, 1500.0
-"""Of the random friction [Hz]."""
+"""Band of the random friction [Hz]."""
 
 _NOISE_RATE = 24e3
-"""[Hz]; sixteen points in the shortest period, so that the cubic between them is exact to 0.1 %."""
+"""Rate of the noise table [Hz]: 16 points per shortest period make the cubic exact to 0.1 %."""
 
 _N_NOISE = 2**15
 
@@ -40,7 +40,7 @@ _HEADER = 7
 
 
 def _noise(rng: np.random.Generator) -> NDArray[np.float64]:
-    """Periodic noise in the band, of unit variance."""
+    """Return periodic noise in the band, of unit variance."""
     frequency = np.fft.rfftfreq(_N_NOISE, 1.0 / _NOISE_RATE)
     inside = (frequency >= _BAND[0]) & (frequency <= _BAND[1])
     phase = rng.uniform(0.0, 2.0 * np.pi, frequency.size)
@@ -54,7 +54,7 @@ def _pack(form: str, values: Values, rng: np.random.Generator) -> NDArray[np.flo
 
 @njit(cache=True, error_model="numpy")
 def _cubic(table, place, first, n):
-    """Catmull and Rom's cubic through a periodic table."""
+    """Interpolate a periodic table by Catmull and Rom's cubic."""
     i = int(place)
     x = place - i
     a = table[first + (i - 1) % n]

@@ -1,4 +1,4 @@
-r"""Kinetic torque that rises with sliding speed: what keeps silicone silent.
+r"""Kinetic torque that rises with sliding speed, which keeps silicone silent.
 
 .. math::
     T_{kin}(v) = T_{kin} \, [1 + s f(x)], \quad x = |v| / v_r, \qquad
@@ -6,12 +6,12 @@ r"""Kinetic torque that rises with sliding speed: what keeps silicone silent.
 
 Forms linear (viscous), saturating and logarithmic (thermally activated, as in rate-and-state laws;
 Ruina 1983), all with the same gain s at the speed v_r. PDMS triples its torque from 0.25 to
-17 rad/s and never vibrates (5.1.2): s = 2 at v_r = 17 rad/s. T_crit moves along, so that laws with
-memory keep the part that comes with age.
+17 rad/s and never vibrates (5.1.2): s = 2 at v_r = 17 rad/s. T_crit rises by the same torque, so
+laws with memory retain the part that comes with age.
 
 Limits: s = 0 is the plain model; at rest nothing changes; a linear gain acts as a viscous damping
 s T_kin / v_r [Nm s/rad] between shaft and bushing. Where dT/dv exceeds some 300 Nm s/rad, the
-surface follows the shaft faster than any bearable number of steps, and the run is refused.
+solver would need too many steps to follow the surface, and the run is refused.
 """
 
 import math
@@ -40,7 +40,7 @@ EFFECT = Effect(
     forms=("linear", "saturating", "logarithmic"),
     parameters={
         "gain": Parameter(0.1, "", 0.0, 5.0, "s: share that the kinetic torque gains at `speed`"),
-        "speed": Parameter(10.0, "rad/s", 1e-2, 1e3, "v_r: speed at which it has gained that"),
+        "speed": Parameter(10.0, "rad/s", 1e-2, 1e3, "v_r: speed of that gain"),
     },
     strength="gain",
     contact=_contact,

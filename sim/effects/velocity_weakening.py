@@ -5,10 +5,10 @@ r"""Kinetic torque that falls with sliding speed: what sustains squawk and squea
     f = 1 - e^{-x}, \quad \frac{x}{1 + x}, \quad 1 - e^{-x^2}
 
 Forms exponential, rational and gaussian: the falling branch of the Stribeck curve (Bo and
-Pavelescu 1982; Armstrong-Helouvry, Dupont and Canudas de Wit 1994), with more or less of a tail.
-Steady sliding loses its stability where dT/dv is below minus the damping that the modes have, so
-without weakening there is no quasi-harmonic regime. T_crit moves along: a true stick breaks at
-rest, where neither has, and laws with memory keep the part of their torque that comes with age.
+Pavelescu 1982; Armstrong-Helouvry, Dupont and Canudas de Wit 1994), with shorter or longer tails.
+Steady sliding is unstable where dT/dv is below minus the damping of the modes, so without weakening
+there is no quasi-harmonic regime. T_crit falls by the same torque: true stick breaks at rest, where
+neither has fallen, and laws with memory retain the part of their torque that comes with age.
 
 Limits: s = 0 is the plain model; at rest nothing changes; at high speed the share s is lost.
 """

@@ -1,4 +1,4 @@
-r"""The elastomer is stiffer, and damps, the faster it is deformed.
+r"""Viscoelastic elastomer: its stiffness and damping depend on frequency.
 
 .. math::
     T_E = k_E \theta + c\dot\theta + \sum_i k_i (\theta - z_i), \qquad
@@ -8,11 +8,11 @@ Maxwell branches beside the spring (Wiechert's model; Ferry, *Viscoelastic Prope
 Forms one_branch (Zener's solid, tau); two_branches of equal stiffness, a factor `spread` apart
 about tau; fractional, four branches a factor `spread` apart whose stiffness goes as tau_i^-alpha,
 so that over their range the stiffness rises as frequency^alpha and the loss factor is nearly
-constant, as a rubber's is in its transition. theta is the twist, z_i that of a branch's dashpot.
+constant, as for rubber in its transition. theta is the twist, z_i that of a branch's dashpot.
 
-Limits: s = 0 is the plain model; slowly deformed, the elastomer is a spring k_E; far above
-1 / (2 pi tau) one of k_E (1 + s). A branch never gives more than it has stored. Relaxation times
-below 20 us, shorter than the integration resolves, are raised to that.
+Limits: s = 0 is the plain model; at low frequency the elastomer is a spring k_E, far above
+1 / (2 pi tau) a spring k_E (1 + s). A branch never releases more energy than it has stored.
+Relaxation times below 20 us, the resolution of the integration, are raised to 20 us.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ from sim.effects.effect import Effect, Parameter, Stage, Values
 _BRANCHES = {"one_branch": 1, "two_branches": 2, "fractional": 4}
 _MOST_BRANCHES = max(_BRANCHES.values())
 _SHORTEST = 20e-6
-"""[s]"""
+"""Shortest relaxation time [s]."""
 
 
 def _pack(form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.float64]:
@@ -54,9 +54,9 @@ EFFECT = Effect(
         "stiffening": Parameter(
             0.3, "", 0.0, 5.0, "s: stiffness gained at high frequency, over the static one"
         ),
-        "relaxation_time": Parameter(5e-4, "s", 2e-5, 1.0, "tau: of the branches, in the middle"),
-        "spread": Parameter(4.0, "", 1.0, 10.0, "from one branch's time to the next"),
-        "exponent": Parameter(0.3, "", 0.0, 1.0, "alpha: of the frequency; of fractional alone"),
+        "relaxation_time": Parameter(5e-4, "s", 2e-5, 1.0, "tau: mean of the branches"),
+        "spread": Parameter(4.0, "", 1.0, 10.0, "ratio of successive relaxation times"),
+        "exponent": Parameter(0.3, "", 0.0, 1.0, "alpha: of frequency; fractional only"),
     },
     strength="stiffening",
     contact=_contact,

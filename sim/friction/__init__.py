@@ -1,4 +1,4 @@
-"""Friction laws, one a file: a new law is a file with a ``LAW`` that is named as the file is."""
+"""Friction laws, one file each: a new law is a file with a ``LAW`` of the same name."""
 
 from models.errors import ParameterError
 from models.schema import did_you_mean
@@ -8,11 +8,11 @@ from sim.parameters import Library
 __all__ = ["LAWS", "friction_law"]
 
 LAWS: Library[FrictionLaw] = Library(__name__, __path__, "LAW", besides=("law", "shared"))
-"""Every friction law by name."""
+"""Friction laws by name."""
 
 
 def friction_law(name: str) -> FrictionLaw:
-    """Return the friction law called `name`.
+    """Return a friction law by its name.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-r"""Static friction that grows with the time of contact, exponentially.
+r"""Friction with static ageing: strength that grows exponentially with the time of contact.
 
 .. math::
     \dot z &= w [1 - \alpha(x) x], \qquad x = K z \operatorname{sgn}(v) / g,
@@ -7,15 +7,15 @@ r"""Static friction that grows with the time of contact, exponentially.
     g = T_{kin} + (T_{crit} - T_{kin}) (1 - e^{-\varphi / \tau})
 
 The growth is that of the strengthening laws reviewed by Baumberger and Caroli (2006), in the form
-that saturates. z is the shear of the contact, phi its age [s]; w is that of
-`sim.friction.shared`, whose bound the rate of renewal observes as well. The contact is that
-of Dupont et al. (2002): alpha is zero up to x = 0.7 and rises smoothly to one at x = 1, so that
-below 70 % of its strength the contact truly sticks and ages with the clock, and slip alone renews
-it. Bristles that creep at any load would lose their age before they break.
+that saturates. z is the shear of the contact, phi its age [s]; w is that of `sim.friction.shared`,
+whose bound also limits the rate of renewal. The contact is that of Dupont et al. (2002): alpha is
+zero up to x = 0.7 and rises smoothly to one at x = 1, so below 70 % of its strength the contact
+truly sticks and ages with time, and only slip renews it. Bristles that creep at any load would lose
+their age before they break.
 
-Limits: steady sliding gives T = g at phi = D/|v|, hence T_kin where D << |v| tau; broken after a
-rest of t, a contact much stiffer than T_crit / D has held T_kin + (T_crit - T_kin)
-(1 - exp(-t / tau)); equal torques, or tau -> infinity, give a constant friction.
+Limits: steady sliding gives T = g at phi = D/|v|, hence T_kin where D << |v| tau; after a rest of
+t, a contact much stiffer than T_crit / D breaks at T_kin + (T_crit - T_kin) (1 - exp(-t / tau));
+equal torques, or tau -> infinity, give a constant friction.
 """
 
 import math
@@ -28,7 +28,7 @@ _LONG_REST = 1.0
 """Age of the contact at the start [s]."""
 
 _YIELD = 0.7
-"""Share of its strength up to which the contact does not slip."""
+"""Share of the strength below which the contact does not slip."""
 
 _PARAMETERS = {
     **BRISTLE_PARAMETERS,

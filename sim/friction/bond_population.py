@@ -1,4 +1,4 @@
-r"""A population of bonds that form, stretch and break.
+r"""Bond population: friction by bonds that form, stretch and break.
 
 .. math::
     \dot n &= (1 - n) / t_r - r n, \qquad
@@ -6,16 +6,16 @@ r"""A population of bonds that form, stretch and break.
     \dot m &= n v - r m, \qquad m = n u \\
     \dot z &= w - K |w| z / T_{kin}, \qquad T = K m + (1 - n) K z T_r / T_{kin} + \eta v
 
-Schallamach (1963); Braun and Peyrard (2008). n is the share of the contact that is bonded, u the
-mean stretch of its bonds [rad], t_r the time in which bonds form; what is not bonded rubs with a
-torque T_r, through the bristles of `sim.friction.shared` (z, w). New bonds are unstretched,
-so that u' = v - u (1 - n) / (n t_r); with the stretch of all bonds together, m, as the state
-nothing divides by n. The time of spontaneous rupture, t_s = t_r exp(T_crit / (K u_0)), is given
-through T_crit: the torque of a fully bonded contact at which bonds break as fast as they form. K,
-T_r and eta go with T_kin, which is their scale and not the torque of sliding.
+Schallamach (1963); Braun and Peyrard (2008). n is the bonded share of the contact, u the mean
+stretch of its bonds [rad], t_r the time in which bonds form; the rest rubs with a torque T_r,
+through the bristles of `sim.friction.shared` (z, w). New bonds are unstretched, so that
+u' = v - u (1 - n) / (n t_r); the state is the stretch of all bonds together, m, which avoids a
+division by n. The time of spontaneous rupture, t_s = t_r exp(T_crit / (K u_0)), follows from
+T_crit: the torque of a fully bonded contact at which bonds break as fast as they form. K, T_r and
+eta are proportional to T_kin, which is their scale and not the torque of sliding.
 
-Limits: steady sliding gives u = v / r, n = 1 / (1 + r t_r); at rest nearly all is bonded and the
-torque relaxes; at high speed nothing is, and T = T_r + eta v.
+Limits: steady sliding gives u = v / r, n = 1 / (1 + r t_r); at rest nearly the whole contact is
+bonded and the torque relaxes; at high speed no part is, and T = T_r + eta v.
 """
 
 import math
@@ -34,7 +34,7 @@ _PARAMETERS = {
     "rupture_stretch": Parameter(
         2.6e-4, "rad", 1e-4, 2e-3, "u_0: stretch that speeds rupture up e times"
     ),
-    "rubbing_share": Parameter(0.3, "", 0.0, 2.0, "T_r / T_kin: torque of what is not bonded"),
+    "rubbing_share": Parameter(0.3, "", 0.0, 2.0, "T_r / T_kin: torque of the unbonded part"),
     "viscous_share_per_speed": Parameter(
         0.0125, "s/rad", 0.0, 0.2, "eta / T_kin: rise of the torque with speed"
     ),

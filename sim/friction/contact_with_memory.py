@@ -1,4 +1,4 @@
-r"""Elastic contact that remembers how long it has touched.
+r"""Contact with memory: an elastic contact whose strength depends on its age and speed.
 
 .. math::
     \dot z &= v - K |v| z / g(\varphi, v), \qquad T = K z + \sigma \dot z \\
@@ -7,17 +7,17 @@ r"""Elastic contact that remembers how long it has touched.
          + \beta T_{kin} e^{-(|v| / v_w)^n}
 
 z is the shear of the contact [rad], phi its age [s]: in stick it grows with time, in sliding it
-settles at D/|v|. So the contact gives way gradually during stick, regains strength with time, and
-its torque falls with sliding speed; without the last, nothing sustains itself. After the bristle
-contact of Canudas de Wit et al. (1995), the rate-and-state laws of Dieterich and Ruina (1983),
-whose ageing here saturates, and the falling torque of Bo and Pavelescu (1982) with exponents n up
-to 2, where it falls steepest at 0.7 of v_w. Stiffness and damping of the contact go with the real
-area of contact, hence with T_kin; so may the way D in which it is renewed, as spots of contact grow
-and join under load.
+settles at D/|v|. So the contact yields gradually during stick, regains strength with time, and its
+torque falls with sliding speed, without which no vibration sustains itself. The law combines the
+bristle contact of Canudas de Wit et al. (1995), the rate-and-state laws of Dieterich and Ruina
+(1983), whose ageing here saturates, and the falling torque of Bo and Pavelescu (1982) with
+exponents n up to 2, where it falls steepest at 0.7 of v_w. Stiffness and damping of the contact are
+proportional to the real area of contact, hence to T_kin; the renewal angle D may grow with it too,
+as spots of contact grow and join under load.
 
-Limits: steady sliding at speed v gives T = g(D/|v|, v), and with D_0 = 0 torques that are larger
-age as if they slid more slowly; tau -> infinity and beta = 0 give a constant T_kin; at rest for
-long, T may rise to T_crit and the share beta of T_kin.
+Limits: steady sliding at speed v gives T = g(D/|v|, v); with D_0 = 0 a larger torque ages like a
+smaller one at a lower speed; tau -> infinity and beta = 0 give a constant T_kin; after a long rest
+T may rise to T_crit + beta T_kin.
 """
 
 import math
@@ -30,7 +30,7 @@ _LONG_REST = 1.0
 """Age of the contact at the start [s]."""
 
 _LEAST_RENEWAL = 1e-6
-"""Of D [rad], whatever its parts."""
+"""Lower limit of D [rad]."""
 
 _PARAMETERS = {
     **BRISTLE_PARAMETERS,
@@ -47,7 +47,7 @@ _PARAMETERS = {
     "weakening_speed": Parameter(20.0, "rad/s", 1e-3, 1e4, "v_w: speed over which it fades"),
     "weakening_exponent": Parameter(1.0, "", 1.0, 4.0, "n: 1 falls at once, 2 as a Gaussian"),
     "renewal_angle_per_torque": Parameter(
-        0.0, "rad/Nm", 0.0, 1e-2, "D_1: how much longer it is for each Nm of T_kin"
+        0.0, "rad/Nm", 0.0, 1e-2, "D_1: increase of the distance per Nm of T_kin"
     ),
 }
 
@@ -57,7 +57,7 @@ def _torque(v, c, contact, state, state_rates):
     critical, kinetic, z, age = contact[CRITICAL], contact[KINETIC], state[0], state[1]
     stiffness, damping = c[0] * kinetic, c[1] * kinetic
     speed = abs(v)
-    inverse = 1.0 / c[5]  # before the speed is known
+    inverse = 1.0 / c[5]  # computed while the speed is still being loaded
     power = speed * inverse
     if c[6] == 2.0:  # a general power takes as long as all the rest
         power *= power

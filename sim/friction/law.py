@@ -1,6 +1,6 @@
-"""The small interface behind which every friction law stands.
+"""Interface of a friction law.
 
-A law is one file with one `FrictionLaw` named ``LAW``. Sliding speed is that of the shaft over
+A law is one file with one `FrictionLaw` named ``LAW``. The sliding speed is that of the shaft over
 the bushing's surface, v = shaft speed - interface speed; the torque acts on the bushing along v.
 """
 
@@ -19,31 +19,30 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FrictionLaw:
-    """A friction law: its parameters and what the solver needs of it.
+    """Friction law: its name, parameters, torque function and solver tolerance.
 
     Parameters
     ----------
     name : str
     parameters : mapping of str to Parameter
-        What a material file may set.
+        Parameters that a rig file may set.
     torque : compiled function, optional
         ``torque(sliding_speed, coefficients, contact, state, state_rates)`` by
-        `sim.contact.LAW_SIGNATURE`: the torque [Nm], and the rates of the inner state. ``None``
-        for the law with true stick, where the solver itself finds what holds.
+        `sim.contact.LAW_SIGNATURE`: returns the torque [Nm] and fills the rates of the inner state.
+        ``None`` for the law with true stick, where the solver computes the holding torque.
     pack : callable, optional
-        ``pack(values)``: the coefficients that `torque` reads; by default the parameters' values
-        in their order. The torques of the fit are in the contact, as effects leave them.
+        ``pack(values)`` returns the coefficients that `torque` reads; by default the parameters'
+        values in order. The torques of the fit are in the contact, changed by effects.
     rest : tuple of float
-        The contact's inner state after a long rest, as `torque` has it [rad or s, by the law]; by
-        default there is none.
+        Inner state of the contact after a long rest [rad or s, by the law]; by default none.
     reads_critical : bool
         Whether `torque` reads the critical torque.
     tolerance : float
-        Error of a step of the solver, over twist, speed and inner state [-]. The default serves the
-        most chaotic; where neighbouring motions part slowly, a larger one is as good and faster.
+        Relative error of a solver step in twist, speed and inner state [-]. The default suits the
+        most chaotic laws; where neighbouring motions diverge slowly, a larger one is as good.
     master_speeds : tuple of str
-        Parameters that are speeds of a master curve, which a temperature shifts; by default none,
-        and it acts on the torques.
+        Parameters that are speeds of a master curve, which a temperature shifts; by default none:
+        the temperature then acts on the torques.
     """
 
     name: str
@@ -56,13 +55,13 @@ class FrictionLaw:
     master_speeds: tuple[str, ...] = ()
 
     def coefficients(self, values: Mapping[str, float]) -> NDArray[np.float64]:
-        """Numbers that `torque` reads, from resolved parameters, shape (n,), units by the law."""
+        """Return the coefficients of `torque` for parameter values, shape (n,), units by law."""
         import numpy as np
 
         return np.array(list(values.values()) or [0.0]) if self.pack is None else self.pack(values)
 
     def state(self) -> NDArray[np.float64]:
-        """Inner state after a long rest, shape (n_states,), units by the law."""
+        """Return the inner state after a long rest, shape (n_states,), units by law."""
         import numpy as np
 
         return np.array(self.rest, dtype=np.float64)

@@ -6,7 +6,7 @@ r"""LuGre friction: bristles that bend, a Stribeck curve, and a viscous torque.
 
 Canudas de Wit, Olsson, Astrom and Lischinsky (1995). Steady sliding gives T = g(v) + sigma_2 v;
 with T_crit = T_kin and sigma_2 > 0 the torque rises with speed and sliding is stable at any speed,
-as PDMS does on the rig (5.1.2).
+like PDMS on the rig (5.1.2).
 """
 
 import math

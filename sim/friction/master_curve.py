@@ -1,16 +1,16 @@
-r"""Master curve of rubber friction: a bell over the speed.
+r"""Master curve of rubber friction: a bell curve over the logarithm of speed.
 
 .. math::
     g = p_0 T_{kin} + (p_1 T_{crit} - p_0 T_{kin})
          \exp\left[-\tfrac12 (\log_{10}(|v| / v_p) / w)^2\right]
 
-Grosch (1963) found friction of rubber at all temperatures on one bell over log(a_T v); Persson
-(2001) derives the bell from the losses in the rubber. v_p is the speed of most friction at the
-temperature that the material is given at; at another `sim.temperature` moves it to v_p / a_T. The
-peak is p_1 T_crit, the floor on both sides p_0 T_kin; the contact is that of
-`sim.friction.shared`, its stiffness going with the floor. Below its speed friction rises
-with speed and sliding is stable, above it falls: a low glass temperature moves the peak beyond the
-rig's speeds, and that is why silicone is silent there.
+Grosch (1963) found rubber friction at all temperatures on one bell over log(a_T v); Persson (2001)
+derives the bell from the losses in the rubber. v_p is the speed of highest friction at the
+material's reference temperature; at another temperature `sim.temperature` shifts it to v_p / a_T.
+The peak is p_1 T_crit, the floor on both sides p_0 T_kin; the contact is that of
+`sim.friction.shared`, with a stiffness proportional to the floor. Below v_p friction rises with
+speed and sliding is stable; above, it falls. A low glass temperature moves the peak beyond the
+rig's speeds, which is why silicone is silent there.
 
 Limits: steady sliding gives T = g(v); at the peak's speed that is p_1 T_crit; equal torques and
 shares, or w -> infinity with the peak in place of T_kin, give a constant friction.
@@ -27,11 +27,11 @@ from sim.friction.law import FrictionLaw, Parameter
 from sim.friction.shared import BRISTLE_PARAMETERS, shear_speed
 
 _LEAST_SPEED = 1e-30
-"""Whose logarithm stands in for that of rest [rad/s]."""
+"""Speed whose logarithm replaces that of rest [rad/s]."""
 
 _PARAMETERS = {
     **BRISTLE_PARAMETERS,
-    "peak_speed": Parameter(0.02, "rad/s", 1e-12, 1e12, "v_p: of most friction"),
+    "peak_speed": Parameter(0.02, "rad/s", 1e-12, 1e12, "v_p: speed of highest friction"),
     "width": Parameter(1.5, "", 0.2, 20.0, "w: decades from the peak to 0.61 of its height"),
     "peak_share": Parameter(1.0, "", 1.0, 10.0, "p_1: torque at the peak over T_crit"),
     "floor_share": Parameter(1.0, "", 0.1, 1.0, "p_0: torque far from the peak over T_kin"),

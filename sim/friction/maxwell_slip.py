@@ -7,15 +7,13 @@ r"""Maxwell-slip (Iwan) friction: sixteen elastic-plastic elements in parallel.
 
 Iwan (1966); with a strength that falls with speed, Al-Bender, Lampaert and Swevers (2004). The
 thresholds s_i g / 16 are spread evenly between 1 - spread and 1 + spread about their mean, so the
-contact gives way element by element while it is loaded, and remembers where it was turned back.
-alpha rises smoothly from zero at x = 0.5 to one at x = 1: an element that yields at once would cost
-the solver its order. The elements do not pull at each other. w is that of
-`sim.friction.shared`.
+contact yields element by element under load, and remembers its reversals. alpha rises smoothly from
+zero at x = 0.5 to one at x = 1, because an element that yields at once would cost the solver its
+order. The elements are not coupled. w is that of `sim.friction.shared`.
 
-Limits: steady sliding gives T = g(v); slow loading from rest is nearly the sum of elements that
-each hold up to their threshold, linear at first and settling at T_crit beyond
-(1 + spread) T_crit / K; a small loop during loading closes to about 1 %, by which the smooth yield
-creeps; equal torques give a constant friction.
+Limits: steady sliding gives T = g(v); slow loading from rest is nearly the sum of ideal elements,
+linear at first and settling at T_crit beyond (1 + spread) T_crit / K; a small loop during loading
+closes to about 1 %, the creep of the smooth yield; equal torques give a constant friction.
 """
 
 import math
@@ -27,7 +25,7 @@ from sim.friction.shared import BRISTLE_PARAMETERS, shear_speed
 N_ELEMENTS = 16
 
 _YIELD = 0.5
-"""Share of its threshold up to which an element does not slip."""
+"""Share of the threshold below which an element does not slip."""
 
 _PARAMETERS = {
     **BRISTLE_PARAMETERS,

@@ -1,4 +1,4 @@
-r"""Rate-and-state friction: strength by the age of the contact, and by speed directly.
+r"""Rate-and-state friction: strength that depends on the contact's age and on speed.
 
 .. math::
     \dot z &= w - K |w| z / g, \qquad T = K z + \sigma \dot z \\
@@ -7,10 +7,9 @@ r"""Rate-and-state friction: strength by the age of the contact, and by speed di
 
 After Dieterich (1979) and Ruina (1983), with Dieterich's law of ageing; their logarithm of the age,
 which has no bound, is replaced by a share that saturates at T_crit. phi is the age of the contact
-[s], s the speed at which it slips, a the direct effect; w is that of `sim.friction.shared`,
-whose bound the rate |s|/D observes as well. Slip alone renews the contact, not its elastic shear,
-as in the original, whose speed is that of slip; `contact_with_memory` counts both and has no direct
-effect.
+[s], s its slip speed, a the direct effect; w is that of `sim.friction.shared`, whose bound also
+limits the rate |s|/D. Only slip renews the contact, not its elastic shear, as in the original,
+whose speed is the slip speed; `contact_with_memory` counts both and has no direct effect.
 
 Limits: steady sliding gives T = g at phi = D/|v|; it weakens with speed while the direct effect
 is small, and strengthens beyond the speed where that overtakes; equal torques and a = 0, or

@@ -1,14 +1,14 @@
-r"""The elastic contact that friction laws without true stick have in common.
+r"""Elastic contact shared by the friction laws without true stick.
 
 .. math::
     \dot z = w - K |w| z / g, \qquad T = K z + \sigma \dot z, \qquad
     w = v / \sqrt{1 + (K v / (\lambda g))^2}
 
-z is the shear of the contact [rad], g its strength [Nm]: Dahl (1968), with the strength that
-varies of Canudas de Wit et al. (1995), where w is the sliding speed v itself. There the shear
-settles within g / (K |v|), which no step is short enough for at any stiffness and speed. Here it
-settles within 1 / lambda at the fastest: steady sliding, where T = g, is
-untouched, and w differs from v only where the contact follows its strength at once anyway.
+z is the shear of the contact [rad], g its strength [Nm]: the model of Dahl (1968) with the variable
+strength of Canudas de Wit et al. (1995), in which w is the sliding speed v itself. There the shear
+settles within g / (K |v|), which can be too short for any step. Here it settles within 1 / lambda
+at the fastest: steady sliding, where T = g, does not change, and w differs from v only where the
+contact follows its strength at once anyway.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 FASTEST = 4e5
-"""Rate lambda beyond which a contact follows at once [1/s], as steps of 8 us can."""
+"""Highest rate lambda at which a contact follows its strength [1/s], for steps of 8 us."""
 
 BRISTLE_PARAMETERS = {
     "contact_stiffness_per_torque": Parameter(
@@ -37,11 +37,11 @@ BRISTLE_PARAMETERS = {
         9e-5, "s/rad", 0.0, 1e-2, "sigma / T_kin: damping of the contact's shear"
     ),
 }
-"""The first two of each such law."""
+"""First two parameters of each such law."""
 
 
 def _shear_speed(v: float, slip_shear: float) -> float:
-    """Return w [rad/s] at the sliding speed v, where `slip_shear` is g / K [rad]."""
+    """Return w [rad/s] at the sliding speed v; `slip_shear` is g / K [rad]."""
     ratio = v / (FASTEST * slip_shear)
     return v / math.sqrt(1.0 + ratio * ratio)
 
@@ -55,7 +55,7 @@ STRIBECK_PARAMETERS = {
     "second_share": Parameter(0.0, "", 0.0, 1.0, "s: part of T_crit - T_kin that falls over v_2"),
     "second_speed": Parameter(15.6, "rad/s", 1e-2, 1e4, "v_2: speed over which that part falls"),
 }
-"""Of each Stribeck law, in the order in which its compiled function reads them."""
+"""Parameters of each Stribeck law, in the order in which its compiled function reads them."""
 
 
 def _stribeck_torque(
@@ -67,7 +67,7 @@ def _stribeck_torque(
     state: NDArray[np.float64],
     state_rates: NDArray[np.float64],
 ) -> float:
-    """Torque [Nm] at the sliding speed v, where f is `first` at v / v_1 and `second` at v / v_2."""
+    """Return the torque [Nm] at sliding speed v; f is `first` at v / v_1, `second` at v / v_2."""
     kinetic = contact[KINETIC]
     stiffness, damping = c[0] * kinetic, c[1] * kinetic
     drop = contact[CRITICAL] - kinetic

@@ -1,11 +1,11 @@
-r"""Friction that falls with speed over one or two scales, exponentially.
+r"""Stribeck friction that falls exponentially with speed, over one or two scales.
 
 .. math::
     g = T_{kin} + (T_{crit} - T_{kin}) [(1 - s) f(v / v_1) + s f(v / v_2)], \qquad
         f(x) = e^{-|x|}
 
-Bo and Pavelescu (1982), exponent one: it falls steepest at rest. The elastic contact and what the
-scales share are those of `sim.friction.shared`.
+Bo and Pavelescu (1982), exponent one: it falls steepest at rest. The elastic contact and the sum
+of the scales are those of `sim.friction.shared`.
 
 Limits: steady sliding gives T = g(v), which is T_crit at rest and T_kin at high speed; equal
 torques give a constant friction; s = 0 is one scale, and so is v_1 = v_2 with any s.

@@ -1,11 +1,11 @@
-r"""Friction that falls with speed over one or two scales, as a Gaussian.
+r"""Stribeck friction that falls with speed as a Gaussian, over one or two scales.
 
 .. math::
     g = T_{kin} + (T_{crit} - T_{kin}) [(1 - s) f(v / v_1) + s f(v / v_2)], \qquad
         f(x) = e^{-x^2}
 
-Bo and Pavelescu (1982), exponent two: flat at rest, steepest at 0.7 of its speed, and over soon
-after. The elastic contact and what the scales share are those of `sim.friction.shared`.
+Bo and Pavelescu (1982), exponent two: flat at rest, steepest at 0.7 of its speed, and complete soon
+after. The elastic contact and the sum of the scales are those of `sim.friction.shared`.
 
 Limits: steady sliding gives T = g(v), which is T_crit at rest and T_kin at high speed; equal
 torques give a constant friction; s = 0 is one scale, LuGre without its viscous part, and so is

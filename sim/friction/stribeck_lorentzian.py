@@ -1,11 +1,11 @@
-r"""Friction that falls with speed over one or two scales, as a Lorentzian.
+r"""Stribeck friction that falls with speed as a Lorentzian, over one or two scales.
 
 .. math::
     g = T_{kin} + (T_{crit} - T_{kin}) [(1 - s) f(v / v_1) + s f(v / v_2)], \qquad
         f(x) = 1 / (1 + x^2)
 
 Hess and Soom (1990): flat at rest, with a tail that still weakens at many times its speed. The
-elastic contact and what the scales share are those of `sim.friction.shared`.
+elastic contact and the sum of the scales are those of `sim.friction.shared`.
 
 Limits: steady sliding gives T = g(v), which is T_crit at rest and falls to T_kin as 1/v^2; equal
 torques give a constant friction; s = 0 is one scale, and so is v_1 = v_2 with any s.

@@ -1,14 +1,14 @@
-r"""Friction that rises in proportion to speed, on an elastic contact.
+r"""Coulomb and viscous friction on an elastic contact: the torque rises linearly with speed.
 
 .. math::
     T = K z + \sigma \dot z + T_{kin} v / v_0, \qquad g = T_{kin}
 
-The textbook's sum of Coulomb and viscous friction, whose jump at rest the elastic contact of Dahl
-(1968), with the shear z of `sim.friction.shared`, makes smooth. There is no strength beyond
-T_kin: T_crit has no part in it.
+The textbook's sum of Coulomb and viscous friction. The elastic contact of Dahl (1968), with the
+shear z of `sim.friction.shared`, smooths its jump at rest. The strength is T_kin: T_crit does not
+enter.
 
 Limits: steady sliding gives T = T_kin (1 + v / v_0) along v; v_0 -> infinity gives constant
-friction; the torque never falls with speed, so that sliding is stable at any.
+friction; the torque never falls with speed, so sliding is stable at any speed.
 """
 
 from sim.contact import KINETIC, law_torque

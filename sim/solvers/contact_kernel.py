@@ -1,11 +1,11 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any
 # ruff: noqa: ANN001, ANN202
-"""The compiled loop of the contact solver: steps, their errors, their events, the outputs.
+"""Compiled loop of the contact solver: steps, error control, events and outputs.
 
-A step is tried, and repeated until its error is small enough. Where stick or slip ends within it,
-or a law's sliding turns, its length is sought at which that happens just at its end; the next step
-begins with the new right-hand side. Outputs are read within the step that covers them.
+A step is repeated until its error is small enough. Where stick or slip ends within it, or a law's
+sliding reverses, its length is iterated until that happens at its end; the next step begins with
+the new right-hand side. Outputs are interpolated within the step that covers them.
 """
 
 from __future__ import annotations
@@ -28,31 +28,31 @@ from sim.solvers.tsitouras import (
 )
 
 _GRACE = 2e-3
-"""Time that is granted to what has just begun [s]."""
+"""Time at the start of a run that does not count towards the average step [s]."""
 
 _LEAST_STEP = 1e-10
-"""At which an error is accepted: something jumps [s]."""
+"""Step at which any error is accepted, since something jumps [s]."""
 
 _TIME_TOLERANCE = 1e-14
-"""[s]"""
+"""Tolerance of the time of an event [s]."""
 
 _EVENT_TOLERANCE = 1e-11
-"""Of torque and speed where stick and slip end, over their scales."""
+"""Tolerance of torque and speed where stick and slip end, over their scales."""
 
 _TURN_TOLERANCE = 1e-7
-"""Of the speed at which a law's sliding turns, over its scale."""
+"""Tolerance of the speed at which a law's sliding reverses, over its scale."""
 
 _SECANTS = 4
-"""To where the sliding turns, of the dense output."""
+"""Secant steps to the reversal of sliding in the dense output."""
 
 _GRAZE = 2e-3
-"""How near an end may come within a step that is not looked at more closely, over its scale."""
+"""Distance to an event below which a step is examined for one, over its scale."""
 
 _KINK = 1e-7
-"""Of the torque that the drive's acceleration takes, over the kinetic one: a step ends there."""
+"""Change of the drive's inertia torque at which a step ends, over the kinetic torque."""
 
 _LEAST_FACTOR = 0.2
-"""By which a step is shortened that is too long to tell what ends it."""
+"""Factor that shortens a step in which the event cannot be bracketed."""
 
 _VECTOR = float64[::1]
 _MATRIX = float64[:, ::1]
@@ -66,13 +66,13 @@ _LIMITS = _RECORD([float64, float64], at.Limits)
 
 @njit(**PART)
 def _stretch(drive, last, n, kink, i, end):
-    """Return the last segment of the drive that a step up to `end` reaches, and where that ends.
+    """Return the last segment of the drive that a step up to `end` may reach, and its end.
 
-    A step goes on across samples, but not across a kink of the drive.
+    A step may cross samples, but not a kink of the drive.
     """
     while (i + 1) * drive.step < end:
         if i == last:
-            # Where a block ends more of the drive is to come; where the run ends it goes on.
+            # At the end of a block the drive is unknown; at the end of the run it continues.
             return i, (last + 1) * drive.step if drive.speed.size > n else math.inf
         i += 1
         if abs(drive.slope[i] - drive.slope[i - 1]) > kink:
@@ -82,9 +82,9 @@ def _stretch(drive, last, n, kink, i, end):
 
 @njit(**PART)
 def _bracketed(h, far, low, high, far_low, far_high, side):
-    """Return a new length of a step in which stick or slip ends, and what brackets it.
+    """Return a new length of a step in which stick or slip ends, and its bracket.
 
-    Regula falsi; the end that stays twice counts for half (the Illinois algorithm).
+    Regula falsi; an end that stays twice counts half (the Illinois algorithm).
     """
     if far < 0.0:
         if side > 0.0:
@@ -106,9 +106,9 @@ def _bracketed(h, far, low, high, far_low, far_high, side):
 
 @njit(**PART)
 def _turn_within(start, end_speed, k, h, slide, far_start, far_end):
-    """Return the share of a step at which its dense output has the sliding turn, by secants.
+    """Return the share of a step at which sliding reverses in its dense output, by secants.
 
-    The shaft is taken to go from where it was at the start to where it is at the end.
+    The speed of the shaft is interpolated linearly.
     """
     x_before, far_before = 0.0, far_start
     x = far_start / (far_start - far_end)
@@ -130,10 +130,10 @@ def _turn_within(start, end_speed, k, h, slide, far_start, far_end):
     cache=True, nogil=True, **COMPILED,
 )  # fmt: skip
 def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out) -> None:
-    """Write the columns of `out`; `carried`, `rows` and the context are carried on.
+    """Fill the columns of `out`, and update `carried`, `rows` and the context.
 
-    The drive may be known beyond the outputs, as far as steps may reach; where it is not, it goes
-    on as it did.
+    The drive may extend beyond the outputs, as far as steps may reach; beyond its end its slope
+    continues.
     """
     s, has_law, context = bushing.system, bushing.law != 0, bushing.context
     k, start, end, u = rows.stages, rows.start, rows.end, rows.state
@@ -144,11 +144,11 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
     t_crit, t_kin = s[8], s[9]
     bushing.contact[CRITICAL], bushing.contact[KINETIC] = t_crit, t_kin
     kink = _KINK * t_kin * s[6]
-    # The twist at the critical torque, and the speed that it becomes when released.
+    # Scales: the twist at the critical torque, and the speed that it releases.
     twist_scale = max(t_crit, t_kin) / s[2]
     speed_scale = twist_scale * math.sqrt(s[2] * s[6])
     per_angle, per_speed = 1.0 / twist_scale, 1.0 / speed_scale
-    # How near the end of stick or slip counts as there, by whether it slides.
+    # Distance to the end of stick or slip that counts as reached.
     if has_law:
         near_stick, near_slip = _TURN_TOLERANCE * speed_scale, _TURN_TOLERANCE * speed_scale
     else:
@@ -158,14 +158,14 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
     stick_start, stick_length = carried[at.STICK_START], carried[at.STICK_LENGTH]
     t0, t1 = carried[at.STEP_START], carried[at.STEP_END]
     step_of_stick, step_of_slip = carried[at.STEP_OF_STICK], carried[at.STEP_OF_SLIP]
-    fresh, n_done, error_before = carried[at.FRESH] != 0.0, carried[at.DONE], carried[at.ERROR]
+    fresh, n_steps, error_before = carried[at.FRESH] != 0.0, carried[at.STEPS], carried[at.ERROR]
     sample, i0 = 0, 0
     friction, e, holding, critical, caught, shaft = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     far_start, far, far_early, far_late = carried[at.FAR], 0.0, 0.0, 0.0
     if t1 <= _TIME_TOLERANCE:  # the drive may have a kink here
         fresh = True
     while True:
-        # The outputs that lie in the step just made.
+        # Outputs within the last step.
         while sample < n and sample * step < t1:
             length = t1 - t0
             fill_between(u, start, k, rows.weights, (sample * step - t0) / length, length)
@@ -184,15 +184,15 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             sample += 1
         if sample == n:
             break
-        if n_done * at.SHORTEST_STEP > _GRACE + first * step + t1:
-            carried[at.DONE] = -1.0  # too many steps: given up
+        if n_steps * at.SHORTEST_STEP > _GRACE + first * step + t1:
+            carried[at.STEPS] = -1.0  # too many steps
             return
-        # The next step begins where that ended, in the state that follows from what ended it.
+        # The next step begins at the end of the last, in the mode after its event.
         t0 = t1
         if next_mode != mode:
-            if mode == 0:  # it has broken loose
+            if mode == 0:  # the contact has broken loose
                 stick_length = first * step + t0 - stick_start
-            else:  # it has caught
+            else:  # the contact has caught
                 stick_start = first * step + t0
                 context[STICKS] += 1.0
             mode, fresh, error_before = next_mode, True, 1.0
@@ -206,12 +206,12 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
         aim = min(limits.longest, step_of_stick if mode == 0 and not has_law else step_of_slip)
         i_last, limit = _stretch(drive, last, n, kink, i0, t0 + aim)
         h = min(aim, limit - t0)
-        # Whether stick or slip ends in it: brackets of that, and how far from it they are.
+        # Bracket of the end of stick or slip within the step, and distances to the event.
         low, high, far_low, far_high, side = 0.0, -1.0, far_start, 0.0, 0.0
         begin = 0 if fresh else 1
         ends = False
         while True:
-            n_done += 1.0
+            n_steps += 1.0
             for stage in range(begin, at.N_STAGES):
                 fill_stage(u, start, k, stage, h)
                 t = t0 + NODES[stage] * h
@@ -222,7 +222,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
                     stage, t - i * step, i, time, stick_time, mode, bushing, hooks, drive,
                     rows,
                 )  # fmt: skip
-                # How far it is from the end of stick or slip, or from the turn of the sliding.
+                # Distance to the end of stick or slip, or to the reversal of sliding.
                 if has_law:
                     far = slide * (shaft - u[1])
                 elif mode == 0:
@@ -238,7 +238,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
                     if mode == 0 and not has_law and far < 0.0:
                         break
             if begin == 0 and mode == 0 and not has_law and far_start < 0.0:
-                # It cannot hold from the start: it slides on, or back.
+                # The contact cannot hold from the start: it slides on, or back.
                 mode = next_mode = 1 if holding > 0.0 else -1
                 stick_length = first * step + t0 - stick_start
                 continue
@@ -246,20 +246,20 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             error = step_error(k, h, start, u, lag, per_angle, per_speed) / tolerance
             factor = factor_of_step(error, error_before)
             if far < 0.0 and high < 0.0 and far_low <= 0.0 and error < math.inf:
-                # The end lies before the step: a sliding that has turned already, or a step that
-                # is too long to tell.
+                # The event lies before the step: sliding has already reversed, or the step is too
+                # long to bracket it.
                 if has_law:
                     slide, far, far_low, far_start = -slide, -far, -far_low, -far_start
                 elif h > _LEAST_STEP:
                     h *= _LEAST_FACTOR
                     continue
             if high < 0.0 and not (far < 0.0 and error < math.inf):
-                # No end so far. Is the step good enough?
+                # No event so far: check the error.
                 if error > 1.0 and h > _LEAST_STEP:
                     h *= factor
                     aim = h
                     continue
-                # Nor may it end within the step and begin again: the vertex of a parabola tells.
+                # Check for an event and its reversal within the step, by a parabola's vertex.
                 x, least = 1.0, math.inf
                 if not has_law:
                     x, least = vertex(0.0, far_start, NODES[2], far_early, NODES[3], far_late)
@@ -269,17 +269,17 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
                     break
                 h *= x
                 continue
-            # It ends within the step, which is repeated until it ends just there.
-            tried, whole = h, high < 0.0
+            # An event lies within the step, which is repeated until the event is at its end.
+            trial, whole = h, high < 0.0
             h, low, high, far_low, far_high, side = _bracketed(
                 h, far, low, high, far_low, far_high, side
             )
             if has_law and whole:
-                h = tried * _turn_within(start, u[1], k, tried, slide, far_start, far)
+                h = trial * _turn_within(start, u[1], k, trial, slide, far_start, far)
             near = abs(far) <= (near_stick if mode == 0 else near_slip)
             if near or high - low <= _TIME_TOLERANCE:
-                h = tried
-                if error > 1.0 and h > _LEAST_STEP:  # found, but by a step that was too long
+                h = trial
+                if error > 1.0 and h > _LEAST_STEP:  # event located, but the step is too long
                     h *= factor
                     aim = h
                     low, high, far_low, side = 0.0, -1.0, far_start, 0.0
@@ -292,7 +292,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
                     out[j, i] = math.nan
                 direction_out[i] = 0
             return
-        # The step is made.
+        # Accept the step.
         t1 = t0 + h
         for j in range(d):
             end[j] = u[j]
@@ -319,7 +319,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
     carried[at.MODE], carried[at.NEXT_MODE], carried[at.SLIDE] = mode, next_mode, slide
     carried[at.FIRST] = first + n
     carried[at.STICK_START], carried[at.STICK_LENGTH] = stick_start, stick_length
-    carried[at.ANGLE], carried[at.DONE], carried[at.FAR] = drive.angle[n], n_done, far_start
+    carried[at.ANGLE], carried[at.STEPS], carried[at.FAR] = drive.angle[n], n_steps, far_start
     carried[at.STEP_START], carried[at.STEP_END] = t0 - n * step, t1 - n * step
     carried[at.STEP_OF_STICK], carried[at.STEP_OF_SLIP] = step_of_stick, step_of_slip
     carried[at.FRESH], carried[at.ERROR] = (1.0 if fresh else 0.0), error_before

@@ -1,11 +1,11 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any, disable-error-code=call-arg
 # ruff: noqa: ANN001
-"""What moves the lumped model at one instant, with any friction law and any effects.
+"""Right-hand side of the lumped model with any friction law and any effects, and its records.
 
-Compiled into `sim.solvers.contact_kernel` where it is used: what is called through pointers makes
-every variable go through memory at each call, and a further call would do so twice. What each hook
-reads of the inner states is a view made once, since making one costs more than the call.
+It is inlined into `sim.solvers.contact_kernel`: calls through pointers pass every variable through
+memory, and a further call would do so twice. Each hook's view of the inner states is made once,
+since making one costs more than the call.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 _CREEP_ACCURACY = 1e-4
-"""Of a creep's share before its last secant, which squares it."""
+"""Accuracy of a creep's share before the last secant step, which squares it."""
 
 _MOST_CREEP_PASSES = 30
 
@@ -33,10 +33,10 @@ _MOST_CREEP_PASSES = 30
 def contact_rates(
     stage, since, i, time, stick_time, mode, bushing, hooks, drive, rows
 ) -> tuple[float, float, float, float, float, float]:
-    """Fill the rates of the state at a stage, `since` sample `i` of the drive [s].
+    """Fill the rates of the state at a stage, a time `since` after sample `i` of the drive [s].
 
-    Returns friction torque, elastomer torque, what holds the surfaces together, what they can
-    bear [Nm], the speed of the surface in stick, and that of the shaft [rad/s].
+    Returns friction torque, elastomer torque, holding torque and critical torque [Nm], the speed of
+    the surface in stick, and the speed of the shaft [rad/s].
     """
     s, has_law, contact, context = (
         bushing.system,
@@ -65,8 +65,8 @@ def contact_rates(
         context[shared.SHAFT_ANGLE] = drive.angle[i] + turned
         context[shared.SHAFT_SPEED], context[shared.TWIST] = shaft, twist
         context[shared.SHAFT_LAG], context[shared.SHAFT_LAG_RATE] = u[lag], u[lag + 1]
-        # A creeping contact relieves the elastomer's damper, on whose torque its creep depends:
-        # a share is sought that makes itself, by secants from rest.
+        # A creeping contact relieves the elastomer's damper, on whose torque the creep depends, so
+        # its share is a fixed point, iterated by secants from rest.
         share, share_before, gap_before = 0.0, 0.0, 0.0
         for turn in range(_MOST_CREEP_PASSES):
             context[shared.SLIDING_SPEED], context[shared.TWIST_RATE] = (
@@ -78,10 +78,10 @@ def contact_rates(
             contact[shared.STIFFNESS], contact[shared.ELASTOMER_TORQUE] = k_e, 0.0
             contact[shared.CREEP], contact[shared.SHAFT_TORQUE] = 0.0, 0.0
             contact[shared.SHAFT_INERTIA] = math.inf
-            at, seen, where = contact.ctypes, context.ctypes, hooks.addresses
+            at, now, where = contact.ctypes, context.ctypes, hooks.addresses
             for a in range(hooks.n):
                 shared.call_hook_at(
-                    where[a, 0], seen, shared.pointer(where[a, 1]), shared.pointer(where[a, 2]),
+                    where[a, 0], now, shared.pointer(where[a, 1]), shared.pointer(where[a, 2]),
                     shared.pointer(where[a, 3]), at,
                 )  # fmt: skip
             creep = contact[shared.CREEP]
@@ -100,18 +100,18 @@ def contact_rates(
                 break
         e += (contact[shared.STIFFNESS] - k_e) * twist + contact[shared.ELASTOMER_TORQUE]
         kinetic = contact[shared.KINETIC]
-        # What slides at a torque can be held by it, whatever an effect says.
+        # A contact holds at least its kinetic torque, whatever an effect does.
         critical = max(contact[shared.CRITICAL], kinetic)
         if contact[shared.SHAFT_INERTIA] != math.inf:
             mobility = 1.0 / contact[shared.SHAFT_INERTIA]
             shaft_torque = contact[shared.SHAFT_TORQUE]
-    # What holds the surfaces together, on a shaft whose end yields to the same torque.
+    # Holding torque, on a shaft whose end yields to the same torque.
     if mobility == 0.0:
         holding = e + j_e * acceleration
     else:
         holding = (e + j_e * shaft_torque * mobility) / (1.0 + j_e * mobility)
     if has_law:
-        # Laws have the first of the inner states, effects those after.
+        # The inner states of the law come first, then those of the effects.
         friction = shared.call_law_at(
             bushing.law, shaft - surface, bushing.coefficients.ctypes, contact.ctypes,
             rows.inner.ctypes, rows.inner_rates.ctypes,
@@ -130,57 +130,57 @@ def contact_rates(
         k[lag, stage] = u[lag + 1]
         turns = acceleration - (shaft_torque - friction) * mobility
         k[lag + 1, stage] = 0.0 if mobility == 0.0 else turns
-    # A slip ends where it is as slow as the creep in which it would stick.
+    # A slip ends where it is as slow as the creep of the stick that follows.
     caught = surface if sticks else shaft * (1.0 - creep)
     return friction, e, holding, critical, caught, shaft
 
 
 SHORTEST_STEP = 1e-7
-"""Average over a run, below which it is given up [s]."""
+"""Average step below which a run is aborted [s]."""
 
-# What is carried on from block to block, by place.
+# State of the solver between blocks, by index.
 (
-    MODE,  # +1 or -1 while it slides, 0 in stick and with a law
-    SLIDE,  # sign of the sliding speed with a law, 0 while that is not known
-    STICK_START,  # when the last stick began [s]
-    STICK_LENGTH,  # of the last stick [s]
-    ANGLE,  # of the drive at the next sample [rad]
-    FIRST,  # the next sample
-    STEP_START,  # of the last step, since the next sample [s]
-    STEP_END,  # [s]
-    STEP_OF_STICK,  # the next step as the error allows it, in stick [s]
-    STEP_OF_SLIP,  # [s]
-    FRESH,  # whether the rates at the end of the last step are to be computed anew
-    DONE,  # steps since the start; negative where they became too many
-    FAR,  # from the end of stick or slip, at the end of the last step
-    NEXT_MODE,  # after the last step
-    ERROR,  # of the last step, over the tolerance
+    MODE,  # +1 or -1 in sliding, 0 in stick and with a law
+    SLIDE,  # sign of the sliding speed with a law, 0 while undetermined
+    STICK_START,  # start of the last stick [s]
+    STICK_LENGTH,  # duration of the last stick [s]
+    ANGLE,  # angle of the drive at the next sample [rad]
+    FIRST,  # index of the next sample
+    STEP_START,  # start of the last step, relative to the next sample [s]
+    STEP_END,  # its end [s]
+    STEP_OF_STICK,  # length of the next step in stick, by error control [s]
+    STEP_OF_SLIP,  # the same in slip [s]
+    FRESH,  # whether the rates at the end of the last step must be recomputed
+    STEPS,  # number of steps since the start; -1 once there are too many
+    FAR,  # distance to the end of stick or slip, at the end of the last step
+    NEXT_MODE,  # mode after the last step
+    ERROR,  # error of the last step, over the tolerance
     N_CARRIED,
 ) = range(16)
 
 N_STAGES = 7
-"""Of a step of `sim.solvers.tsitouras`."""
+"""Stages of a step of `sim.solvers.tsitouras`."""
 
 N_MOTION = 4
-"""First of the variables, theta1, theta1', theta2, theta2'."""
+"""Number of variables of the motion, which come first: theta1, theta1', theta2, theta2'."""
 
 N_LAG = 2
-"""Last of the variables where effects act: angle and speed by which the shaft's end lags."""
+"""Number of variables of the shaft's lag, which come last if effects act: angle and speed."""
 
 
 class Bushing(NamedTuple):
-    """The lumped model and its friction, as compiled code reads them.
+    """Lumped model and friction, for compiled code.
 
     Parameters
     ----------
     system : ndarray, shape (10,)
         J_E, J_C, k_E, k_B, c_E, c_B, the inertias' reciprocals, T_crit, T_kin [SI].
     law : int
-        Address of the friction law's compiled function; 0 where the contact truly sticks.
+        Address of the friction law's compiled function; 0 for true stick.
     coefficients : ndarray, shape (n,)
-        Of the law [SI].
+        Coefficients of the law [SI].
     context, contact : ndarray, shape (n,)
-        What effects read, and what they change and laws read, by `sim.contact` [SI].
+        Context and contact of `sim.contact` [SI].
     """
 
     system: NDArray[np.float64]
@@ -191,15 +191,15 @@ class Bushing(NamedTuple):
 
 
 class Hooks(NamedTuple):
-    """What the effects' compiled functions are called with.
+    """Arguments of the effects' compiled functions.
 
     Parameters
     ----------
     n : int
-        Of effects that act.
+        Number of effects.
     addresses : ndarray, shape (n, 4)
-        Of function, values, states and their rates of each effect [-]: numbers instead of arrays,
-        since each array would be seven arguments to compile and to pass.
+        Addresses of function, values, states and state rates of each effect [-]; an array would be
+        seven arguments to compile and to pass.
     """
 
     n: int
@@ -207,16 +207,16 @@ class Hooks(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """The shaft's drive at the samples, linear between them, as far as it is known.
+    """Drive of the shaft at the samples, linear between them.
 
     Parameters
     ----------
     step : float
-        From sample to sample [s].
+        Time between samples [s].
     speed, angle : ndarray, shape (n,)
         [rad/s], [rad]
     slope : ndarray, shape (n,)
-        After each sample [rad/s2]; the last goes on beyond them.
+        Slope after each sample [rad/s2]; the last continues beyond them.
     """
 
     step: float
@@ -226,20 +226,20 @@ class Drive(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """States of all variables, or their rates, and room for them.
+    """States and rates of all variables, and work space.
 
     Parameters
     ----------
     stages : ndarray, shape (n, N_STAGES + 1)
-        Rates of each variable at the stages of the last step, then those at an output [SI].
+        Rates of each variable at the stages of the last step, and at an output [SI].
     weights : ndarray, shape (N_STAGES,)
-        Of the stages [-].
+        Weights of the stages [-].
     start, end : ndarray, shape (n,)
-        States where the last step began and ended [SI].
+        States at start and end of the last step [SI].
     state, rates : ndarray, shape (n,)
-        At one instant; of the rates those that laws and effects fill [SI].
+        State at one instant, and the rates that laws and effects fill [SI].
     inner, inner_rates : ndarray, shape (n - N_MOTION,)
-        Of these what comes after the motion: the law's, then the effects', then the lag [SI].
+        Views of these after the motion: states of the law, the effects, and the lag [SI].
     """
 
     stages: NDArray[np.float64]
@@ -253,7 +253,7 @@ class Rows(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Of steps: the longest [s], and the error of a step over its scale [-]."""
+    """Limits of a step: its longest duration [s], and its error over its scale [-]."""
 
     longest: float
     tolerance: float

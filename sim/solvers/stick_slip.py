@@ -1,18 +1,18 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any
-"""True stick and constant torques, solved in closed form between events.
+"""Exact solver of the lumped model with true stick and constant torques.
 
-Between events the system is linear, so a step is one product with the matrix of that step; signs
-at its ends tell whether stick or slip ends within. If so, the motion's Taylor series gives the
-instant to machine precision: no step-size error, and no re-stick at the end of a step, which makes
+Between events the system is linear, so a step is one product with a matrix; signs at its ends show
+whether stick or slip ends within the step. If so, the Taylor series of the motion gives the instant
+to machine precision: there is no step-size error, and no re-stick at the end of a step, which makes
 the thesis's listing (and any fixed-step method) first order only.
 
-A graze, where the torque reaches T_crit or the sliding speed reaches zero and turns back within a
-step, is found by the slopes at both ends and in the middle. What can still be missed turns twice
-within half a step, and so passes the limit by less than (omega h / 2)^3 / 12 of the amplitude of
-the fastest mode (omega h is at most 0.7, and 0.2 on the thesis's rig at 30 kHz: 0.01 %).
+Grazing, where the torque reaches T_crit or the sliding speed reaches zero and turns back within a
+step, is detected by the slopes at both ends and in the middle. A missed graze would have to turn
+twice within half a step, so it passes the limit by less than (omega h / 2)^3 / 12 of the amplitude
+of the fastest mode (omega h is at most 0.7, and 0.2 on the thesis's rig at 30 kHz: 0.01 %).
 
-Matrix and series come from the same recurrence, so they agree to rounding. A step is cut up until
+Matrix and series come from the same recurrence, so they agree to rounding. A step is divided until
 the series converges fast and no quantity turns twice within a part.
 """
 
@@ -29,33 +29,33 @@ ORDER = 17
 """Most terms of the series: 0.7^18 / 18! is below rounding."""
 
 _LONGEST_PART = 0.7
-"""Of the reciprocal of the fastest rate."""
+"""Longest part of a step, times the fastest rate."""
 
 _MOST_PARTS = 100_000
 
 SLIP, STICK = 0, 20
-"""Where the matrices start: slip (4 x 5: state, torque), stick (2 x 5: theta1, speed, rate of the
-speed, theta2, theta2')."""
+"""Start of the matrices in one array: slip (4 x 5: state, torque), stick (2 x 5: theta1, speed,
+rate of the speed, theta2, theta2')."""
 
 _INVERSE = 1.0 / np.arange(1.0, ORDER + 2.0)
 
 
 def parts_of_a_step(system: NDArray[np.float64], step: float) -> int:
-    """Into how many parts a step is cut.
+    """Return the number of parts of a step.
 
     The fastest rate of M x'' + C x' + K x = 0 is at most tr(C/M) + sqrt(tr(K/M)).
 
     Parameters
     ----------
     system : ndarray, shape (6,)
-        As of `sim.bushing.LumpedBushing.packed`.
+        As from `sim.bushing.LumpedBushing.packed`.
     step : float
         [s]
 
     Raises
     ------
     ParameterError
-        If it were more than 100,000 parts, or the system is not finite.
+        If there are more than 100,000 parts, or the system is not finite.
 
     Examples
     --------
@@ -83,17 +83,17 @@ def _fastest_rate(system: list[float]) -> float:
 
 
 def extended(system: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Append the inertias' reciprocals, none for a fixed clamp, and the longest part's own.
+    """Append the inertias' reciprocals (0 for a fixed clamp) and that of the longest part.
 
     Parameters
     ----------
     system : ndarray, shape (6,)
-        As of `sim.bushing.LumpedBushing.packed`.
+        As from `sim.bushing.LumpedBushing.packed`.
 
     Returns
     -------
     ndarray, shape (9,)
-        The same, then two of [1/(kg m2)] and one of [1/s].
+        The system, two reciprocals of inertia [1/(kg m2)] and one of time [1/s].
 
     Examples
     --------
@@ -108,7 +108,7 @@ def extended(system: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @njit(**PART)
 def order_for(share) -> int:
-    """Order that the series needs over this share of the longest part: it loses below 1e-17."""
+    """Return the order of the series for a share of the longest part; its error is below 1e-17."""
     return min(ORDER, 9 + int(np.ceil(8.0 * share)))
 
 
@@ -138,7 +138,7 @@ def fill_series(c, order, x0, x1, x2, x3, way, torque, acceleration, s) -> None:
 
 @njit(**PART)
 def fill_matrices(matrices, c, one, h, s) -> None:
-    """Fill the matrices of a step of length `h`, from the series of unit states in `one`."""
+    """Fill the matrices of a step of length `h` from the series of unit states, built in `one`."""
     order = c.shape[0] - 1
     for column in range(5):
         for i in range(5):
@@ -160,23 +160,21 @@ def _sum(c, column, t):
 
 
 _MOST_EVENTS = 100
-"""In one part of a step; equal torques can chatter by rounding alone."""
+"""Most events in one part of a step; equal torques can chatter by rounding."""
 
 _SAME_TORQUE = 1e-13
 """Share of T_crit below which T_crit - T_kin is rounding."""
 
-# State that is carried on: theta1, theta1', theta2, theta2', then
+# State between blocks: theta1, theta1', theta2, theta2', then
 DIRECTION = 4
-"""Of the sliding: +1 or -1, 0 in stick."""
+"""Direction of sliding: +1 or -1, 0 in stick."""
 SAMPLE = 5
-"""The next one."""
+"""Index of the next sample."""
 N_STATE = 6
 
 
 def rest_state(shaft_speed: float) -> NDArray[np.float64]:
-    """State for `advance_stick_slip` to start from: at rest, the surfaces sticking.
-
-    Of shape (N_STATE,), for a shaft that starts at a speed [rad/s].
+    """Return the state at rest with sticking surfaces, shape (N_STATE,), at a shaft speed [rad/s].
 
     Examples
     --------
@@ -197,21 +195,21 @@ def advance_stick_slip(
     state: NDArray[np.float64],
     n: int,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
-    """Solve the next `n` samples of a long run and carry its state on.
+    """Solve the next `n` samples of a run and update its state.
 
     Parameters
     ----------
     system : ndarray, shape (6,)
-        As of `LumpedBushing.packed`.
+        As from `LumpedBushing.packed`.
     critical_torque, kinetic_torque : float
         [Nm]
     step : float
         Time between samples [s].
     shaft_speed : ndarray, shape (n,) or (n + 1,)
-        At the samples [rad/s]; the one after them is where the next block starts. Without it the
-        run ends here.
+        At the samples [rad/s], and at the start of the next block; without the latter the run ends
+        here.
     state : ndarray, shape (N_STATE,)
-        As of `rest_state`, or from the block before; changed in place.
+        From `rest_state` or the previous block; changed in place.
     n : int
         Samples to solve.
 
@@ -220,9 +218,9 @@ def advance_stick_slip(
     states : ndarray, shape (n, 6)
         Friction torque and elastomer torque [Nm], theta1 [rad], theta1' [rad/s], theta2, theta2'.
     direction : ndarray, shape (n,)
-        Of the sliding: +1 or -1, 0 in stick [-].
+        Direction of sliding: +1 or -1, 0 in stick [-].
     events : ndarray, shape (n_events,)
-        Times at which stick or slip ended [s], of the whole run.
+        Times at which stick or slip ended, since the start of the run [s].
 
     Raises
     ------
@@ -253,21 +251,21 @@ def advance_stick_slip(
 def _through_events(
     x, length, speed, acceleration, time, s, t_crit, t_kin, c, p, event_times, events
 ) -> int:
-    """Advance the state `x` by a part of a step with events in it; return their number."""
-    done = 0.0
+    """Advance the state `x` by a part of a step that has events; return their number."""
+    elapsed = 0.0
     fresh = False  # whether a slip has just begun, at a sliding speed of zero
     for _ in range(_MOST_EVENTS):
-        left = length - done
+        left = length - elapsed
         if left <= 0.0:
             return events
-        now = speed + acceleration * done
+        now = speed + acceleration * elapsed
         way = x[DIRECTION]
         inertia = s[0] * acceleration
         order = order_for(left * s[8])
         fill_series(c, order, x[0], x[1], x[2], x[3], way, way * t_kin, acceleration, s)
         t_event, next_way = -1.0, 0.0
         if way == 0.0:
-            # Both ways of breaking loose: holding torque up to +T_crit or down to -T_crit.
+            # Two ways to break loose: holding torque up to +T_crit or down to -T_crit.
             for sign in (1.0, -1.0):
                 for k in range(1, order + 1):
                     p[k] = -sign * c[k, 4]
@@ -276,7 +274,7 @@ def _through_events(
                 if root >= 0.0 and (t_event < 0.0 or root < t_event):
                     t_event, next_way = root, sign
         else:
-            # Sliding speed, positive while it lasts; its roots at the start are divided out.
+            # Sliding speed, positive during the slip; roots at its start are divided out.
             for k in range(order + 1):
                 p[k] = -way * c[k, 1]
             p[0] += way * now
@@ -294,8 +292,8 @@ def _through_events(
         x[0], x[1], x[2], x[3] = x0, x1, x2, x3
         if t_event < 0.0:
             return events
-        done += t
-        x[1] = speed + acceleration * done
+        elapsed += t
+        x[1] = speed + acceleration * elapsed
         if way != 0.0:
             holding = s[2] * (x0 - x2) + s[4] * (x[1] - x3) + inertia
             if abs(holding) > t_crit:
@@ -303,10 +301,10 @@ def _through_events(
         x[DIRECTION] = next_way
         fresh = next_way != 0.0
         if events < event_times.size:
-            event_times[events] = time + done
+            event_times[events] = time + elapsed
         events += 1
-    # Chatter: the part is finished as it is.
-    t = length - done
+    # Chatter: finish the part without further events.
+    t = length - elapsed
     order, way = c.shape[0] - 1, x[DIRECTION]
     fill_series(c, order, x[0], x[1], x[2], x[3], way, way * t_kin, acceleration, s)
     for j in range(4):
@@ -327,9 +325,9 @@ def _row(m, i, x0, x1, x2, x3, x4) -> float:
 def step_through(
     s, t_crit, t_kin, shaft_speed, step, parts, x, out, direction_out, event_times
 ) -> int:
-    """Write the columns of `out` and go on to the sample after them, if there is a speed for it.
+    """Fill the columns of `out` and advance to the sample after them, if its speed is there.
 
-    `s` is the system as `extended` returns it.
+    `s` is the system from `extended`.
     """
     j_e, k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[0], s[2], s[3], s[4], s[5], s[6], s[7]
     h = step / parts
@@ -340,7 +338,7 @@ def step_through(
     x0, x1, x2, x3, way = x[0], x[1], x[2], x[3], x[DIRECTION]
     elastomer = k_e * (x0 - x2) + c_e * (x1 - x3)
     n = direction_out.size
-    events = n - n  # the literal 0 is a type of its own, for which more would be compiled
+    events = n - n  # a literal 0 would be a second type to compile for
     for i in range(n):
         speed = shaft_speed[i]
         goes_on = i + 1 < shaft_speed.size
@@ -381,7 +379,7 @@ def step_through(
                 turns = turns_within(start_sliding, sliding, slope, end_slope, h)
                 least = min(start_sliding, sliding)
                 if sliding > 0.0 and slope >= 0.0 and not turns:
-                    least = sliding  # the slip has just begun, from zero
+                    least = sliding  # the slip has just begun at zero
             if least <= 0.0 or (turns and least < h * max(abs(slope), abs(end_slope))):
                 x[0], x[1], x[2], x[3] = x0, x1, x2, x3
                 events = _through_events(
@@ -399,19 +397,19 @@ def step_through(
 
 
 _ROUNDING = 4.0e-16
-"""Of the interval: below it, bisection no longer moves."""
+"""Share of the interval below which bisection no longer moves."""
 
 
 @njit(**PART)
 def turns_within(start, end, slope, end_slope, length) -> bool:
-    """Whether the cubic through these values and slopes turns, by its slope at ends and middle."""
+    """Return whether a cubic turns, by its slopes at both ends and in the middle."""
     middle = 1.5 * (end - start) / length - 0.25 * (slope + end_slope)
     return (slope < 0.0) != (end_slope < 0.0) or (slope < 0.0) != (middle < 0.0)
 
 
 @njit(**PART)
 def first_crossing(p, order, end) -> float:
-    """First t in (0, end] where sum(p[k] t^k) comes from above zero to zero or below; else -1."""
+    """Return the first t in (0, end] where sum(p[k] t^k) falls to zero or below; -1 if none."""
     value, slope = _value_and_slope(p, order, end)
     if turns_within(p[0], value, p[1], slope, end):
         middle_value, middle_slope = _value_and_slope(p, order, 0.5 * end)
@@ -428,7 +426,7 @@ def _crossing(p, order, start, end, start_value, end_value, start_slope, end_slo
         return _root(p, order, start, end, start_value, end_value)
     if start_slope >= 0.0 or end_slope <= 0.0:
         return -1.0
-    low, high = start, end  # on both sides of a minimum
+    low, high = start, end  # bracket of a minimum
     while high - low > _ROUNDING * end:
         middle = 0.5 * (low + high)
         value, slope = _value_and_slope(p, order, middle)

@@ -1,13 +1,12 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any
 # ruff: noqa: ANN001
-"""Steps of Tsitouras's Runge-Kutta pair of fifth and fourth order, with dense output.
+"""Tsitouras's Runge-Kutta pair of fifth and fourth order, with dense output.
 
 Tsitouras (2011), "Runge-Kutta pairs of order 5(4) satisfying only the first column simplifying
-assumption": a third of the error of Dormand and Prince's pair at the same stages. The seventh stage
-is the first of the next step. Nothing here makes or keeps an array. Sums run over the stages of one
-variable at a time: what has just been written by itself is read by itself, where reading several at
-once would wait for the writing to end.
+assumption": a third of the error of Dormand and Prince's pair at the same number of stages. The
+seventh stage is the first of the next step. No function allocates an array. Sums run over the
+stages of one variable at a time, because vector loads of values just stored as scalars would stall.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from models.compilation import PART
 from sim.solvers.contact_rates import N_MOTION, N_STAGES
 
 NODES = np.array([0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0, 1.0])
-"""Of the stages, in shares of the step."""
+"""Nodes of the stages, in shares of the step."""
 
 STAGES = np.zeros((N_STAGES, N_STAGES))
 for _stage, _weights in enumerate(
@@ -49,7 +48,7 @@ ERROR = np.array(
         -0.5823571654525552, 0.45808210592918697, -1.0 / 66.0,
     ]
 )  # fmt: skip
-"""Of a step by the rates at its stages, over its length."""
+"""Weights of the stages' rates in the error of a step, over its length."""
 
 _BETWEEN = np.array(
     [
@@ -62,12 +61,12 @@ _BETWEEN = np.array(
         [0.0, 1.5, -4.0, 2.5],
     ]
 )
-"""Weights of the stages within the step: factors of the first to fourth power of the share."""
+"""Weights of the stages within a step: factors of the first to fourth power of the share."""
 
 _SAFETY, _LEAST_FACTOR, _MOST_FACTOR = 0.9, 0.2, 4.0
 
 _SMALLEST_ERROR = 1e-4
-"""That the control of the step remembers, over the tolerance."""
+"""Smallest error that the step control uses, over the tolerance."""
 
 _inlined = njit(forceinline=True, **PART)
 
@@ -108,7 +107,7 @@ def fill_stage(u, start, k, stage, h) -> None:
 
 @_inlined
 def fill_between(u, start, k, weights, x, h) -> None:
-    """Fill the state `u` at the share `x` of a step; `weights` is room for one of each stage."""
+    """Fill the state `u` at the share `x` of a step; `weights` is work space, one per stage."""
     for b in range(N_STAGES):
         w = _BETWEEN[b, 2] + x * _BETWEEN[b, 3]
         weights[b] = h * x * (_BETWEEN[b, 0] + x * (_BETWEEN[b, 1] + x * w))
@@ -121,7 +120,7 @@ def fill_between(u, start, k, weights, x, h) -> None:
 
 @_inlined
 def value_between(start, k, j, x, h) -> float:
-    """Value of the variable `j` at the share `x` of a step."""
+    """Return the value of the variable `j` at the share `x` of a step."""
     change = 0.0
     for b in range(N_STAGES):
         w = _BETWEEN[b, 2] + x * _BETWEEN[b, 3]
@@ -131,11 +130,11 @@ def value_between(start, k, j, x, h) -> float:
 
 @_inlined
 def step_error(k, h, start, end, first_lag, per_angle, per_speed) -> float:
-    """Largest error of a step over its scale [-]; infinite if something is not finite.
+    """Return the largest error of a step over its scale [-]; infinite if a value is not finite.
 
-    Angles and speeds, which alternate, have scales of their own, given by their reciprocals; inner
-    states that of what they are, and of what the step changes in them. From `first_lag` on there
-    are angles and speeds again.
+    Angles and speeds, which alternate, have fixed scales, passed as reciprocals; inner states are
+    scaled by their size and their change in the step. From `first_lag` on there are angles and
+    speeds again.
     """
     largest, total = 0.0, 0.0
     for j in range(end.size):
@@ -155,10 +154,10 @@ def step_error(k, h, start, end, first_lag, per_angle, per_speed) -> float:
 
 @_inlined
 def factor_of_step(error, error_before) -> float:
-    """Factor to the length of the next try, by the errors of this and the step before.
+    """Return the factor to the next step's length, from the errors of this and the last step.
 
-    Errors are over the tolerance. Proportional and integral control as of Gustafsson (1991) has
-    half the rejections of one without memory; powers that are roots of roots cost no logarithm.
+    Errors are over the tolerance. The proportional-integral control of Gustafsson (1991) has half
+    the rejections of a control without memory; the powers are nested roots, which are cheap.
     """
     if error > 1.0:
         return max(_SAFETY / math.sqrt(math.sqrt(error)), _LEAST_FACTOR)
@@ -168,9 +167,9 @@ def factor_of_step(error, error_before) -> float:
 
 @_inlined
 def vertex(x0, y0, x1, y1, x2, y2) -> tuple[float, float]:
-    """Where a parabola through three points is least between the outer ones, and how little.
+    """Return place and value of the minimum of a parabola through three points.
 
-    One and infinity where it has no minimum there.
+    They are one and infinity if there is no minimum between the outer points.
     """
     first, second = (y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1)
     bend = (second - first) / (x2 - x0)

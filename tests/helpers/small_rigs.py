@@ -19,10 +19,11 @@ from noise.diagnosis.simulated.repeats import (
 )
 from noise.diagnosis.simulated.transfer_functions import chain_of, torque_transfer_functions
 from noise.recordings import write_recording
-from sim.chain import changed_chain
+from sim.chain import apply_chain_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.run import DIAGNOSIS, apply_sensor_effects, radiate_motion, sensor_signals
+from sim.plan import DIAGNOSIS
+from sim.run import apply_sensor_effects, radiate_motion, sensor_signals
 
 __all__ = [
     "RATE", "RIG", "RIG_FILE", "SECONDS", "at", "gap_of_case", "only", "run", "table_of",
@@ -75,7 +76,7 @@ def run(condition, *effects, seed=0, seconds=SECONDS, rate=RATE, rig=RIG, librar
     once, found = perturb_run(rig, condition, Scatter(), rng, support=True)
     plan = plan_repeat(once, found, active, rate=fine, seconds=seconds)
     motion = repeat_motion(plan, rng)
-    changed = changed_chain(chain, active, np.random.default_rng(0))
+    changed = apply_chain_effects(chain, active, np.random.default_rng(0))
     sound = radiate_motion(motion, changed, active)
     signals = apply_sensor_effects(
         sensor_signals(motion, sound, plan.n_settling), active, fine, rng

@@ -21,7 +21,7 @@ def case(request):
     motion = simulate_motion(
         rig, ConstantSpeed(1.2), interference=0.279e-3, support_stiffness=2214.0, seconds=0.8,
         rate=30e3,
-    ).since(9000)  # fmt: skip
+    ).part(9000)  # fmt: skip
     bushing = lumped_bushing(rig, 0.279e-3, 2214.0)
     excerpts = excerpts_of(recorded(motion.torque, 1.2, support=2214.0), bushing)
     return rig, bushing, excerpts

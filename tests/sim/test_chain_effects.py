@@ -13,7 +13,7 @@ from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.acquisition import Acquisition
 from sim.blocks import simulate_blocks
-from sim.chain import changed_chain
+from sim.chain import apply_chain_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
@@ -31,7 +31,7 @@ QUIET = Acquisition(noise={})
 
 def changed(paths, name, seed=0, **parameters):
     active = EFFECTS[name].active(parameters)
-    return changed_chain(paths, [active], np.random.default_rng(seed))
+    return apply_chain_effects(paths, [active], np.random.default_rng(seed))
 
 
 def spectra(*signals, n=2**17):

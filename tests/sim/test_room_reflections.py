@@ -7,7 +7,7 @@ import pytest
 
 from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rayleigh import SOUND_SPEED
-from sim.chain import changed_chain
+from sim.chain import apply_chain_effects
 from sim.effects import EFFECTS
 
 RATE = 96e3
@@ -17,7 +17,7 @@ def room(form, seed=0, **given):
     one = np.ones(1)
     active = EFFECTS["room_reflections"].active({"form": form, **given})
     plain = ImpulseResponses(RATE, one, one, one, one)
-    return changed_chain(plain, [active], np.random.default_rng(seed)).torque_to_pressure
+    return apply_chain_effects(plain, [active], np.random.default_rng(seed)).torque_to_pressure
 
 
 @pytest.mark.parametrize("form", EFFECTS["room_reflections"].forms)

@@ -25,7 +25,7 @@ def force(motion, **given):
 
 
 def test_slips_that_stay_below_the_threshold_strike_nothing():
-    settled = run(2.5, 0.279e-3).since(14_400)
+    settled = run(2.5, 0.279e-3).part(14_400)
     assert torque_drops(settled.torque, 1.0)[0].size > 10
     assert not force(settled, **RIG.effects[0].parameters).any()
 

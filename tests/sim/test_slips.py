@@ -71,7 +71,7 @@ def test_undamped_stick_slip_has_the_share_and_the_period_of_its_formula(speed):
     turn = np.sqrt(fit.elastomer_stiffness / THESIS.elastomer_inertia)
     drop = fit.critical_torque - fit.kinetic_torque
     x = drop * turn / (fit.elastomer_stiffness * speed)
-    found = motion_slips(motion(with_damping(THESIS, 1e-6), speed, rate=90e3).since(9000))
+    found = motion_slips(motion(with_damping(THESIS, 1e-6), speed, rate=90e3).part(9000))
     share = (x - np.arctan(x)) / np.hypot(1.0, x)
     assert share - 0.1 < found.sudden_share < share  # the torque is smoothed to 2 kHz
     period = 2.0 * np.pi / turn + 2.0 / turn * (x - np.arctan(x))
@@ -99,7 +99,7 @@ def test_with_true_stick_slips_are_those_of_the_solver(fit, support):
             system, of.critical_torque, of.kinetic_torque, np.full(round(RATE), speed), 1 / RATE
         )
         starts = events[::2][events[::2] > 0.25]
-        run = motion(THESIS, speed, fit, support).since(round(0.25 * RATE))
+        run = motion(THESIS, speed, fit, support).part(round(0.25 * RATE))
         by_solver = (starts.size - 1) / (starts[-1] - starts[0])
         assert motion_slips(run).rate == pytest.approx(by_solver, rel=0.02)
 
@@ -109,5 +109,5 @@ def test_with_true_stick_slips_are_those_of_the_solver(fit, support):
 
 def test_grazing_the_shafts_speed_is_no_stick_slip():
     run = motion(FLUOROCARBON, 7.0, support=2214.0)
-    assert run.since(15000).stuck.mean() > 0.01
+    assert run.part(15000).stuck.mean() > 0.01
     assert friction_regime(run) is Regime.QUASI_HARMONIC

@@ -19,7 +19,7 @@ from sim.contact import CRITICAL, KINETIC, N_CONTACT
 from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.parameters import resolve
-from sim.run import Plan
+from sim.plan import Plan
 from sim.shaft import ConstantSpeed, Oscillation
 from sim.suspension import run_suspension, solve_chain, torque_gain
 from tests.helpers.contact_calls import call_law

@@ -13,7 +13,7 @@ from noise.training.causes.cases.draw import draw_case
 from noise.training.causes.cases.structures import draw_structure
 from noise.training.causes.cases.variants import VARIANTS, draw_variant
 from sim.bushing import lumped_bushing
-from sim.chain import changed_chain
+from sim.chain import apply_chain_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 from sim.motion import simulate_motion
@@ -42,12 +42,12 @@ def played(effect=None):
     force = np.zeros_like(motion.torque)
     if effect is not None and effect.force is not None:
         force = effect.force(motion, effect.forms[0], effects[0].values)
-    chain = changed_chain(PLAIN_CHAIN, effects, np.random.default_rng(5))
+    chain = apply_chain_effects(PLAIN_CHAIN, effects, np.random.default_rng(5))
     parts = (radiate(chain, motion.torque), radiate(chain, force, "pulse"))
     acceleration, pressure = (sum(each) for each in zip(*parts, strict=True))
     signals = {"torque": motion.torque, "acceleration": acceleration, "pressure": pressure}
     if effect is not None and effect.sensors is not None:
-        signals = effects[0].sensed(signals, RATE, {"rng": rng, "whole": True})
+        signals = effects[0].apply_sensors(signals, RATE, {"rng": rng, "whole": True})
     return signals
 
 

@@ -37,10 +37,11 @@ from noise.diagnosis.simulated.repeats import (
 )
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, chain_of
 from sim.acquisition import Acquisition, decimate_sensed, digitise
-from sim.chain import changed_chain
+from sim.chain import apply_chain_effects
 from sim.effects.effect import ActiveEffect, Effect, Signals
 from sim.motion import Motion
-from sim.run import DIAGNOSIS, Plan, apply_sensor_effects, sensor_signals
+from sim.plan import DIAGNOSIS, Plan
+from sim.run import apply_sensor_effects, sensor_signals
 
 if TYPE_CHECKING:
     Changed = tuple[Mapping[str, NDArray[np.complex128]], ImpulseResponses | None]
@@ -275,7 +276,7 @@ class ModelRuns:
                 return motion if whole else _sensed_of(motion)
 
             arrays = 9 if whole else 2
-            self._motions.most = int(_ROOM / (8 * arrays * (plan.n_settling + plan.n_kept)))
+            self._motions.most = int(_ROOM / (8 * arrays * (plan.n_settling + plan.n_recorded)))
             motion = self._motions.get(of_motion, moved)
             changes, paths = self._changes(plan, on_paths)
             at_condition = self.transfer_functions.at(plan.interference, plan.support_stiffness)
@@ -297,7 +298,7 @@ class ModelRuns:
                     self.rig, *at, self.transfer_functions.at(*at), plan.rate, impacts=True
                 ),
             )
-            changed = changed_chain(plain, effects, np.random.default_rng(0))
+            changed = apply_chain_effects(plain, effects, np.random.default_rng(0))
             return chain_changes(plain, changed, length), changed
 
         return self._changed.get((*at, plan.rate, length, _key(effects)), made)

@@ -43,13 +43,12 @@ from noise.diagnosis.simulated.transfer_functions import (
 )
 from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.bushing import lumped_bushing
-from sim.chain import changed_chain
+from sim.chain import apply_chain_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, Effect, activated
 from sim.motion import Motion
+from sim.plan import DIAGNOSIS, Plan
 from sim.run import (
-    DIAGNOSIS,
-    Plan,
     Sound,
     apply_sensor_effects,
     pulse_force,
@@ -69,7 +68,7 @@ _GOING_ON = 0.12
 
 def n_closed(plan: Plan) -> int:
     """Return how many samples the transforms of a plan's torque have."""
-    n = plan.n_settling + plan.n_kept + round(_GOING_ON * plan.rate)
+    n = plan.n_settling + plan.n_recorded + round(_GOING_ON * plan.rate)
     return closed_length(n, plan.rate)
 
 
@@ -133,7 +132,7 @@ def heard_of(
     Sound
         As long as the motion; right while the plan keeps it.
     """
-    kept = slice(plan.n_settling, plan.n_settling + plan.n_kept)
+    kept = slice(plan.n_settling, plan.n_settling + plan.n_recorded)
     more = round(_GOING_ON * plan.rate)
     torque = motion.torque[: kept.stop]
     torque = np.concatenate([torque, torque[-2 : -2 - more : -1]])
@@ -245,7 +244,7 @@ def nominal_recordings(
         rng = np.random.default_rng(seed)
         once, found = perturb_run(rig, condition, scatter, rng)
         plan = plan_repeat(once, found, effects, rate=DIAGNOSIS.rate(rate), seconds=seconds)
-        motion = repeat_motion(replace(plan, n_settling=0, n_kept=n), rng)
+        motion = repeat_motion(replace(plan, n_settling=0, n_recorded=n), rng)
         # What a sensor's filter does to a sound, it does to the torque that makes it.
         by_filter = {
             corner: decimate_sensed(motion.torque, decimation, plan.rate, Sensor(antialias=corner))
@@ -337,7 +336,9 @@ def _with_effects(
     shifted = {name: shift_clamp_mode(h, bushing, lumped) for name, h in transfer_functions.items()}
     impacts = any(active.effect.force or active.effect.chain for active in effects)
     paths = chain_of(rig, *at, shifted, fine, impacts=impacts)
-    paths = changed_chain(paths, effects, np.random.default_rng(0))  # one structure for all runs
+    paths = apply_chain_effects(
+        paths, effects, np.random.default_rng(0)
+    )  # one structure for all runs
     plan = plan_repeat(once, found, effects, rate=fine, seconds=seconds)
     motion = repeat_motion(plan, rng)
     signals = sensor_signals(motion, radiate_motion(motion, paths, effects), plan.n_settling)
@@ -492,7 +493,7 @@ def plan_repeat(
     >>> from models.rig_file import load_material_rig
     >>> at = KnownCondition(5.0, 0.279e-3, 2214.0)
     >>> plan = plan_repeat(load_material_rig("PDMS"), at, (), rate=DIAGNOSIS.rate(30e3), seconds=1)
-    >>> plan.rate, plan.n_settling, plan.n_kept
+    >>> plan.rate, plan.n_settling, plan.n_recorded
     (90000.0, 22500, 90000)
     """
     ambient = at_temperature(rig, condition.temperature)
@@ -504,7 +505,7 @@ def plan_repeat(
         effects=(*effects, *activated(ambient.effects[len(rig.effects) :], {})),
         rate=rate,
         n_settling=round(DIAGNOSIS.settling * rate),
-        n_kept=round(seconds * rate),
+        n_recorded=round(seconds * rate),
     )
 
 
@@ -517,7 +518,7 @@ def repeat_motion(plan: Plan, rng: np.random.Generator, tolerance: float | None 
     rng : numpy.random.Generator
         As of `run_motion`.
     tolerance : float, optional
-        As of `run_motion`, by default that of `sim.run.DIAGNOSIS` [-].
+        As of `run_motion`, by default that of `sim.plan.DIAGNOSIS` [-].
     """
     return run_motion(plan, rng, tolerance=tolerance or DIAGNOSIS.tolerance)
 

@@ -30,7 +30,7 @@ from models.transfer_functions.transfer_function import TransferFunction
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.reconstruction import closed_length, closed_spectrum
 from sim.bushing import LumpedBushing
-from sim.chain import changed_chain
+from sim.chain import apply_chain_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, activated
 
@@ -130,7 +130,7 @@ class TransferFunctionCache:
         key = (c.interference, c.support_stiffness)
         if key not in self._whole:
             paths = chain_of(self._rig, *key, plain, _MODEL_RATE, impacts=True)
-            changed = changed_chain(paths, effects, np.random.default_rng(0))
+            changed = apply_chain_effects(paths, effects, np.random.default_rng(0))
             self._whole[key] = {n: _with_change(h, n, paths, changed) for n, h in plain.items()}
         return self._whole[key]
 

@@ -37,11 +37,12 @@ from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_un
 from noise.training.causes.cases.variants import draw_variant
 from sim.acquisition import Acquisition, decimate, digitise
 from sim.bushing import lumped_bushing
-from sim.chain import changed_chain
+from sim.chain import apply_chain_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, activated
+from sim.plan import LEARNING
 from sim.rig_effects import irregular_effects
-from sim.run import LEARNING, apply_sensor_effects, radiate_motion, sensor_signals
+from sim.run import apply_sensor_effects, radiate_motion, sensor_signals
 
 KINDS = {
     "none": 0.16,
@@ -216,7 +217,7 @@ def _drawn_rig(number: int) -> _DrawnRig:
     if any(one.effect.force or one.effect.chain for one in listed):
         # What the file says of blows in the anchors is right, and so is what it lists.
         plain = {
-            support: changed_chain(
+            support: apply_chain_effects(
                 _with_pulses(response, known, middle, support), listed, np.random.default_rng(0)
             )
             for support, response in plain.items()
@@ -334,7 +335,7 @@ def _record(
     motion = repeat_motion(plan, chance)
     paths, stream = drawn.plain[stated.support_stiffness], np.random.default_rng(chain_seed)
     for channels, effect in zip(acting, effects, strict=True):
-        changed = changed_chain(paths, [effect], stream)
+        changed = apply_chain_effects(paths, [effect], stream)
         channels |= _heard_in(effect, paths, changed)
         paths = changed
     sound = radiate_motion(motion, paths, plan.effects)

@@ -14,8 +14,8 @@ from models.rig_file import load_material_rig
 from models.sensors import Sensors
 from noise.training.causes.cases.benches import MATERIALS, Bench, draw_bench, draw_law, scaled_law
 from sim.motion import simulate_motion
+from sim.plan import DIAGNOSIS, REGIME_RATE
 from sim.rig_effects import constant_version
-from sim.run import DIAGNOSIS, REGIME_RATE
 from sim.shaft import ConstantSpeed
 
 _FITS = {0.178e-3: (430.0, 5.35, 4.0), 0.279e-3: (665.0, 10.7, 8.0), 0.381e-3: (1011.0, 27.0, 20.0)}

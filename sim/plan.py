@@ -1,0 +1,205 @@
+"""Plan of a run: its rig, drive, condition, effects, rate and lengths, checked before computing."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from numbers import Real
+
+from models.condition import Condition
+from models.errors import ParameterError
+from models.rig import Rig
+from models.units import ABSOLUTE_ZERO
+from sim.effects import EFFECTS
+from sim.effects.effect import ActiveEffect, Effect, activated
+from sim.shaft import ConstantSpeed, ShaftMotion
+from sim.temperature import at_temperature
+
+LONGEST_RUN = 600.0
+"""Longest run and longest settling [s]: the whole run is in memory. `sim.blocks` has no limit."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Rate, settling and solver tolerance of a kind of run.
+
+    Parameters
+    ----------
+    least_rate : float
+        Lowest rate of motion and sound, which are computed at a multiple of the sampling rate [Hz].
+    settling : float
+        Time that a shaft at constant speed turns before the recording starts [s].
+    tolerance : float, optional
+        Error of a solver step where the motion has no exact solution [-]; by default that of the
+        friction law.
+
+    Examples
+    --------
+    >>> SIMULATION.rate(30e3), SIMULATION.rate(48e3), DIAGNOSIS.rate(25.6e3)
+    (90000.0, 96000.0, 76800.0)
+    """
+
+    least_rate: float
+    settling: float
+    tolerance: float | None = None
+
+    def decimation(self, sampling_rate: float) -> int:
+        """Return the ratio of the rate of motion and sound to a sampling rate [Hz]."""
+        return math.ceil(self.least_rate / sampling_rate)
+
+    def rate(self, sampling_rate: float) -> float:
+        """Return the rate of motion and sound for a sampling rate [Hz]."""
+        return self.decimation(sampling_rate) * sampling_rate
+
+
+SIMULATION = Timing(least_rate=90e3, settling=0.5)
+"""Timing of recordings for users: the sound is accurate beyond 20 kHz."""
+
+DIAGNOSIS = Timing(least_rate=75e3, settling=0.25, tolerance=3e-6)
+"""Timing of the many runs that a diagnosis compares with recordings: settled for as long as
+structures ring, torques accurate to four digits. The shipped posterior of causes was fitted to
+runs of exactly this timing, so the two change together."""
+
+LEARNING = replace(DIAGNOSIS, least_rate=60e3)
+"""Timing of the cases that the posterior was fitted to: usual sampling rates are still at least
+halved, so the anti-alias filter removes the same band as in a recording."""
+
+REGIME_RATE = 15e3
+"""Rate of a motion that only serves to find its regime and slow lines [Hz]: it resolves stick, and
+the solution does not depend on it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Inputs of one run: rig, drive, condition, active effects and sampling.
+
+    Parameters
+    ----------
+    rig : Rig
+        Rig at the ambient temperature.
+    shaft : ShaftMotion
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    effects : sequence of ActiveEffect
+        Effects in the order in which they act.
+    rate : float
+        Rate of motion and sound [Hz].
+    n_settling, n_recorded : int
+        Samples at that rate before the recording starts, and in it.
+    temperature : float, optional
+        Ambient temperature [degree Celsius], for the recording's condition.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> plan = Plan(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0, (), 90e3, 0, 9)
+    >>> plan.condition.speed, plan.condition.material
+    (5.0, 'PDMS')
+    """
+
+    rig: Rig
+    shaft: ShaftMotion
+    interference: float
+    support_stiffness: float
+    effects: Sequence[ActiveEffect]
+    rate: float
+    n_settling: int
+    n_recorded: int
+    temperature: float | None = None
+
+    @property
+    def condition(self) -> Condition:
+        """Operating condition of the run; without a speed where it varies."""
+        return Condition(
+            speed=self.shaft.value if isinstance(self.shaft, ConstantSpeed) else None,
+            interference=self.interference,
+            support_stiffness=self.support_stiffness,
+            material=self.rig.material,
+            temperature=self.temperature,
+        )
+
+
+def plan_run(
+    rig: Rig,
+    shaft: ShaftMotion | float,
+    *,
+    interference: float,
+    support_stiffness: float,
+    temperature: float,
+    seconds: float,
+    rate: float,
+    settling: float | None,
+    library: Mapping[str, Effect] | None,
+) -> Plan:
+    """Check the inputs of a run, and plan it.
+
+    Parameters
+    ----------
+    rig, shaft, interference, support_stiffness, temperature, seconds, settling, library
+        As for `simulate`.
+    rate : float
+        Sampling rate of the recording [Hz].
+
+    Returns
+    -------
+    Plan
+        At a multiple of `rate`, by `SIMULATION`.
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used, or the shaft is neither a number nor a motion.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> plan = plan_run(
+    ...     load_material_rig("PDMS"), 5, interference=0.279e-3, support_stiffness=2214.0,
+    ...     temperature=23.0, seconds=1.0, rate=30e3, settling=None, library=None,
+    ... )
+    >>> plan.shaft, plan.rate, plan.n_settling, plan.n_recorded
+    (ConstantSpeed(value=5.0), 90000.0, 45000, 90000)
+    """
+    if isinstance(shaft, Real):
+        shaft = ConstantSpeed(float(shaft))
+    if not isinstance(shaft, ShaftMotion):
+        raise ParameterError(f"shaft = {shaft!r}: give a speed in rad/s, or a motion of sim.shaft")
+    if settling is None:
+        settling = SIMULATION.settling if isinstance(shaft, ConstantSpeed) else 0.0
+    _check(seconds, settling, rate, interference, temperature)
+    rig = at_temperature(rig, temperature)
+    return Plan(
+        rig=rig,
+        shaft=shaft,
+        interference=interference,
+        support_stiffness=support_stiffness,
+        effects=activated(rig.effects, library or EFFECTS),
+        rate=SIMULATION.rate(rate),
+        n_settling=round(settling * SIMULATION.rate(rate)),
+        n_recorded=round(seconds * rate) * SIMULATION.decimation(rate),
+        temperature=temperature,
+    )
+
+
+def _check(
+    seconds: float, settling: float, rate: float, interference: float, temperature: float
+) -> None:
+    if not (0.0 < seconds <= LONGEST_RUN and 0.0 <= settling <= LONGEST_RUN):
+        raise ParameterError(
+            f"seconds = {seconds:g} must be above 0, settling = {settling:g} at least 0, both at "
+            f"most {LONGEST_RUN:g}"
+        )
+    if not 1e3 <= rate <= 400e3:
+        raise ParameterError(f"rate = {rate:g} Hz must lie between 1000 and 400000")
+    if round(seconds * rate) < 2:
+        raise ParameterError(f"seconds = {seconds:g} holds no two samples at {rate:g} Hz")
+    if not ABSOLUTE_ZERO <= temperature < 1e4:
+        raise ParameterError(
+            f"temperature = {temperature:g} degree Celsius must be at least absolute zero "
+            "(-273.15) and below 10000"
+        )
+    if not 0.0 < interference < 1e-2:
+        raise ParameterError(
+            f"interference = {1e3 * interference:g} mm must be above 0 and below 10"
+        )
