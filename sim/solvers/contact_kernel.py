@@ -267,6 +267,8 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
                         x, least = vertex(NODES[2], far_early, NODES[3], far_late, 1.0, far)
                 if x > 0.99 or least > _GRAZE * (t_crit if mode == 0 else speed_scale):
                     break
+                if h * x < _LEAST_STEP:  # it begins there: nothing ends, and time has to go on
+                    break
                 h *= x
                 continue
             # An event lies within the step, which is repeated until the event is at its end.

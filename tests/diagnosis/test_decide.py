@@ -22,6 +22,7 @@ from noise.diagnosis.fit.decide import (
     updated,
 )
 from noise.diagnosis.fit.fit import split
+from noise.diagnosis.fit.fits import illustrations_of
 
 PARTIAL, WEAK, PAIR = (
     frozenset(names)
@@ -199,3 +200,11 @@ def test_a_cause_that_cannot_be_simulated_is_left_out_and_ends_no_diagnosis(fitt
     assert fits.impossible == {film: "steps of 1e-07 s cannot follow"}
     (note,) = fit_notes(SimpleNamespace(fits=fits, among=()))
     assert note.startswith("transfer_film was not fitted")
+
+
+def test_a_recording_whose_simulation_breaks_down_is_not_shown():
+    def breaks_down(recording):
+        raise ParameterError("steps of 1e-07 s cannot follow")
+
+    case = SimpleNamespace(recordings=(None,), names=("a",), rig=None)
+    assert illustrations_of(case, (0,), lambda recording: recording, breaks_down) == ()

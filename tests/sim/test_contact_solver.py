@@ -1,5 +1,7 @@
 """The solver of contacts against itself with far shorter steps, in its events and its limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import LAWS
 from sim.motion import simulate_motion
+from sim.run import simulate
 from sim.shaft import ConstantSpeed
 from tests.helpers.contacts import contact_of, hook, solve_contact
 
@@ -91,6 +94,18 @@ def steep(gain, speed):
         THESIS, ConstantSpeed(1.0), interference=0.279e-3, support_stiffness=3745.0, seconds=0.1,
         rate=30e3, effects=effects,
     )  # fmt: skip
+
+
+def test_a_slip_that_nearly_catches_goes_on():
+    # The sliding is least just where a step begins, over and over: 0.1 rad/s, after 0.11 s.
+    effects = (
+        LawSpec("velocity_weakening", {"share": 0.110897, "speed": 11.7191}),
+        LawSpec("static_ageing", {"share": 0.755184, "ageing_time": 0.00252834}),
+    )
+    run = simulate(replace(THESIS, effects=effects), 5.234, seconds=0.05)
+    torque = run.motion.torque
+    assert 9.0 < torque.max() < 10.7  # of a contact that ages, less than at rest
+    assert np.ptp(torque[-900:]) > 1.0
 
 
 def test_what_is_too_steep_is_refused_by_name():

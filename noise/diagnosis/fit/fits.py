@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -52,7 +53,9 @@ def simulated_by(runs: ModelRuns | CaseComparison, model: Model | None = None) -
 def illustrations_of(
     case: Case, held: Sequence[int], before: Simulated, after: Simulated | None = None
 ) -> tuple[Illustration, ...]:
-    """Show held-out recordings beside the nominal model, and beside what was found.
+    """Show held-out recordings beside the nominal model and the fitted one.
+
+    Recordings whose simulation breaks down are left out.
 
     Parameters
     ----------
@@ -62,7 +65,11 @@ def illustrations_of(
     before, after : callable
         Simulate a recording.
     """
-    return tuple(_illustration(case, i, before, after) for i in held[:_DRAWN])
+    illustrations = []
+    for i in held[:_DRAWN]:
+        with suppress(ParameterError):
+            illustrations.append(_illustration(case, i, before, after))
+    return tuple(illustrations)
 
 
 def _illustration(case: Case, i: int, before: Simulated, after: Simulated | None) -> Illustration:
