@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.prepared import ACOUSTIC_KINDS
-from features.table import WINDOW_FEATURES
+from features.table import KINDS, WINDOW_FEATURES
 from features.windows.table import HOP, LENGTH
 from models.blocks import RecordingBlocks
 from models.recording import REFERENCE_PRESSURE
 from noise.base.labels import LABELS
 from noise.classifier import Classifier
-from noise.labels.levels import CELL_RATE, sound_levels
+from noise.labels.levels import CELL_RATE, cell_edges, rms_level, sound_levels
 from noise.labels.windows import FEATURE_NAMES, WindowFeatures, columns_of, window_features
 
 _SILENT_LEVEL = 10.0
@@ -55,8 +55,8 @@ def classified(
         [-]; what is silent is ``none``.
     of_frequency : ndarray of float32, shape (n_windows, n_features)
         By `FREQUENCY_NAMES` [unit of each feature].
-    found : WindowFeatures
-        Level, frames and cells of all windows.
+    windows : WindowFeatures
+        Level and frames of all windows.
     """
     columns = columns_of(classifier)
 
@@ -64,13 +64,13 @@ def classified(
         p = classifier.predict_proba(features[:, columns])
         return np.concatenate([p, features[:, FREQUENCY_COLUMNS]], axis=1)
 
-    found = window_features(blocks, spoken)
-    probabilities, of_frequency = np.split(found.features, [len(LABELS)], axis=1)
+    windows = window_features(blocks, spoken)
+    probabilities, of_frequency = np.split(windows.features, [len(LABELS)], axis=1)
     if at_rig:
         probabilities[:, LABELS.index("unknown")] *= _STRANGERS
         probabilities /= probabilities.sum(axis=1, keepdims=True)
-    probabilities[_silent_windows(blocks, found)] = np.eye(len(LABELS))[LABELS.index("none")]
-    return probabilities, of_frequency.astype(np.float32), found
+    probabilities[_silent_windows(blocks, windows)] = np.eye(len(LABELS))[LABELS.index("none")]
+    return probabilities, of_frequency.astype(np.float32), windows
 
 
 def at_a_condition(blocks: RecordingBlocks) -> bool:
@@ -80,21 +80,22 @@ def at_a_condition(blocks: RecordingBlocks) -> bool:
     return any(value is not None for value in stated)
 
 
-def _silent_windows(blocks: RecordingBlocks, found: WindowFeatures) -> NDArray[np.bool_]:
+def _silent_windows(blocks: RecordingBlocks, windows: WindowFeatures) -> NDArray[np.bool_]:
     """Whether nothing is to be heard in each window."""
-    cells, n = found.cells, len(found.level)
+    edges, n = cell_edges(blocks.rate, blocks.n_samples), len(windows.level)
     row = blocks.first("pressure")
     full_scale = 1.0 if row is None else blocks.channels[row].full_scale
     silent = np.zeros(n, dtype=np.bool_)
-    # All that is heard is no less than the part of it that is described.
+    # What is audible is no less than the part of it that is described.
     limit = _SILENT_LEVEL_DBFS + 20.0 * math.log10(full_scale)
     if blocks.calibrated:
         limit = _SILENT_LEVEL + 20.0 * math.log10(REFERENCE_PRESSURE)
-    loud = (found.level > limit + _SURELY) & (row is not None)
+    loud = (windows.level > limit + _SURELY) & (row is not None)
+    main = next(row for row in map(blocks.first, KINDS) if row is not None)
     for window in np.flatnonzero(~loud).tolist():
-        first = min(round(window * HOP * CELL_RATE), cells.count - 1)
-        last = min(first + round(LENGTH * CELL_RATE), cells.count)
-        rms = cells.rms_db(first, last)
+        first = min(round(window * HOP * CELL_RATE), edges.size - 2)
+        last = min(first + round(LENGTH * CELL_RATE), edges.size - 1)
+        rms = rms_level(blocks, main, int(edges[first]), int(edges[last]))
         if rms is None or row is None:
             silent[window] = rms is None
             continue

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from models.blocks import RecordingBlocks
 from noise.labels.classified import FREQUENCY_COLUMNS, segment_frequency
-from noise.labels.levels import sound_levels, with_weighted_levels
+from noise.labels.levels import with_levels
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment
 from noise.labels.table import HUMAN
@@ -76,7 +76,7 @@ def human_rows(
         found = [
             segment
             for channel, track in tracks(recording, per_track=not names_channels(path))
-            for segment in with_weighted_levels(track, _measured(track, channel, segments))
+            for segment in with_levels(track, _measured(track, channel, segments))
         ]
         if not whole:
             found = [replace(segment, snr=None) for segment in found]
@@ -105,16 +105,9 @@ def _measured(
         if at != channel or last - first < 2:
             continue
         blocks = RecordingBlocks.of(track.cut(first, last))
-        level = level_dbfs = frequency = None
+        frequency = None
         if has_window_channel(blocks):
-            found = window_features(blocks)
-            frequency = segment_frequency(found.features[:, FREQUENCY_COLUMNS], label)
-            row = blocks.first("pressure")
-            if row is not None:
-                level, level_dbfs = sound_levels(
-                    found.cells.rms_db(0, found.cells.count),
-                    calibrated=blocks.calibrated,
-                    full_scale=blocks.channels[row].full_scale,
-                )
-        measured.append(Segment(channel, start, end, label, {}, frequency, level, level_dbfs))
+            features = window_features(blocks).features
+            frequency = segment_frequency(features[:, FREQUENCY_COLUMNS], label)
+        measured.append(Segment(channel, start, end, label, {}, frequency))
     return measured

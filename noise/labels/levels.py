@@ -1,8 +1,7 @@
 """Levels of any part of a recording, and of each of its segments over the background.
 
-Unweighted levels are put together from sums over cells of 10 ms, while the recording is read once.
-A-weighted ones are those that `features.kernels.levels` measures of the same samples, the loudness
-N5 that of the library that the field keeps for it.
+A-weighted levels are those that `features.kernels.levels` measures of the same samples, the
+loudness N5 that of the library that the field keeps for it.
 
 The background is what is left where no noise is named. Its level is the one exceeded for 90 % of
 that time, L_A90, as the field has it (ISO 1996-1): a door that slams in between does not raise it.
@@ -43,83 +42,78 @@ and what is left beside zeros by the weighting lies at 130."""
 CELL_RATE = 100
 """Cells in a second; segments begin and end with one."""
 
+_PIECE = 1 << 16
+"""Samples that are squared at a time."""
 
-class CellLevels:
-    """Mean, peak and power of a signal in cells of 10 ms, put together for any run of cells.
+
+def cell_edges(rate: float, n_samples: int) -> NDArray[np.int64]:
+    """Return the samples at which cells of 10 ms begin, and the end of the last.
 
     Parameters
     ----------
     rate : float
         Sampling rate [Hz].
     n_samples : int
-        Of the whole signal; the last cell is what is left, at least half a cell where there are
-        several.
+
+    Returns
+    -------
+    ndarray of int, shape (n_cells + 1,)
 
     Examples
     --------
-    >>> levels = CellLevels(100.0, 100)
-    >>> levels.add(0, 100, np.array([1.0, -1.0] * 50), 0)
-    >>> levels.rms_db(0, 100)
+    >>> cell_edges(1000.0, 25).tolist()
+    [0, 10, 25]
+    """
+    count = max(1, round(n_samples * CELL_RATE / rate))
+    # Fewer samples than cells: rates of less than 100 Hz.
+    edges = np.round(np.arange(count + 1) * (rate / CELL_RATE)).astype(np.int64)
+    edges[-1] = n_samples
+    return np.unique(np.minimum(edges, n_samples))
+
+
+def rms_level(blocks: RecordingBlocks, row: int, first: int, last: int) -> float | None:
+    """Return the level of a part of a channel, without its mean.
+
+    Parameters
+    ----------
+    blocks : RecordingBlocks
+    row : int
+        Of the channel.
+    first, last : int
+        Samples from which and up to which.
+
+    Returns
+    -------
+    float or None
+        Of the root mean square [dB re the channel's unit]; ``None`` where all samples are equal.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> tone = Recording(np.array([[1.0, -1.0] * 50]), 1e3, (Channel("pressure"),))
+    >>> rms_level(RecordingBlocks.of(tone), 0, 0, 100)
     0.0
     """
+    sizes, means, parts = [], [], []
+    for piece in blocks.pieces(first, last, _PIECE):
+        x = piece.samples[row]
+        sizes.append(x.size)
+        means.append(float(x.mean()))
+        parts.append(_rms(x - means[-1]))
+    n = sum(sizes)
+    offsets = np.array(means) - np.dot(means, sizes) / n
+    rms = _rms(np.concatenate([parts, offsets]), np.array([*sizes, *sizes]) / n)
+    return 20.0 * math.log10(rms) if rms > 0.0 else None
 
-    def __init__(self, rate: float, n_samples: int) -> None:
-        count = max(1, round(n_samples * CELL_RATE / rate))
-        # Fewer samples than cells: rates of less than 100 Hz.
-        edges = np.round(np.arange(count + 1) * (rate / CELL_RATE)).astype(np.int64)
-        edges[-1] = n_samples
-        self.edges: NDArray[np.int64] = np.unique(np.minimum(edges, n_samples))
-        self._mean = np.zeros(self.count)
-        self._peak = np.zeros(self.count)
-        self._square = np.zeros(self.count)
 
-    @property
-    def count(self) -> int:
-        """Number of cells."""
-        return self.edges.size - 1
-
-    def add(self, begin: int, end: int, samples: NDArray[np.float64], start: int) -> None:
-        """Sum up the cells that begin from sample `begin` up to `end`.
-
-        Parameters
-        ----------
-        begin, end : int
-            Samples of the whole signal.
-        samples : ndarray, shape (n,)
-            What is at hand [unit of the signal], from sample `start` on: the cells have to end in
-            it.
-        start : int
-        """
-        first, last = np.searchsorted(self.edges[:-1], (begin, end)).tolist()
-        if first == last:
-            return
-        edges = self.edges[first : last + 1] - start
-        sizes, starts = np.diff(edges), edges[:-1] - edges[0]
-        part = samples[edges[0] : edges[-1]]
-        # Shares of the peak are squared: those of the values themselves may overflow.
-        mean = np.add.reduceat(part, starts) / sizes
-        part = part - np.repeat(mean, sizes)
-        peak = np.maximum.reduceat(np.abs(part), starts)
-        part /= np.repeat(np.where(peak > 0.0, peak, 1.0), sizes)
-        self._mean[first:last], self._peak[first:last] = mean, peak
-        self._square[first:last] = np.add.reduceat(np.square(part, out=part), starts)
-
-    def rms_db(self, first: int, last: int) -> float | None:
-        """Root mean square about the mean of cells `first` up to `last` [dB re the unit].
-
-        ``None`` where nothing varies.
-        """
-        sizes = np.diff(self.edges[first : last + 1])
-        n = int(sizes.sum())
-        means = self._mean[first:last]
-        middle = float(means @ sizes) / n
-        offset = np.abs(means - middle)
-        peak = max(float(self._peak[first:last].max()), float(offset.max()))
-        if not peak > 0.0:
-            return None
-        square = self._square[first:last] * (self._peak[first:last] / peak) ** 2
-        total = float(np.sum(square + sizes * (offset / peak) ** 2))
-        return 20.0 * math.log10(peak) + 10.0 * math.log10(total / n) if total > 0.0 else None
+def _rms(x: NDArray[np.float64], weight: NDArray[np.float64] | None = None) -> float:
+    """Root of the mean square, in which shares of the peak are squared: values may overflow."""
+    peak = float(max(x.max(), -x.min()))
+    if not peak > 0.0:
+        return 0.0
+    x = x / peak
+    square = np.dot(x, x) / x.size if weight is None else np.dot(weight, x * x)
+    return peak * math.sqrt(square)
 
 
 def sound_levels(
@@ -155,8 +149,8 @@ def sound_levels(
     return (rms_db - 20.0 * math.log10(REFERENCE_PRESSURE) if calibrated else None), level_dbfs
 
 
-def with_weighted_levels(blocks: RecordingBlocks, segments: list[Segment]) -> list[Segment]:
-    """Add the A-weighted levels of a track's segments, and their level over the background.
+def with_levels(blocks: RecordingBlocks, segments: list[Segment]) -> list[Segment]:
+    """Add the levels of a track's segments, and their level over the background.
 
     Parameters
     ----------
@@ -173,15 +167,18 @@ def with_weighted_levels(blocks: RecordingBlocks, segments: list[Segment]) -> li
     if row is None or not segments:
         return segments
     reference = REFERENCE_PRESSURE if blocks.calibrated else 1.0
-    measured = []
+    full_scale = blocks.channels[row].full_scale
+    measured, unweighted = [], []
     for segment in segments:
         first = round(segment.start * blocks.rate)
-        n = min(round(segment.end * blocks.rate), blocks.n_samples) - first
+        last = min(round(segment.end * blocks.rate), blocks.n_samples)
 
         def read(start: int, end: int, first: int = first) -> NDArray[np.float64]:
             return np.asarray(blocks.read(first + start, first + end)[row])
 
-        measured.append(weighted_levels(read, n, blocks.rate, reference=reference))
+        measured.append(weighted_levels(read, last - first, blocks.rate, reference=reference))
+        rms = rms_level(blocks, row, first, last)
+        unweighted.append(sound_levels(rms, calibrated=blocks.calibrated, full_scale=full_scale))
     # The first and the last eighth of a second may hold the end of a noise beside it.
     outside = [
         levels.short[1:-1]
@@ -194,13 +191,15 @@ def with_weighted_levels(blocks: RecordingBlocks, segments: list[Segment]) -> li
     return [
         replace(
             segment,
+            level=level,
+            level_dbfs=level_dbfs,
             level_a=_finite(levels.level_a) if blocks.calibrated else None,
             level_af_max=_finite(levels.level_af_max) if blocks.calibrated else None,
             snr=levels.level_a - background
             if background is not None and levels.level_a > silent
             else None,
         )
-        for segment, levels in zip(segments, measured, strict=True)
+        for segment, levels, (level, level_dbfs) in zip(segments, measured, unweighted, strict=True)
     ]
 
 

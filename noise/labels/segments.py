@@ -15,7 +15,7 @@ from models.show import short_repr
 from noise.base.labels import LABELS
 from noise.classifier import Classifier
 from noise.labels.classified import at_a_condition, classified, segment_frequency
-from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
+from noise.labels.levels import CELL_RATE, cell_edges, with_levels
 from noise.labels.segmentation import change_points, labelled_stretches
 from noise.labels.windows import has_window_channel, tracks
 
@@ -76,8 +76,8 @@ class Segment:
     label: str
     probabilities: Mapping[str, float]
     frequency: float | None
-    level: float | None
-    level_dbfs: float | None
+    level: float | None = None
+    level_dbfs: float | None = None
     level_a: float | None = None
     level_af_max: float | None = None
     snr: float | None = None
@@ -180,7 +180,7 @@ def label_recording(
     return Segments(
         segment
         for name, track in found
-        for segment in with_weighted_levels(track, _label(track, classifier, name, surroundings))
+        for segment in with_levels(track, _label(track, classifier, name, surroundings))
     )
 
 
@@ -216,48 +216,24 @@ def _label(
     blocks: RecordingBlocks, classifier: Classifier, channel: str, surroundings: str | None
 ) -> list[Segment]:
     if not has_window_channel(blocks):
-        return [_nothing_to_tell(blocks, channel)]
+        certain = {label: float(label == "unknown") for label in LABELS}
+        return [Segment(channel, 0.0, blocks.n_samples / blocks.rate, "unknown", certain, None)]
     at_rig = surroundings in (None, "rig") and at_a_condition(blocks)
     probabilities, of_frequency, found = classified(blocks, classifier, at_rig=at_rig)
     # At a condition nothing but the bushing is expected to sound: the likeliest label is said.
     thresholds = None if at_rig else classifier.thresholds[surroundings or "any"]
     edges, names, heard = labelled_stretches(probabilities, thresholds, found.level)
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
-    last_cell = found.cells.count
+    times = cell_edges(blocks.rate, blocks.n_samples) / blocks.rate
+    last_cell = times.size - 1
     limits = [0, *np.clip(cells, 1, max(1, last_cell - 1)).tolist(), last_cell]
     parts = zip(pairwise(edges.tolist()), pairwise(limits), names.tolist(), heard, strict=True)
     segments = []
     for windows, (first, last), name, p in parts:
         if last <= first:
             continue
-        start, end = (found.cells.edges[[first, last]] / blocks.rate).tolist()
+        start, end = times[[first, last]].tolist()
         frequency = segment_frequency(of_frequency[slice(*windows)], LABELS[name])
-        levels = _levels(blocks, found.cells, first, last)
         by_label = dict(zip(LABELS, p.tolist(), strict=True))
-        segments.append(Segment(channel, start, end, LABELS[name], by_label, frequency, *levels))
+        segments.append(Segment(channel, start, end, LABELS[name], by_label, frequency))
     return segments
-
-
-def _nothing_to_tell(blocks: RecordingBlocks, channel: str) -> Segment:
-    """Return the segment of a recording that no noise can be told from."""
-    levels = CellLevels(blocks.rate, blocks.n_samples)
-    row = blocks.first("pressure")
-    if row is not None:
-        # Few samples a second, so few in all.
-        levels.add(0, blocks.n_samples, blocks.read(0, blocks.n_samples)[row], 0)
-    certain = {label: float(label == "unknown") for label in LABELS}
-    end = blocks.n_samples / blocks.rate
-    found = _levels(blocks, levels, 0, levels.count)
-    return Segment(channel, 0.0, end, "unknown", certain, None, *found)
-
-
-def _levels(
-    blocks: RecordingBlocks, cells: CellLevels, first: int, last: int
-) -> tuple[float | None, float | None]:
-    """Levels of the pressure in cells `first` up to `last`; none where there is no pressure."""
-    row = blocks.first("pressure")
-    if row is None:
-        return None, None
-    full_scale = blocks.channels[row].full_scale
-    rms = cells.rms_db(first, last)
-    return sound_levels(rms, calibrated=blocks.calibrated, full_scale=full_scale)

@@ -30,7 +30,6 @@ from features.windows.table import (
 from models.blocks import RecordingBlocks
 from models.errors import ParameterError
 from noise.classifier.model import Classifier
-from noise.labels.levels import CellLevels
 
 FEATURE_NAMES = (
     *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in WINDOW_NAMES),
@@ -75,7 +74,7 @@ def columns_of(classifier: Classifier) -> list[int]:
 
 @dataclass(frozen=True, eq=False)
 class WindowFeatures:
-    """Features of all windows of a recording, and its frames and levels.
+    """Features of all windows of a recording, and its frames.
 
     Parameters
     ----------
@@ -85,14 +84,11 @@ class WindowFeatures:
         A-weighted power of the channel listened to, from 160 Hz to 7 kHz [dB re its unit].
     frames : ndarray of float32, shape (n_frames, n)
         Of that channel, as `features.windows.table.WindowTable` has them.
-    cells : CellLevels
-        Of that channel, all frequencies.
     """
 
     features: NDArray[Any]
     level: NDArray[np.float32]
     frames: NDArray[np.float32]
-    cells: CellLevels
 
 
 def has_window_channel(blocks: RecordingBlocks) -> bool:
@@ -142,19 +138,17 @@ def window_features(
     >>> found.features.shape == (3, len(FEATURE_NAMES)), found.frames.shape[0]
     (True, 97)
     """
-    pages = WindowPages(blocks)
-    found = [page._replace(features=reduced(page.features)) for page in pages]
+    pages = [page._replace(features=reduced(page.features)) for page in WindowPages(blocks)]
     # Where two pages have the same frame, the later one's is taken.
-    starts = [page.first * FRAMES_A_HOP for page in found]
-    ends = [*starts[1:], starts[-1] + len(found[-1].frames)]
+    starts = [page.first * FRAMES_A_HOP for page in pages]
+    ends = [*starts[1:], starts[-1] + len(pages[-1].frames)]
     frames = [
-        page.frames[: end - start] for page, start, end in zip(found, starts, ends, strict=True)
+        page.frames[: end - start] for page, start, end in zip(pages, starts, ends, strict=True)
     ]
     return WindowFeatures(
-        np.concatenate([page.features for page in found]),
-        np.concatenate([page.level for page in found]),
+        np.concatenate([page.features for page in pages]),
+        np.concatenate([page.level for page in pages]),
         np.concatenate(frames),
-        pages.cells,
     )
 
 
@@ -197,9 +191,6 @@ class WindowPages:
     count: int
     """Number of windows."""
 
-    cells: CellLevels
-    """Levels of the channel listened to, complete after the last page."""
-
     def __init__(self, blocks: RecordingBlocks) -> None:
         rows = {kind: blocks.first(kind) for kind in _KINDS}
         self._channels = {kind: row for kind, row in rows.items() if row is not None}
@@ -212,7 +203,6 @@ class WindowPages:
         self._limit = min(WORKING_LIMIT, USABLE_SHARE * rate)
         self._resampled: dict[int, dict[int, Block]] = {}
         self.count = window_count(self._n)
-        self.cells = CellLevels(rate, blocks.n_samples)
 
     def __iter__(self) -> Iterator[Page]:
         a_page = round(_BLOCKS_A_PAGE * self._useful / HOP)
@@ -265,9 +255,6 @@ class WindowPages:
             start = round((number * self._useful - MARGIN) * rate)
             length = round((self._useful + 2.0 * MARGIN) * rate)
             held = self._blocks.read(max(start, 0), min(start + length, n))
-            begin = round(number * self._useful * rate)
-            end = round((number + 1) * self._useful * rate)
-            self.cells.add(begin, end, held[self._main], max(start, 0))
             self._resampled[number] = {
                 row: resampled_block(self._framed(held[row], start, length), rate, self._useful)
                 for row in self._rows

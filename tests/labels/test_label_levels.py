@@ -8,7 +8,7 @@ from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from noise.audio.assessment import assess
 from noise.classifier import load_classifier
-from noise.labels.levels import with_weighted_levels
+from noise.labels.levels import with_levels
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, label_recording
 from sim.run import simulate
@@ -56,9 +56,9 @@ def test_a_squeal_stands_over_its_background_by_what_it_is_louder(squeal):
 def test_a_slam_does_not_raise_the_background():
     sound = noise(4.0, 0.01)
     parts = [segment(0.0, 3.0, "unknown"), segment(3.0, 4.0, "squeal")]
-    before = with_weighted_levels(RecordingBlocks.of(recorded(sound)), parts)
+    before = with_levels(RecordingBlocks.of(recorded(sound)), parts)
     sound[RATE : RATE + RATE // 10] *= 300.0
-    after = with_weighted_levels(RecordingBlocks.of(recorded(sound)), parts)
+    after = with_levels(RecordingBlocks.of(recorded(sound)), parts)
     assert after[1].snr == pytest.approx(before[1].snr, abs=0.1)
     assert after[0].level_a > before[0].level_a + 20.0
 
@@ -76,7 +76,7 @@ def test_a_slam_does_not_raise_the_background():
     ids=["nothing else", "too little else", "digital silence"],
 )
 def test_where_there_is_no_background_nothing_is_over_it(sound, parts):
-    found = with_weighted_levels(RecordingBlocks.of(recorded(sound)), parts)
+    found = with_levels(RecordingBlocks.of(recorded(sound)), parts)
     assert [one.snr for one in found] == [None] * len(parts)
     assert found[-1].level_a is not None
 

@@ -9,7 +9,7 @@ from features.table import WINDOW_FEATURES
 from features.windows.table import WINDOW_NAMES, window_count
 from models.blocks import RecordingBlocks
 from models.recording import Channel, Recording
-from noise.labels.levels import CellLevels
+from noise.labels.levels import cell_edges, rms_level
 from noise.labels.segmentation import change_points, viterbi_path
 from noise.labels.windows import FEATURE_NAMES, window_features
 from noise.recordings import files as blocks_module
@@ -123,9 +123,9 @@ def test_windows_and_levels_reach_to_the_end(seconds):
     samples = noise(seconds, 16_000)
     found = described(samples, 16e3)
     assert len(found.features) == window_count(samples.size)
-    assert found.cells.edges[-1] == samples.size
-    rms = 20.0 * np.log10(samples.std())
-    assert found.cells.rms_db(0, found.cells.count) == pytest.approx(rms, abs=1e-6)
+    assert cell_edges(16e3, samples.size)[-1] == samples.size
+    level = rms_level(RecordingBlocks.of(recording(samples, rate=16e3)), 0, 0, samples.size)
+    assert level == pytest.approx(20.0 * np.log10(samples.std()), abs=1e-6)
 
 
 def test_from_a_file_in_blocks_comes_the_same_as_from_memory(tmp_path, monkeypatch):
@@ -173,13 +173,10 @@ def test_a_short_doubt_is_no_segment_but_a_long_one_is():
 
 
 def test_levels_of_what_has_no_square_are_levels_all_the_same():
-    samples = 1e200 * np.sin(np.arange(1000))
-    cells = CellLevels(1000.0, 1000)
-    cells.add(0, 1000, samples, 0)
-    assert cells.rms_db(0, 100) == pytest.approx(4000.0 - 3.01, abs=0.01)
-    constant = CellLevels(1000.0, 1000)
-    constant.add(0, 1000, np.full(1000, 0.5), 0)
-    assert constant.rms_db(0, 100) is None
+    sound = recording(1e200 * np.sin(np.arange(1000)), rate=1e3)
+    assert rms_level(RecordingBlocks.of(sound), 0, 0, 1000) == pytest.approx(3996.99, abs=0.01)
+    constant = recording(np.full(1000, 0.5), rate=1e3)
+    assert rms_level(RecordingBlocks.of(constant), 0, 0, 1000) is None
 
 
 TOP = FEATURE_NAMES.index("pressure_top_2")
