@@ -1,4 +1,4 @@
-"""Recordings on disk: one file a format, the sidecar, and where a calibration can be found."""
+"""Reading and writing of recordings: file formats, sidecars, calibration."""
 
 from noise.recordings.files import read_recording
 from noise.recordings.folders import find_recordings

@@ -1,11 +1,10 @@
-"""A sound calibrator's recorded tone: what a full-scale sample is worth in pascals.
+"""Calibration from the recorded tone of a sound calibrator.
 
-Calibrators sound at 250 Hz or 1 kHz with a stated level, most often 94 or 114 dB re 20 uPa
-(IEC 60942). The tone is fitted in blocks of a tenth of a second; what is not one stable tone is
-refused, with the reason: a frequency of no calibrator, a level that drifts (a microphone not yet
-seated, or taken out), or anything beside the tone beyond the distortion that the standard allows a
-calibrator of class 2. The level is that of the fundamental alone, so that rumble and hiss do not
-count.
+Calibrators give 250 Hz or 1 kHz at a stated level, usually 94 or 114 dB re 20 uPa (IEC 60942). A
+sine is fitted to blocks of a tenth of a second. A recording is refused if its frequency is not that
+of a calibrator, if the level drifts (a microphone not yet seated, or taken out), or if other
+components exceed the distortion that the standard allows a class 2 calibrator. The level is that of
+the fundamental alone, so rumble and hiss do not count.
 """
 
 from __future__ import annotations
@@ -23,31 +22,31 @@ from models.recording import REFERENCE_PRESSURE
 from noise.recordings.files import open_raw
 
 FREQUENCIES = (250.0, 1000.0)
-"""Of calibrators [Hz] (IEC 60942)."""
+"""Frequencies of calibrators [Hz] (IEC 60942)."""
 
-_OFF = 0.025
-"""By which a tone may be off, as a share of its frequency; pistonphones sound at 251.2 Hz."""
+_FREQUENCY_TOLERANCE = 0.025
+"""Largest relative deviation of the frequency [-]; pistonphones give 251.2 Hz."""
 
 _SHORTEST = 0.5
-"""[s]"""
+"""Shortest recording [s]."""
 
 _BLOCK = 0.1
-"""[s]"""
+"""Length of a block [s]."""
 
 _DRIFT = 0.3
-"""Between the loudest and the quietest block [dB]."""
+"""Largest difference between the levels of blocks [dB]."""
 
-_BESIDE = 0.04
-"""Rms of what is not the tone, over that of the tone (IEC 60942, class 2): harmonics of overload or
-of tops cut off, other sound."""
+_RESIDUAL = 0.04
+"""Largest rms of the residual over that of the tone [-] (IEC 60942, class 2): harmonics of overload
+or clipping, other sound."""
 
 _STEP = 2.0**-15
-"""Of integer samples, over full scale; finer ones have no need of it."""
+"""Quantisation step of 16-bit samples over full scale [-]."""
 
 
 @dataclass(frozen=True)
 class CalibratorTone:
-    """The tone on one track.
+    """Tone of a calibrator on one track.
 
     Parameters
     ----------
@@ -62,26 +61,26 @@ class CalibratorTone:
 
 
 def read_calibrator(path: str | os.PathLike[str], level: float) -> tuple[CalibratorTone, ...]:
-    """Read a recording of a calibrator.
+    """Read the recording of a calibrator and return the value of full scale.
 
     Parameters
     ----------
     path : path-like
-        As `noise.recordings.read_recording` takes it; a calibration of its own is passed over.
+        Recording of any format; a calibration in it is ignored.
     level : float
-        That the calibrator gives [dB re 20 uPa].
+        Level of the calibrator [dB re 20 uPa].
 
     Returns
     -------
     tuple of CalibratorTone
-        One a track.
+        Tone of each track.
 
     Raises
     ------
     RecordingError
-        It cannot be read, or is not one stable tone; the message says why.
+        The file cannot be read, or is not one stable tone; the message states the reason.
     ParameterError
-        The level is no number.
+        The level is not finite.
 
     Examples
     --------
@@ -89,8 +88,8 @@ def read_calibrator(path: str | os.PathLike[str], level: float) -> tuple[Calibra
     >>> tone = 0.1 * np.sin(2.0 * np.pi * 1000.0 * np.arange(48_000) / 48e3)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     soundfile.write(Path(folder) / "tone.wav", tone, 48_000)
-    ...     found = read_calibrator(Path(folder) / "tone.wav", 94.0)
-    >>> round(found[0].frequency, 2), round(found[0].full_scale, 2)
+    ...     (track,) = read_calibrator(Path(folder) / "tone.wav", 94.0)
+    >>> round(track.frequency, 2), round(track.full_scale, 2)
     (1000.0, 14.18)
     """
     if not math.isfinite(level):
@@ -99,17 +98,17 @@ def read_calibrator(path: str | os.PathLike[str], level: float) -> tuple[Calibra
     with open_raw(path) as raw:
         samples = raw.whole()
     pressure = REFERENCE_PRESSURE * 10.0 ** (level / 20.0)
-    found = []
+    tones = []
     for number, row in enumerate(samples, start=1):
         where = str(path) if raw.n_channels == 1 else f"{path}: track {number}"
         with naming(f"{where}: is no calibrator's tone: ", RecordingError):
             frequency, amplitude = _tone(row, raw.rate, fractional=raw.fractional)
-        found.append(CalibratorTone(frequency, pressure * math.sqrt(2.0) / amplitude))
-    return tuple(found)
+        tones.append(CalibratorTone(frequency, pressure * math.sqrt(2.0) / amplitude))
+    return tuple(tones)
 
 
 def _tone(samples: NDArray[np.float64], rate: float, *, fractional: bool) -> tuple[float, float]:
-    """Frequency [Hz] and amplitude of the one stable tone of a track."""
+    """Return frequency [Hz] and amplitude [stored unit] of the tone on a track."""
     if samples.size < _SHORTEST * rate:
         raise ParameterError(f"lasts {samples.size / rate:.3g} s; {_SHORTEST:g} s at least")
     if not np.isfinite(samples).all():
@@ -119,7 +118,7 @@ def _tone(samples: NDArray[np.float64], rate: float, *, fractional: bool) -> tup
     if peak == 0.0 or rate < 2.5 * FREQUENCIES[-1]:
         raise ParameterError("is silent" if peak == 0.0 else f"is sampled at {rate:g} Hz alone")
     frequency = _strongest(x, rate)
-    if not any(abs(frequency - each) <= _OFF * each for each in FREQUENCIES):
+    if not any(abs(frequency - each) <= _FREQUENCY_TOLERANCE * each for each in FREQUENCIES):
         raise ParameterError(
             f"its strongest tone is at {frequency:.4g} Hz, and calibrators sound at 250 or 1000 Hz"
         )
@@ -129,8 +128,8 @@ def _tone(samples: NDArray[np.float64], rate: float, *, fractional: bool) -> tup
     blocks = x[: x.size // n * n].reshape(-1, n).T
     phase = 2.0 * np.pi * frequency / rate * np.arange(n)
     basis = np.column_stack([np.cos(phase), np.sin(phase), np.ones(n)])
-    found = np.linalg.lstsq(basis, blocks, rcond=None)[0]
-    tone = np.hypot(found[0], found[1])
+    coefficients = np.linalg.lstsq(basis, blocks, rcond=None)[0]
+    tone = np.hypot(coefficients[0], coefficients[1])
     if not tone.min() > 0.0:
         raise ParameterError("its tone is not there all the time")
     levels = 20.0 * np.log10(tone)
@@ -142,17 +141,17 @@ def _tone(samples: NDArray[np.float64], rate: float, *, fractional: bool) -> tup
             f"{_DRIFT:g}; cut it to where it is steady"
         )
     amplitude = math.sqrt(float(np.mean(tone**2)))
-    beside = math.sqrt(2.0 * float(np.mean((blocks - basis @ found) ** 2))) / amplitude
-    if beside > _BESIDE:
+    residual = math.sqrt(2.0 * float(np.mean((blocks - basis @ coefficients) ** 2))) / amplitude
+    if residual > _RESIDUAL:
         raise ParameterError(
-            f"what is not the tone is {beside:.1%} of it, and may be {_BESIDE:.0%}: it is "
+            f"what is not the tone is {residual:.1%} of it, and may be {_RESIDUAL:.0%}: it is "
             "overloaded, badly seated, its tops are cut off, or there is other sound"
         )
     return frequency, amplitude
 
 
 def _strongest(x: NDArray[np.float64], rate: float) -> float:
-    """Frequency of the strongest line [Hz], between the lines of a transform."""
+    """Return the frequency of the strongest line [Hz], interpolated between bins."""
     spectrum = np.abs(np.fft.rfft(x * np.hanning(x.size)))
     k = int(np.clip(np.argmax(spectrum), 1, spectrum.size - 2))
     left, middle, right = np.log(spectrum[k - 1 : k + 2] + 1e-300)

@@ -1,7 +1,7 @@
-"""Recordings on disk: samples in one file and, where more is known, a sidecar of the same stem.
+"""Reader of recordings, whole or in blocks: a file of samples and an optional sidecar.
 
-Formats are found in `noise.recordings.formats`; what the samples mean is decided in
-`noise.recordings.meaning`, once for all of them.
+The formats are in `noise.recordings.formats`; `noise.recordings.meaning` determines channels and
+calibration for all of them.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from noise.recordings.rotation import find_turns
 from noise.recordings.sidecar import sidecar_of
 
 MIN_SAMPLES = 16
-"""Fewer samples than this are no recording."""
+"""Smallest number of samples of a recording."""
 
-_DENSEST = 8192  # samples a byte: FLAC holds silence in about 10 bytes a block of 65535 samples
+_DENSEST = 8192  # samples per byte: FLAC stores silence in about 10 bytes per block of 65535
 _LARGE = 64 << 20
-"""Recordings of fewer bytes, as 64-bit samples, are read whole."""
+"""Size of 64-bit samples from which on a recording is read in chunks [byte]."""
 
 _CHUNK = 8 << 20
-"""What is read at once of others [byte of 64-bit samples]."""
+"""Size of a chunk of 64-bit samples [byte]."""
 
 _noted: set[str] = set()
 
@@ -48,25 +48,25 @@ def read_recording(
     full_scale: PascalPerFullScale | None = None,
     calibrations: Mapping[str, Calibration] | None = None,
 ) -> Recording:
-    """Read a recording and what its sidecar, or the file itself, says about it.
+    """Read a recording with the metadata of its sidecar or of the file itself.
 
     Parameters
     ----------
     path : path-like
-        File with one of the endings of `noise.recordings.formats.formats`. A sidecar is the file
-        of the same stem with the ending ``.json``. Without one each track of a sound file is a
-        pressure channel (an acceleration channel where a meter says so).
+        File of one of the formats of `noise.recordings.formats.formats`. Its sidecar has the same
+        stem and the suffix ``.json``. Without a sidecar each track of a sound file is a pressure
+        channel, or an acceleration channel if the file of a meter states one.
     full_scale : float or tuple of float, optional
-        Pressure of a full-scale sample [Pa], of all tracks or of each; wins over all that file and
-        sidecar say, but for samples that are in a unit already.
+        Pressure of a full-scale sample [Pa], for all tracks or for each. It overrides file and
+        sidecar, except for samples that are already in a unit.
     calibrations : mapping of str to Calibration, optional
-        By kind of channel, for channels that neither file nor sidecar calibrates.
+        Calibration by kind of channel, for channels that neither file nor sidecar calibrates.
 
     Returns
     -------
     Recording
-        Samples of shape (n_channels, n_samples), in the unit of each channel where `calibrated`,
-        otherwise in fractions of full scale.
+        Samples of shape (n_channels, n_samples), in the units of the channels if `calibrated`,
+        otherwise as fractions of full scale.
 
     Raises
     ------
@@ -97,25 +97,25 @@ def read_recording(
 def open_blocks(
     path: str | os.PathLike[str], *, full_scale: PascalPerFullScale | None = None
 ) -> Iterator[RecordingBlocks]:
-    """Open a recording of which parts are wanted; only what is looked at is read of a long one.
+    """Open a recording for reading in blocks; a long file is read only where needed.
 
-    Compressed sound that cannot be entered at a given sample is decoded from its beginning.
+    Compressed formats without random access are decoded from the beginning.
 
     Parameters
     ----------
     path : path-like
     full_scale : float or tuple of float, optional
-        As for `noise.recordings.read_recording`.
+        See `read_recording`.
 
     Yields
     ------
     RecordingBlocks
-        Reading raises RecordingError where samples are missing or not finite.
+        Its reading raises RecordingError for missing or infinite samples.
 
     Raises
     ------
     RecordingError
-        As for `read_recording`.
+        See `read_recording`.
 
     Examples
     --------
@@ -144,22 +144,22 @@ def open_blocks(
 
 @contextmanager
 def open_raw(path: Path) -> Iterator[RawRecording]:
-    """Open a recording, before anyone says what its samples mean.
+    """Open a recording without interpreting its samples.
 
     Raises
     ------
     RecordingError
-        It cannot be read.
+        The file cannot be read.
     """
     with ExitStack() as stack:
         with reading(path, "recording", error=RecordingError):
             if path.stat().st_size == 0:
                 raise RecordingError(f"{path}: is empty (0 bytes)")
-            of = formats().get(path.suffix.lower())
-            if of is None:
+            file_format = formats().get(path.suffix.lower())
+            if file_format is None:
                 known = f"has no ending of a recording; known are {', '.join(formats())}"
                 raise RecordingError(f"{path}: {why_not_read(path.name) or known}")
-            raw = stack.enter_context((of.open or open_isolated)(path))
+            raw = stack.enter_context((file_format.open or open_isolated)(path))
             check_rate(raw.rate, str(path))
             if raw.n_samples > _DENSEST * path.stat().st_size:
                 raise RecordingError(
@@ -174,21 +174,22 @@ def open_raw(path: Path) -> Iterator[RawRecording]:
 
 
 def _whole(path: Path, raw: RawRecording, meaning: Meaning) -> Recording:
+    """Return a recording with all its samples."""
     samples, channels = raw.whole(), meaning.channels
-    beyond = _to_units(path, raw, meaning, samples)
+    range_notes = _to_units(path, raw, meaning, samples)
     unwrapping = find_turns(
         channels, lambda a, b: samples[:, a:b], raw.n_samples, meaning.calibrated
     )
     unwrapping.add(samples, 0)
-    notes = (*meaning.notes, *beyond, *unwrapping.notes)
-    _say_once(path, notes)
+    notes = (*meaning.notes, *range_notes, *unwrapping.notes)
+    _note_once(path, notes)
     return Recording(
         samples, raw.rate, channels, meaning.condition, meaning.calibrated, path.name, notes
     )
 
 
 def _in_chunks(path: Path, raw: RawRecording, meaning: Meaning) -> RecordingBlocks:
-    """Return a long recording, in units, of which the last chunks that were read are kept."""
+    """Return a long recording that is read in chunks, with a cache of the last two."""
     channels = meaning.channels
     length = max(1, _CHUNK // (8 * raw.n_channels))
 
@@ -206,7 +207,7 @@ def _in_chunks(path: Path, raw: RawRecording, meaning: Meaning) -> RecordingBloc
         return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
 
     unwrapping = find_turns(channels, read, raw.n_samples, meaning.calibrated)
-    _say_once(path, (*meaning.notes, *unwrapping.notes))
+    _note_once(path, (*meaning.notes, *unwrapping.notes))
 
     def read_unwrapped(first: int, last: int) -> NDArray[np.float64]:
         samples = read(first, last)
@@ -224,9 +225,9 @@ def _in_chunks(path: Path, raw: RawRecording, meaning: Meaning) -> RecordingBloc
 def _to_units(
     path: Path, raw: RawRecording, meaning: Meaning, samples: NDArray[np.float64], start: int = 0
 ) -> list[str]:
-    """Bring samples from number `start` on to their units, in place; return what to note of it."""
+    """Convert samples from index `start` on to their units in place; return notes."""
     notes = []
-    with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
+    with np.errstate(over="ignore", invalid="ignore"):  # `check_finite` refuses them
         for channel, curve, row in zip(meaning.channels, meaning.curves, samples, strict=True):
             if curve is None:
                 if channel.full_scale != 1.0:
@@ -244,25 +245,25 @@ def _to_units(
 
 
 def names_channels(path: Path) -> bool:
-    """Whether a recording says what its channels are; the tracks of a plain sound file do not.
+    """Whether a recording names its channels, in contrast to a plain sound file.
 
     Raises
     ------
     RecordingError
-        Its sidecar cannot be read.
+        The sidecar cannot be read.
 
     Examples
     --------
     >>> names_channels(Path("stereo.wav")), names_channels(Path("run07.tdms"))
     (False, True)
     """
-    of = formats().get(path.suffix.lower())
-    logged = of is not None and of.open is None
+    file_format = formats().get(path.suffix.lower())
+    logged = file_format is not None and file_format.open is None
     return logged or sidecar_of(path).channels is not None
 
 
-def _say_once(path: Path, notes: Iterable[str]) -> None:
-    """Print notes on a recording; one that is true of many files is printed for the first."""
+def _note_once(path: Path, notes: Iterable[str]) -> None:
+    """Print notes on a recording; a note on several files is printed for the first only."""
     for text in notes:
         if text not in _noted:
             _noted.add(text)

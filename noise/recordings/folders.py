@@ -1,10 +1,9 @@
-"""Folders searched at any depth, by one rule for all commands.
+"""Recursive search of folders for recordings, by the same rules for all commands.
 
-What is hidden is left out. A link to a folder is followed as if it were one, after all that is
-there without links: so a recording that can be reached in both ways has its own name, and a link
-that leads back into a folder already searched ends there. A folder that goes away while it is
-searched is one without files. What is no file (a link to nothing, a pipe, a device) is never
-opened, and what nobody may look into is left out; a line for each reason says so.
+Hidden files are skipped. Links to folders are followed after all real folders, so that a recording
+has the name of its real path, and each folder is searched once. A folder that disappears during the
+search counts as empty. Unreadable folders and paths that are no files (broken links, pipes,
+devices) are skipped, with one note per reason.
 """
 
 from __future__ import annotations
@@ -20,8 +19,8 @@ from models.foreign_file import check_plain_file
 from noise.base.progress import note, readable
 from noise.recordings.formats import formats
 
-_NAMED = 3
-"""Of what is left out, so many are named."""
+_MAX_NAMES = 3
+"""Number of skipped files that a note names."""
 
 _CONVERT = "convert to WAV or FLAC, as by: ffmpeg -i {name} {stem}.wav"
 _EXPORT = "export as WAV, or a format that is read, from the program that wrote it"
@@ -32,24 +31,24 @@ _OTHERS = {
     ),
     **dict.fromkeys((".ats", ".d7d", ".dxd", ".hdf", ".mat", ".pti", ".sie", ".tdm"), _EXPORT),
 }  # fmt: skip
-"""Endings of recordings that are not read -> what to do."""
+"""Suffixes of unsupported recordings -> advice."""
 
 
 def files_below(
     folder: Path, left_out: dict[str, list[str]] | None = None
 ) -> list[tuple[Path, str]]:
-    """List the files in a folder at any depth.
+    """List the files in a folder recursively.
 
     Parameters
     ----------
     folder : Path
     left_out : dict, optional
-        Filled with what is left out, by the reason.
+        Filled with the names of skipped paths by reason.
 
     Returns
     -------
     list of (Path, str)
-        Each with its name relative to the folder, with forward slashes; sorted by it.
+        Files with their names relative to the folder, with forward slashes, sorted by name.
 
     Raises
     ------
@@ -66,43 +65,43 @@ def files_below(
     ...     [name for _, name in files_below(Path(name))]
     ['day1/run07.wav']
     """
-    os.scandir(folder).close()  # what was named must be there; what is below may come and go
-    seen: set[tuple[int, int]] = set()
-    found: list[Path] = []
+    os.scandir(folder).close()  # raises if the folder itself is missing
+    visited: set[tuple[int, int]] = set()
+    files: list[Path] = []
 
     def leave_out(path: Path, reason: str) -> None:
         if left_out is not None:
             left_out.setdefault(reason, []).append(path.relative_to(folder).as_posix())
 
-    def closed(error: OSError) -> None:
-        if not isinstance(error, FileNotFoundError):  # it went away
+    def unreadable(error: OSError) -> None:
+        if not isinstance(error, FileNotFoundError):  # it disappeared
             leave_out(Path(error.filename), "cannot be looked into")
 
     waiting = [folder]
     while waiting:
         links: list[Path] = []
-        for place, folders, names in chain(*(os.walk(top, onerror=closed) for top in waiting)):
-            here, before = Path(place), len(seen)
+        for place, folders, names in chain(*(os.walk(top, onerror=unreadable) for top in waiting)):
+            here, n_before = Path(place), len(visited)
             with suppress(OSError):
                 status = here.stat()
-                seen.add((status.st_dev, status.st_ino))
-            if len(seen) == before:  # it went away, or was searched already
+                visited.add((status.st_dev, status.st_ino))
+            if len(visited) == n_before:  # it disappeared, or was searched already
                 folders.clear()
                 continue
             folders[:] = [name for name in folders if not name.startswith(".")]
             links += [here / name for name in folders if os.path.islink(here / name)]  # noqa: PTH114
             for path in (here / name for name in sorted(names) if not name.startswith(".")):
                 if is_file(path):
-                    found.append(path)
+                    files.append(path)
                 else:
-                    leave_out(path, _why(path))
+                    leave_out(path, _skip_reason(path))
         waiting = sorted(links)
-    named = ((path, path.relative_to(folder).as_posix()) for path in found)
+    named = ((path, path.relative_to(folder).as_posix()) for path in files)
     return sorted(named, key=lambda entry: entry[1])
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is a file, of a path that a table or a page may have made up.
+    """Whether a path is a file; False also for names that the system does not accept.
 
     Examples
     --------
@@ -111,12 +110,12 @@ def is_file(path: Path) -> bool:
     """
     try:
         return path.is_file()
-    except OSError:  # such as a name that is too long for the system
+    except OSError:
         return False
 
 
-def _why(path: Path) -> str:
-    """Tell what something is that is no file to be read, without opening it."""
+def _skip_reason(path: Path) -> str:
+    """Return why a path is not a readable file, without opening it."""
     if os.path.islink(path) and not os.path.exists(path):  # noqa: PTH110, PTH114  # never raise
         return "links to nothing"
     try:
@@ -129,21 +128,20 @@ def _why(path: Path) -> str:
 def find_recordings(
     paths: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
 ) -> list[tuple[Path, str]]:
-    """Find recordings: files as named, and those in folders at any depth.
+    """Find recordings in files and folders.
 
     Parameters
     ----------
     paths : path-like or iterable of path-like
-        A file stands for itself, whatever its ending. In a folder hidden files and folders and
-        unknown endings are passed over, links to folders are followed, and what is no file, or a
-        recording of a format that is not read, is left out with a note.
+        Files, with any suffix, or folders, which are searched recursively. In a folder hidden
+        files and unknown suffixes are skipped; paths that are no files and recordings of an
+        unsupported format are skipped with a note.
 
     Returns
     -------
     list of (Path, str)
-        Each file with its name relative to the folder named, with forward slashes; the bare name
-        where the file itself was named; what cannot be shown of it as
-        `noise.base.progress.readable` has it. Paths in the order given, sorted within a folder.
+        Files with their names: relative to the folder with forward slashes, or the bare file name;
+        escaped by `noise.base.progress.readable`. In the order of `paths`, sorted within a folder.
 
     Raises
     ------
@@ -160,41 +158,41 @@ def find_recordings(
     ...     [name for _, name in find_recordings(folder)]
     ['day1/run07.wav']
     """
-    named = [paths] if isinstance(paths, str | os.PathLike) else paths
-    found: list[tuple[Path, str]] = []
-    for path in map(Path, named):
+    recordings: list[tuple[Path, str]] = []
+    for path in map(Path, [paths] if isinstance(paths, str | os.PathLike) else paths):
         try:
             if path.is_dir():
                 left_out: dict[str, list[str]] = {}
                 files = files_below(path, left_out)
                 _note_left_out(path, left_out, [name for _, name in files])
-                found += [
+                recordings += [
                     (file, readable(name))
                     for file, name in files
                     if file.suffix.lower() in formats()
                 ]
             elif path.exists():
-                found.append((path, readable(path.name)))
+                recordings.append((path, readable(path.name)))
             else:
                 raise ParameterError(f"{path}: there is no such file or folder")
         except OSError as error:
             raise ParameterError(f"{path}: cannot be read ({error.strerror or error})") from error
-    return found
+    return recordings
 
 
 def _note_left_out(folder: Path, left_out: dict[str, list[str]], names: list[str]) -> None:
-    """Say what is left out of a folder, recordings that are not read with what to do."""
-    others: dict[str, list[str]] = {}
+    """Print a note per reason on the skipped files of a folder."""
+    unsupported: dict[str, list[str]] = {}
     for name in names:
         if advice := _advice(Path(name)):
-            others.setdefault(advice, []).append(name)
-    for reason, left in (left_out | {why_not_read(o[0]): o for o in others.values()}).items():
-        more = f" and {len(left) - _NAMED} more" * (len(left) > _NAMED)
-        note(f"{folder}: left out {', '.join(left[:_NAMED])}{more}: {reason}")
+            unsupported.setdefault(advice, []).append(name)
+    by_reason = left_out | {why_not_read(same[0]): same for same in unsupported.values()}
+    for reason, skipped in by_reason.items():
+        more = f" and {len(skipped) - _MAX_NAMES} more" * (len(skipped) > _MAX_NAMES)
+        note(f"{folder}: left out {', '.join(skipped[:_MAX_NAMES])}{more}: {reason}")
 
 
 def why_not_read(name: str) -> str:
-    """Say that a recording is not read, and what to do; empty where its ending is none of one.
+    """Return a message with advice for a recording of an unsupported format, else an empty text.
 
     Examples
     --------
@@ -207,5 +205,6 @@ def why_not_read(name: str) -> str:
 
 
 def _advice(path: Path) -> str:
+    """Return the advice for an unsupported format as a template; empty for other files."""
     ending = path.suffix.lower()
     return "" if ending in formats() else _OTHERS.get(ending, "")

@@ -1,8 +1,7 @@
-"""Hammer hits from files: recordings with a force channel, or plain tables of numbers.
+"""Reader of hammer hits from recordings with a force channel or tables of numbers.
 
-A table (NPY or CSV) has time [s], force [N] and response as its three rows or its three columns,
-as acquisition programs export them; its shape decides which of the two. Headings of a CSV file with
-other units, or another order, are followed.
+A table (NPY or CSV) has time [s], force [N] and response as three rows or three columns, as its
+shape tells. Headings of a CSV file may state other units or another order.
 """
 
 from __future__ import annotations
@@ -25,12 +24,12 @@ from noise.recordings.formats import check_rate, formats
 from noise.recordings.formats.time_axis import even_step, whole_rate
 
 RESPONSES = ("acceleration", "pressure")
-"""Kinds of channel taken for the response where none is named, in this order."""
+"""Default channels of the response, in order of preference."""
 
 _TABLES = (".csv", ".npy")
 
-_UNEVEN = 0.1  # of a sampling interval, as left by a time column of few digits
-_ROUNDING = 1e-5  # of a sampling rate that such a column gives
+_UNEVEN = 0.1  # tolerance of time stamps with few digits [sampling intervals]
+_ROUNDING = 1e-5  # relative tolerance of a sampling rate from such time stamps
 
 _ROLES = ("time", "force", "response")
 _QUANTITY_OF_NAME = {
@@ -39,16 +38,16 @@ _QUANTITY_OF_NAME = {
     "mic": "pressure", "vel": "velocity", "geschw": "velocity", "disp": "displacement",
     "weg": "displacement", "torque": "torque", "moment": "torque",
 }  # fmt: skip
-"""What the heading of a column begins with, in lower case, where it states no unit."""
+"""Quantity by the start of a heading without a unit, in lower case."""
 
 
 def find_hits(paths: Iterable[Path]) -> list[Path]:
-    """Find hits: files as named, and the tables and recordings that lie in folders, sorted.
+    """Return the files of hits: named files, and sorted tables and recordings of named folders.
 
     Raises
     ------
     ParameterError
-        A path does not exist, or a folder holds none.
+        A path does not exist, or a folder holds no hits.
 
     Examples
     --------
@@ -60,46 +59,46 @@ def find_hits(paths: Iterable[Path]) -> list[Path]:
     ...     [path.name for path in find_hits([Path(folder)])]
     ['hit-1.npy', 'hit-2.npy']
     """
-    found: list[Path] = []
+    hits: list[Path] = []
     for path in paths:
         if not path.is_dir():
-            found += [file for file, _ in find_recordings(path)]
+            hits += [file for file, _ in find_recordings(path)]
             continue
         inside = [file for file in path.iterdir() if file.suffix.lower() in {*_TABLES, *formats()}]
         if not inside:
             raise ParameterError(f"{path}: there are no hits in it")
-        found += sorted(inside)
-    return found
+        hits += sorted(inside)
+    return hits
 
 
 def read_hit(
     path: Path, *, response: str | None = None, arm: float | None = None
 ) -> tuple[Hit, str]:
-    """Read a hit.
+    """Read a hammer hit.
 
     Parameters
     ----------
     path : Path
-        A table ending in ``.npy`` or ``.csv``, or a recording.
+        Table (``.npy`` or ``.csv``) or recording.
     response : str, optional
-        Channel of the recording, or what the table's response is; by default the first
-        acceleration or, where there is none, pressure, and for a table an acceleration.
+        Channel of the response in a recording, or quantity of the response in a table (default:
+        acceleration, or pressure if a recording has no acceleration).
     arm : float, optional
-        Lever [m] that makes a torque of the force.
+        Lever arm [m] that turns the force into a torque.
 
     Returns
     -------
     hit : Hit
-        Named as the path is; its force in N, or N m with an `arm`.
+        Its force is in N, or in N m with an `arm`.
     unit : str
-        Of the response.
+        Unit of the response.
 
     Raises
     ------
     RecordingError
-        The file cannot be read, or has no such channels.
+        The file cannot be read, or a channel is missing.
     ParameterError
-        `response` is no channel.
+        `response` is not the name of a channel.
 
     Examples
     --------
@@ -115,7 +114,7 @@ def read_hit(
     wanted = Channel(response or RESPONSES[0])
     if path.suffix.lower() in _TABLES:
         with refusing(str(path), "table of numbers", RecordingError):
-            (time, force, answer), kind = _table(path)
+            (time, force, values), kind = _table(path)
             rate = _rate(path, time)
         if response is not None and kind not in ("", wanted.kind):
             raise RecordingError(f"{path}: its response is {kind}, not {wanted.kind}")
@@ -124,12 +123,13 @@ def read_hit(
         recording = read_recording(path)
         force = _channel(path, recording, "force")
         name = response or _first_response(path, recording)
-        answer, unit = _channel(path, recording, name), CHANNEL_UNITS[Channel(name).kind]
+        values, unit = _channel(path, recording, name), CHANNEL_UNITS[Channel(name).kind]
         rate = recording.rate
-    return Hit(force * (1.0 if arm is None else arm), answer, rate, str(path)), unit
+    return Hit(force * (1.0 if arm is None else arm), values, rate, str(path)), unit
 
 
 def _first_response(path: Path, recording: Recording) -> str:
+    """Return the name of the default response channel."""
     for kind in RESPONSES:
         row = recording.first(kind)
         if row is not None:
@@ -139,6 +139,7 @@ def _first_response(path: Path, recording: Recording) -> str:
 
 
 def _channel(path: Path, recording: Recording, name: str) -> NDArray[np.float64]:
+    """Return the samples of a channel."""
     if not recording.calibrated:
         raise RecordingError(f"{path}: is not calibrated; a hit needs forces in N")
     try:
@@ -149,7 +150,7 @@ def _channel(path: Path, recording: Recording, name: str) -> NDArray[np.float64]
 
 
 def _table(path: Path) -> tuple[NDArray[np.float64], str]:
-    """Time, force and response in SI, shape (3, n), and the kind of response that is stated."""
+    """Return time, force and response in SI, shape (3, n), and the stated kind of response."""
     kind = ""
     with reading(path, "table of numbers", error=RecordingError, largest=LARGEST_TEXT):
         if path.suffix.lower() == ".npy":
@@ -181,13 +182,13 @@ def _table(path: Path) -> tuple[NDArray[np.float64], str]:
 
 
 def _in_order(path: Path, table: ForeignTable) -> tuple[NDArray[np.float64], str]:
-    """Columns as time, force and response in SI by their headings, and the kind of response."""
+    """Return the columns of a table in order and in SI, and the stated kind of response."""
     kind = ""
     by_role: dict[str, NDArray[np.float64]] = {}
-    left = []
+    unnamed = []
     for name, unit, column in zip(table.names, table.units, table.values.T, strict=True):
-        begins = (q for start, q in _QUANTITY_OF_NAME.items() if name.lower().startswith(start))
-        quantity, factor = quantity_of_unit(unit) or ("" if unit else next(begins, ""), 1.0)
+        matches = (q for start, q in _QUANTITY_OF_NAME.items() if name.lower().startswith(start))
+        quantity, factor = quantity_of_unit(unit) or ("" if unit else next(matches, ""), 1.0)
         if (unit and not quantity) or quantity not in ("", "time", "force", *RESPONSES):
             raise RecordingError(
                 f"{path}: column {name!r} is {quantity or 'in'} {unit!r}, expected time, force and "
@@ -202,12 +203,13 @@ def _in_order(path: Path, table: ForeignTable) -> tuple[NDArray[np.float64], str
         if role:
             by_role[role] = factor * column
         else:
-            left.append(column)
-    by_role |= zip((role for role in _ROLES if role not in by_role), left, strict=True)
+            unnamed.append(column)
+    by_role |= zip((role for role in _ROLES if role not in by_role), unnamed, strict=True)
     return np.column_stack([by_role[role] for role in _ROLES]), kind
 
 
 def _rate(path: Path, time: NDArray[np.float64]) -> float:
+    """Return the sampling rate [Hz] of evenly spaced time stamps [s]."""
     try:
         _, step = even_step(time, _UNEVEN)
     except RecordingError:

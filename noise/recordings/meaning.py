@@ -1,27 +1,26 @@
-"""Channels, condition and calibration of a file's samples: what a sample of 1.0 is worth.
+"""Channels, condition and calibration of a file: the physical value of a sample of 1.0.
 
-The worth is decided per channel by the first of these that says something:
+The value of full scale of each channel comes from the first of these sources that states it:
 
-1. the caller's `full_scale`, an option or a calibrator's tone (pressure channels only), unless the
-   samples are in a unit already: full scale is worth nothing there, and a note says so,
-2. the sidecar: its ``scale``, or, for floating-point samples, that it names the channel, since
-   such samples are then in the channel's unit; ``"calibrated": false`` silences 2 to 4,
-3. the file's description, then its name, as sound level meters write them,
-4. the file's comment,
-5. the calibration of the chain, a curve from what it read to the quantity, as ``[sensors]`` in a
-   rig file states it. A sidecar that names volts or counts as a channel's unit leaves it to 1 or 5;
-   its ``scale`` is then in these units per full scale.
+1. the caller's `full_scale`, from an option or a calibrator's tone (pressure channels only); it is
+   ignored with a note for samples that are already in a unit,
+2. the sidecar: its ``scale``, or, for floating-point samples, the name of the channel, because
+   such samples are in the unit of the channel; ``"calibrated": false`` disables 2 to 4,
+3. the description in the file, then its name, as sound level meters write them,
+4. the comment in the file,
+5. the calibration curve of the measurement chain under ``[sensors]`` in a rig file. If a sidecar
+   states volts or counts as the unit of a channel, only 1 and 5 apply, and its ``scale`` is in
+   these units per full scale.
 
-Unless every channel has its value the recording is not calibrated: its samples stay fractions of
-full scale, and levels can be told in dBFS alone. Half a calibration would only invite comparing
-what cannot be compared.
+Unless every channel has a value, the recording is not calibrated: samples remain fractions of full
+scale, and levels are in dBFS. A partial calibration would invite wrong comparisons.
 
-A WAV file has no field for calibration, so meters put it into the name of the file
+WAV files have no field for calibration, so meters write it into the name of the file
 (``..._FS129.9dB(PK)_00.wav``) or its description (``0dBFS = 109.7 dBSPL``,
-``0dBFS = 2.40 mps2``). A stated level is that of the *peak* at full scale, so the sample 1.0 is
-worth 20 uPa * 10^(L/20). The names say ``PK``, and the maker of these meters scales samples by that
-same formula with the level of the description (NTi Audio, XL2 manual on WAV recording and support
-note on scaling WAV files). Reading it as the rms of a full-scale sine would be 3 dB higher.
+``0dBFS = 2.40 mps2``). The level is that of the *peak* at full scale: the sample 1.0 is
+20 uPa * 10^(L/20). The names say ``PK``, and the manufacturer scales samples by that formula (NTi
+Audio, XL2 manual on WAV recording and support note on scaling WAV files). The rms level of a
+full-scale sine would be 3 dB lower.
 """
 
 from __future__ import annotations
@@ -44,11 +43,11 @@ from noise.recordings.formats import RawRecording
 from noise.recordings.sidecar import Sidecar, SidecarChannel, find_sidecar, sidecar_of
 
 PascalPerFullScale = float | tuple[float, ...]
-"""Pressure of a full-scale sample [Pa], of all tracks or of each."""
+"""Pressure of a full-scale sample [Pa], for all tracks or for each."""
 
 _LARGEST = 1e15
-"""Of a sample in any unit: nothing on a rig is as large, and the squares of what is larger, of
-which levels and spectra are made, lie beyond the numbers of single precision."""
+"""Largest sample in any unit. No quantity of a rig is as large, and the squares of larger samples
+overflow in single precision."""
 
 _NUMBER = r"(-?\d{1,3}(?:[.,]\d{1,6})?)"
 _IN_NAME = re.compile(rf"(?<![a-z0-9])FS\s*{_NUMBER}\s*dB[\s_(-]*PK(?![a-z0-9])", re.I | re.A)
@@ -60,18 +59,18 @@ _ACCELERATION = re.compile(
 
 @dataclass(frozen=True)
 class Meaning:
-    """What the samples of a file are.
+    """Interpretation of the samples of a file.
 
     Parameters
     ----------
     channels : tuple of Channel
-        With what a sample of 1.0 is worth.
+        Channels with the value of a sample of 1.0.
     condition : Condition
     calibrated : bool
     curves : tuple of (Calibration or None)
-        One a channel: from samples to values, where it takes more than a factor.
+        Calibration curve of each channel; None if a factor suffices.
     notes : tuple of str
-        What a reader should know of it, a line each.
+        Notes for the user, one line each.
     """
 
     channels: tuple[Channel, ...]
@@ -87,15 +86,15 @@ def describe(
     full_scale: PascalPerFullScale | None = None,
     calibrations: Mapping[str, Calibration] | None = None,
 ) -> Meaning:
-    """Decide what the samples of a file are, from all that says something about them.
+    """Return the channels, condition and calibration of a file.
 
     Parameters
     ----------
     path : Path
-        The file, beside which the sidecar is sought.
+        The file; its sidecar lies beside it.
     raw : RawRecording
     full_scale, calibrations
-        As for `read_recording`.
+        See `noise.recordings.read_recording`.
 
     Returns
     -------
@@ -131,7 +130,7 @@ def describe(
         )
     notes = [*raw.notes, *filter(None, [sidecar.note])]
     channels, curves = _interpret(path, raw, sidecar, options, calibrations or {}, notes)
-    # The sidecar's word for the conditions, and the file's own where it has none.
+    # The sidecar takes precedence over the file.
     stated = {key: value for key, value in vars(sidecar.condition).items() if value is not None}
     condition = replace(raw.condition, **stated)
     return Meaning(channels, condition, bool(curves), curves or (None,) * n_channels, tuple(notes))
@@ -140,17 +139,17 @@ def describe(
 def _by_track(
     path: Path, full_scale: PascalPerFullScale | None, n_tracks: int
 ) -> tuple[float | None, ...]:
-    """Return what a caller says of each track."""
-    given = full_scale if isinstance(full_scale, tuple) else (full_scale,) * n_tracks
-    for value in given:
+    """Return the caller's full scale of each track."""
+    values = full_scale if isinstance(full_scale, tuple) else (full_scale,) * n_tracks
+    for value in values:
         if value is not None and not 0 < value < math.inf:
             raise ParameterError(f"full scale is {value!r} Pa, expected a positive number")
-    if len(given) != n_tracks:
+    if len(values) != n_tracks:
         raise RecordingError(
-            f"{path}: has {n_tracks} tracks, and full scale is given for {len(given)}; record the "
+            f"{path}: has {n_tracks} tracks, and full scale is given for {len(values)}; record the "
             "calibrator on as many, or on one for all"
         )
-    return given
+    return values
 
 
 def check_finite(
@@ -160,7 +159,7 @@ def check_finite(
     channels: tuple[Channel, ...],
     start: int = 0,
 ) -> None:
-    """Refuse samples that are no numbers, or too large to be squared in single precision.
+    """Refuse samples that are not finite, or too large to be squared in single precision.
 
     Parameters
     ----------
@@ -171,15 +170,15 @@ def check_finite(
         Sampling rate [Hz].
     channels : tuple of Channel
     start : int
-        Number of the first sample in the file.
+        Index of the first sample in the file.
 
     Raises
     ------
     RecordingError
-        Says which sample of which channel is none.
+        The message names the channel and the sample.
     """
     for channel, row in zip(channels, samples, strict=True):
-        # A value that is no number is the least and the most.
+        # NaN propagates through min and max, and fails both comparisons.
         if not (row.min(initial=0.0) >= -_LARGEST and row.max(initial=0.0) <= _LARGEST):
             first = int(np.argmin((row >= -_LARGEST) & (row <= _LARGEST)))
             raise RecordingError(
@@ -196,9 +195,9 @@ def _interpret(
     calibrations: Mapping[str, Calibration],
     notes: list[str],
 ) -> tuple[tuple[Channel, ...], tuple[Calibration | None, ...]]:
-    """Channels with the value of their full scale, and curves; none where a channel lacks both."""
+    """Return channels with the value of full scale, and curves; no curves if not calibrated."""
     texts = (raw.description, path.name, raw.comment)
-    stated = next((found for text in texts if (found := stated_full_scale(text))), None)
+    stated = next(filter(None, map(stated_full_scale, texts)), None)
     channels = tuple(one.channel for one in sidecar.channels or ()) or raw.channels or ()
     if not channels:
         kind = "pressure" if stated is None or any(options) else stated.kind
@@ -206,10 +205,10 @@ def _interpret(
         channels = tuple(Channel(kind if i == 1 else f"{kind}_{i}") for i in numbers)
     named = sidecar.channels is not None or raw.channels is not None
     in_units = not raw.fractional and (named or sidecar.calibrated is True)
-    said = sidecar.channels or [SidecarChannel(one.name) for one in channels]
+    entries = sidecar.channels or [SidecarChannel(one.name) for one in channels]
     pairs: list[tuple[Channel, Calibration | None]] = []
-    for channel, one, option in zip(channels, said, options, strict=True):
-        scale, reading = one.scale, one.reading
+    for channel, entry, option in zip(channels, entries, options, strict=True):
+        scale, reading = entry.scale, entry.reading
         in_unit = sidecar.calibrated is not False and not reading
         if channel.kind == "pressure" and option is not None:
             if not (in_units and in_unit):
@@ -239,18 +238,18 @@ def _curve(
     fractional: bool,
     where: str,
 ) -> Calibration:
-    """Return a calibration for samples as a file holds them."""
-    given = scale if reading else None  # of a channel in its own unit, it was silenced
-    if fractional and given is None and (reading or calibration.unit):
+    """Return a calibration curve for the samples as stored in the file."""
+    reading_scale = scale if reading else None  # other scales are disabled by "calibrated": false
+    if fractional and reading_scale is None and (reading or calibration.unit):
         unit = reading or calibration.unit
         raise RecordingError(
             f"{where} holds fractions of full scale, and {calibration.source} is in {unit}; state "
             f"its unit, {unit!r}, and scale, in {unit} per full scale, in the sidecar"
         )
-    size = 1.0 if given is None else given
+    size = 1.0 if reading_scale is None else reading_scale
     if reading and calibration.unit:
-        (read, one), (calibrated, other) = (READING_UNITS[u] for u in (reading, calibration.unit))
-        if read != calibrated:
+        (quantity, one), (expected, other) = (READING_UNITS[u] for u in (reading, calibration.unit))
+        if quantity != expected:
             raise RecordingError(
                 f"{where} is in {reading}, and {calibration.source} in {calibration.unit}; "
                 "calibrate it in the unit that is recorded"
@@ -260,12 +259,12 @@ def _curve(
 
 
 class FullScale(NamedTuple):
-    """The value of a full-scale sample.
+    """Physical value of a full-scale sample.
 
     Parameters
     ----------
     kind : str
-        ``"pressure"`` or ``"acceleration"``, as in `models.recording.CHANNEL_UNITS`.
+        ``"pressure"`` or ``"acceleration"``.
     value : float
         [Pa] or [m/s^2].
     """
@@ -275,17 +274,16 @@ class FullScale(NamedTuple):
 
 
 def stated_full_scale(text: str) -> FullScale | None:
-    """Find the value of full scale in a description, a comment or the name of a file.
+    """Parse the value of full scale from a description, a comment or a file name.
 
     Parameters
     ----------
     text : str
-        Anything at all.
 
     Returns
     -------
     FullScale or None
-        None where the text states nothing.
+        None if the text states no value.
 
     Examples
     --------
@@ -305,4 +303,5 @@ def stated_full_scale(text: str) -> FullScale | None:
 
 
 def _number(match: re.Match[str]) -> float:
+    """Return the number of a match, which may have a decimal comma."""
     return float(match[1].replace(",", "."))

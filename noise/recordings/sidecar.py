@@ -1,21 +1,18 @@
-"""The sidecar: a JSON file beside the samples that says what they are.
+"""Sidecar: a JSON file beside a recording with its channels, condition and calibration.
 
-Everything is checked here, at the edge, and refused in one line that names file, channel and
-field; behind it channels and conditions can be trusted. Keys that are not ours are passed over, so
-an engineer's own notes may stand in the same file, unless they state a condition in another unit
-than ours. Values are never guessed: a number in quotes or a torque in kN m is refused, only
-spellings of the same unit are alike. A JSON file of another program, which has nothing that a
-sidecar has, is passed over as a whole.
+All values are validated here, with messages that name file, channel and field. Unknown keys are
+ignored, so that engineers can keep notes in the same file, except for a condition in another unit.
+Values are never guessed: a number in quotes or a torque in kN m is refused; only spellings of the
+same unit are equivalent. A JSON file of another program, without any key of a sidecar, is ignored.
 
-A channel of which the file holds what the measurement chain read has the unit ``V``, ``mV`` or
-``counts``; it takes a calibration to make that a torque.
+Channels with raw readings of the measurement chain have the unit ``V``, ``mV`` or ``counts`` and
+need a calibration.
 
 ``"support_stiffness_Nm_rad": null`` is the clamp bolted to the baseplate; elsewhere null is the
-same as a missing key. A direction of any length is made a unit vector.
+same as a missing key. Directions are normalised.
 
-``wav_crc32`` is the checksum of the WAV file that a sidecar was written with: the sidecar is moved
-into place before its samples, and a program that is killed between the two must not leave a new
-description beside old samples.
+``wav_crc32`` is the checksum of the WAV file. The sidecar is renamed into place before the samples,
+so a program killed in between leaves a new sidecar beside old samples; the checksum detects that.
 """
 
 import json
@@ -60,9 +57,10 @@ _OURS = ("channels", "conditions", "calibrated", "notes", _CHECKSUM)
 
 
 def _name(value: Any, key: str, where: str) -> str:
+    """Read the name of a channel."""
     try:
         return Channel(as_text(value, key, where)).name
-    except ValueError:  # of a number too long to be one as well
+    except ValueError:  # also for a suffix with too many digits
         known = ", ".join(CHANNEL_UNITS)
         raise ParameterError(
             f"{where}: {key} = {show(value)} must be one of {known} (or ..._2, _3)"
@@ -70,7 +68,7 @@ def _name(value: Any, key: str, where: str) -> str:
 
 
 def _direction(value: Any, key: str, where: str) -> Any:
-    """Read a vector of any length as one of length 1."""
+    """Read a vector and normalise it."""
     direction = Vector(key, 3).read(value, where)
     length = math.hypot(*direction)
     if not 0.0 < length < math.inf:
@@ -82,17 +80,17 @@ def _direction(value: Any, key: str, where: str) -> Any:
 
 @dataclass(frozen=True)
 class SidecarChannel:
-    """What a sidecar says of a channel.
+    """Entry of a channel in a sidecar.
 
     Parameters
     ----------
     name : str
     unit : str, optional
-        As spelled: the channel's own, or one of `models.calibration.READING_UNITS`.
+        Unit of the channel, or one of `models.calibration.READING_UNITS`, as spelled in the file.
     scale : float, optional
         [unit per full scale]
     position, direction : tuple of float, optional
-        As of `models.recording.Channel`.
+        See `models.recording.Channel`.
     """
 
     name: Annotated[str, ReadBy("name", _name)]
@@ -110,36 +108,37 @@ class SidecarChannel:
 
     @property
     def channel(self) -> Channel:
-        """The channel."""
+        """Channel with name, position and direction."""
         return Channel(self.name, self.position, self.direction)
 
     @property
     def reading(self) -> str:
-        """Unit of what the measurement chain read, empty where samples are in the channel's own."""
+        """Unit of raw readings; empty for samples in the unit of the channel."""
         return self.unit if self.unit in READING_UNITS else ""
 
 
 def _channels(value: Any, key: str, where: str) -> tuple[SidecarChannel, ...]:
+    """Read the list of channels."""
     if not isinstance(value, list):
         raise ParameterError(f"{where}: {key} = {show(value)} must be a list")
-    found = []
+    channels = []
     for number, entry in enumerate(value, start=1):
         table = as_table(entry, f"channel {number} = {show(entry)}", where)
         place = f"{where}: channel {show(table.get('name', number))}"
-        found.append(_read(SidecarChannel, table, place))
-    for name, times in Counter(one.name for one in found).items():
-        if times > 1:
-            raise ParameterError(f"{where}: channel {name!r} is named {times} times; name it once")
-    return tuple(found)
+        channels.append(_read(SidecarChannel, table, place))
+    for name, count in Counter(one.name for one in channels).items():
+        if count > 1:
+            raise ParameterError(f"{where}: channel {name!r} is named {count} times; name it once")
+    return tuple(channels)
 
 
 def read_condition(value: Any, key: str, where: str) -> Condition:
-    """Read an operating condition from a table of a file, by the keys of a sidecar.
+    """Read an operating condition from a table with the keys of a sidecar.
 
     Raises
     ------
     ParameterError
-        A value cannot be used, or a quantity is stated in another unit.
+        A value is invalid, or a quantity is stated in another unit.
 
     Examples
     --------
@@ -154,35 +153,35 @@ def read_condition(value: Any, key: str, where: str) -> Condition:
             raise ParameterError(
                 f"{where}: {key} has {show(name)}, which is not read; state {ours}"
             )
-    found: dict[str, Any] = {
+    values: dict[str, Any] = {
         name: one.read(table[one.key], where)
         for name, one in _QUANTITIES.items()
         if table.get(one.key) is not None
     }
     if _SUPPORT in table and table[_SUPPORT] is None:
-        found["support_stiffness"] = FIXED
+        values["support_stiffness"] = FIXED
     if (material := table.get("material")) is not None:
         if not as_text(material, "material", where).strip():
             raise ParameterError(f"{where}: material = {show(material)} must be a name")
-        found["material"] = material
-    return Condition(**found)
+        values["material"] = material
+    return Condition(**values)
 
 
 @dataclass(frozen=True)
 class Sidecar:
-    """What a sidecar says.
+    """Content of a sidecar.
 
     Parameters
     ----------
     channels : tuple of SidecarChannel, optional
-        In the order of the file; None where the sidecar names none.
+        Channels in the order of the file; None if not stated.
     condition : Condition
     calibrated : bool, optional
-        None where the sidecar does not say.
+        None if not stated.
     checksum : str
-        Of the WAV file that it was written with; empty where it does not say.
+        CRC-32 of the WAV file; empty if not stated.
     note : str
-        What should be known of it.
+        Note for the user.
     """
 
     channels: Annotated[tuple[SidecarChannel, ...] | None, ReadBy("channels", _channels)] = None
@@ -195,14 +194,14 @@ class Sidecar:
 
 
 def _read(kind: type[_Kind], table: Mapping[str, Any], where: str) -> _Kind:
-    """Read what is declared, and stated, of a table in which other keys may stand."""
+    """Read the declared fields of a table and ignore other keys."""
     keys = {entry.key for entry in declared(kind).values()}  # type: ignore[arg-type]
     stated = {key: each for key, each in table.items() if key in keys and each is not None}
     return read_table(kind, stated, where)
 
 
 def find_sidecar(recording: Path) -> Path | None:
-    """Path of the sidecar of a recording, None where it has none.
+    """Return the path of the sidecar of a recording, or None.
 
     Examples
     --------
@@ -214,12 +213,12 @@ def find_sidecar(recording: Path) -> Path | None:
 
 
 def sidecar_of(recording: Path) -> Sidecar:
-    """Read the sidecar of a recording, an empty one where it has none.
+    """Read the sidecar of a recording; without one, return an empty `Sidecar`.
 
     Raises
     ------
     RecordingError
-        It cannot be read, says something that cannot be used, or was written with other samples.
+        The sidecar cannot be read, holds invalid values, or belongs to other samples.
 
     Examples
     --------
@@ -241,28 +240,33 @@ def sidecar_of(recording: Path) -> Sidecar:
 
 
 @lru_cache(maxsize=64)
-def _checksum(recording: Path, _changed: int) -> str:
-    found = 0
+def _checksum(recording: Path, _modified: int) -> str:
+    """Return the CRC-32 of a file; the modification time is part of the cache key."""
+    checksum = 0
     with recording.open("rb") as file:
         while block := file.read(1 << 20):
-            found = zlib.crc32(block, found)
-    return f"{found:08x}"
+            checksum = zlib.crc32(block, checksum)
+    return f"{checksum:08x}"
 
 
 def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
-    """Check the text of a sidecar.
+    """Parse and validate the text of a sidecar.
 
     Parameters
     ----------
     data : str or bytes
         JSON; bytes in UTF-8, UTF-16 or UTF-32.
     where : str
-        What messages call it.
+        Name in messages.
+
+    Returns
+    -------
+    Sidecar
 
     Raises
     ------
     RecordingError
-        It is no JSON, or one of its values cannot be used.
+        The text is no JSON, or a value is invalid.
 
     Examples
     --------
@@ -284,7 +288,7 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
 
 
 def _is_sidecar(content: Any) -> bool:
-    """Whether something of a JSON file can be meant as a sidecar's."""
+    """Whether a JSON file has a key or a value of a sidecar."""
     if not isinstance(content, dict):
         return False
     entries = content.get("channels")
@@ -300,7 +304,7 @@ def _is_sidecar(content: Any) -> bool:
 
 
 def _stem(key: str) -> str:
-    """Return the quantity that a condition's key begins with; it ends with its unit."""
+    """Return the quantity at the start of a condition's key, without the unit."""
     for quantity in ("interference", "support", "temperature", "speed"):
         if key.lower().startswith(quantity):
             return quantity
@@ -308,27 +312,28 @@ def _stem(key: str) -> str:
 
 
 def _spelling(unit: str) -> str:
+    """Return a unit in a spelling for comparison."""
     return unit.replace("²", "2").translate({ord(sign): None for sign in " ^·*"})
 
 
 def sidecar_text(recording: Recording, checksum: str = "") -> str:
-    """Sidecar of a recording whose samples are written as floating-point values.
+    """Return the text of the sidecar for a recording with floating-point samples.
 
     Parameters
     ----------
     recording : Recording
     checksum : str, optional
-        Of the WAV file [CRC-32, as eight hexadecimal digits].
+        CRC-32 of the WAV file as eight hexadecimal digits.
 
     Returns
     -------
     str
-        JSON that `parse_sidecar` reads back as the same channels and condition.
+        JSON from which `parse_sidecar` reads the same channels and condition.
 
     Raises
     ------
     ParameterError
-        The channels or the condition hold values that a sidecar cannot.
+        Channels or condition hold values that a sidecar cannot store.
 
     Examples
     --------
@@ -341,7 +346,7 @@ def sidecar_text(recording: Recording, checksum: str = "") -> str:
         SidecarChannel(one.name, one.unit, None, one.position, one.direction)
         for one in recording.channels
     )
-    # A condition of which more is known declares less.
+    # Subclasses of Condition do not declare the keys of the fields.
     conditions = table_of(Condition(**vars(recording.condition)))
     if _SUPPORT in conditions and recording.condition.support_stiffness == FIXED:
         conditions[_SUPPORT] = None

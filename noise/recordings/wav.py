@@ -1,10 +1,9 @@
-"""WAV files, written byte by byte: recordings with their sidecar, and sounds.
+"""Writer of WAV files: recordings with their sidecars, and dithered sounds.
 
-The same samples give the same bytes. The sound library pads the header or adds the time of day to
-it, and writes neither dither nor a description with the value of full scale; scipy wants all
-samples at once. A run too long for memory comes block by block: the header says at once how long
-the file will be, so what arrives must be just as much; until it has, nothing stands under the
-file's own name.
+The same samples give the same bytes. Libraries do not serve here: soundfile pads the header or adds
+the time of day, and supports neither dither nor a ``bext`` description; scipy needs all samples at
+once. Runs that do not fit into memory are written in blocks, whose total length the header
+announces.
 """
 
 from __future__ import annotations
@@ -31,18 +30,18 @@ BITS = (16, 24, 32)
 """Sizes of a sample: integer, integer, floating point."""
 
 _DESCRIPTION_CHUNK = 602  # byte (EBU Tech 3285); the first 256 are the description
-_BLOCK = 1 << 16  # samples a channel
+_BLOCK = 1 << 16  # samples per channel
 
 
 def write_recording(path: str | os.PathLike[str], recording: Recording) -> Path:
-    """Write a recording as 32-bit float WAV with its sidecar, both whole or not at all.
+    """Write a recording as a 32-bit float WAV file with its sidecar, atomically.
 
     Parameters
     ----------
     path : path-like
-        ``run07`` and ``run07.wav`` are the same; parent folders are made.
+        ``run07`` and ``run07.wav`` are equivalent; parent folders are made.
     recording : Recording
-        Its samples are written as they are, so full scale of the file written is one unit.
+        Recording whose samples are written unscaled: full scale is one unit.
 
     Returns
     -------
@@ -52,7 +51,7 @@ def write_recording(path: str | os.PathLike[str], recording: Recording) -> Path:
     Raises
     ------
     ParameterError
-        The recording cannot be written there, or could not be read back.
+        The recording cannot be written, or could not be read back.
 
     Examples
     --------
@@ -74,22 +73,22 @@ def write_blocks(
     blocks: Iterable[NDArray[np.float64]],
     n_samples: int,
     about: Recording,
-    found: Callable[[], tuple[str, ...]] = tuple,
+    late_notes: Callable[[], tuple[str, ...]] = tuple,
 ) -> Path:
-    """Write blocks as one 32-bit float WAV with its sidecar, both whole or not at all.
+    """Write blocks as one 32-bit float WAV file with its sidecar, atomically.
 
     Parameters
     ----------
     path : path-like
-        As of `write_recording`.
+        See `write_recording`.
     blocks : iterable of ndarray, shape (n_channels, n)
         [units of the channels]
     n_samples : int
-        Of all blocks together.
+        Total number of samples.
     about : Recording
-        Rate, a whole number of hertz, channels, condition and notes; its samples do not count.
-    found : callable, optional
-        Gives further notes, when all blocks have been written.
+        Recording without samples: rate (a whole number of hertz), channels, condition, notes.
+    late_notes : callable, optional
+        Function that returns further notes after the last block.
 
     Returns
     -------
@@ -99,8 +98,8 @@ def write_blocks(
     Raises
     ------
     ParameterError
-        The recording cannot be written there or could not be read back, or the blocks hold
-        another number of samples.
+        The recording cannot be written or could not be read back, or the blocks do not hold
+        `n_samples` samples.
 
     Examples
     --------
@@ -121,11 +120,11 @@ def write_blocks(
         raise ParameterError(
             f"{target}: the sampling rate is {rate!r} Hz, but WAV holds whole hertz only"
         )
-    sidecar_text(about)  # refuses what could not be read back
+    sidecar_text(about)  # refuses values that could not be read back
     with naming(f"{target}: "):
         header = _header(n_samples, int(rate), 32, n_channels=len(about.channels))
-    # The sidecar is moved into place first: samples are never seen without what they mean. Its
-    # checksum tells that it belongs to others, should the call end between the two.
+    # The sidecar is renamed into place first, so samples never lack their metadata; its checksum
+    # detects older samples if the call ends in between.
     with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
         with wav.open("wb") as file:
             file.write(header)
@@ -137,12 +136,13 @@ def write_blocks(
                 written += block.shape[1]
         if written != n_samples:
             raise ParameterError(f"{target}: {written} samples arrived, expected {n_samples}")
-        about = replace(about, notes=(*about.notes, *found()))
+        about = replace(about, notes=(*about.notes, *late_notes()))
         sidecar.write_text(sidecar_text(about, f"{checksum:08x}"), encoding="utf-8")
     return target
 
 
 def _frames(target: Path, block: NDArray[np.float64], about: Recording) -> NDArray[np.float32]:
+    """Return a block as interleaved 32-bit samples, shape (n, n_channels)."""
     channels = about.channels
     if block.ndim != 2 or block.shape[0] != len(channels):
         raise ParameterError(
@@ -160,6 +160,7 @@ def _frames(target: Path, block: NDArray[np.float64], about: Recording) -> NDArr
 
 
 def _wav_path(path: Path) -> Path:
+    """Return the path of the WAV file for an output name."""
     ending = path.suffix.lower()
     if not path.name:
         raise ParameterError(f"{str(path)!r} names no file to write a recording to")
@@ -171,7 +172,7 @@ def _wav_path(path: Path) -> Path:
 
 
 def largest_sample(bits: int) -> float:
-    """Largest sample that does not clip, as a fraction of full scale.
+    """Return the largest sample that does not clip, as a fraction of full scale.
 
     Examples
     --------
@@ -182,7 +183,7 @@ def largest_sample(bits: int) -> float:
 
 
 def with_full_scale(full_scale: float) -> str:
-    """Say in a description what full scale is worth [Pa], as sound level meters do.
+    """Return a description that states the value of full scale [Pa], as sound level meters do.
 
     Examples
     --------
@@ -201,27 +202,26 @@ def wav_bytes(
     description: str = "",
     dither: np.random.Generator | None = None,
 ) -> bytes:
-    """Encode a sound.
+    """Encode a mono sound as a WAV file.
 
     Parameters
     ----------
     fractions : ndarray, shape (n_samples,)
-        Over full scale [-]; none may clip.
+        Samples as fractions of full scale [-], without clipping.
     rate : int
         Sampling rate [Hz].
     bits : int
         One of `BITS`.
     description : str
-        For the ``bext`` chunk, which is left out where there is none.
+        Text of the ``bext`` chunk, which is omitted if empty.
     dither : numpy.random.Generator, optional
-        Where given, integer samples are dithered with a triangular distribution of two steps'
-        width before they are rounded, so that what a quiet sound loses is noise and no distortion.
+        If given, integer samples are rounded with triangular dither of two steps' width, so that
+        the rounding of quiet sounds gives noise in place of distortion.
 
-    Notes
-    -----
-    On the dither: S. P. Lipshitz, R. A. Wannamaker and
-    J. Vanderkooy, Quantization and dither: a theoretical survey, J. Audio Eng. Soc. 40 (1992)
-    355-375.
+    References
+    ----------
+    S. P. Lipshitz, R. A. Wannamaker and J. Vanderkooy, Quantization and dither: a theoretical
+    survey, J. Audio Eng. Soc. 40 (1992) 355-375.
 
     Examples
     --------
@@ -238,7 +238,7 @@ def wav_bytes(
 def _header(
     n_samples: int, rate: int, bits: int, *, n_channels: int = 1, description: str = ""
 ) -> bytes:
-    """Return what stands before the samples of a WAV file (EBU Tech 3285)."""
+    """Return the header of a WAV file up to the samples (EBU Tech 3285)."""
     frame = n_channels * bits // 8
     size, floating = n_samples * frame, bits == 32
     kind = (3 if floating else 1, n_channels, rate, rate * frame, frame, bits)
@@ -260,7 +260,7 @@ def _header(
 def integers(
     fractions: NDArray[np.float64], bits: int, dither: np.random.Generator | None
 ) -> bytes:
-    r"""Return samples as little-endian integers, rounded and dithered as in `wav_bytes`.
+    r"""Return samples as rounded and dithered little-endian integers; see `wav_bytes`.
 
     Examples
     --------
@@ -271,6 +271,6 @@ def integers(
     if dither is not None:
         steps += dither.random(steps.size) - dither.random(steps.size)
         most = 2.0 ** (bits - 1) - 1.0
-        np.clip(steps, -most, most, out=steps)  # dither alone may not carry a sample beyond
+        np.clip(steps, -most, most, out=steps)  # dither must not make a sample clip
     integers = np.round(steps).astype("<i4")
     return integers.view(np.uint8).reshape(-1, 4)[:, : bits // 8].tobytes()

@@ -277,7 +277,7 @@ def folder(tmp_path, monkeypatch):
         assert "\n" not in str(error).replace(Path(own).name, "")
 
     monkeypatch.setattr(BushingNoiseError, "__init__", checked)
-    monkeypatch.setattr("noise.recordings.formats.isolated._PATIENCE", 3.0)
+    monkeypatch.setattr("noise.recordings.formats.isolated._TIME_LIMIT", 3.0)
     monkeypatch.chdir(tmp_path)
     return tmp_path / "in"
 

@@ -103,7 +103,7 @@ FOUND = {
 @pytest.mark.parametrize(("ending", "damage", "reason"), FOUND.values(), ids=FOUND)
 def test_what_fuzzing_found_is_refused(valid, tmp_path, monkeypatch, ending, damage, reason):
     if "longer" in reason:
-        monkeypatch.setattr("noise.recordings.formats.isolated._PATIENCE", 1.0)
+        monkeypatch.setattr("noise.recordings.formats.isolated._TIME_LIMIT", 1.0)
     assert reason in refusal_of(tmp_path, ending, damage(bytearray(valid[ending])))
 
 

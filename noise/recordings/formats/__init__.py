@@ -1,9 +1,8 @@
-"""Formats that recordings come in: one module each, found here by the endings of its files.
+"""File formats of recordings, one module each, registered by file suffix.
 
-A module of this package with a `FORMAT` is a format; no list repeats it. A sound file is opened by
-`Format.open`. A logger's file is described by `Format.channels` and read in a process of its own.
-A reader returns what the file states and nothing more; what samples mean is decided in
-`noise.recordings.meaning`, once for all formats.
+Each module of this package with a `FORMAT` is a format. Sound files are opened by `Format.open`.
+Logger files are opened by `Format.channels` and read in a separate process. Readers return only
+what the file states; `noise.recordings.meaning` interprets the samples of all formats.
 """
 
 from __future__ import annotations
@@ -28,18 +27,18 @@ if TYPE_CHECKING:
     from noise.recordings.formats.logged import LoggedChannel
 
 LOWEST_RATE, HIGHEST_RATE = 1.0, 400e3
-"""Sampling rates that are possible [Hz]; filters and windows grow with them."""
+"""Range of sampling rates [Hz]; filters and windows grow with the rate."""
 
 
 Read = Callable[[int, int], NDArray[np.float64]]
-"""From first and last sample (exclusive) to those between them."""
+"""``read(first, last)`` returns the samples from `first` up to, not including, `last`."""
 
-_BLOCK = 1 << 16  # samples a channel
+_BLOCK = 1 << 16  # samples per channel
 
 
 @dataclass(frozen=True, eq=False)
 class RawRecording:
-    """An open file and what it states of its samples, before anyone decides what they mean.
+    """Open file with uninterpreted samples and the metadata that it states.
 
     Parameters
     ----------
@@ -47,19 +46,19 @@ class RawRecording:
     rate : float
         Sampling rate [Hz].
     fractional : bool
-        Whether samples are coded as fractions of a full scale (integers, lossy formats) and not
-        as floating-point values of their own.
+        Whether samples are fractions of full scale (integer and lossy formats) in place of
+        floating-point values.
     read : callable
-        From first and last sample to those between them as stored, shape (n_channels, n); over
-        full scale [-] where `fractional`.
+        ``read(first, last)`` returns stored samples, shape (n_channels, last - first); over full
+        scale [-] if `fractional`.
     description, comment : str
-        Free text in the file, where meters and engineers note a calibration.
+        Free text in the file, which may state a calibration.
     channels : tuple of Channel, optional
-        Where the file itself says what it measures: samples are in the channels' units.
+        Channels that the file states; samples are in their units.
     condition : Condition
-        As far as the file itself states it.
+        Condition that the file states.
     notes : tuple of str
-        What a reader should know of it, a line each.
+        Notes for the user, one line each.
     """
 
     n_channels: int
@@ -74,7 +73,7 @@ class RawRecording:
     notes: tuple[str, ...] = ()
 
     def whole(self) -> NDArray[np.float64]:
-        """Read all samples, shape (n_channels, n_samples), in the memory of the result alone."""
+        """Read all samples, shape (n_channels, n_samples), without further large arrays."""
         samples = np.empty((self.n_channels, self.n_samples))
         for first in range(0, self.n_samples, _BLOCK):
             last = min(first + _BLOCK, self.n_samples)
@@ -83,24 +82,24 @@ class RawRecording:
 
 
 Logged = tuple[Sequence["LoggedChannel"], Mapping[str, object]]
-"""Channels of a logger's file, and its properties, among which a condition may be."""
+"""Channels and properties of a logger file; the properties may state a condition."""
 
 
 @dataclass(frozen=True)
 class Format:
-    """A file format.
+    """File format of recordings.
 
     Parameters
     ----------
     name : str
     endings : tuple of str
-        In lower case, with the dot.
+        File suffixes in lower case, with the dot.
     open : callable, optional
-        From a path to a context that gives a `RawRecording`; of sound files.
+        Context manager from a path to a `RawRecording`, for sound files.
     channels : callable, optional
-        From a path to a context that gives its channels and properties; of loggers' files.
+        Context manager from a path to channels and properties, for logger files.
     library, extra : str
-        What a logger's format needs, and the extra that installs it.
+        Library of a logger format, and the extra that installs it.
     """
 
     name: str
@@ -113,7 +112,7 @@ class Format:
 
 @cache
 def formats() -> Mapping[str, Format]:
-    """Return the formats by ending, in lower case.
+    """Return the formats by suffix in lower case.
 
     Examples
     --------
@@ -121,17 +120,17 @@ def formats() -> Mapping[str, Format]:
     'MDF'
     """
     modules = (import_module(f"{__name__}.{module.name}") for module in iter_modules(__path__))
-    found = [module.FORMAT for module in modules if hasattr(module, "FORMAT")]
-    return dict(sorted((ending, one) for one in found for ending in one.endings))
+    known = [module.FORMAT for module in modules if hasattr(module, "FORMAT")]
+    return dict(sorted((ending, one) for one in known for ending in one.endings))
 
 
 def check_rate(rate: float, where: str) -> None:
-    """Refuse a sampling rate [Hz] that no recording of sound or motion has.
+    """Refuse an implausible sampling rate [Hz].
 
     Raises
     ------
     RecordingError
-        It lies outside of 1 Hz to 400 kHz, or is no number.
+        The rate is outside 1 Hz to 400 kHz, or NaN.
 
     Examples
     --------

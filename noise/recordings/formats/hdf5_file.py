@@ -1,12 +1,11 @@
-"""HDF5 files as channels: each one-dimensional dataset of numbers is one.
+"""Reader of HDF5 files: each one-dimensional numeric dataset is a channel.
 
-HDF5 fixes no layout, so the plainest one is read: datasets named as they like with an attribute
-``unit`` (or ``units``), at any depth, and the sampling rate as an attribute of the dataset or of
-one of its groups (``rate_Hz``, ``rate``, ``fs``, ``sampling_rate``, ``sample_rate``,
-``sampling_frequency``, or the step ``dt``), or else as a dataset ``time`` beside them. A start is
-``t0``, ``start`` or ``start_s``, the unit of the axis ``x_unit``. Packed numbers have a
-``scale_factor`` and an ``add_offset``. Conditions are attributes of the file. Datasets kept in
-other files are not followed.
+HDF5 does not prescribe a layout. Datasets may have any name and depth, with an attribute ``unit``
+(or ``units``). The sampling rate is an attribute of the dataset or of one of its groups
+(``rate_Hz``, ``rate``, ``fs``, ``sampling_rate``, ``sample_rate``, ``sampling_frequency``, or the
+step ``dt``), or follows from a dataset ``time`` in the same group. The start is ``t0``, ``start``
+or ``start_s``, the unit of the axis ``x_unit``. Packed numbers have ``scale_factor`` and
+``add_offset``. Conditions are attributes of the file. External datasets are not read.
 """
 
 from __future__ import annotations
@@ -32,17 +31,17 @@ _STEPS = ("dt", "sampling_interval")
 _STARTS = ("t0", "start", "start_s", "start_time")
 _AXIS_UNITS = ("x_unit", "xunit", "x_units", "axis_unit")
 _UNITS = ("unit", "units", "unit_str")
-_DENSEST = 1032  # bytes a byte: what deflate reaches at best
+_DENSEST = 1032  # largest compression ratio of deflate
 
 
 @contextmanager
 def open_hdf5(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
-    """Give the channels of an HDF5 file, by name, and the conditions among its attributes.
+    """Open an HDF5 file and yield its channels and the conditions among its attributes.
 
     Raises
     ------
     RecordingError
-        A dataset or an attribute is not what it announces.
+        A dataset is incomplete, or an attribute has an invalid value.
     """
     import h5py
 
@@ -66,6 +65,7 @@ FORMAT = Format("HDF5", (".h5", ".hdf5"), channels=open_hdf5, library="h5py", ex
 
 
 def _channel(path: Path, dataset: Any) -> LoggedChannel:
+    """Return a dataset as a channel."""
     _check_size(path, dataset)
     return LoggedChannel(
         name=_last(dataset),
@@ -79,7 +79,7 @@ def _channel(path: Path, dataset: Any) -> LoggedChannel:
 
 
 def _axes(path: Path, dataset: Any) -> list[Axis]:
-    """Axes as the innermost holder of a dataset states them that states any."""
+    """Return the axes that the dataset, or else the innermost of its groups, states."""
     scales = [str(scale.name).rpartition("/")[2] for scale in dataset.dims[0].values()]
     quantity = dataset.dims[0].label or next(iter(scales), None)
     axes: list[Axis] = []
@@ -108,6 +108,7 @@ def _axes(path: Path, dataset: Any) -> list[Axis]:
 
 
 def _number(path: Path, dataset: Any, key: str, value: object) -> float:
+    """Return the value of an attribute as a number."""
     if not isinstance(value, np.number):
         raise RecordingError(
             f"{path}: channel {_last(dataset)!r}: {key} is {value!r}, expected a number"
@@ -116,7 +117,7 @@ def _number(path: Path, dataset: Any, key: str, value: object) -> float:
 
 
 def _time_beside(path: Path, group: Any, dataset: Any) -> Iterator[Axis]:
-    """Time stamps beside a dataset, as many as it has samples."""
+    """Yield axes of time stamps in a group that have the length of a dataset."""
     for name in group:
         times: Any = group.get(name) if is_time(name, None) else None
         if getattr(times, "shape", None) == dataset.shape and times.dtype.kind in "iuf":
@@ -129,12 +130,13 @@ def _time_beside(path: Path, group: Any, dataset: Any) -> Iterator[Axis]:
 
 
 def _values(dataset: Any, factor: float = 1.0, offset: float = 0.0) -> NDArray[np.generic]:
+    """Read a dataset and unpack its values."""
     values = np.asarray(dataset[:])
     return values if (factor, offset) == (1.0, 0.0) else factor * values + offset
 
 
 def _check_size(path: Path, dataset: Any) -> None:
-    """Refuse a dataset whose numbers are not in this file, or cannot all be."""
+    """Refuse a dataset that announces more numbers than the file can hold."""
     stored = int(dataset.id.get_storage_size())
     if int(dataset.nbytes) > _DENSEST * stored or stored > path.stat().st_size:
         raise RecordingError(
@@ -144,13 +146,13 @@ def _check_size(path: Path, dataset: Any) -> None:
 
 
 def _attributes(path: Path, item: Any, keys: tuple[str, ...]) -> dict[str, object]:
-    """Attributes of one element, by name; those that there are."""
+    """Return the existing attributes among some keys, regardless of case."""
     names = {name.lower(): name for name in item.attrs}
-    found = ((key, names.get(key.lower())) for key in keys)
-    return {key: _attribute(path, item, name) for key, name in found if name is not None}
+    return {key: _attribute(path, item, names[key.lower()]) for key in keys if key.lower() in names}
 
 
 def _attribute(path: Path, item: Any, key: str) -> object:
+    """Return an attribute that is a single value."""
     value = item.attrs[key]
     if isinstance(value, np.ndarray) and value.size == 1:
         value = value.reshape(-1)[0]
@@ -160,10 +162,11 @@ def _attribute(path: Path, item: Any, key: str) -> object:
 
 
 def _last(dataset: Any) -> str:
+    """Return the last part of the name of a dataset."""
     return str(dataset.name).rpartition("/")[2]
 
 
 def _text(path: Path, item: Any, keys: tuple[str, ...]) -> str:
-    """First of some attributes as a text; empty where none is stated."""
+    """Return the first existing attribute among some keys as text; empty if there is none."""
     value = next(iter(_attributes(path, item, keys).values()), "")
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)

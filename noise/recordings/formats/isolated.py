@@ -1,10 +1,9 @@
-"""Loggers' files read in a process of its own, with limits on time and memory.
+"""Reader of logger files in a separate process with limits on time and memory.
 
-Libraries that follow the pointers of a file hang on one that leads in a circle, set aside the 4 GB
-that a damaged length asks for, or die. They do so in a process that is ended when it takes too
-long and may not have more memory than a file of that size can need; whatever becomes of it, here it
-is one recording refused. It writes the samples into a plain file of numbers, of which any part can
-be had. The process lives on from file to file, since it costs a second to start.
+On a damaged file the libraries may hang in a circle of pointers, allocate gigabytes or crash. In a
+separate process with limits on time and memory this only refuses one recording. The process writes
+the samples into a plain file, which is mapped into memory here. It is reused for further files,
+because starting it takes a second.
 """
 
 from __future__ import annotations
@@ -30,60 +29,62 @@ from noise.base.processes import Worker
 from noise.recordings.formats import RawRecording, formats
 from noise.recordings.formats.logged import convert
 
-_PATIENCE = 15.0
-"""How long reading may take, beside the size of the file [s]."""
+_TIME_LIMIT = 15.0
+"""Time for reading a small file [s]."""
 
 _SLOWEST = 1e6
-"""What is read at least, of a large file over a network [byte/s]."""
+"""Lowest reading speed, which adds time for large files [byte/s]."""
 
-_ALLOWANCE = 2 << 30
-"""Memory that a file may take, beside four times its size [byte]."""
+_MEMORY_LIMIT = 2 << 30
+"""Memory for reading a file, in addition to four times its size [byte]."""
 
 _one_at_a_time = threading.Lock()
 
 
 @contextmanager
 def open_isolated(path: Path) -> Iterator[RawRecording]:
-    """Open a logger's file.
+    """Open a logger file.
 
     Parameters
     ----------
     path : Path
-        An existing file.
+        Existing file.
 
     Yields
     ------
     RawRecording
-        Its channels in the order of the file, in SI.
+        Channels in the order of the file, in SI units.
 
     Raises
     ------
     RecordingError
-        The file is damaged, holds no channels, these do not go together, or reading took longer or
-        more memory than it may; or its library is not installed.
+        The file is damaged, holds no channels, its channels do not match, reading it exceeds the
+        limits, or its library is not installed.
     """
-    of = formats()[path.suffix.lower()]
-    if find_spec(of.library) is None:
-        message = not_installed(f"{path}: {of.name} files need", of.library, of.extra)
+    file_format = formats()[path.suffix.lower()]
+    if find_spec(file_format.library) is None:
+        message = not_installed(
+            f"{path}: {file_format.name} files need", file_format.library, file_format.extra
+        )
         raise RecordingError(message)
-    path.open("rb").close()  # a file that may not be read is not damaged
+    path.open("rb").close()  # an unreadable file is not reported as damaged
     with TemporaryDirectory(prefix="bushing-noise-", ignore_cleanup_errors=True) as folder:
         target = Path(folder) / "samples"
-        raw = _converted(path, target, of.name)
+        raw = _converted(path, target, file_format.name)
         samples = np.memmap(target, np.float64, "r", shape=(raw.n_channels, raw.n_samples))
         if os.name != "nt":
-            target.unlink()  # mapped, it stays until then, whatever becomes of this process
+            target.unlink()  # the mapping keeps the content; a killed process leaves no file
         yield replace(raw, read=lambda first, last: np.array(samples[:, first:last]))
 
 
 def _converted(path: Path, target: Path, name: str) -> RawRecording:
-    """Have the samples of a file written; return what it states of them."""
-    seconds = _PATIENCE + path.stat().st_size / _SLOWEST
+    """Convert a file in the reading process; return its metadata."""
+    seconds = _TIME_LIMIT + path.stat().st_size / _SLOWEST
     folder = os.curdir if path.is_absolute() else Path.cwd()
     with _one_at_a_time:
         try:
             _worker(os.getpid()).submit(os.getpid).result()
-        except BrokenExecutor:  # it ended meanwhile
+        except BrokenExecutor:  # the process has ended since the last file
             _worker.cache_clear()
         worker = _worker(os.getpid())
         try:
@@ -99,27 +100,28 @@ def _converted(path: Path, target: Path, name: str) -> RawRecording:
 
 @lru_cache(maxsize=1)
 def _worker(_owner: int) -> Worker:
-    """Return the process that reads for this one; a fork needs one of its own."""
+    """Return the reading process of a process, by its number: a fork needs its own."""
     return Worker()
 
 
-# --- in the process that reads -------------------------------------------------------------------
+# --- in the reading process ----------------------------------------------------------------------
 
 
 def _convert(folder: str | Path, path: Path, target: Path, seconds: float) -> RawRecording:
+    """Read a file under the memory limit and write its samples to `target`."""
     alarm = getattr(signal, "alarm", lambda _: None)
-    alarm(int(seconds) + 10)  # should nobody be there any more to end it
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)  # some libraries print what they cannot follow
-    os.dup2(nowhere, 2)
-    os.close(nowhere)
+    alarm(int(seconds) + 10)  # ends this process if its parent is gone
+    null_device = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null_device, 1)  # some libraries print warnings
+    os.dup2(null_device, 2)
+    os.close(null_device)
     os.chdir(folder)
-    of = formats()[path.suffix.lower()]
-    import_module(of.library)
-    memory = _ALLOWANCE + 4 * path.stat().st_size
+    file_format = formats()[path.suffix.lower()]
+    import_module(file_format.library)
+    memory = _MEMORY_LIMIT + 4 * path.stat().st_size
     _limit_memory(memory)
     try:
-        with of.channels(path) as (channels, properties):  # type: ignore[misc]
+        with file_format.channels(path) as (channels, properties):  # type: ignore[misc]
             return convert(path, channels, properties, target)
     except RecordingError:
         raise
@@ -130,11 +132,11 @@ def _convert(folder: str | Path, path: Path, target: Path, seconds: float) -> Ra
     finally:
         alarm(0)
         _limit_memory(None)
-    raise RecordingError(f"{path}: is damaged or no {of.name} file ({reason})")
+    raise RecordingError(f"{path}: is damaged or no {file_format.name} file ({reason})")
 
 
 def _limit_memory(more: int | None) -> None:
-    """Allow this process so many bytes more than it has, where the system counts them."""
+    """Limit the additional memory of this process [byte] on systems that support it."""
     try:
         import resource
 

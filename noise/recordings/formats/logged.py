@@ -1,18 +1,16 @@
-"""The gate through which each channel of a logger's file passes.
+"""Conversion of the channels of a logger file into a recording in SI units.
 
-A reader of a format states of each channel what its axis is (start, step or time stamps, unit,
-quantity) and what its values are (factor, offset, unit). All that is stated is used here, or the
-channel is left out with a note that says why, or the file is refused: nothing is passed over.
+The reader of a format states the axis (start, step or time stamps, unit, quantity) and the values
+(factor, offset, unit) of each channel. All of this is applied; otherwise the channel is left out
+with a note, or the file is refused. Nothing is ignored.
 
-- The axis is time, in any unit of time. A spectrum, samples over an angle, and time stamps that do
-  not rise evenly are no recordings.
-- A channel is what its unit says, or, without a unit, what its name says if that is one of ours. A
-  sidecar that names the channels has the last word.
-- Channels that begin at different times are aligned by whole samples and cut to what they have in
-  common. Other differences are refused: to bring channels together one would have to invent
-  samples, and the delay of a resampling filter would look like one of the rig.
+- The axis must be time, in any unit, with even steps.
+- The unit determines the kind of a channel; without a unit its name does, if it is a known one. A
+  sidecar that names the channels takes precedence.
+- Channels that start at different times are aligned by whole samples and cut to their common part.
+  Other differences are refused, because resampling would add delays that look like those of a rig.
 
-Only channels that are taken are read, one after the other.
+Only the selected channels are read, one at a time.
 """
 
 from __future__ import annotations
@@ -35,42 +33,42 @@ from noise.recordings.formats.time_axis import SAME_RATE, Axis, start_and_rate
 from noise.recordings.sidecar import Sidecar, read_condition, sidecar_of
 
 CONDITIONS = (*(one.key for one in CONDITION.values()), "material")
-"""Properties of a file that are its operating condition, named as in a sidecar."""
+"""Properties of a file that state its operating condition, with the keys of a sidecar."""
 
-_OFF = 0.1  # of a step, by which a channel may miss the samples of another
-_COMMON = 0.5  # share of the longest channel that all must have in common
-_NAMED = 3  # of the channels that are left out, so many are named
+_SHIFT = 0.1  # tolerance of the offset between the samples of channels [steps]
+_COMMON = 0.5  # smallest common part of the channels, relative to the longest
+_MAX_NAMES = 3  # number of skipped channels that a note names
 _UNCLEAR = {
     "gain": 1.0, "sensitivity": 1.0, "calibration": 1.0, "calibration_factor": 1.0, "factor": 1.0,
     "scale": 1.0, "offset": 0.0,
 }  # fmt: skip
-"""Attributes that may have been applied or not, and the value at which that does not matter."""
+"""Attributes that may or may not have been applied, and their neutral values."""
 
 PACKING = ("scale_factor", "add_offset", *_UNCLEAR)
-"""Attributes by which numbers are packed, or may be."""
+"""Attributes of packed numbers."""
 
-_OURS = re.compile(rf"({'|'.join(CHANNEL_UNITS)})(_([2-9]|[1-9]\d{{1,3}}))?")
+_KNOWN_NAME = re.compile(rf"({'|'.join(CHANNEL_UNITS)})(_([2-9]|[1-9]\d{{1,3}}))?")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LoggedChannel:
-    """A channel as its file states it, not yet read.
+    """Channel of a logger file with its metadata, not yet read.
 
     Parameters
     ----------
     name : str
     n_samples : int
     values : callable
-        Reads its samples as stored, shape (n_samples,).
+        Function that reads the stored samples, shape (n_samples,).
     axes : sequence of Axis
-        The last one that states a start has the last word on it.
+        The last one with a start determines the start.
     packing : mapping of str to object
-        Attributes among which there may be those of `PACKING`, of integers and of other numbers.
+        Attributes, which may include those of `PACKING`.
     integers : bool
-        Whether it is stored in whole numbers.
+        Whether the samples are stored as integers.
     unit : str
     problem : str
-        Why it cannot be read.
+        Reason why the channel cannot be read; empty if it can.
     """
 
     name: str
@@ -85,21 +83,21 @@ class LoggedChannel:
 
 @dataclass(frozen=True, eq=False)
 class Row:
-    """A row of a recording: the channel that it is read from, and how.
+    """Channel of a recording with its source in the logger file.
 
     Parameters
     ----------
     logged : LoggedChannel
     kind : str
-        Of channel; empty where only a sidecar can say it.
+        Kind of channel; empty if only a sidecar can state it.
     value : float
-        Of the unit of the file [SI unit].
+        Unit of the file in SI units.
     start : float or None
-        Of the first sample [s].
+        Time of the first sample [s].
     rate : float
-        [Hz]
+        Sampling rate [Hz].
     first : int
-        Sample that the recording begins with.
+        Index of the first sample of the recording.
     """
 
     logged: LoggedChannel
@@ -110,7 +108,7 @@ class Row:
     first: int = 0
 
     def samples(self, n: int) -> NDArray[np.float64]:
-        """Read the samples of the recording, shape (n,) [SI unit of the channel]."""
+        """Read the samples, shape (n,) [SI unit of the channel]."""
         stored = self.logged.values()
         if stored.shape != (self.logged.n_samples,):
             raise RecordingError(
@@ -119,7 +117,7 @@ class Row:
             )
         samples = np.array(stored[self.first : self.first + n], dtype=np.float64)
         factor, offset = factor_and_offset(self.logged.packing)
-        with np.errstate(over="ignore", invalid="ignore"):  # refused where it is not finite
+        with np.errstate(over="ignore", invalid="ignore"):  # infinite samples are refused later
             samples *= self.value * factor
             samples += self.value * offset
         return samples
@@ -128,28 +126,28 @@ class Row:
 def convert(
     path: Path, logged: Sequence[LoggedChannel], properties: Mapping[str, object], target: Path
 ) -> RawRecording:
-    """Write the channels of a logger's file that make a recording as plain numbers.
+    """Write the channels of a logger file in SI units as plain numbers.
 
     Parameters
     ----------
     path : Path
-        Of the file, beside which the sidecar is sought.
+        The logger file; its sidecar lies beside it.
     logged : sequence of LoggedChannel
-        In the order of the file.
+        Channels in the order of the file.
     properties : mapping
-        Of the file as a whole; those named as conditions are ours.
+        Properties of the file, which may state conditions.
     target : Path
-        Gets the samples in SI as float64, channel after channel.
+        Output file: samples in SI units as float64, channel by channel.
 
     Returns
     -------
     RawRecording
-        Reads nothing: its samples are in `target`.
+        Metadata; the samples are in `target`.
 
     Raises
     ------
     RecordingError
-        No channel can be used, or they contradict each other or themselves.
+        No channel can be used, or the channels contradict each other or themselves.
 
     Examples
     --------
@@ -176,13 +174,13 @@ def convert(
             kind, value = _kind(channel)
             start, rate = start_and_rate(channel.axes)
         except RecordingError as error:
-            # Of many channels those that ought to be ours are named first.
-            ours = bool(kind_of_unit(_unit(channel)) or _own_name(channel.name))
-            left_out.append((not ours, f"{channel.name!r} {error}"))
+            # Channels with a known unit or name come first in the note.
+            known = bool(kind_of_unit(_unit(channel)) or _known_name(channel.name))
+            left_out.append((not known, f"{channel.name!r} {error}"))
         else:
             on_time.append(Row(channel, kind, value, start, rate))
     sidecar = sidecar_of(path)
-    rows = _named_by(sidecar, on_time)
+    rows = _selected(sidecar, on_time)
     left_out += [
         (True, f"{row.logged.name!r} {_unit_problem(row.logged)}")
         for row in on_time
@@ -199,19 +197,19 @@ def convert(
         notes.append(f"left out: {_listed(reasons)}; a sidecar that names them makes them count")
     if sidecar.channels is not None and len(rows) == len(sidecar.channels):
         rows = [
-            _as_named(row, one.channel, one.unit or "", notes)
+            _renamed(row, one.channel, one.unit or "", notes)
             for row, one in zip(rows, sidecar.channels, strict=True)
         ]
         channels = tuple(one.channel for one in sidecar.channels)
     else:
-        channels = _names(rows)
+        channels = _channels(rows)
     notes += [
         f"channel {row.logged.name!r} {unclear}, which is not applied: its samples are taken to be "
         "in its unit already"
         for row in rows
         if (unclear := _unclear(row.logged))
     ]
-    rows, n_samples = _together(path, rows, notes)
+    rows, n_samples = _aligned(path, rows, notes)
 
     with naming(f"{path}: "), target.open("wb") as file:
         for row in rows:
@@ -221,24 +219,26 @@ def convert(
         n_samples=n_samples,
         rate=rows[0].rate,
         fractional=False,
-        read=_nothing,
+        read=_unreadable,
         channels=channels,
         condition=stated_condition(properties, str(path)),
         notes=tuple(notes),
     )
 
 
-def _nothing(first: int, last: int) -> NDArray[np.float64]:
+def _unreadable(first: int, last: int) -> NDArray[np.float64]:
+    """Stand in for `RawRecording.read`, which the parent process replaces."""
     raise NotImplementedError
 
 
 def _listed(reasons: Sequence[str]) -> str:
-    more = len(reasons) - _NAMED
-    return "; ".join(reasons[:_NAMED]) + (f"; and {more} more" if more > 0 else "")
+    """Return the first reasons as text."""
+    more = len(reasons) - _MAX_NAMES
+    return "; ".join(reasons[:_MAX_NAMES]) + (f"; and {more} more" if more > 0 else "")
 
 
-def _together(path: Path, rows: list[Row], notes: list[str]) -> tuple[list[Row], int]:
-    """Align channels by their start, and cut them to what they have in common."""
+def _aligned(path: Path, rows: list[Row], notes: list[str]) -> tuple[list[Row], int]:
+    """Align channels by their start; return them with their common number of samples."""
     rate, longest = rows[0].rate, max(row.logged.n_samples for row in rows)
     check_rate(rate, str(path))
     for row in rows:
@@ -256,17 +256,17 @@ def _together(path: Path, rows: list[Row], notes: list[str]) -> tuple[list[Row],
             f"{max(stated) - min(stated):.6g} s apart"
         )
     begins = [max(stated, default=0.0) if row.start is None else row.start for row in rows]
-    late = [(max(begins) - begin) * rate for begin in begins]
-    off = [abs(one - round(one)) for one in late]
-    if max(off) > _OFF:
-        one = rows[int(np.argmax(off))]
+    shifts = [(max(begins) - begin) * rate for begin in begins]
+    fractions = [abs(shift - round(shift)) for shift in shifts]
+    if max(fractions) > _SHIFT:
+        one = rows[int(np.argmax(fractions))]
         raise RecordingError(
-            f"{path}: channel {one.logged.name!r} is sampled {max(off):.2f} of a step beside "
-            f"{rows[int(np.argmin(late))].logged.name!r}; channels of a recording must be sampled "
-            "together"
+            f"{path}: channel {one.logged.name!r} is sampled {max(fractions):.2f} of a step beside "
+            f"{rows[int(np.argmin(shifts))].logged.name!r}; channels of a recording must be "
+            "sampled together"
         )
     aligned = [
-        replace(row, rate=rate, first=round(shift)) for row, shift in zip(rows, late, strict=True)
+        replace(row, rate=rate, first=round(shift)) for row, shift in zip(rows, shifts, strict=True)
     ]
     common = min(row.logged.n_samples - row.first for row in aligned)
     if common < _COMMON * longest:
@@ -291,7 +291,7 @@ def _together(path: Path, rows: list[Row], notes: list[str]) -> tuple[list[Row],
 
 
 def _kind(channel: LoggedChannel) -> tuple[str, float]:
-    """Kind of a channel, empty for what is none of ours, and its unit in SI."""
+    """Return the kind of a channel (empty if unknown) and its unit in SI units."""
     if channel.problem:
         raise RecordingError(channel.problem)
     factor, offset = factor_and_offset(channel.packing)
@@ -301,33 +301,34 @@ def _kind(channel: LoggedChannel) -> tuple[str, float]:
         raise RecordingError(
             f"{unclear}, and does not state how to apply it; state scale_factor and add_offset"
         )
-    unit, named = _unit(channel), _own_name(channel.name).partition("_")[0]
-    found = kind_of_unit(unit)
+    unit, named = _unit(channel), _known_name(channel.name).partition("_")[0]
+    kind = kind_of_unit(unit)
     if not unit:
         return named, 1.0
-    return ("", 1.0) if found is None or named not in ("", found[0]) else found
+    return ("", 1.0) if kind is None or named not in ("", kind[0]) else kind
 
 
 def _unit(channel: LoggedChannel) -> str:
-    """Return the unit of a channel, which may stand behind its name."""
-    behind = split_unit(channel.name)[1]
-    return channel.unit.strip() or (behind if kind_of_unit(behind) else "")
+    """Return the unit of a channel, which may follow its name."""
+    suffix = split_unit(channel.name)[1]
+    return channel.unit.strip() or (suffix if kind_of_unit(suffix) else "")
 
 
-def _own_name(name: str) -> str:
-    """Name of a channel where it is one of ours, with or without a unit behind it."""
+def _known_name(name: str) -> str:
+    """Return the name of a channel without a unit if it is a known one, else an empty text."""
     texts = (text.strip().lower() for text in (name, split_unit(name)[0]))
-    return next((text for text in texts if _OURS.fullmatch(text)), "")
+    return next((text for text in texts if _KNOWN_NAME.fullmatch(text)), "")
 
 
 def _unit_problem(channel: LoggedChannel) -> str:
-    unit, named = _unit(channel), _own_name(channel.name).partition("_")[0]
+    """Return why the unit of a channel cannot be used."""
+    unit, named = _unit(channel), _known_name(channel.name).partition("_")[0]
     expected = f", expected {CHANNEL_UNITS[named]!r}" if named else ""
     return f"has unit {unit!r}{expected}" if unit else "states no unit"
 
 
 def factor_and_offset(packing: Mapping[str, object]) -> tuple[float, float]:
-    """Return what packed numbers are multiplied with, and what is then added [unit].
+    """Return factor and offset of packed numbers [unit].
 
     Examples
     --------
@@ -339,16 +340,21 @@ def factor_and_offset(packing: Mapping[str, object]) -> tuple[float, float]:
 
 
 def _unclear(channel: LoggedChannel) -> str:
-    """Name what may be what was applied or what is to be applied, such as a gain.
+    """Return attributes such as a gain that may or may not have been applied; empty if none.
 
-    Whole numbers are then not known to be in their unit; other numbers are taken to be.
+    Integers with such an attribute are refused; other numbers are assumed to be in their unit.
     """
     stated = _numbers(channel.packing)
-    unclear = [f"{k} {stated[k]:g}" for k, no in _UNCLEAR.items() if stated.get(k, no) != no]
+    unclear = [
+        f"{key} {stated[key]:g}"
+        for key, neutral in _UNCLEAR.items()
+        if stated.get(key, neutral) != neutral
+    ]
     return f"has {' and '.join(unclear)}" if unclear else ""
 
 
 def _numbers(packing: Mapping[str, object]) -> dict[str, float]:
+    """Return the numeric attributes with keys in lower case."""
     return {
         key.lower(): float(value)
         for key, value in packing.items()
@@ -356,23 +362,24 @@ def _numbers(packing: Mapping[str, object]) -> dict[str, float]:
     }
 
 
-def _named_by(sidecar: Sidecar, on_time: list[Row]) -> list[Row]:
-    """Rows that a sidecar names, by their number; ours where it names none."""
-    ours = [row for row in on_time if row.kind]
-    first = (ours or on_time)[:1]
-    beside = [row for row in on_time if any(_alike(row, one) for one in first)]
-    count = len(ours if sidecar.channels is None else sidecar.channels)
-    fitting = (rows for rows in (ours, on_time, beside) if len(rows) == count)
-    return next(fitting, ours)  # whoever decides what samples mean says that the numbers differ
+def _selected(sidecar: Sidecar, on_time: list[Row]) -> list[Row]:
+    """Return the rows that match a sidecar in number, or those of a known kind."""
+    known = [row for row in on_time if row.kind]
+    first = (known or on_time)[:1]
+    alike = [row for row in on_time if any(_alike(row, one) for one in first)]
+    count = len(known if sidecar.channels is None else sidecar.channels)
+    matches = (rows for rows in (known, on_time, alike) if len(rows) == count)
+    return next(matches, known)  # `noise.recordings.meaning` refuses a wrong number
 
 
 def _alike(one: Row, other: Row) -> bool:
+    """Whether two rows have the same length and sampling rate."""
     same_length = one.logged.n_samples == other.logged.n_samples
     return same_length and math.isclose(one.rate, other.rate, rel_tol=SAME_RATE)
 
 
-def _as_named(row: Row, channel: Channel, unit: str, notes: list[str]) -> Row:
-    """Return a row as a sidecar names it: by a unit of its own the samples are in it as stored."""
+def _renamed(row: Row, channel: Channel, unit: str, notes: list[str]) -> Row:
+    """Return a row with the kind of a sidecar's channel; samples are then in its unit as stored."""
     if row.kind == channel.kind and (not unit or row.value == 1.0):
         return row
     if row.kind:
@@ -383,12 +390,12 @@ def _as_named(row: Row, channel: Channel, unit: str, notes: list[str]) -> Row:
     return replace(row, kind=channel.kind, value=1.0)
 
 
-def _names(rows: Sequence[Row]) -> tuple[Channel, ...]:
-    """Keep names that are ours; number the others of a kind with what is free."""
+def _channels(rows: Sequence[Row]) -> tuple[Channel, ...]:
+    """Return channels with known names; others get the next free number of their kind."""
     names: list[str] = []
     for row in rows:
-        own = _own_name(row.logged.name)
-        names.append("" if own in names else own)
+        known = _known_name(row.logged.name)
+        names.append("" if known in names else known)
     for i, row in enumerate(rows):
         numbered = (row.kind if n == 1 else f"{row.kind}_{n}" for n in range(1, len(rows) + 2))
         names[i] = names[i] or next(name for name in numbered if name not in names)
@@ -399,19 +406,19 @@ def _names(rows: Sequence[Row]) -> tuple[Channel, ...]:
 
 
 def stated_condition(properties: Mapping[str, object], where: str) -> Condition:
-    """Read the operating condition among the properties of a file, checked as that of a sidecar.
+    """Read the operating condition from the properties of a file.
 
     Parameters
     ----------
     properties : mapping
         Numbers may be texts; a support stiffness may be "fixed".
     where : str
-        What messages call the file.
+        Name of the file in messages.
 
     Raises
     ------
     RecordingError
-        A property that is named as a condition holds none.
+        A property with the key of a condition has an invalid value.
 
     Examples
     --------
@@ -436,6 +443,7 @@ def stated_condition(properties: Mapping[str, object], where: str) -> Condition:
 
 
 def _number(text: str) -> float | str:
+    """Return a text as a number if it is one."""
     try:
         return float(text)
     except ValueError:

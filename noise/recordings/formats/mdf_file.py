@@ -1,8 +1,8 @@
-"""MDF4 files (ASAM MDF, test vehicles and benches) as channels: those of all groups.
+"""Reader of MDF4 files (ASAM MDF, test vehicles and benches): the channels of all groups.
 
-The axis is the master channel of each group, which may be time, an angle, a distance or an index.
-Conditions stand among the common properties of the file's comment. Samples that the file marks as
-invalid are refused; a measurement with holes is not the measurement.
+The axis is the master channel of a group: time, an angle, a distance or an index. Conditions are
+among the common properties in the comment of the file. Files with samples marked as invalid are
+refused.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from noise.recordings.formats.logged import LoggedChannel
 from noise.recordings.formats.time_axis import Axis
 
 _HEAD = 64  # bytes before the first block
-_UNFINISHED = slice(60, 64)  # of the head: flags of what was still to be done
-_FIXED_LENGTH = 0  # type of a channel: a plain value
-_VIRTUAL = (3, 6)  # types of channels that have no bytes in a record
-_HAS_MARK = 1 << 1  # flag of a channel: a bit of each record says whether its value is valid
+_UNFINISHED = slice(60, 64)  # flags in the head of a file that was not finalised
+_FIXED_LENGTH = 0  # type of a channel with plain values
+_VIRTUAL = (3, 6)  # types of channels without bytes in a record
+_HAS_MARK = 1 << 1  # flag of a channel with an invalidation bit in each record
 _NUMBERS = range(6)  # data types: integers and floating-point values, both byte orders
 _TO_TEXT = (7, 8, 9, 10)  # conversions from value or text to text
 _QUANTITIES = ("", "time", "angle", "distance", "index")  # of a master channel
@@ -34,18 +34,18 @@ _QUANTITIES = ("", "time", "angle", "distance", "index")  # of a master channel
 
 @contextmanager
 def open_mdf(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
-    """Give the channels of an MDF4 file and the properties in its comment.
+    """Open an MDF4 file and yield its channels and the properties in its comment.
 
     Raises
     ------
     RecordingError
-        The file is of another version, was not finished, or a channel lies outside its records.
+        The file has another version or is unfinished, or a channel is outside its records.
     """
     from asammdf import MDF
 
     _check_head(path)
-    logging.getLogger("asammdf").addFilter(_refuse_what_is_cut)
-    # Given a name, the library maps the file, and fails over parts of large ones.
+    logging.getLogger("asammdf").addFilter(_refuse_truncated)
+    # Given a path, the library maps the file into memory and fails on parts of large files.
     with path.open("rb") as stream, MDF(stream) as file:
         groups = range(len(file.groups))
         logged = [channel for group in groups for channel in _group(path, file, group)]
@@ -56,15 +56,15 @@ def open_mdf(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, obj
 FORMAT = Format("MDF", (".mdf", ".mf4"), channels=open_mdf, library="asammdf", extra="mdf")
 
 
-def _refuse_what_is_cut(record: logging.LogRecord) -> bool:
-    """Make an error of what the library only warns of: it goes on without what lies beyond."""
+def _refuse_truncated(record: logging.LogRecord) -> bool:
+    """Raise an error for a truncated file, of which the library only warns."""
     if "file size" in record.getMessage():
         raise ValueError(record.getMessage())
     return False
 
 
 def _check_head(path: Path) -> None:
-    """Refuse what the library would convert or mend, and so hand out what was not measured."""
+    """Refuse files that the library would convert or repair, as that alters the measurement."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
     if head[:8] not in (b"MDF     ", b"UnFinMF ") or not head[8:9].isdigit():
@@ -77,7 +77,7 @@ def _check_head(path: Path) -> None:
 
 
 def _group(path: Path, file: Any, group: int) -> list[LoggedChannel]:
-    """Channels of numbers in one group."""
+    """Return the numeric channels of a group."""
     block = file.groups[group]
     n, master = int(block.channel_group.cycles_nr), file.masters_db.get(group)
     plain = [i for i, c in enumerate(block.channels) if i != master and _is_number(c)]
@@ -93,6 +93,7 @@ def _group(path: Path, file: Any, group: int) -> list[LoggedChannel]:
 
 
 def _axis(file: Any, group: int, master: Any) -> Axis:
+    """Return the axis of a group."""
     return Axis(
         times=lambda: np.asarray(file.get_master(group)),
         unit=_unit(master),
@@ -101,6 +102,7 @@ def _axis(file: Any, group: int, master: Any) -> Axis:
 
 
 def _channel(file: Any, group: int, index: int, axes: list[Axis]) -> LoggedChannel:
+    """Return a channel of a group."""
     block = file.groups[group]
     channel = block.channels[index]
 
@@ -126,11 +128,12 @@ def _channel(file: Any, group: int, index: int, axes: list[Axis]) -> LoggedChann
 
 
 def _unit(channel: Any) -> str:
+    """Return the unit of a channel, which its conversion may state."""
     return str(channel.unit or getattr(channel.conversion, "unit", "") or "")
 
 
 def _check_place(path: Path, group: Any, channel: Any) -> None:
-    """Refuse a channel that lies outside its group's records, where the library would read on."""
+    """Refuse a channel outside the records of its group, which the library would still read."""
     where = f"{path}: channel {str(channel.name)!r}"
     end = int(channel.byte_offset) + (int(channel.bit_offset) + int(channel.bit_count) + 7) // 8
     if channel.channel_type not in _VIRTUAL and end > int(group.samples_byte_nr):
@@ -143,5 +146,6 @@ def _check_place(path: Path, group: Any, channel: Any) -> None:
 
 
 def _is_number(channel: Any) -> bool:
+    """Whether a channel holds plain numbers."""
     plain = channel.channel_type == _FIXED_LENGTH and channel.data_type in _NUMBERS
     return plain and not channel.component_addr

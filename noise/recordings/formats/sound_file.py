@@ -1,10 +1,9 @@
-"""Sound files (WAV, FLAC, AIFF, OGG, MP3), read to their end at any sample.
+"""Reader of sound files (WAV, FLAC, AIFF, OGG, MP3) with random access and checks of completeness.
 
-The sound library reads the first sound of a file and stops quietly where it breaks off. A
-measurement cut short is not the measurement, so the samples announced are counted against those
-that there are, and a file of several sounds is refused. Where a recorder did not come to write the
-length (a WAV file whose recorder was switched off, FLAC from a pipe, MP3 without a header), the
-library is given the file with its true length.
+libsndfile reads the first sound of a file and stops silently where it is truncated. So the
+announced number of samples is checked, and files of several sounds are refused. If the header lacks
+the length (a WAV recorder that was switched off, FLAC from a pipe, MP3 without a header), it is
+completed in memory.
 """
 
 from __future__ import annotations
@@ -28,42 +27,45 @@ from numpy.typing import NDArray
 from models.errors import RecordingError
 from noise.recordings.formats import Format, RawRecording, Read
 
-_BLOCK, _FEW = 1 << 16, 1 << 12  # samples a channel
+_BLOCK, _FEW = 1 << 16, 1 << 12  # samples per channel
 _RIFF = (b"RIFF", b"RF64", b"BW64")  # tech.ebu.ch/docs/tech/tech3306.pdf, ITU-R BS.2088
 _CHUNKED = (*_RIFF, b"RIFX", b"FORM")
-_MOST_CHUNKS = 100_000  # what holds more was made to be walked for ever
+_MOST_CHUNKS = 100_000  # more are only in files that are made to exhaust a reader
 _NO_SIZE = 0xFFFFFFFF
 _UNFINISHED = (0, _NO_SIZE, 0x7FFFFFFF, 0x80000000, 0x7FFFF000)
-"""Sizes of samples that recorders write before they know better (the last ones: arecord, SoX)."""
+"""Placeholders that recorders write for the size of the samples (the last ones: arecord, SoX)."""
 
 _DESCRIPTION_BYTES = 256  # EBU Tech 3285, first field of the chunk
 _STARTS = [
     re.compile(re.escape(mark))
     for mark in (b"OggS\0\2", b"fLaC\0\0\0\x22", b"Xing\0\0\0", b"Info\0\0\0")
 ]
-"""What a stream of Ogg or FLAC, or an MP3 that states its length, has once near its beginning.
+"""Start markers of Ogg and FLAC streams and of MP3 headers with a length; each occurs once.
 
-One by one, as a pattern of several is ten times as slow.
+Separate patterns, because one pattern of alternatives is ten times slower.
 """
 
-_NO_LENGTH = 100
-"""Times its size that an MP3 without a length is given out to have: the library estimates a length
-from the size and the first frames, of 8 to 320 kbit/s, and reads no further than that."""
+_LENGTH_FACTOR = 100
+"""Factor on the size of an MP3 without a length. The library estimates a length from the size and
+the first frames, of 8 to 320 kbit/s, and would stop there."""
 
-_EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
-"""Formats of the sound library that can be entered at any sample; of others, what comes before is
-decoded."""
+_SEEKABLE = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
+"""Formats with exact random access; others are decoded from the beginning."""
 
 
 @contextmanager
 def open_sound_file(path: Path) -> Iterator[RawRecording]:
-    """Open a sound file, which is not empty.
+    """Open a sound file that is not empty.
+
+    Yields
+    ------
+    RawRecording
 
     Raises
     ------
     RecordingError
-        The file is no sound file, is damaged, holds several sounds, or ends before its header says;
-        also by reading it.
+        The file is no sound file, is damaged, holds several sounds, or is truncated; also when
+        samples are read.
 
     Examples
     --------
@@ -106,16 +108,17 @@ FORMAT = Format(
 
 
 class _Content(mmap):
-    """A file in memory, where what it lacks can be added; nothing leads beyond its end."""
+    """Memory map of a file whose header can be completed; seeking is limited to its size."""
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> None:
-        """Go to a byte."""
+        """Set the position."""
         base = {os.SEEK_SET: 0, os.SEEK_CUR: self.tell(), os.SEEK_END: len(self)}[whence]
         super().seek(min(max(0, base + offset), len(self)))
 
 
 @contextmanager
 def _errors(path: Path) -> Iterator[None]:
+    """Convert errors of the library into RecordingError."""
     try:
         yield
     except soundfile.LibsndfileError as error:
@@ -124,13 +127,14 @@ def _errors(path: Path) -> Iterator[None]:
 
 
 def _opened(path: Path, content: mmap, stack: ExitStack, *, patched: bool) -> tuple[Any, int]:
-    """Open the sound of a file, whose name the library takes in UTF-8 alone; tell its length."""
+    """Open a sound and return it with its number of samples."""
+    # As bytes, since the library encodes names in UTF-8, which fails for some.
     file: Any = content if patched else path if os.name == "nt" else os.fsencode(path)
     if content[:4] in _CHUNKED:
         sound = stack.enter_context(soundfile.SoundFile(file))
         return sound, int(sound.frames)
-    found = chain.from_iterable(islice(mark.finditer(content), 2) for mark in _STARTS)
-    starts = sorted(one.start() for one in found)
+    matches = chain.from_iterable(islice(mark.finditer(content), 2) for mark in _STARTS)
+    starts = sorted(match.start() for match in matches)
     if starts[1:]:
         raise RecordingError(
             f"{path}: a second sound begins at byte {starts[1]}; save each as its own"
@@ -139,27 +143,27 @@ def _opened(path: Path, content: mmap, stack: ExitStack, *, patched: bool) -> tu
         sound = stack.enter_context(soundfile.SoundFile(file))
         return sound, int(sound.frames)
     if content[:4] == b"fLaC":
-        with _Quiet(file) as unknown:
-            n_samples = _count(path, unknown, _BLOCK)
+        with _Quiet(file) as sound:
+            n_samples = _count(path, sound, _BLOCK)
         content[21] |= n_samples >> 32
         content[22:26] = (n_samples & 0xFFFFFFFF).to_bytes(4, "big")
         return stack.enter_context(soundfile.SoundFile(content)), n_samples
     if starts or b"VBRI" in content[:_FEW]:
         sound = stack.enter_context(_Quiet(file))
         return sound, int(sound.frames)
-    with _Unending(path) as counted, _Quiet(counted) as unknown:
-        n_samples = _count(path, unknown, _FEW)
-    return stack.enter_context(_Quiet(stack.enter_context(_Unending(path)))), n_samples
+    with _Extended(path) as extended, _Quiet(extended) as sound:
+        n_samples = _count(path, sound, _FEW)
+    return stack.enter_context(_Quiet(stack.enter_context(_Extended(path)))), n_samples
 
 
 def _flac_length(content: mmap) -> int:
-    """Return how many samples a stream of FLAC states (RFC 9639), 0 if unknown."""
+    """Return the stated number of samples of a FLAC stream (RFC 9639), 0 if unknown."""
     head = content[:26].ljust(26, b"\0")
     return (head[21] & 0x0F) << 32 | int.from_bytes(head[22:26], "big")
 
 
 def _count(path: Path, sound: Any, n_at_once: int) -> int:
-    """Decode a sound to its end; MP3 may break off within its last frame."""
+    """Count the samples of a sound by decoding it; an MP3 may end within a frame."""
     n = 0
     try:
         while passed := len(sound.read(n_at_once)):
@@ -174,33 +178,33 @@ def _count(path: Path, sound: Any, n_at_once: int) -> int:
 
 
 def _reading(path: Path, sound: Any, n_samples: int) -> Read:
-    """Give what reads a sound; refused where it breaks off before its end."""
+    """Return a function that reads samples and refuses a truncated sound."""
     position = 0
 
     def block(start: int, n: int) -> NDArray[np.float64]:
         nonlocal position
-        if start != position and sound.format in _EXACT:
+        if start != position and sound.format in _SEEKABLE:
             position = sound.seek(start)
         elif start < position:
             position = sound.seek(0)
         while position < start and (passed := len(sound.read(min(_BLOCK, start - position)))):
             position += passed
-        found: NDArray[np.float64] = sound.read(n, dtype="float64", always_2d=True)
-        position += len(found)
-        return found
+        frames: NDArray[np.float64] = sound.read(n, dtype="float64", always_2d=True)
+        position += len(frames)
+        return frames
 
     def read(first: int, last: int) -> NDArray[np.float64]:
-        samples, done = np.empty((sound.channels, last - first)), first
+        samples, at = np.empty((sound.channels, last - first)), first
         with _errors(path):
-            while done < last:
-                found = block(done, min(_BLOCK, last - done))
-                if not len(found):
+            while at < last:
+                frames = block(at, min(_BLOCK, last - at))
+                if not len(frames):
                     raise RecordingError(
                         f"{path}: is truncated; its header announces {n_samples} samples, "
-                        f"{done} can be read"
+                        f"{at} can be read"
                     )
-                samples[:, done - first : done - first + len(found)] = found.T
-                done += len(found)
+                samples[:, at - first : at - first + len(frames)] = frames.T
+                at += len(frames)
         return samples
 
     return read
@@ -210,7 +214,7 @@ def _reading(path: Path, sound: Any, n_samples: int) -> Read:
 
 
 class _Chunk(NamedTuple):
-    """One chunk: its four-letter name, where its content starts, and its announced size [byte]."""
+    """Chunk of a file: four-letter name, start of the content, and announced size [byte]."""
 
     name: bytes
     start: int
@@ -218,12 +222,12 @@ class _Chunk(NamedTuple):
 
     @property
     def end(self) -> int:
-        """Where the next one begins."""
+        """Start of the next chunk [byte]."""
         return self.start + self.size + self.size % 2
 
 
 def _chunks(content: mmap) -> Iterator[_Chunk]:
-    """Walk the chunks of a file, up to where none begins."""
+    """Yield the chunks of a file up to the first invalid one."""
     order: Any = "big" if content[:4] in (b"RIFX", b"FORM") else "little"
     at, long_data = 12, 0
     for _ in range(_MOST_CHUNKS):
@@ -231,7 +235,7 @@ def _chunks(content: mmap) -> Iterator[_Chunk]:
         if at + 8 > len(content) or not all(0x20 <= byte < 0x7F for byte in name):
             return
         if name == b"ds64":
-            # A 64-bit file puts the true size of its samples here, and -1 where it belongs.
+            # 64-bit files state the size of the samples here, and -1 in the data chunk.
             long_data = int.from_bytes(content[at + 16 : at + 24], "little")
         if name == b"data" and size == _NO_SIZE and long_data not in (0, (1 << 64) - 1):
             size = long_data
@@ -240,18 +244,18 @@ def _chunks(content: mmap) -> Iterator[_Chunk]:
 
 
 def _completed(path: Path, content: mmap) -> tuple[bool, str]:
-    """Write in memory what a header lacks; return whether it does, and what to note."""
+    """Complete an unfinished header in memory; return whether it changed, and a note."""
     end, tag = len(content), content[:4]
-    found = list(_chunks(content))
-    at = next((i for i, one in enumerate(found) if one.name in (b"data", b"SSND")), None)
+    chunks = list(_chunks(content))
+    at = next((i for i, one in enumerate(chunks) if one.name in (b"data", b"SSND")), None)
     if at is None:
         return False, ""
-    data, last = found[at], found[-1]
+    data, last = chunks[at], chunks[-1]
     n = end - data.start
-    followed = last is not data and last.end in (end, end + 1)  # by chunks up to the end
+    followed = last is not data and last.end in (end, end + 1)  # chunks up to the end of the file
     open_end = data.size > n if data.size else n > 0 and not followed
     if tag in _RIFF and data.size in _UNFINISHED and open_end:
-        for one in found[:at]:
+        for one in chunks[:at]:
             if one.name == b"ds64":
                 content[one.start : one.start + 24] = struct.pack("<QQQ", end - 8, n, 0)
         if tag == b"RIFF":
@@ -267,7 +271,7 @@ def _completed(path: Path, content: mmap) -> tuple[bool, str]:
             f"{path}: is truncated; its header announces {data.size - n} bytes of samples more "
             f"than the {n} that there are"
         )
-    for one in found[at + 1 :]:
+    for one in chunks[at + 1 :]:
         if one.name in _RIFF:
             raise RecordingError(
                 f"{path}: a second sound begins at byte {one.start - 8}; save each as its own"
@@ -280,7 +284,7 @@ def _completed(path: Path, content: mmap) -> tuple[bool, str]:
 
 
 def _description(content: mmap) -> str:
-    """Return the description in the ``bext`` chunk of a WAV file, empty where it has none."""
+    """Return the description in the ``bext`` chunk of a WAV file; empty if there is none."""
     for chunk in _chunks(content):
         if chunk.name == b"bext":
             text = content[chunk.start : chunk.start + min(chunk.size, _DESCRIPTION_BYTES)]
@@ -288,21 +292,21 @@ def _description(content: mmap) -> str:
     return ""
 
 
-# MP3, whose library (mpg123) prints what it thinks of a file: that goes nowhere
+# MP3; its library (mpg123) prints warnings on standard error
 
 
-class _Unending(io.FileIO):
-    """A file that is given out to be longer than it is, with zeros behind its end."""
+class _Extended(io.FileIO):
+    """File that claims to be longer than it is, with zeros after its end."""
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Go to a byte."""
+        """Set the position."""
         if whence == os.SEEK_END:
-            whence, offset = os.SEEK_SET, offset + _NO_LENGTH * os.fstat(self.fileno()).st_size
+            whence, offset = os.SEEK_SET, offset + _LENGTH_FACTOR * os.fstat(self.fileno()).st_size
         return super().seek(offset, whence)
 
     def readinto(self, buffer: Any) -> int:
-        """Read as many bytes as fit."""
-        if self.tell() > os.fstat(self.fileno()).st_size:  # where a tag would stand
+        """Read bytes into a buffer; zeros where the library looks for a tag at the end."""
+        if self.tell() > os.fstat(self.fileno()).st_size:
             view = memoryview(buffer).cast("B")
             view[:] = bytes(len(view))
             self.seek(len(view), os.SEEK_CUR)
@@ -311,20 +315,20 @@ class _Unending(io.FileIO):
 
 
 class _Quiet(soundfile.SoundFile):  # type: ignore[misc]  # the library has no types
-    """A sound read by mpg123."""
+    """Sound file that suppresses the output of the library."""
 
     def __init__(self, file: object) -> None:
         with _silence():
             super().__init__(file)
 
     def seekable(self) -> bool:
-        """Say no: else the place is set anew after each block, and MP3 clicks there."""
+        """Return False: otherwise soundfile seeks after each block, and MP3 clicks there."""
         return False
 
-    def read(self, *given: Any, **named: Any) -> Any:
+    def read(self, *args: Any, **kwargs: Any) -> Any:
         """Read samples."""
         with _silence():
-            return super().read(*given, **named)
+            return super().read(*args, **kwargs)
 
 
 _silencing = threading.Lock()
@@ -332,18 +336,18 @@ _silencing = threading.Lock()
 
 @contextmanager
 def _silence() -> Iterator[None]:
-    """Close standard error to libraries that write past Python."""
+    """Redirect standard error to the null device for libraries that bypass Python."""
     with _silencing:
         try:
-            kept = os.dup(2)
+            stderr = os.dup(2)
         except OSError:  # it is closed
             yield
             return
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, 2)
+        null_device = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null_device, 2)
         try:
             yield
         finally:
-            os.dup2(kept, 2)
-            os.close(kept)
-            os.close(nowhere)
+            os.dup2(stderr, 2)
+            os.close(stderr)
+            os.close(null_device)

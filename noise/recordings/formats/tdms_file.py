@@ -1,11 +1,10 @@
-"""TDMS files (LabVIEW, FlexLogger) as channels: those of all groups.
+"""Reader of TDMS files (LabVIEW, FlexLogger): the channels of all groups.
 
-The axis is what the waveform properties say (``wf_increment``, ``wf_start_offset``,
-``wf_start_time``, ``wf_xname``, ``wf_xunit_string``), or a channel ``time`` of the same group.
-Units are in ``unit_string`` (or ``NI_UnitDescription``), conditions among the properties of the
-file. A scale that the library does not know is refused, since it would hand out unscaled samples in
-its place. An index file beside the samples is not looked at: it repeats what the file says, or
-contradicts it.
+The axis comes from the waveform properties (``wf_increment``, ``wf_start_offset``,
+``wf_start_time``, ``wf_xname``, ``wf_xunit_string``) or from a channel ``time`` in the same group.
+Units are in ``unit_string`` (or ``NI_UnitDescription``), conditions in the properties of the file.
+Unknown types of scale are refused, because the library would return unscaled samples. Index files
+are ignored: they are redundant or wrong.
 """
 
 from __future__ import annotations
@@ -23,9 +22,9 @@ from noise.recordings.formats import Format
 from noise.recordings.formats.logged import LoggedChannel
 from noise.recordings.formats.time_axis import Axis, is_time
 
-_BIG_ENDIAN = 1 << 6  # in the table of contents, which itself is little-endian
+_BIG_ENDIAN = 1 << 6  # flag in the table of contents, which is little-endian
 _VERSIONS = (4712, 4713)
-_UNSET_STEPS = (0.0, 1.0)  # of a waveform, as LabVIEW writes them where nobody set one
+_UNSET_STEPS = (0.0, 1.0)  # default steps that LabVIEW writes
 _UNITS = ("unit_string", "NI_UnitDescription", "unit", "units")
 _UNSET_BEGIN = np.datetime64("1904-01-01")
 _SECOND = np.timedelta64(1, "s")
@@ -38,12 +37,12 @@ _SCALES = (
 
 @contextmanager
 def open_tdms(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
-    """Give the channels of a TDMS file and its properties.
+    """Open a TDMS file and yield its channels and properties.
 
     Raises
     ------
     RecordingError
-        The file breaks off, or a channel announces what cannot be.
+        The file is truncated or of another version, or a channel has an unknown scale.
     """
     from nptdms import TdmsFile
 
@@ -68,6 +67,7 @@ FORMAT = Format("TDMS", (".tdms",), channels=open_tdms, library="nptdms", extra=
 
 
 def _check_head(path: Path) -> None:
+    """Refuse other files and versions."""
     with path.open("rb") as file:
         tag, contents, version = file.read(4), file.read(4), file.read(4)
     if tag != b"TDSm":
@@ -79,7 +79,7 @@ def _check_head(path: Path) -> None:
 
 
 def _holds(path: Path, channel: Any, kinds: str) -> bool:
-    """Whether a channel holds values of some kinds, in a scale that is known."""
+    """Whether a channel holds values of some dtype kinds; refuse an unknown scale."""
     if not len(channel) or channel.data_type is None:
         return False
     if np.dtype(channel.dtype).kind not in kinds:
@@ -94,6 +94,7 @@ def _holds(path: Path, channel: Any, kinds: str) -> bool:
 
 
 def _channel(channel: Any, clocks: list[Any], begins: set[Any]) -> LoggedChannel:
+    """Return a channel with the axes of its waveform and of time channels."""
     return LoggedChannel(
         name=channel.name,
         n_samples=len(channel),
@@ -106,22 +107,23 @@ def _channel(channel: Any, clocks: list[Any], begins: set[Any]) -> LoggedChannel
 
 
 def _stated_unit(channel: Any) -> str:
+    """Return the unit of a channel; empty if not stated."""
     return next((str(channel.properties[k]) for k in _UNITS if k in channel.properties), "")
 
 
 def _begin(channel: Any) -> Any:
-    """Time of day at which a waveform begins; none where nobody set it."""
+    """Return the date and time at which a waveform begins; None if not set."""
     begin = channel.properties.get("wf_start_time")
     return None if begin == _UNSET_BEGIN else begin
 
 
 def _waveform(channel: Any, begins: set[Any]) -> Axis:
-    """Axis of a waveform, as far as its properties state one."""
+    """Return the axis that the properties of a waveform state."""
     stated = channel.properties
     step, start = stated.get("wf_increment"), stated.get("wf_start_offset")
     if step is None or step in _UNSET_STEPS:
         step = start = None
-    elif len(begins) > 1:  # by the time of day, which all must have then
+    elif len(begins) > 1:  # channels start at different times, so all need one
         begin, first = _begin(channel), min(begins - {None})
         start = None if begin is None else (begin - first) / _SECOND + (start or 0.0)
     unit, quantity = stated.get("wf_xunit_string"), stated.get("wf_xname")
@@ -129,7 +131,7 @@ def _waveform(channel: Any, begins: set[Any]) -> Axis:
 
 
 def _clock(channel: Any) -> Axis:
-    """Axis of a channel of time stamps."""
+    """Return the axis of a channel of time stamps."""
     values = np.asarray(channel[:])
     if values.dtype.kind == "M":
         values, unit = (values - np.datetime64(0, "s")) / _SECOND, "s"

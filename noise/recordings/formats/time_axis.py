@@ -1,6 +1,6 @@
-"""The axis of a logger's channel: time, in any unit of it, in even steps.
+"""Time axis of a logger channel: start and sampling rate from steps or time stamps in any unit.
 
-A spectrum, samples over an angle, and time stamps that do not rise evenly are no recordings.
+Spectra, samples over an angle and uneven time stamps are refused.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from models.errors import RecordingError
 from models.units import quantity_of_unit, split_unit
 
 SAME_RATE = 1e-6
-"""Share by which rates may differ that are the same."""
+"""Relative tolerance of equal sampling rates [-]."""
 
-_JITTER = 0.05  # of a step, by which time stamps may miss their place
-_CONTRADICTION = 1e-3  # share by which two statements of one rate differ
+_JITTER = 0.05  # tolerance of a time stamp [steps]
+_CONTRADICTION = 1e-3  # relative difference of two stated rates that contradict each other
 _TIME = re.compile(r"time|zeit|temps|tiempo|tempo|timestamps?|t", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Axis:
-    """What the samples of a channel stand over, as one place in a file states it.
+    """Axis of a channel as stated in one place of a file.
 
     Parameters
     ----------
     start, step : float, optional
-        Of the first sample, and from one to the next [unit].
+        Position of the first sample, and step between samples [unit].
     times : callable, optional
-        Reads the place of each sample [unit].
+        Function that reads the position of each sample [unit].
     unit, quantity : str, optional
         Such as "ms" and "time".
     """
@@ -47,13 +47,13 @@ class Axis:
 
     @cached_property
     def even(self) -> tuple[float, float]:
-        """First time stamp and their step, which many channels may share [unit]."""
+        """First time stamp and step [unit]; cached, as many channels may share an axis."""
         assert self.times is not None
         return even_step(self.times())
 
 
 def is_time(name: str, unit: str | None) -> bool:
-    """Whether a channel holds time stamps, by its name and its unit.
+    """Whether a channel holds time stamps, judged by name and unit.
 
     Examples
     --------
@@ -65,23 +65,23 @@ def is_time(name: str, unit: str | None) -> bool:
 
 
 def _time_unit(unit: str) -> float | None:
-    """Value of a unit of time [s], as in "ms" or "hours since 2024-01-01"; None for any other."""
-    found = quantity_of_unit(unit.partition(" since ")[0])
-    return found[1] if found is not None and found[0] == "time" else None
+    """Return a unit of time in seconds, as "ms" or "hours since 2024-01-01"; None for others."""
+    quantity, factor = quantity_of_unit(unit.partition(" since ")[0]) or ("", 0.0)
+    return factor if quantity == "time" else None
 
 
 def start_and_rate(axes: Sequence[Axis]) -> tuple[float | None, float]:
-    """Return start [s] and sampling rate [Hz] of a channel, of which several axes are stated.
+    """Return start [s] and sampling rate [Hz] of a channel from its stated axes.
 
     Parameters
     ----------
     axes : sequence of Axis
-        The last one that states a start has the last word on it.
+        The last one with a start determines the start.
 
     Raises
     ------
     RecordingError
-        They do not stand over time, state no rate or contradict each other.
+        An axis is not time, or the axes state no rate or contradict each other.
     """
     start, rates = None, []
     for axis in axes:
@@ -105,7 +105,7 @@ def start_and_rate(axes: Sequence[Axis]) -> tuple[float | None, float]:
 
 
 def _second(axis: Axis) -> float:
-    """Value of the unit of an axis [s]; refused where it is no time."""
+    """Return the unit of a time axis [s]; refuse other axes."""
     if axis.unit:
         second = _time_unit(axis.unit)
         if second is None:
@@ -119,14 +119,19 @@ def _second(axis: Axis) -> float:
 
 
 def even_step(times: NDArray[np.generic], jitter: float = _JITTER) -> tuple[float, float]:
-    """Return the first of time stamps, shape (n,), and their step, which must be even.
+    """Return the first of evenly spaced time stamps and their step.
 
-    Each may miss its place by a share `jitter` of a step.
+    Parameters
+    ----------
+    times : ndarray, shape (n,)
+        [any unit]
+    jitter : float
+        Largest deviation of a time stamp [steps].
 
     Raises
     ------
     RecordingError
-        A time stamp misses its place by more.
+        A time stamp deviates by more.
 
     Examples
     --------
@@ -149,6 +154,6 @@ def even_step(times: NDArray[np.generic], jitter: float = _JITTER) -> tuple[floa
 
 
 def whole_rate(rate: float, same: float = SAME_RATE) -> float:
-    """Bring a sampling rate [Hz] to a whole number: loggers store the step with few digits."""
+    """Round a sampling rate [Hz] to a close whole number: loggers store steps with few digits."""
     whole = float(round(rate))
     return whole if abs(whole - rate) <= same * rate else rate

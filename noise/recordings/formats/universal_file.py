@@ -1,4 +1,4 @@
-"""Universal files (UFF, UNV) as channels: their time functions, dataset 58."""
+"""Reader of universal files (UFF, UNV): time functions of dataset 58 as channels."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from noise.recordings.formats.time_axis import Axis
 
 @contextmanager
 def open_universal_file(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
-    """Give the time functions of a universal file.
+    """Open a universal file and yield its time functions as channels.
 
     Raises
     ------
@@ -40,11 +40,12 @@ FORMAT = Format("UFF", UFF_ENDINGS, channels=open_universal_file, library="pyuff
 
 
 def _channel(number: int, function: UffFunction) -> LoggedChannel:
+    """Return a time function as a channel."""
     return LoggedChannel(
         name=function.name or f"function {number}",
         n_samples=function.y.size,
         values=lambda: function.y,
         axes=[Axis(times=lambda: function.x, unit="s", quantity="time")],
-        unit=function.unclear or function.unit,  # values are in SI where it is known
+        unit=function.unclear or function.unit,  # values are in SI if the unit is known
         problem="is complex, expected real samples" if np.iscomplexobj(function.y) else "",
     )
