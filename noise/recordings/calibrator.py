@@ -116,14 +116,14 @@ def _tone(samples: NDArray[np.float64], rate: float, *, fractional: bool) -> tup
     x = samples - samples.mean()
     peak = float(np.abs(x).max())
     if peak == 0.0 or rate < 2.5 * FREQUENCIES[-1]:
-        raise ParameterError("is silent" if peak == 0.0 else f"is sampled at {rate:g} Hz alone")
+        raise ParameterError("is silent" if peak == 0.0 else f"is sampled at only {rate:g} Hz")
     frequency = _strongest(x, rate)
     if not any(abs(frequency - each) <= _FREQUENCY_TOLERANCE * each for each in FREQUENCIES):
         raise ParameterError(
-            f"its strongest tone is at {frequency:.4g} Hz, and calibrators sound at 250 or 1000 Hz"
+            f"its strongest tone is at {frequency:.4g} Hz; calibrators give 250 or 1000 Hz"
         )
     if fractional and float(np.abs(samples).max()) >= 1.0 - _STEP:
-        raise ParameterError("it reaches full scale, where it is cut off; turn the gain down")
+        raise ParameterError("it reaches full scale and clips; turn the gain down")
     n = round(_BLOCK * rate)
     blocks = x[: x.size // n * n].reshape(-1, n).T
     phase = 2.0 * np.pi * frequency / rate * np.arange(n)
@@ -131,21 +131,21 @@ def _tone(samples: NDArray[np.float64], rate: float, *, fractional: bool) -> tup
     coefficients = np.linalg.lstsq(basis, blocks, rcond=None)[0]
     tone = np.hypot(coefficients[0], coefficients[1])
     if not tone.min() > 0.0:
-        raise ParameterError("its tone is not there all the time")
+        raise ParameterError("its tone is interrupted")
     levels = 20.0 * np.log10(tone)
     drift = float(np.ptp(levels))
     if drift > _DRIFT:
         low, high = sorted(_BLOCK * np.array([levels.argmin(), levels.argmax()]))
         raise ParameterError(
-            f"its level changes by {drift:.2g} dB between {low:.3g} and {high:.3g} s, and may by "
-            f"{_DRIFT:g}; cut it to where it is steady"
+            f"its level changes by {drift:.2g} dB between {low:.3g} and {high:.3g} s, more than "
+            f"the allowed {_DRIFT:g} dB; cut it to the steady part"
         )
     amplitude = math.sqrt(float(np.mean(tone**2)))
     residual = math.sqrt(2.0 * float(np.mean((blocks - basis @ coefficients) ** 2))) / amplitude
     if residual > _RESIDUAL:
         raise ParameterError(
-            f"what is not the tone is {residual:.1%} of it, and may be {_RESIDUAL:.0%}: it is "
-            "overloaded, badly seated, its tops are cut off, or there is other sound"
+            f"other components are {residual:.1%} of the tone, more than the allowed "
+            f"{_RESIDUAL:.0%}: overload, clipping, a badly seated microphone, or other sound"
         )
     return frequency, amplitude
 

@@ -75,7 +75,7 @@ def files_below(
 
     def unreadable(error: OSError) -> None:
         if not isinstance(error, FileNotFoundError):  # it disappeared
-            leave_out(Path(error.filename), "cannot be looked into")
+            leave_out(Path(error.filename), "cannot be read")
 
     waiting = [folder]
     while waiting:

@@ -109,14 +109,14 @@ def find_turns(
         if not period:
             notes.append(
                 f"{channels[row].name} jumps by {sizes[0]:.4g} rad at sample {indices[0]}"
-                f"{f' and at {sizes.size - 1} more' * (sizes.size > 1)}, which are no whole turns; "
-                "a speed from it is wrong there"
+                f"{f' and at {sizes.size - 1} more' * (sizes.size > 1)}, not by whole turns; "
+                "speeds from it are wrong there"
             )
             continue
         if not whole:
             notes.append(
-                f"{channels[row].name} starts again after {period:.4g} rad, which are no whole "
-                "turns, and is made to go on; is it in rad?"
+                f"{channels[row].name} wraps after {period:.4g} rad, not after whole turns, and is "
+                "unwrapped; is it in rad?"
             )
         jumps.append((row, indices, np.cumsum(-np.sign(sizes) * period)))
     return Unwrapping(tuple(jumps), tuple(notes))

@@ -276,12 +276,12 @@ SPOILT = {
     "silence": (np.zeros(RATE), "is silent"),
     "short": (tone(seconds=0.2), "lasts 0.2 s; 0.5 s at least"),
     "clipped": (np.clip(tone(amplitude=2.0), -1.0, 1.0 - 2**-23), "reaches full scale"),
-    "cut": (np.clip(tone(amplitude=0.5), -0.45, 0.45), "not the tone is 4.2% of it"),
+    "cut": (np.clip(tone(amplitude=0.5), -0.45, 0.45), "components are 4.2% of the tone"),
     "drift": (tone() * np.linspace(1.0, 1.2, 2 * RATE), "changes by 1.5 dB between 0 and 1.9 s"),
-    "late": (np.concatenate([np.zeros(RATE), tone()]), "tone is not there|level changes by"),
-    "harmonics": (tone() + tone(2000.0, 0.006), "is 6.0% of it, and may be 4%"),
-    "hum": (tone() + tone(50.0, 0.03), "is 30.0% of it"),
-    "hiss": (tone() + HISS, "of it, and may be 4%"),
+    "late": (np.concatenate([np.zeros(RATE), tone()]), "tone is interrupted|level changes by"),
+    "harmonics": (tone() + tone(2000.0, 0.006), "are 6.0% of the tone, more than the allowed 4%"),
+    "hum": (tone() + tone(50.0, 0.03), "are 30.0% of the tone"),
+    "hiss": (tone() + HISS, "of the tone, more than the allowed 4%"),
     "of a track": (np.stack([tone(), tone(440.0)], axis=1), "track 2: is no calibrator's tone"),
 }
 

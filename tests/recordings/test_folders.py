@@ -80,7 +80,7 @@ def test_what_is_no_file_is_told_of_by_the_reason_and_never_opened(day, tmp_path
 @pytest.mark.parametrize(
     ("error", "told"),
     [
-        (PermissionError(13, "Permission denied"), "left out day2: cannot be looked into"),
+        (PermissionError(13, "Permission denied"), "left out day2: cannot be read"),
         (FileNotFoundError(2, "No such file or directory"), ""),
     ],
 )

@@ -105,22 +105,25 @@ def test_a_tdms_clock_goes_on_in_another_segment_than_its_channels(tmp_path):
 NO_TIME = {
     "tdms spectrum": (
         of(tdms, mic(wf_increment=1.0, wf_xunit_string="Hz")),
-        "over in 'Hz', expected time",
+        "an axis in 'Hz', expected time",
     ),
     "tdms spectrum, by its name": (
         of(tdms, mic(wf_increment=2.0, wf_xname="Frequency")),
-        "over 'Frequency'",
+        "an axis of 'Frequency'",
     ),
     "tdms step that nobody set": (of(tdms, mic(wf_increment=1.0)), "no sampling rate"),
     "tdms clock that contradicts the step": (
         of(tdms, clock(2 * T), mic(**STEP)),
         "rates, 48000 and 24000 Hz",
     ),
-    "mdf angle": (of(mdf, [signal()], unit="deg", sync=2), "over angle in 'deg', expected time"),
-    "mdf angle without a unit": (of(mdf, [signal()], unit="", sync=2), "stands over 'angle'"),
-    "mdf distance": (of(mdf, [signal()], unit="m", sync=3), "stands over distance in 'm'"),
+    "mdf angle": (
+        of(mdf, [signal()], unit="deg", sync=2),
+        "an axis of angle in 'deg', expected time",
+    ),
+    "mdf angle without a unit": (of(mdf, [signal()], unit="", sync=2), "an axis of 'angle'"),
+    "mdf distance": (of(mdf, [signal()], unit="m", sync=3), "an axis of distance in 'm'"),
     "mdf times that are not even": (of(mdf, [signal(t=T + 1e-3 * (T > 0.05))]), "not rise evenly"),
-    "hdf5 axis in Hz": (of(hdf5, mic(dt=0.5, x_unit="Hz")), "over in 'Hz', expected time"),
+    "hdf5 axis in Hz": (of(hdf5, mic(dt=0.5, x_unit="Hz")), "an axis in 'Hz', expected time"),
     "hdf5 rate that the time contradicts": (
         of(hdf5, mic(), clock(2 * T, "", "time"), root={"fs": RATE}),
         "two sampling rates",
@@ -186,7 +189,7 @@ def begins(*late, n=N):
 
 TOGETHER = "channels of a recording must be sampled together"
 APART = {
-    "between samples": (begins(0.0, 10.4 / RATE), "'a' is sampled 0.40 of a step beside 'b'"),
+    "between samples": (begins(0.0, 10.4 / RATE), "'a' is sampled 0.40 steps apart from 'b'"),
     "a third as long": (begins(0.0, 0.0, n=N // 3), "('a' 4800 from 0 s, 'b' 1600 from 0 s)"),
     "one after the other": (begins(0.0, 1.0), "have 0 samples in common"),
     "a start that is not stated": (begins(0.0, 0.1, None), "when channel 'c' begins"),
@@ -266,7 +269,7 @@ UNCLEAR = {
     "an infinite factor": (of(hdf5, mic(COUNTS, fs=RATE, scale_factor=np.inf)), "has factor inf"),
     "a conversion that is partly text": (
         of(mdf, [signal(COUNTS, conversion=TEXT)]),
-        "makes texts of its values",
+        "has a conversion of its values to text",
     ),
     "a scale that is not known": (
         of(tdms, mic(COUNTS, **STEP, **LINEAR | {"NI_Scale[0]_Scale_Type": "Magic"})),
@@ -306,8 +309,8 @@ def test_what_is_left_out_is_named_with_what_to_do(tmp_path, capfd):
     read_recording(path)
     assert run.channel_names == ("pressure",)
     said = capfd.readouterr().err
-    assert said.count("left out: 'Spectrum' stands over in 'Hz'") == 1
-    assert "'Oil' has unit 'degC'; 'Supply' has unit 'V'; a sidecar that names them" in said
+    assert said.count("left out: 'Spectrum' has an axis in 'Hz'") == 1
+    assert "'Oil' has unit 'degC'; 'Supply' has unit 'V'; name them in a sidecar" in said
 
 
 def test_a_unit_in_the_sidecar_stands_for_that_of_the_file(tmp_path):
@@ -438,7 +441,7 @@ def test_an_angle_that_jumps_otherwise_is_noted(tmp_path):
     angle = 5.0 * T + 3.3 * (np.arange(N) >= 2000)
     run = read_recording(of(hdf5, mic(angle, "rad", fs=RATE))(tmp_path))
     np.testing.assert_array_equal(run["angle"], angle)
-    assert "angle jumps by 3.3 rad at sample 2000, which are no whole turns" in run.notes[0]
+    assert "angle jumps by 3.3 rad at sample 2000, not by whole turns" in run.notes[0]
 
 
 # --- libraries, and files that are no recordings ------------------------------------------------

@@ -227,7 +227,7 @@ def test_a_flac_of_unknown_length_is_read_to_its_end(tmp_path, subtype):
 
 def test_a_flac_of_unknown_length_that_breaks_off_says_what_there_is(tmp_path):
     data = open_length(encoded(tone(0, 3), format="FLAC"))
-    with pytest.raises(RecordingError, match=r"does not say how long it is, and breaks off after"):
+    with pytest.raises(RecordingError, match=r"does not state its length, and breaks off after"):
         read(tmp_path, data[: len(data) * 2 // 3], "flac")
 
 

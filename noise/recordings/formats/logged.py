@@ -194,7 +194,7 @@ def convert(
         )
     notes = []
     if reasons:
-        notes.append(f"left out: {_listed(reasons)}; a sidecar that names them makes them count")
+        notes.append(f"left out: {_listed(reasons)}; name them in a sidecar to use them")
     if sidecar.channels is not None and len(rows) == len(sidecar.channels):
         rows = [
             _renamed(row, one.channel, one.unit or "", notes)
@@ -204,8 +204,8 @@ def convert(
     else:
         channels = _channels(rows)
     notes += [
-        f"channel {row.logged.name!r} {unclear}, which is not applied: its samples are taken to be "
-        "in its unit already"
+        f"channel {row.logged.name!r} {unclear}, which is not applied: its samples are assumed to "
+        "be in its unit"
         for row in rows
         if (unclear := _unclear(row.logged))
     ]
@@ -261,7 +261,7 @@ def _aligned(path: Path, rows: list[Row], notes: list[str]) -> tuple[list[Row], 
     if max(fractions) > _SHIFT:
         one = rows[int(np.argmax(fractions))]
         raise RecordingError(
-            f"{path}: channel {one.logged.name!r} is sampled {max(fractions):.2f} of a step beside "
+            f"{path}: channel {one.logged.name!r} is sampled {max(fractions):.2f} steps apart from "
             f"{rows[int(np.argmin(shifts))].logged.name!r}; channels of a recording must be "
             "sampled together"
         )

@@ -123,7 +123,7 @@ def _channel(file: Any, group: int, index: int, axes: list[Axis]) -> LoggedChann
         values=values,
         axes=axes,
         unit=_unit(channel),  # the library applies the conversion
-        problem="has a conversion that makes texts of its values" * to_text,
+        problem="has a conversion of its values to text" * to_text,
     )
 
 

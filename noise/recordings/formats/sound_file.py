@@ -171,7 +171,7 @@ def _count(path: Path, sound: Any, n_at_once: int) -> int:
     except soundfile.LibsndfileError as error:
         if not (n and sound.format == "MP3"):
             raise RecordingError(
-                f"{path}: does not say how long it is, and breaks off after {n} samples "
+                f"{path}: does not state its length, and breaks off after {n} samples "
                 f"({n / sound.samplerate:.6g} s; {error.error_string.rstrip('.')})"
             ) from None
     return n

@@ -109,12 +109,12 @@ def _second(axis: Axis) -> float:
     if axis.unit:
         second = _time_unit(axis.unit)
         if second is None:
-            over = f"{axis.quantity} " if axis.quantity else ""
-            raise RecordingError(f"stands over {over}in {axis.unit!r}, expected time")
+            quantity = f"of {axis.quantity} " if axis.quantity else ""
+            raise RecordingError(f"has an axis {quantity}in {axis.unit!r}, expected time")
         return second
     words = re.split(r"[\W_]+", axis.quantity or "time")
     if not any(_TIME.fullmatch(word) for word in words):
-        raise RecordingError(f"stands over {axis.quantity!r}, expected time")
+        raise RecordingError(f"has an axis of {axis.quantity!r}, expected time")
     return 1.0
 
 
