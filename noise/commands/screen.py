@@ -88,7 +88,7 @@ def run(options: Namespace) -> int:
     with temporary_journal(table, call_identity("screening")) as kept:
         with steps("screening", n_steps) as tell:
             found = _screened(options, given, environments, tell, kept)
-        from noise.screening.summary import summary_lines
+        from noise.screening.words import summary_lines
 
         for name, reason in (*found.refused, *found.failed):
             say(f"{name}: {reason}")

@@ -54,7 +54,11 @@ DIFFERENCES = {
 }
 """Of a design against another."""
 
-_SAID = {"refined": "interpolated", "unchanged": "as at another temperature or fit"}
+_SAID = {
+    "refined": "interpolated",
+    "beyond": "not run: vibration dies before",
+    "unchanged": "as at another temperature or fit",
+}
 """How a point is known, where its name in the table does not say it."""
 
 _MOST_OPEN = 4

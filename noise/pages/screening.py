@@ -17,14 +17,24 @@ from noise.pages.page import CARD_BYTES, PAGE_BYTES, page_html, shortened_text, 
 from noise.pages.screen_sounds import screen_maps
 from noise.screening.environments import environment, in_environment
 from noise.screening.standing import SHARED, Standing
-from noise.screening.summary import conditions_lines, detail_lines
-from noise.screening.words import RANKING_RULE, percent
+from noise.screening.words import (
+    MARGIN_RULE,
+    conditions_lines,
+    detail_lines,
+    percent,
+    ranking_words,
+    standing_place,
+    use_head,
+)
 
 if TYPE_CHECKING:
     from noise.screening.screen import Screening
 
 
-RANKING = ("Rank", "Design", "Noise, of the conditions of use", "Loudest", "Margin", "In its use")
+RANKING = (
+    "Rank", "Design", "Noise, of the conditions of use", "Mean loudness", "Loudest", "Margin",
+    "In its use",
+)  # fmt: skip
 
 
 def ranking_rows(found: Screening) -> list[list[b.Cell | str]]:
@@ -35,9 +45,9 @@ def ranking_rows(found: Screening) -> list[list[b.Cell | str]]:
     >>> from noise.screening.design import Use
     >>> from noise.screening.screen import screen
     >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
-    >>> rank, design, noise, loudest, *_ = ranking_rows(found)[0]
-    >>> rank, design.text, noise.labels, loudest
-    ('1', 'PDMS', (('none', '100%'),), 'quiet')
+    >>> rank, design, noise, mean, loudest, *_ = ranking_rows(found)[0]
+    >>> rank, design.text, noise.labels, mean, loudest
+    ('1', 'PDMS', (('none', '100%'),), '0 sone', 'quiet')
     """
     return [_row(one, found) for one in found.standings]
 
@@ -52,15 +62,15 @@ def _row(one: Standing, found: Screening) -> list[b.Cell | str]:
         b.Bar(100.0 * begin, 100.0 * share, f"filled {name} {LABEL_LOOKS[name].pattern}")
         for begin, (name, share) in zip(ends, shares.items(), strict=False)
     ]
-    where = one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}"
-    details = () if one.never_slips else detail_lines(one, found.maps[0].grid.use)
+    details = () if one.never_slips else detail_lines(one, found.map_of(one))
     return [
         "\N{EN DASH}" if one.rank is None else str(one.rank),
-        b.Cell(one.design, where),
+        b.Cell(one.design, standing_place(one)),
         b.Cell(bars=bars, labels=tuple((name, percent(share)) for name, share in shares.items())),
+        "" if one.rank is None else f"{one.mean_loudness:.3g} sone",
         loudest,
         _margin(one),
-        b.Cell(one.words, items=tuple(details)),
+        b.Cell(use_head(one), items=tuple(details)),
     ]
 
 
@@ -138,7 +148,7 @@ def write_screening(
         "screening",
         _title(found),
         [
-            b.Text(_summary(found), "summary"),
+            b.Text(ranking_words(found.standings), "summary"),
             b.Sounds(gain.sentences, MAP_LABELS),
             shortened_text(shortened),
         ],
@@ -147,7 +157,7 @@ def write_screening(
             b.Section(
                 "Ranking",
                 [
-                    b.Text(" ".join(compared_at), "soft"),
+                    b.Text(" ".join([*compared_at, f"{MARGIN_RULE}."]), "soft"),
                     b.Table(RANKING, ranking_rows(found), head=1, style="ranking"),
                 ],
             ),
@@ -184,14 +194,3 @@ def _title(found: Screening) -> str:
     if len(names) <= 2:
         return f"Screen of {' and '.join(names)}"
     return f"Screen of {counted(len(names), 'design')}"
-
-
-def _summary(found: Screening) -> str:
-    best = found.standings[0]
-    if best.rank is None:
-        return "No design slips, so none has a rank."
-    names = {one.design for one in found.standings if one.rank == best.rank}
-    quietest = " and ".join(sorted(names))
-    if len({one.design for one in found.standings}) == 1:
-        return ""
-    return f"Quietest: {quietest}, {RANKING_RULE}."

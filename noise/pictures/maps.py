@@ -1,15 +1,15 @@
 """Map of a screened design: which noise is where, in the colours of recorded conditions.
 
-A white line is where steady sliding loses its stability, a dark one where stick ends, so that what
-stability alone would have told stands beside what simulation found. Below the labels is how loud
-they are. A row is a fit, and a star marks one whose data are not the design's own. A panel in which
-nothing is heard says so.
+Dark lines are where stick begins and ends as the speed rises, white ones where steady sliding turns
+unstable and stable, so that what stability alone would have told stands beside what simulation
+found: a noise on the stable side of a white line is one that stick or a running vibration drives.
+Below the labels is how loud they are. A row is a fit, and a star marks one whose data are not the
+design's own. A panel in which nothing is heard says so.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -41,14 +41,67 @@ _QUIET = "#eef2f5"
 _FITS = "Interference [mm]"
 _STAR = "*"
 
-_STICK: dict[str, Any] = {"color": "#222222", "linewidth": 1.6}
 _FITTED: dict[str, Any] = {"color": "#222222", "linewidth": 1.2, "linestyle": ":"}
-_STABLE: dict[str, Any] = {
+_DARK: dict[str, Any] = {"color": "#222222", "linewidth": 1.6}
+_WHITE: dict[str, Any] = {
     "color": "white",
     "linewidth": 1.6,
     "path_effects": [withStroke(linewidth=3.0, foreground="#555555")],
 }
-"""Lines, the same in map and key; the white one has an edge to be seen by on white."""
+_DASHED: dict[str, Any] = {"linestyle": (0, (3, 1.5))}
+LINES: dict[str, dict[str, Any]] = {
+    "stick begins": _DARK | _DASHED,
+    "stick ends": _DARK,
+    "sliding turns unstable": _WHITE | _DASHED,
+    "sliding turns stable": _WHITE,
+}
+"""What happens at a line as the speed rises, and its look in map and key; the white ones have an
+edge to be seen by on white."""
+
+
+def boundary_lines(
+    found: DesignMap, *, support: int = 0, temperature: int = 0
+) -> list[tuple[str, int, float]]:
+    """List the lines of a map: what happens at each as the speed rises, its row, its speed.
+
+    Parameters
+    ----------
+    found : DesignMap
+    support, temperature : int
+        Which of the map's.
+
+    Returns
+    -------
+    list of (str, int, float)
+        One of `LINES`, the number of the fit, and the speed, between the two points of the map that
+        differ [rad/s]. Where the shaft swings there is no steady sliding to be stable.
+
+    Examples
+    --------
+    >>> from noise.screening.design import Use
+    >>> from noise.screening.screen import screen
+    >>> one = screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,)))
+    >>> boundary_lines(one.maps[0])
+    []
+    """
+    speed, growth = np.array(found.grid.speed), found.growth[temperature, support]
+    sticks = found.regime[temperature, support] == Regime.STICK_SLIP.value
+    kinds = [(("stick begins", "stick ends"), np.where(sticks, 1.0, -1.0))]
+    if np.isfinite(growth).all():
+        kinds.append((("sliding turns unstable", "sliding turns stable"), growth))
+    return [
+        (names[int(along[i] > 0.0)], row, float(np.interp(0.0, *_rising(along, speed, i))))
+        for names, values in kinds
+        for row, along in enumerate(values)
+        for i in np.flatnonzero((along[:-1] > 0.0) != (along[1:] > 0.0))
+    ]
+
+
+def _rising(
+    along: NDArray[np.float64], speed: NDArray[np.float64], i: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    order = np.argsort(along[i : i + 2])
+    return along[i : i + 2][order], speed[i : i + 2][order]
 
 
 def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
@@ -109,7 +162,7 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
         bar = figure.colorbar(images[0], ax=axes[1, :].tolist(), pad=0.01, aspect=12)
         bar.set_label("Level [dB(A)]")
         figure.legend(
-            handles=_handles(found),
+            handles=_handles(found, *axes[0]),
             loc="outside lower center",
             ncols=8,
             columnspacing=1.3,
@@ -144,7 +197,7 @@ def plot_map(
         axes.set_title(
             f"{found.design}, {found.environment}, {grid.temperature[temperature]:g} °C, {where}"
         )
-        axes.legend(handles=_handles(found), fontsize="small")
+        axes.legend(handles=_handles(found, axes), fontsize="small")
     return axes
 
 
@@ -168,11 +221,8 @@ def _draw_labels(axes: Axes, found: DesignMap, temperature: int, support: int) -
     beyond = _beyond(found)
     if beyond is not None:
         axes.axvline(beyond, **_FITTED)
-    sticks = found.regime[temperature, support] == Regime.STICK_SLIP.value
-    _outline(axes, speed, rows, np.where(sticks, 1.0, -1.0), _STICK)
-    growth = found.growth[temperature, support]
-    if np.isfinite(growth).all():
-        _outline(axes, speed, rows, growth, _STABLE)
+    for name, row, where in boundary_lines(found, support=support, temperature=temperature):
+        axes.plot([where, where], [row - 0.5, row + 0.5], label=name, **LINES[name])
 
 
 def _speed_words(found: DesignMap) -> str:
@@ -196,7 +246,9 @@ def _say_quiet(axes: Axes, found: DesignMap, temperature: int, support: int) -> 
         axes.text(0.5, 0.5, "quiet", transform=axes.transAxes, ha="center", va="center")
 
 
-def _handles(found: DesignMap) -> list[Patch | Line2D]:
+def _handles(found: DesignMap, *panels: Axes) -> list[Patch | Line2D]:
+    """Key of a map: of the lines those that its panels have."""
+    drawn = {line.get_label() for panel in panels for line in panel.get_lines()}
     return [
         *(
             Patch(
@@ -207,8 +259,7 @@ def _handles(found: DesignMap) -> list[Patch | Line2D]:
             )
             for label in _SIMULATED[::-1]
         ),
-        Line2D([], [], **_STICK, label="stick ends"),
-        *_stability_handle(found),
+        *(Line2D([], [], **look, label=name) for name, look in LINES.items() if name in drawn),
         *([] if _beyond(found) is None else [Line2D([], [], **_FITTED, label="fastest fitted")]),
         *_star_handle(found),
     ]
@@ -227,13 +278,6 @@ def _star_handle(found: DesignMap) -> list[Line2D]:
     return [Line2D([], [], linestyle="none", marker="$*$", color="#222222", label=words)]
 
 
-def _stability_handle(found: DesignMap) -> list[Line2D]:
-    """Key of the white line, where there is one: a swing has no steady sliding."""
-    if not np.isfinite(found.growth).all():
-        return []
-    return [Line2D([], [], **_STABLE, label="sliding turns stable")]
-
-
 def _edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:
     """Edges of the places that points stand in the middle of."""
     if centres.size == 1:
@@ -241,18 +285,3 @@ def _edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:
     between = 0.5 * (centres[1:] + centres[:-1])
     first, last = 1.5 * centres[0] - 0.5 * centres[1], 1.5 * centres[-1] - 0.5 * centres[-2]
     return np.concatenate([[first], between, [last]])
-
-
-def _outline(
-    axes: Axes,
-    speed: NDArray[np.float64],
-    rows: NDArray[np.float64],
-    values: NDArray[np.float64],
-    look: Mapping[str, Any],
-) -> None:
-    """Draw where values pass through zero, by a stroke in each row."""
-    for row, along in zip(rows, values, strict=True):
-        for i in np.flatnonzero(np.signbit(along[:-1]) != np.signbit(along[1:])):
-            share = along[i] / (along[i] - along[i + 1])
-            where = speed[i] + (share if math.isfinite(share) else 0.5) * (speed[i + 1] - speed[i])
-            axes.plot([where, where], [row - 0.5, row + 0.5], "-", **look)

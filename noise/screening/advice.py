@@ -64,6 +64,8 @@ class Offer:
     quiet_elsewhere, elsewhere : int
         At how many of the other noisy conditions looked at the same change ends the noise as well,
         and how many these are.
+    left : Condition, optional
+        The first of these at which it does not; None where it ends the noise at all.
     """
 
     name: str
@@ -74,6 +76,7 @@ class Offer:
     from_rest: int | None = None
     quiet_elsewhere: int = 0
     elsewhere: int = 0
+    left: Condition | None = None
 
     @property
     def factor(self) -> float:
@@ -177,12 +180,18 @@ def advise(
         )
         tried = [(i, other) for i, offer in enumerate(offers) if offer.ends for other in elsewhere]
         quiet = work(delayed(_ends_at)(rig, other, offers[i]) for i, other in tried)
+    stays: dict[int, list[Condition]] = {}
+    for (i, other), ends in zip(tried, quiet, strict=True):
+        stays.setdefault(i, []).extend([] if ends else [other])
     counted = [
         replace(
             offer,
-            quiet_elsewhere=sum(q for q, (j, _) in zip(quiet, tried, strict=True) if i == j),
-            elsewhere=len(elsewhere) if offer.ends else 0,
+            quiet_elsewhere=len(elsewhere) - len(stays[i]),
+            elsewhere=len(elsewhere),
+            left=next(iter(stays[i]), None),
         )
+        if i in stays
+        else offer
         for i, offer in enumerate(offers)
     ]
     return tuple(sorted(counted, key=_order))

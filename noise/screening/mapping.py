@@ -44,8 +44,9 @@ REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 LABELS = ("none", "creak", "squawk", "squeal")
 """Of a point, in the order of their codes."""
 
-HOW = ("simulated", "refined", "unchanged")
-"""How a point is known: run, as the simulated points about it, as at another temperature or fit."""
+SIMULATED, REFINED, BEYOND, UNCHANGED = HOW = ("simulated", "refined", "beyond", "unchanged")
+"""How a point is known: run; as the simulated points about it; not run since a vibration that runs
+has died at a speed between it and unstable sliding; as at another temperature or fit."""
 
 STRIDE = 8
 """Points from corner to corner of the coarse cells."""
@@ -166,6 +167,7 @@ def map_design(
     shape = (temperature.size, support.size, interference.size, speed.size)
     planes = (shape[0] * shape[1], shape[2], shape[3])
     values = np.full((3, *planes), np.nan)  # label by physics, levels
+    ran = np.ones(planes, dtype=bool)
     swings = bool(grid.frequency)
 
     def condition(plane: int, row: int, column: int) -> Condition:
@@ -180,6 +182,7 @@ def map_design(
         for at, one in zip(points.tolist(), found, strict=True):
             physics = LABELS.index(one.physics)
             values[:, *at] = physics, one.level, one.level_max
+            ran[tuple(at)] = one.simulated
             kind = LABELS.index(one.label) + len(LABELS) * one.persists
             codes.append(kind * len(REGIMES) + REGIMES.index(one.regime))
         return np.array(codes)
@@ -217,7 +220,11 @@ def map_design(
         level=level,
         level_max=level_max,
         loudness=np.full(shape, np.nan),
-        how=np.where(found.simulated.reshape(shape), HOW[0], HOW[1]).astype("U9"),
+        how=np.select(
+            [(found.beyond | ~ran).reshape(shape), found.simulated.reshape(shape)],
+            [BEYOND, SIMULATED],
+            REFINED,
+        ),
         growth=growth,
         note=note,
         substituted=substituted,
@@ -242,7 +249,7 @@ def _copied(found: DesignMap, *known_by: NDArray[np.int64]) -> DesignMap:
     )  # fmt: skip
     copies: dict[str, Any] = {name: getattr(found, name)[at[0]][:, :, at[1]] for name in names}
     copied = ~(own[0][:, None, None, None] & own[1][:, None])
-    copies["how"] = np.where(copied, HOW[2], copies["how"])
+    copies["how"] = np.where(copied, UNCHANGED, copies["how"])
     return replace(found, **copies)
 
 
@@ -254,13 +261,15 @@ class Refined:
     ----------
     codes : ndarray of int, shape (n_planes, n_rows, n_columns)
         0 is silence; of noises the kind times the number of regimes, and the regime.
-    simulated : ndarray of bool, same shape
+    simulated, beyond : ndarray of bool, same shape
+        Where points were asked for, and where that was spared since a vibration dies before.
     open : int
         Points beside a boundary that were left to their nearest neighbour.
     """
 
     codes: NDArray[np.int64]
     simulated: NDArray[np.bool_]
+    beyond: NDArray[np.bool_]
     open: int
 
 
@@ -306,14 +315,14 @@ def refined_map(
         for left, right in _intervals(columns, stride[1])
     ]
     settled: list[Cell] = []
-    implied, spent = np.zeros(shape, dtype=bool), 0
+    beyond, spent = np.zeros(shape, dtype=bool), 0
     while cells:
         wanted = np.unique(np.concatenate([_corners(cell) for cell in cells]), axis=0)
         wanted = wanted[codes[tuple(wanted.T)] < 0]
         if grows is not None:
             silent = np.array([_dies_before(codes, grows, *point) for point in wanted], dtype=bool)
             codes[tuple(wanted[silent].T)] = 0
-            implied[tuple(wanted[silent].T)] = True
+            beyond[tuple(wanted[silent].T)] = True
             wanted = wanted[~silent]
         if wanted.size:
             codes[tuple(wanted.T)] = simulate(wanted)
@@ -328,7 +337,7 @@ def refined_map(
         taken = set(cut)
         settled = [cell for _, cell in ranked if cell not in taken]
         cells = [part for cell in cut for part in _halves(cell)]
-    simulated = (codes >= 0) & ~implied
+    simulated = (codes >= 0) & ~beyond
     for cell in settled:
         if not _urgency(codes, grows, cell):
             inside = _inside(cell)
@@ -339,7 +348,7 @@ def refined_map(
         holes, known = np.argwhere(plane < 0), np.argwhere(plane >= 0)
         if holes.size:
             plane[tuple(holes.T)] = plane[tuple(known[cKDTree(known).query(holes)[1]].T)]
-    return Refined(codes, simulated, n_open)
+    return Refined(codes, simulated, beyond, n_open)
 
 
 def _dies_before(
@@ -442,7 +451,7 @@ def interpolated(
     --------
     >>> codes, simulated = np.zeros((1, 1, 5), dtype=int), np.array([[[1, 0, 0, 0, 1]]]) > 0
     >>> levels = np.array([[[60.0, 0.0, 0.0, 0.0, 80.0]]])
-    >>> interpolated(levels, Refined(codes, simulated, 0)).round()
+    >>> interpolated(levels, Refined(codes, simulated, ~simulated, 0)).round()
     array([[[60., 62., 70., 78., 80.]]])
     """
     filled = values.copy()

@@ -91,6 +91,8 @@ class PointResult:
         The name by `noise.noise_definition`.
     level, level_max : float
         L_Aeq and L_AFmax of the sound [dB re 20 uPa]; NaN where nothing sounds.
+    simulated : bool
+        Whether it was run; not where a vibration has died before that speed.
     """
 
     regime: Regime
@@ -99,6 +101,7 @@ class PointResult:
     physics: str
     level: float
     level_max: float
+    simulated: bool = True
 
 
 SILENT = PointResult(Regime.STEADY_SLIDING, "none", False, "none", math.nan, math.nan)
@@ -160,7 +163,9 @@ def evaluate_row(rig: Rig, row: Sequence[Condition]) -> list[PointResult]:
         return [heard_of(rig, at, _motion(rig, at, at.frequency)) for at in row if at.frequency]
     found = [SILENT] * len(row)
     for i, one in vibrations_at(rig, row):
-        if one.course is not None:
+        if not one.simulated:
+            found[i] = replace(SILENT, simulated=False)
+        elif one.course is not None:
             persists = one.state == PERSISTS
             found[i] = heard_of(rig, row[i], one.course.motion, persists=persists)
             if found[i].label == "none":

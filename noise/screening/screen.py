@@ -34,7 +34,7 @@ from noise.screening.batches import batch_evaluator, keeping
 from noise.screening.design import Design, Swinging, Use, load_designs
 from noise.screening.environments import DRY, environment, in_environment
 from noise.screening.grid import Grid, shared_grid, shared_motions
-from noise.screening.mapping import DesignMap, map_design
+from noise.screening.mapping import SIMULATED, DesignMap, map_design
 from noise.screening.parts import robustness
 from noise.screening.provenance import fits_remark
 from noise.screening.standing import (
@@ -119,6 +119,11 @@ class Screening:
         """Conditions that all designs are compared over, one for each environment and motion."""
         first = self.maps[0].design
         return tuple(found.grid for found in self.maps if found.design == first)
+
+    def map_of(self, one: Standing) -> DesignMap:
+        """Return the map that a standing is of."""
+        where = one.design, one.environment, one.motion
+        return next(m for m in self.maps if (m.design, m.environment, m.motion) == where)
 
     @property
     def failed(self) -> tuple[tuple[str, str], ...]:
@@ -353,8 +358,8 @@ def _advised(
     progress(f"advice for {one.design}, {one.environment}")
     try:
         others = _other_noisy(found, one.loudest)
-        offers = advise(design.rig, one.loudest, others, workers=workers)
-        words = advice_words(one.loudest_label, one.loudest, offers)
+        offers = advise(design.rig, one.loudest, list(others), workers=workers)
+        words = advice_words(one.loudest_label, one.loudest, offers, others)
         return replace(one, offers=offers, advice=words)
     except _FAILURES as error:
         return replace(one, failed=(f"advice: {error}",))
@@ -380,17 +385,22 @@ def _with_parts(
         return replace(one, failed=(*one.failed, f"tolerances: {error}"))
 
 
-def _other_noisy(found: DesignMap, loudest: Condition) -> list[Condition]:
-    """Choose some simulated noisy conditions of use, from all over the map."""
-    used = found.grid.used
-    noisy = np.argwhere(
-        (found.sound[..., used] != "none") & (found.how[..., used] == "simulated")
-    ).tolist()
-    chosen = [condition_at(found.grid, at) for at in noisy]
-    chosen = [at for at in chosen if at != loudest]
-    if len(chosen) <= _ELSEWHERE:
-        return chosen
-    return [chosen[i] for i in np.linspace(0, len(chosen) - 1, _ELSEWHERE).astype(int)]
+def _other_noisy(found: DesignMap, loudest: Condition) -> dict[Condition, str]:
+    """Choose some simulated noisy conditions of use from all over the map, the loudest first.
+
+    The values are what is heard at each.
+    """
+    sound, how, level = (
+        each[..., found.grid.used] for each in (found.sound, found.how, found.level)
+    )
+    noisy = np.argwhere((sound != "none") & (how == SIMULATED))
+    noisy = np.array([at for at in noisy if condition_at(found.grid, at) != loudest], dtype=int)
+    if len(noisy) > _ELSEWHERE:
+        noisy = noisy[np.linspace(0, len(noisy) - 1, _ELSEWHERE).astype(int)]
+    return {
+        condition_at(found.grid, at): f"{sound[tuple(at)]}, {level[tuple(at)]:.0f} dB(A)"
+        for at in sorted(noisy.tolist(), key=lambda at: -level[tuple(at)])
+    }
 
 
 _MOST_TWIST = 2.0

@@ -166,11 +166,14 @@ class Vibration:
         Of a small vibration about steady sliding [1/s].
     course : Course, optional
         Of the vibration; None where there is none.
+    simulated : bool
+        Whether a run says so; not beyond a speed at which the vibration has died.
     """
 
     state: str
     growth: float
     course: Course | None
+    simulated: bool = True
 
 
 def vibration_at(rig: Rig, at: Condition, *, from_rest: bool = False) -> Vibration:
@@ -243,8 +246,9 @@ def vibrations_at(
     for (above, _), side in sides.items():
         side = side[::-1] if above else side
         reached = _outwards(rig, [(row[i], own[i], unstable[i]) for i in side])
-        for i, known in zip(side, reached, strict=True):
-            yield i, _beside_rest(rig, row[i], own[i], known, from_rest=from_rest)
+        for i, (known, ran) in zip(side, reached, strict=True):
+            found = _beside_rest(rig, row[i], own[i], known, from_rest=from_rest)
+            yield i, replace(found, simulated=ran or from_rest)
 
 
 def _unstable(rig: Rig, at: Condition, growth: float, start: float | None) -> Vibration:
@@ -266,19 +270,26 @@ def _beside_rest(
         rested = _followed(_solver(rig, at), at, growth)
         if rested.lasts:
             return Vibration(BREAKS_OUT, growth, rested)
-    return Vibration(PERSISTS, growth, course) if lasts else Vibration("none", growth, None)
+    if lasts:
+        return Vibration(PERSISTS, growth, course)
+    return Vibration("none", growth, None)
 
 
 def _outwards(
     rig: Rig, side: list[tuple[Condition, float, float | None]]
-) -> Iterator[Course | None]:
-    """Yield courses outwards from where sliding is unstable; None where they have died before."""
+) -> Iterator[tuple[Course | None, bool]]:
+    """Yield courses outwards from where sliding is unstable, and whether they were run.
+
+    Where they have died before there is none, and most such speeds are not run.
+    """
+    ran: set[int] = set()
     lasting: dict[int, Course] = {}
     dead: dict[int, int] = {}  # by where the vibration came from
     last, first_dead = -1, len(side)
     while first_dead - last > 1 or dead.get(first_dead, last) != last:
         k = (last + first_dead) // 2 if first_dead - last > 1 else first_dead
         at, growth, start = side[k]
+        ran.add(k)
         course = running(rig, at, growth, start, started=lasting.get(last), again=k == 0)
         if course.lasts:
             lasting[k], last = course, k
@@ -288,13 +299,13 @@ def _outwards(
         first_dead = min((one for one in dead if one > last), default=len(side))
     for k, (at, growth, start) in enumerate(side):
         if k > last:
-            yield None
+            yield None, k in ran
         elif k in lasting:
-            yield lasting[k]
+            yield lasting[k], True
         else:
             near = lasting[min(lasting, key=lambda one: abs(one - k))]
             course = running(rig, at, growth, start, started=near, patience=0.0)
-            yield course if course.lasts else running(rig, at, growth, start)
+            yield course if course.lasts else running(rig, at, growth, start), True
 
 
 def growth_at(rig: Rig, at: Condition, speed: ArrayLike | None = None) -> NDArray[np.float64]:
@@ -419,7 +430,9 @@ def _followed(
             certain = False if oscillation(detrend(late) + np.mean(late)) < _DEAD else None
         if certain is not None:
             break
-    lasts = sizes[-1] > 1.0 if certain is None else certain
+    # Where sliding is unstable it may rise and fall in bursts, seconds apart.
+    late = sizes[-round(_IRREGULAR / BLOCK) :] if growth > 0.0 else sizes[-1:]
+    lasts = max(late) > 1.0 if certain is None else certain
     motion = parts[0].followed_by(*list(parts)[1:])
     return Course(lasts, len(sizes) * BLOCK, motion, solver, at.speed)
 
@@ -432,10 +445,10 @@ def _outcome(sizes: NDArray[np.float64], growth: float, patience: float) -> bool
         return None
     half = sizes.size // 2
     early, late = np.median(sizes[half - half // 2 - 1 : half]), np.median(sizes[-half // 2 :])
-    if late <= 1.0:  # too weak to count, unless it grows
-        return False if growth > 0.0 and late < _STEADY * early else None
     lately = sizes[-2 * _FOLLOWED :]
     irregular = np.std(lately) > _REGULAR * np.mean(lately)
+    if late <= 1.0:  # too weak to count, unless it grows, or grows again
+        return False if growth > 0.0 and late < _STEADY * early and not irregular else None
     if growth <= 0.0 and irregular and sizes.size * BLOCK < patience:
         return None
     seconds = 0.75 * half * BLOCK

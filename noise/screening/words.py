@@ -1,14 +1,16 @@
-"""Words for terminal, tables and pages: is it quiet in its use, where not, what helps, how sure.
+"""Sentences on screened designs: is each quiet in its use, where not, what to change, how sure.
 
-Each question has one function here, and every output takes its sentences from them.
+Terminal, tables and pages take their sentences from here, one function a question.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from itertools import pairwise
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,27 +18,45 @@ from numpy.typing import NDArray
 from noise.base.labels import PERSISTS
 from noise.screening.advice import Offer
 from noise.screening.axis_values import axis_words
-from noise.screening.mapping import DesignMap
+from noise.screening.grid import Grid
+from noise.screening.mapping import BEYOND, REFINED, SIMULATED, UNCHANGED, DesignMap
 from noise.screening.parts import Robustness
+from noise.screening.provenance import RULE, within_fits
 from noise.screening.vibration import Condition
 
 if TYPE_CHECKING:
+    from noise.screening.screen import Screening
     from noise.screening.standing import Standing
 
+K = TypeVar("K", bound=Hashable)
+
 RANKING_RULE = (
-    "ranked by mean loudness, the mean over the conditions of use of what is heard there or would "
-    "go on once started: 1 sone is 40 dB(A), 10 dB more is twice as much, silence is 0"
+    "Rank 1 has the lowest mean loudness of its use, in which 40 dB(A) counts 1 sone, 10 dB more "
+    "twice as much and silence 0, so that a design that is noisy more often but fainter may come "
+    "first"
 )
-"""What the ranking goes by."""
+"""What the number is that the ranking goes by."""
 
-_DENSE = 0.7
-"""Share of the points between the slowest and the fastest that a noise fills where it is told to
-reach from the one to the other."""
+MARGIN_RULE = (
+    "Margin: by how much the speeds of use would have to move until none vibrates (negative), or "
+    "how far they are from one that does"
+)
 
-_VERBS = {
-    "creak": "creaks", "squawk": "squawks", "squeal": "squeals",
-    PERSISTS: "is quiet from rest, but vibration persists once started,",
+_NOISES = {
+    "creak": "creak", "squawk": "squawk", "squeal": "squeal",
+    PERSISTS: "quiet from rest, but a vibration that runs goes on,",
 }  # fmt: skip
+"""Labels of a map but ``none``, in sentences."""
+
+_MOST_RANGES = 2
+"""Ranges of a noise that are named."""
+
+_HOW = {
+    SIMULATED: "simulated from rest and from running vibration",
+    REFINED: "as the simulated points about them",
+    BEYOND: "not run, beyond a simulated speed at which a running vibration dies",
+    UNCHANGED: "as at another temperature or fit",
+}
 
 
 def use_words(found: DesignMap, never_slips: str = "") -> str:
@@ -58,16 +78,18 @@ def use_words(found: DesignMap, never_slips: str = "") -> str:
     """
     if never_slips:
         return f"{never_slips}; quiet" if found.grid.frequency else never_slips
-    used = found.grid.used
-    speed, label = np.array(found.grid.speed)[used], found.label[..., used]
-    shares = {name: float(np.mean(label == name)) for name in _VERBS}
+    label = found.label[..., found.grid.used]
+    shares = {name: float(np.mean(label == name)) for name in _NOISES}
     heard = sorted((name for name in shares if shares[name]), key=lambda name: -shares[name])
     if not heard:
         return f"quiet in its use, all {label.size} conditions"
     noisy = sum(share for name, share in shares.items() if name != PERSISTS)
     head = f"noisy at {percent(noisy)} of its use" if noisy else "quiet from rest in its use"
-    told = [_noise(name, label == name, speed, found) for name in heard]
-    return f"{head}: {'; '.join(told)}"
+    said = [
+        f"{_NOISES[name]} at {percent(shares[name])}, {_ranges_words(label == name, found.grid)}"
+        for name in heard
+    ]
+    return f"{head}: {'; '.join(said)}"
 
 
 def percent(share: float) -> str:
@@ -81,28 +103,53 @@ def percent(share: float) -> str:
     return "< 1%" if 0.0 < share < 0.005 else f"{share:.0%}"
 
 
-def _noise(
-    name: str, happens: NDArray[np.bool_], speed: NDArray[np.float64], found: DesignMap
-) -> str:
-    """Say from which speed to which a noise is and where, or how often."""
-    columns = np.flatnonzero(happens.any(axis=(0, 1, 2)))
-    inside = slice(columns[0], columns[-1] + 1)
-    lines = np.asarray(happens[..., inside].any(axis=3))
-    dense = float(happens[..., inside][lines].mean()) >= _DENSE
-    often = [] if dense else [f"at {percent(float(happens.mean()))} of the use,"]
-    return " ".join([_VERBS[name], *often, _between(speed[inside]), *_where(lines, found)])
+def _ranges_words(happens: NDArray[np.bool_], grid: Grid) -> str:
+    """Name the largest ranges of speed throughout which something happens, each with its place."""
+    speed = np.array(grid.speed)[grid.used]
+    rows = (
+        ((run, t, k), i)
+        for t, k, i in np.ndindex(happens.shape[:3])
+        for run in _runs(happens[t, k, i])
+    )
+    of_fits = _grouped(rows)
+    of_supports = _grouped(((run, t, fits), k) for (run, t, k), fits in of_fits.items())
+    ranges = _grouped(((run, k, fits), t) for (run, t, fits), k in of_supports.items())
+    largest = sorted(
+        ((*key, temperatures) for key, temperatures in ranges.items()),
+        key=lambda one: -(one[0][1] - one[0][0]) * math.prod(map(len, one[1:])),
+    )
+    said = [
+        " ".join([_between(speed[slice(*run)]), *_where(fits, supports, temperatures, grid)])
+        for run, supports, fits, temperatures in largest[:_MOST_RANGES]
+    ]
+    more = len(largest) - len(said)
+    said += [f"in {more} smaller range{'s' if more > 1 else ''}"] if more else []
+    return " and ".join([", ".join(said[:-1]), said[-1]] if len(said) > 1 else said)
+
+
+def _runs(happens: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Return where neighbours are true: the first, and the one after the last."""
+    edges = np.flatnonzero(np.diff(happens.astype(int), prepend=0, append=0))
+    return [(int(first), int(end)) for first, end in edges.reshape(-1, 2)]
+
+
+def _grouped(pairs: Iterable[tuple[K, int]]) -> dict[K, tuple[int, ...]]:
+    groups: dict[K, tuple[int, ...]] = {}
+    for key, value in pairs:
+        groups[key] = (*groups.get(key, ()), value)
+    return groups
 
 
 def _between(span: NDArray[np.float64]) -> str:
     if span.size == 1:
-        return f"at {span[0]:.3g} rad/s"
-    return f"from {span[0]:.3g} to {span[-1]:.3g} rad/s"
+        return f"at {span[0]:.4g} rad/s"
+    return f"from {span[0]:.4g} to {span[-1]:.4g} rad/s"
 
 
-def _where(lines: NDArray[np.bool_], found: DesignMap) -> list[str]:
-    """Name fits, supports and temperatures, where they are not all."""
-    grid = found.grid
-    temperatures, supports, fits = (np.unique(axis) for axis in np.nonzero(lines))
+def _where(
+    fits: Sequence[int], supports: Sequence[int], temperatures: Sequence[int], grid: Grid
+) -> list[str]:
+    """Name fits, supports and temperatures, where the map has several."""
     return [
         say([values[i] for i in there])
         for values, there, say in (
@@ -110,7 +157,7 @@ def _where(lines: NDArray[np.bool_], found: DesignMap) -> list[str]:
             (grid.support_stiffness, supports, supports_words),
             (grid.temperature, temperatures, lambda values: f"at {axis_words(values)} °C"),
         )
-        if there.size < len(values)
+        if len(there) < len(values)
     ]
 
 
@@ -150,7 +197,7 @@ def condition_words(at: Condition) -> str:
     support = "the clamp fixed"
     if math.isfinite(at.support_stiffness):
         support = f"{at.support_stiffness:.4g} Nm/rad"
-    return f"{at.speed:.3g} rad/s, {1e3 * at.interference:.3g} mm, {support}"
+    return f"{at.speed:.4g} rad/s, {1e3 * at.interference:.3g} mm, {support}"
 
 
 def margin_words(one: Standing, use: tuple[float, float]) -> str:
@@ -175,21 +222,29 @@ def margin_words(one: Standing, use: tuple[float, float]) -> str:
         return ""
     if margin == math.inf:
         return "nothing vibrates at any speed of the map"
-    ends = f"between {last:.3g} and {one.v_crit2_high:.3g} rad/s (V_crit2)"
+    said = f"the last vibration ends between {last:.3g} and {one.v_crit2_high:.3g} rad/s (V_crit2)"
     if math.isinf(last):
-        ends = "above the fastest speed of the map (V_crit2)"
-    said = f"the last vibration ends {ends}"
+        said = "vibration reaches the fastest speed of the map (V_crit2)"
     if margin > 0.0:
         return f"{said}; every speed of use is at least {margin:.3g} rad/s from what vibrates"
     if margin == 0.0:
         return f"{said}, where the use begins"
     if -margin >= use[1] - use[0]:
-        return f"{said}; at worst all speeds of use vibrate"
-    return f"{said}; at worst {-margin:.3g} rad/s of the speeds of use vibrate"
+        return f"{said}; at the worst fit and support all speeds of use vibrate"
+    return (
+        f"{said}; at the worst fit and support the speeds of use would have to move by "
+        f"{-margin:.3g} rad/s to be quiet"
+    )
 
 
-def advice_words(noise: str, at: Condition, offers: Sequence[Offer], most: int = 3) -> str:
-    """Say which changes silence the loudest point, and what they do at other noisy ones.
+def advice_words(
+    noise: str,
+    at: Condition,
+    offers: Sequence[Offer],
+    sounds: Mapping[Condition, str],
+    most: int = 3,
+) -> str:
+    """Say which changes silence the loudest point, what they do elsewhere, and what stays worst.
 
     Parameters
     ----------
@@ -199,43 +254,36 @@ def advice_words(noise: str, at: Condition, offers: Sequence[Offer], most: int =
         Which that is.
     offers : sequence of Offer
         Of `noise.screening.advice.advise`.
+    sounds : mapping of Condition to str
+        What is heard at the other noisy points that were tried, such as ``creak, 85 dB(A)``.
     most : int
-        That are named.
+        Changes that are named.
 
     Examples
     --------
-    >>> at = Condition(5.0, 0.279e-3, 2214.0)
-    >>> offers = [
-    ...     Offer("critical_torque", 10.7, -20, True, quiet_elsewhere=2, elsewhere=6),
-    ...     Offer("damping", 0.1, 100, False),
-    ... ]
-    >>> advice_words("squawk", at, offers)
-    'the loudest point (squawk at 5 rad/s, 0.279 mm, 2214 Nm/rad) falls silent by critical torque...
+    >>> at, other = Condition(5.0, 0.279e-3, 2214.0), Condition(9.0, 0.381e-3, 2214.0)
+    >>> offers = [Offer("critical_torque", 10.7, -20, True, "", None, 2, 6, other)]
+    >>> advice_words("squawk", at, offers, {other: "creak, 85 dB(A)"})
+    'no single change that was tried quiets the whole use. The loudest point (squawk at 5 rad/s, ...
     """
     where = f"the loudest point ({noise} at {condition_words(at)})"
     ending = [one for one in offers if one.ends]
     if not ending:
-        return f"no change of one parameter silences {where}" if offers else ""
-    said = [one.words + _elsewhere(one) for one in ending[:most]]
-    by = "by" if len(ending) == 1 else "by any one of"
-    more = len(ending) - len(said)
-    return f"{where} falls silent {by} {', or '.join(said)}" + (
-        f"; advice.csv has {more} more" if more else ""
+        return f"no single change that was tried silences {where}" if offers else ""
+    best, shown = ending[0], ending[:most]
+    others = " (in brackets: other noisy points silenced, of those tried)" * bool(best.elsewhere)
+    changes = "; ".join(
+        f"{one.words} ({one.quiet_elsewhere} of {one.elsewhere})" if others else one.words
+        for one in shown
     )
-
-
-def _elsewhere(offer: Offer) -> str:
-    """Say what an offer does at the other noisy points that were tried."""
-    quiet, tried = offer.quiet_elsewhere, offer.elsewhere
-    if not tried:
-        return ""
-    if quiet == tried:
-        return f" (all {tried} other noisy points that were tried too)"
-    if not quiet:
-        return f" (the {tried} other noisy points that were tried stay noisy)"
+    by = "by" if len(ending) == 1 else "by any one of these"
+    said = f"{where} falls silent {by}{others}: {changes}"
+    said += f"; advice.csv has {len(ending) - len(shown)} more" * (len(ending) > len(shown))
+    if best.left is None:
+        return said
     return (
-        f" ({quiet} of the {tried} other noisy points that were tried too, {tried - quiet} "
-        f"stay{'s' if tried - quiet == 1 else ''} noisy)"
+        f"no single change that was tried quiets the whole use. {said[0].upper()}{said[1:]}. "
+        f"The loudest that the first leaves: {sounds[best.left]}, at {condition_words(best.left)}"
     )
 
 
@@ -277,7 +325,33 @@ def limit_words(offers: Sequence[Offer], noise: str, most: int = 2) -> list[str]
     return said
 
 
-def parts_words(found: Robustness) -> list[str]:
+def sure_words(one: Standing, found: DesignMap) -> list[str]:
+    """Say how a design's sentences are known, and how far to trust them.
+
+    Parameters
+    ----------
+    one : Standing
+    found : DesignMap
+        Its map.
+    """
+    count, total = found.count(SIMULATED), found.label.size
+    said = [f"{count} of {total} points were simulated"]
+    steps = [b - a for a, b in pairwise(found.grid.speed)]
+    if steps and found.open:
+        said.append(
+            f"{found.open} lie between simulated points that differ and are as the nearest, so "
+            "boundaries there are coarser than the map"
+        )
+    elif steps:
+        said.append(f"speeds at which a noise begins or ends are known to {max(steps):.3g} rad/s")
+    if any(offer.ends for offer in one.offers):
+        said.append(
+            "each change was run from rest, from the running noise, and with 2 % less of it"
+        )
+    return said + (_parts_words(one.robustness) if one.robustness else [])
+
+
+def _parts_words(found: Robustness) -> list[str]:
     """Say how probably a part is noisy, and which tolerance matters most."""
     noisy = found.noisy
     assumed = " within assumed tolerances" if found.assumed else " within its tolerances"
@@ -293,3 +367,134 @@ def parts_words(found: Robustness) -> list[str]:
             "scatter of the vibration's growth"
         )
     return said
+
+
+def detail_lines(one: Standing, found: DesignMap) -> list[str]:
+    """Say where it is noisy, what is heard, what to change, its margin, and how sure that is.
+
+    Parameters
+    ----------
+    one : Standing
+    found : DesignMap
+        Its map.
+    """
+    where = "" if one.never_slips else one.words.partition(": ")[2]
+    lines = [f"where: {text}" for text in where.split("; ") if text]
+    if one.loudest is not None:
+        lines.append(
+            f"heard: up to {one.loudest_level:.0f} dB(A) ({one.loudest_label}); mean loudness "
+            f"{one.mean_loudness:.3g} sone"
+        )
+        lines += [f"what to change: {text}" for text in [one.advice] if text]
+        lines += [f"limits: {text}" for text in limit_words(one.offers, one.loudest_label)]
+    lines += [f"margin: {text}" for text in [margin_words(one, found.grid.use)] if text]
+    lines.append(f"how sure: {'; '.join(sure_words(one, found))}")
+    lines += [f"not told: {why}" for why in one.failed]
+    return [*lines, *(f"note: {note}" for note in one.notes if note != one.never_slips)]
+
+
+def summary_lines(screening: Screening) -> list[str]:
+    """Say of each design whether it is quiet in its use, what to change and how sure that is.
+
+    Examples
+    --------
+    >>> from noise.screening.design import Use
+    >>> from noise.screening.screen import screen
+    >>> lines = summary_lines(screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,))))
+    >>> lines[0]
+    '1. PDMS, dry: quiet in its use, all 4 conditions'
+    """
+    lines = []
+    for one in screening.standings:
+        head = f"{one.design}, {standing_place(one)}"
+        if one.rank is None:
+            why = one.never_slips or "with the shaft turning it never slips"
+            lines.append(f"-. {head}: no rank; {why}")
+        else:
+            details = detail_lines(one, screening.map_of(one))
+            lines.append(f"{one.rank}. {head}: {use_head(one)}")
+            lines += [f"   {line}" for line in details]
+    if len(screening.designs) > 1:
+        lines.append(RANKING_RULE)
+    lines += conditions_lines(screening)
+    maps = screening.maps
+    counts = {words: sum(found.count(how) for found in maps) for how, words in _HOW.items()}
+    how = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
+    points = sum(found.label.size for found in maps)
+    return [
+        *lines,
+        f"{points} points in {screening.seconds:.1f} s: {how}",
+        f"advice and tolerances in {screening.statistics_seconds:.1f} s",
+    ]
+
+
+def use_head(one: Standing) -> str:
+    """Say whether it is quiet in its use; where not is in `detail_lines`."""
+    return one.words if one.never_slips else one.words.partition(": ")[0]
+
+
+def standing_place(one: Standing) -> str:
+    """Name environment and motion of a standing."""
+    return one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}"
+
+
+def ranking_words(standings: Sequence[Standing]) -> str:
+    """Say which designs come first and by what number; nothing of a single one.
+
+    Parameters
+    ----------
+    standings : sequence of Standing
+        The first ranked first.
+    """
+    best = standings[0]
+    if best.rank is None:
+        return "No design slips, so none has a rank."
+    if len({one.design for one in standings}) == 1:
+        return ""
+    first = [one for one in standings if one.rank == best.rank]
+    names = " and ".join(sorted({one.design for one in first}))
+    loudness = max(one.mean_loudness for one in first)
+    if loudness == 0.0:
+        return f"Quiet in all of its use: {names}. {RANKING_RULE}."
+    return f"Lowest mean loudness, {loudness:.3g} sone: {names}. {RANKING_RULE}."
+
+
+def conditions_lines(screening: Screening) -> list[str]:
+    """Say over which conditions all designs are compared, and where data are not their own.
+
+    Examples
+    --------
+    >>> from noise.screening.design import Use
+    >>> from noise.screening.screen import screen
+    >>> use = Use(speed=(1.0, 5.0), interference=(0.3e-3,), support_stiffness=(2214.0,))
+    >>> for line in conditions_lines(screen(["PDMS"], use)):
+    ...     print(line)
+    each design at 2 points: speed 1 and 5 rad/s; interference 0.3 mm; support 2214 Nm/rad; ...
+    not from a design's own data: 2 of PDMS; where a design has no data of its own, stiffness, ...
+    """
+    said = dict.fromkeys(words for grid in screening.conditions for words in grid.words)
+    n_points = sum(math.prod(grid.shape) for grid in screening.conditions)
+    same = "the same " if len(screening.designs) > 1 else ""
+    lines = [f"each design at {same}{n_points} points: {'; '.join(said)}"]
+    counts: Counter[str] = Counter()
+    for found in screening.maps:
+        counts[found.design] += int(found.substituted.sum())
+    if stand_in := [f"{count} of {name}" for name, count in counts.items() if count]:
+        lines.append(f"not from a design's own data: {', '.join(stand_in)}; {RULE}")
+        lines += [text for text in [_fair(screening)] if text]
+    return lines
+
+
+def _fair(screening: Screening) -> str:
+    """Say at which interferences no design's torques are held, where at some they are."""
+    fits = sorted({fit for grid in screening.conditions for fit in grid.interference})
+    own = [fit for fit in fits if all(within_fits(one.rig, fit) for one in screening.designs)]
+    if len(screening.designs) == 1 or own == fits:
+        return ""
+    if not own:
+        return "the fits of all designs have no interference in common: ranks are of unlike data"
+    named = ",".join(f"{1e3 * fit:.4g}" for fit in own)
+    return (
+        "a torque held at a larger interference is too small, and flatters; "
+        f"--interference {named} compares within the fits of all"
+    )

@@ -203,13 +203,27 @@ def test_what_is_said_of_a_design_is_what_its_map_shows():
         if found := re.match(r"noisy at (\d+)% of its use", words):
             noisy = np.mean(np.isin(labels, NAMED))
             assert float(found[1]) == pytest.approx(100.0 * noisy, abs=0.51), words
-        said = r"(\w+)s (?:at (\d+)% of the use, )?from ([\d.]+) to ([\d.]+) rad/s"
-        for name, percent, first, last in re.findall(said, words):
-            there = np.array(speed)[(labels == name).any(axis=(0, 1, 2))]
-            assert (float(first), float(last)) == (there.min(), there.max()), words
-            if percent:
-                mean = 100.0 * np.mean(labels == name)
-                assert float(percent) == pytest.approx(mean, abs=0.51), words
+        for name, label in (*((one, one) for one in NAMED), ("goes on,", PERSISTS)):
+            there = labels[0, 0] == label
+            found = re.search(rf"{name} at (?:(\d+)|< 1)%, ([^;]*)", words)
+            assert bool(found) == bool(there.any()), words
+            if not found:
+                continue
+            if found[1]:
+                assert float(found[1]) == pytest.approx(100.0 * there.mean(), abs=0.51), words
+            # Each range that is named is of that label throughout, at the fits that it names.
+            told, smaller = np.zeros(there.shape, dtype=int), re.search(r"in (\d+) sm", found[2])
+            for first, last, fit in re.findall(
+                r"(?:from ([\d.]+) to|at) ([\d.]+) rad/s(?: at ([\d.]+) mm)?", found[2]
+            ):
+                low, high = float(first or last), float(last)
+                inside = (np.array(speed) >= low) & (np.array(speed) <= high)
+                rows = [fit in ("", f"{1e3 * one:g}") for one in grid.interference]
+                told += np.outer(rows, inside)
+            assert told.max() == 1, words
+            assert there[told > 0].all(), words
+            edges = np.diff(there & (told == 0), axis=1, prepend=False).sum()
+            assert bool(smaller) == bool(edges), words
 
 
 def test_the_line_of_a_file_is_its_longest_row():

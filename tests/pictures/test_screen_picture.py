@@ -4,8 +4,13 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
-from noise.pictures.maps import plot_screen
+from models.rig_file import load_material_rig
+from noise.pictures.maps import LINES, boundary_lines, plot_screen
 from noise.screening.design import Use
+from sim.analysis.regime import Regime, friction_regime
+from sim.analysis.stability import sliding_growth
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
 from tests.helpers.quick_screens import quick_screen
 
 
@@ -25,10 +30,53 @@ def test_lines_look_in_the_key_as_they_do_in_the_map(found):
     key = {
         text.get_text(): line
         for text, line in zip(legend.get_texts(), legend.legend_handles, strict=True)
+        if text.get_text() in LINES
     }
-    drawn = {to_hex(line.get_color()) for panel in figure.axes for line in panel.get_lines()}
-    for name in ("stick ends", "sliding turns stable"):
-        assert to_hex(key[name].get_color()) in drawn
+    drawn = [line for panel in figure.axes for line in panel.get_lines()]
+    drawn = {line.get_label(): line for line in drawn if line.get_label() in LINES}
+    assert set(key) == set(drawn) >= {"stick ends", "sliding turns stable"}
+    for name, line in key.items():
+        assert to_hex(line.get_color()) == to_hex(drawn[name].get_color())
+        assert line.is_dashed() == drawn[name].is_dashed() == (name in RISING)
+
+
+def sticks(rig, speed, interference):
+    """Whether a long run from rest ends in stick-slip; it shares no code with the screening."""
+    run = simulate_motion(
+        rig, ConstantSpeed(speed), interference=interference, support_stiffness=2214.0,
+        seconds=4.0, rate=15e3,
+    )  # fmt: skip
+    return friction_regime(run) is Regime.STICK_SLIP
+
+
+RISING = "stick begins", "sliding turns unstable"
+
+
+def test_each_line_of_a_map_is_what_it_is_called_on_both_of_its_sides():
+    """Of 0.381 mm stick begins where the speed rises, and sliding turns stable within a creak."""
+    speeds = (0.25, 0.5, 2.0, 4.0, 8.0, 11.0, 12.5)
+    use = Use(speed=speeds, interference=(0.279e-3, 0.381e-3), support_stiffness=(2214.0,))
+    one = quick_screen(["fluorocarbon"], use).maps[0]
+    lines = boundary_lines(one)
+    assert set(LINES) == {name for name, *_ in lines}
+    rig = load_material_rig("fluorocarbon")
+    for name, row, where in lines:
+        fit = one.grid.interference[row]
+        after = int(np.searchsorted(speeds, where))
+        sides = speeds[after - 1], speeds[after]
+        if name.startswith("sliding"):
+            happens = [float(sliding_growth(rig, v, fit, 2214.0)) > 0.0 for v in sides]
+        else:
+            happens = [sticks(rig, v, fit) for v in sides]
+        assert happens == [name not in RISING, name in RISING], (name, row, where)
+    # No change of either is without its line.
+    for row in range(2):
+        for name, values in (
+            ("stick", one.regime[0, 0, row] == Regime.STICK_SLIP.value),
+            ("sliding", one.growth[0, 0, row] > 0.0),
+        ):
+            changes = np.count_nonzero(values[1:] != values[:-1])
+            assert changes == sum(n.startswith(name) and r == row for n, r, _ in lines)
 
 
 def test_what_is_quiet_and_what_is_not_its_own_is_said(found):

@@ -6,10 +6,10 @@ from dataclasses import replace
 import pytest
 
 from models.rig_file import load_material_rig
-from noise.screening.advice import advise, changed
+from noise.screening.advice import Offer, advise, changed
 from noise.screening.point import evaluate_point
 from noise.screening.vibration import Condition, vibration_at
-from noise.screening.words import limit_words
+from noise.screening.words import advice_words, limit_words
 from tests.screening.long_runs import vibrates_after
 
 FLUOROCARBON = load_material_rig("fluorocarbon")
@@ -32,6 +32,12 @@ def test_a_constant_torque_vibrates_only_from_stick():
     assert vibration_at(rig, at).growth < 0.0
     assert vibration_at(rig, at).state == "breaks out"
     assert vibration_at(rig, replace(at, speed=9.0)).state == "none"
+
+
+def test_bursts_seconds_apart_beside_unstable_sliding_are_no_silence():
+    at = Condition(0.375, 0.381e-3, 2214.0)
+    assert vibration_at(FLUOROCARBON, at).state == "breaks out"
+    assert vibrates_after(FLUOROCARBON, at, [at.speed], seconds=8.0)
 
 
 def test_sliding_that_is_stable_everywhere_is_silent():
@@ -58,3 +64,16 @@ def test_each_offer_ends_the_squawk_in_long_runs_and_the_rig_file_takes_it():
 
 def test_where_nothing_vibrates_there_is_nothing_to_advise():
     assert advise(FLUOROCARBON, replace(AT, speed=12.5)) == ()
+
+
+def test_what_no_single_change_quiets_is_said_with_what_is_left_worst():
+    worst = replace(AT, speed=8.0, interference=0.381e-3)
+    some = Offer("damping", 0.1, 50, True, quiet_elsewhere=2, elsewhere=3, left=worst)
+    words = advice_words("squawk", AT, [some], {worst: "creak, 88 dB(A)"})
+    assert words.startswith("no single change that was tried quiets the whole use. ")
+    assert words.endswith("leaves: creak, 88 dB(A), at 8 rad/s, 0.381 mm, 2214 Nm/rad")
+    assert "damping +50 % to 0.15 Nm s/rad (2 of 3)" in words
+    every = replace(some, quiet_elsewhere=3, left=None)
+    assert "no single change" not in advice_words("squawk", AT, [every], {})
+    none = advice_words("squawk", AT, [replace(some, ends=False)], {})
+    assert none.startswith("no single change that was tried silences the loudest point (squawk at ")
