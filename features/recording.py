@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from features.prepared import prepare
 from features.table import KINDS, Feature, features_of, pooled_levels
-from models.blocks import Read, RecordingBlocks, in_pieces, n_samples_of, reader_of
+from models.blocks import Read, RecordingBlocks, in_pieces, reader_of
 from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import Rig, effective_stiffness
@@ -131,7 +131,7 @@ def recording_features(
         try:
             stick_rate = stick_rate_of(recording) if kind == "torque" else math.nan
             values = _in_pieces(
-                reader_of(recording, row), n_samples_of(recording), [*wanted.values()],
+                reader_of(recording, row), recording.n_samples, [*wanted.values()],
                 rate=recording.rate, kind=kind, calibrated=recording.calibrated,
                 stick_rate=stick_rate,
             )  # fmt: skip
@@ -241,7 +241,7 @@ def stick_rate_of(recording: Recording | RecordingBlocks) -> float:
 def _speed(recording: Recording | RecordingBlocks) -> float | None:
     """Magnitude of the shaft's speed: median of its channels, or as it was set."""
     speed, angle = recording.first("speed"), recording.first("angle")
-    n = n_samples_of(recording)
+    n = recording.n_samples
     if recording.calibrated and speed is not None:
         every = 1 + n // _MOST_SPEEDS
         pieces = in_pieces(reader_of(recording, speed), n, every * _AT_ONCE)

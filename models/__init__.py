@@ -1,4 +1,4 @@
-"""Rig, structure and radiation: from the torque in the bushing to the sound at the microphone."""
+"""Models of rig, structure and radiation: from the bushing's torque to the sound pressure."""
 
 from models.compilation import ensure_compile_cache
 

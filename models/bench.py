@@ -1,4 +1,4 @@
-"""The test bench as plain data: beams, baseplate and microphone.
+"""Test bench as plain data: beams, baseplate and microphone.
 
 Quantities are in SI units; the keys of rig files, their units and bounds are declared beside the
 fields (`models.schema`).
@@ -18,18 +18,18 @@ from models.schema import (
 from models.show import short_repr
 
 HIGHEST_PLATE_FREQUENCY = 16e3
-"""Modes of the plate are computed up to it [Hz]: measured creaks fill the band to 15 kHz."""
+"""Highest mode of the plate [Hz]: measured creaks fill the band up to 15 kHz."""
 
 LEAST_HEIGHT = 0.01
-"""Of the microphone over the plate: three surface elements [m]."""
+"""Lowest height of the microphone over the plate: three surface elements [m]."""
 
 FEWEST_MODES, MOST_MODES = 5, 5000
-"""Of the plate: fewer radiate no band, more take minutes."""
+"""Limits of the number of plate modes: fewer radiate no band, more take minutes."""
 
 
 @dataclass(frozen=True)
 class Beams:
-    """The two steel beams that carry the clamp; their length follows from the support stiffness.
+    """Two steel beams that carry the clamp; their length follows from the support stiffness.
 
     Parameters
     ----------
@@ -42,23 +42,23 @@ class Beams:
     density : float
         [kg/m3]
     damping_ratio : float
-        Of the beams' bending modes above the first torsional one [-].
+        Damping ratio of the bending modes above the first torsional mode [-].
     accelerometer : float
-        Where on the beam it sits, as a fraction of the length from the clamp.
+        Place of the accelerometer on the beam, as a fraction of the length from the clamp.
     anchor_rotation : float, optional
         Stiffness of an anchor against the slope of its beam [Nm/rad]; rigid as in 3.1.1.
     anchor_translation : float, optional
         Stiffness of an anchor against the deflection of its beam [N/m]; rigid as in 3.1.1. Neither
-        alters the support stiffness, only the modes above the first torsional one.
+        changes the support stiffness, only the modes above the first torsional one.
     strike : float, optional
-        Where the reaction of a blow in the anchor's joint strikes the beam, as a fraction of the
-        length from the anchor.
+        Place where the reaction of an impact in the anchor's joint acts on the beam, as a fraction
+        of the length from the anchor.
     radiating : bool, optional
-        Whether beams and clamp are heard as well, not the plate alone.
+        Whether beams and clamp radiate sound, besides the plate.
     height : float, optional
-        Of beams and shaft over the plate [m]; for their sound.
+        Height of beams and shaft over the plate [m], for their sound.
     clamp_width : float, optional
-        Of the clamp along the shaft, and its height [m]; for its sound.
+        Width of the clamp along the shaft, and its height [m], for its sound.
     """
 
     width: Annotated[float, Quantity("width_m")]
@@ -79,16 +79,32 @@ class Beams:
     height: Annotated[float, Quantity("height_m", high=1.0)] = 0.06
     clamp_width: Annotated[float, Quantity("clamp_width_m", high=1.0)] = 0.04
 
+    @property
+    def bending_stiffness(self) -> float:
+        """Bending stiffness E I of one beam [N m2] (4.12).
+
+        Examples
+        --------
+        >>> round(Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3).bending_stiffness, 3)
+        13.549
+        """
+        return self.youngs_modulus * self.width * self.thickness**3 / 12
+
+    @property
+    def mass_per_length(self) -> float:
+        """Mass of one beam per length [kg/m]."""
+        return self.density * self.width * self.thickness
+
 
 @short_repr
 @dataclass(frozen=True)
 class Plate:
-    """The baseplate that the beams' anchors stand on, its edges simply supported.
+    """Baseplate that the beams' anchors stand on, with simply supported edges.
 
     Parameters
     ----------
     length, width, thickness : float
-        Along x, y and z [m]; the origin of all positions is the middle of its upper surface.
+        Dimensions along x, y and z [m]; the origin is the middle of the upper surface.
     youngs_modulus : float
         [Pa]
     density : float
@@ -96,9 +112,9 @@ class Plate:
     poisson_ratio : float
         [-]
     loss_factor : float
-        Of all modes [-].
+        Loss factor of all modes [-].
     clamp_position : tuple of 2 floats
-        Where the middle of the clamp stands over the plate, x and y [m]; the beams lie along x.
+        Position x, y of the middle of the clamp over the plate [m]; the beams lie along x.
 
     Raises
     ------
@@ -120,18 +136,18 @@ class Plate:
 
     @property
     def mass_per_area(self) -> float:
-        """[kg/m2]."""
+        """Mass per area [kg/m2]."""
         return self.density * self.thickness
 
     @property
     def stiffness_per_mass(self) -> float:
-        """D / (rho h), D = E h^3 / (12 (1 - nu^2)) being the bending stiffness [m4/s2]."""
+        """Bending stiffness D = E h^3 / (12 (1 - nu^2)) over mass per area rho h [m4/s2]."""
         return (
             self.youngs_modulus * self.thickness**2 / (12 * (1 - self.poisson_ratio**2))
         ) / self.density
 
     def expected_modes(self, highest_frequency: float) -> float:
-        """How many modes it has up to a frequency [Hz], by its mean modal density.
+        """Return the number of modes up to a frequency [Hz], by the mean modal density.
 
         Notes
         -----
@@ -148,7 +164,7 @@ class Plate:
 
 
 def refuse_plate(plate: Plate, where: str) -> None:
-    """Refuse a plate whose modes are too few or too many, or that the clamp is off.
+    """Raise if a plate has too few or too many modes, or does not lie below the clamp.
 
     Raises
     ------
@@ -169,17 +185,17 @@ def refuse_plate(plate: Plate, where: str) -> None:
 @short_repr
 @dataclass(frozen=True)
 class Microphone:
-    """Where the sound is heard.
+    """Microphone over the plate.
 
     Parameters
     ----------
     position : tuple of 3 floats
-        Relative to the middle of the plate's upper surface [m].
+        Position relative to the middle of the plate's upper surface [m].
 
     Raises
     ------
     ParameterError
-        If it is not at least 0.01 m over the plate.
+        If it is less than 0.01 m over the plate.
     """
 
     position: Annotated[tuple[float, float, float], Vector("position_m", 3)]

@@ -1,7 +1,7 @@
-"""Recordings of which parts can be had, in memory or on disk, and their channels piece by piece.
+"""Recordings that are read in parts, from memory or disk.
 
-Reading a part gives the samples that reading the whole gives, bit for bit, so what is computed from
-parts does not depend on how long a recording is.
+A part has bit for bit the samples of the whole, so results that are computed from parts do not
+depend on the length of a recording.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from models.condition import Condition
 from models.recording import Channel, Recording
 
 Read = Callable[[int, int], NDArray[np.float64]]
-"""From first and last sample to those between them, shape (n,) or (n_channels, n)."""
+"""Function of first and last sample that returns the samples, shape (n,) or (n_channels, n)."""
 
 _PIECE = 1 << 17
 """Samples of a piece."""
@@ -24,7 +24,7 @@ _PIECE = 1 << 17
 
 @dataclass(frozen=True, eq=False)
 class RecordingBlocks:
-    """A recording of which parts can be had.
+    """Recording that is read in parts.
 
     Parameters
     ----------
@@ -34,11 +34,11 @@ class RecordingBlocks:
     condition : Condition
     calibrated : bool
     name : str
-        These as in `models.recording.Recording`.
+        As in `models.recording.Recording`.
     n_samples : int
-        Of each channel.
+        Samples of each channel.
     read : callable
-        From first and last sample to the samples between them, shape (n_channels, n).
+        Function of first and last sample that returns the samples, shape (n_channels, n).
 
     Examples
     --------
@@ -57,12 +57,12 @@ class RecordingBlocks:
 
     @classmethod
     def of(cls, recording: Recording | RecordingBlocks) -> RecordingBlocks:
-        """Return a recording in memory as one of which parts can be had."""
+        """Return a recording in memory as one that is read in parts."""
         if isinstance(recording, RecordingBlocks):
             return recording
         return cls(
             recording.rate, recording.channels, recording.condition, recording.calibrated,
-            recording.name, recording.samples.shape[1],
+            recording.name, recording.n_samples,
             lambda first, last: recording.samples[:, first:last],
         )  # fmt: skip
 
@@ -74,7 +74,7 @@ class RecordingBlocks:
         )
 
     def part(self, first: int, last: int) -> RecordingBlocks:
-        """Return the same part as a recording of its own, which is read when it is looked at."""
+        """Return the part from sample `first` up to `last` without reading it."""
         last = min(last, self.n_samples)
         return replace(
             self,
@@ -83,12 +83,12 @@ class RecordingBlocks:
         )
 
     def pieces(self, first: int, last: int, length: int) -> Iterator[Recording]:
-        """Go through a part in pieces of `length` samples, the last of which may be shorter."""
+        """Yield a part in pieces of `length` samples, the last of which may be shorter."""
         for start in range(first, last, length):
             yield self.cut(start, min(start + length, last))
 
     def first(self, kind: str) -> int | None:
-        """Row of the first channel of a kind; ``None`` where there is none."""
+        """Return the row of the first channel of a kind; ``None`` if there is none."""
         rows = (row for row, channel in enumerate(self.channels) if channel.kind == kind)
         return next(rows, None)
 
@@ -102,33 +102,19 @@ class RecordingBlocks:
         )
 
 
-def n_samples_of(recording: Recording | RecordingBlocks) -> int:
-    """Return how many samples each channel of a recording has.
-
-    Examples
-    --------
-    >>> from models.recording import Channel
-    >>> n_samples_of(Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),)))
-    480
-    """
-    if isinstance(recording, Recording):
-        return int(recording.samples.shape[1])
-    return recording.n_samples
-
-
 def reader_of(recording: Recording | RecordingBlocks, row: int) -> Read:
-    """Return what gives a part of a channel, from first and last sample.
+    """Return the function that reads a part of a channel, from first and last sample.
 
     Parameters
     ----------
     recording : Recording or RecordingBlocks
     row : int
-        Of the channel.
+        Row of the channel.
 
     Returns
     -------
     callable
-        Gives arrays of shape (last - first,) [unit of the channel].
+        Returns arrays of shape (last - first,) [unit of the channel].
 
     Examples
     --------
@@ -144,25 +130,25 @@ def reader_of(recording: Recording | RecordingBlocks, row: int) -> Read:
         last = min(last, recording.n_samples)
         if last - first <= _PIECE:
             return np.asarray(recording.read(first, last)[row])
-        # No more at once of the other channels than has to be.
-        kept = np.empty(last - first)
+        # In pieces, since the other channels are read as well.
+        samples = np.empty(last - first)
         for start in range(first, last, _PIECE):
             end = min(start + _PIECE, last)
-            kept[start - first : end - first] = recording.read(start, end)[row]
-        return kept
+            samples[start - first : end - first] = recording.read(start, end)[row]
+        return samples
 
     return read
 
 
 def in_pieces(read: Read, n_samples: int, length: int = _PIECE) -> Iterator[NDArray[np.float64]]:
-    """Go through a channel piece by piece.
+    """Yield a channel piece by piece.
 
     Parameters
     ----------
     read : callable
-        Of `reader_of`.
+        Function from `reader_of`.
     n_samples : int
-        Of the channel.
+        Samples of the channel.
     length : int
         Samples of a piece; the last may be shorter.
 

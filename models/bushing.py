@@ -1,20 +1,20 @@
-r"""The bushing's rubber: pressure of its sleeve on the shaft, and how temperature acts on it.
+r"""Rubber of the bushing: pressure of its sleeve on the shaft, and its temperature dependence.
 
 Lame's solution of a thick-walled cylinder (Timoshenko and Goodier, Theory of Elasticity, section
-28), as Recommendation 2 of the thesis asks for. A sleeve of inner radius a and outer radius b is
+28), following Recommendation 2 of the thesis. A sleeve of inner radius a and outer radius b is
 widened by the interference delta at the shaft and held by a rigid housing, u(a) = delta and
-u(b) = 0, with strain 2 a delta / (b^2 - a^2) of its volume were it closed in:
+u(b) = 0; if it were enclosed, its volumetric strain would be 2 a delta / (b^2 - a^2):
 
 .. math::
     p = \frac{2 G a \delta}{b^2 - a^2} \left[\frac{\Lambda}{G} + \frac{b^2}{a^2}\right], \qquad
     \frac{\Lambda}{G} = \frac{1}{1 - 2 \nu} \;\text{(plane strain)}, \quad
     \frac{1 + \nu}{1 - \nu} \;\text{(plane stress)}
 
-Rubber hardly changes its volume: in plane strain it has nowhere to go, and bears as its bulk
-modulus does. A real sleeve bulges at its ends. As the pressure of a bonded rubber layer (Gent and
-Lindley, 1959; Chalhoub and Kelly, 1991) the hydrostatic part then follows a balance of volume along
-the axis z, with shear that holds the rubber at the housing, to which it is glued, and none at the
-shaft, where sliding turns all friction along the circumference:
+Rubber is nearly incompressible: in plane strain it cannot escape, and its stiffness is the bulk
+modulus. A real sleeve bulges at its ends. Like the pressure of a bonded rubber layer (Gent and
+Lindley, 1959; Chalhoub and Kelly, 1991), the hydrostatic part then follows from the balance of
+volume along the axis z, with shear at the housing, to which the rubber is bonded, and none at the
+shaft, where sliding turns all friction to the circumferential direction:
 
 .. math::
     \ell^2 p'' = p - \bar p, \qquad
@@ -22,55 +22,57 @@ shaft, where sliding turns all friction along the circumference:
     \left[\frac{b^4}{4} - a^2 b^2 + \frac{3 a^4}{4} + a^4 \ln\frac{b}{a}\right],
     \qquad A = \pi (b^2 - a^2)
 
-Delta is by how much plane strain exceeds plane stress, so that the mean over the length, with
-the share 1 - tanh(x) / x, x = L / (2 l), of Delta, joins both of Lame's cases.
+Delta is the excess of plane strain over plane stress. The mean over the length has the share
+1 - tanh(x) / x, x = L / (2 l), of Delta, which connects both of Lame's cases.
 
 Limits: no interference, no pressure; thin wall, the constrained modulus times delta / wall; thick
-wall, 2 G delta / a in plane strain; nu -> 1/2 in plane strain, the bulk modulus times the strain of
-the volume. The theory is linear: pressure, and with constant coefficient friction, goes with delta.
+wall, 2 G delta / a in plane strain; nu -> 1/2 in plane strain, the bulk modulus times the
+volumetric strain. The theory is linear: pressure, and friction at a constant coefficient, is
+proportional to delta.
 
-Temperature: what an elastomer does at a temperature theta and a rate w, it does at a reference
-temperature at the rate a_T w (Williams, Landel and Ferry, 1955), with
+Temperature: an elastomer at a temperature theta and a rate w behaves as at a reference temperature
+and the rate a_T w (Williams, Landel and Ferry, 1955), with
 
 .. math::
     \log_{10} a_T = L(\theta) - L(\theta_{ref}), \qquad
     L = -\frac{c_1 (\theta - \theta_s)}{c_2 + \theta - \theta_s}, \qquad
     \theta_s = \theta_g + 50\ \mathrm{K}
 
-(2.1), whose constants the thesis misprints as 8.88 and 101.5.
+(2.1); the thesis misprints the constants as 8.88 and 101.5.
 
-*Stiffness.* A spring of entropy beside a fractional element, at the rates of the rig's vibration:
+*Stiffness.* An entropic spring parallel to a fractional element, at the rates of the rig's
+vibration:
 
 .. math::
     k / k_{ref} = b \frac{1 + s\, a_T^\alpha}{1 + s}, \qquad c / c_{ref} = b\, a_T^\alpha, \qquad
     b = T / T_{ref}
 
-with absolute temperatures in b (Ferry, *Viscoelastic Properties of Polymers*, chapter 11). s is
-what the rubber is stiffer by at these rates than when deformed slowly: static tests gave k_EFF 2 to
-15 % lower (Table 5.4), hence 0.1. alpha, the slope of a rubber's transition, is that of
-`sim.effects.viscoelastic_stiffness`. The loss factor that follows, s tan(alpha pi / 2) / (1 + s) =
-0.046, is what the damping fitted to the fluorocarbon gives at its first torsional mode, 0.05.
+with absolute temperatures in b (Ferry, *Viscoelastic Properties of Polymers*, chapter 11). s is the
+relative increase of stiffness from slow deformation to these rates: static tests gave k_EFF 2 to 15
+% lower (Table 5.4), hence 0.1. alpha, the slope of a rubber's transition, is that of
+`sim.effects.viscoelastic_stiffness`. The resulting loss factor, s tan(alpha pi / 2) / (1 + s) =
+0.046, agrees with the fluorocarbon's fitted damping at its first torsional mode, 0.05.
 
-*Friction.* Grosch (1963) found friction at all temperatures on one bell over log(a_T v), which
-Persson (2001) derives from losses; the torques at a sliding speed v are those fitted, times
+**Friction.* Grosch (1963) found friction at all temperatures on one bell over log(a_T v), which
+Persson (2001) derives from losses; the torques at a sliding speed v are the fitted ones times
 
 .. math::
     \frac{B(a_T |v|)}{B(|v|)}, \qquad
     B(v) = p_0 + (1 - p_0) \exp\left[-\tfrac12 (\log_{10}(v / v_p) / w)^2\right]
 
-v_p is the speed of most friction at the reference temperature. Lorenz, Oh, Nam, Jeon and Persson
-(2015, J. Chem. Phys. 142, 194701) find 0.1 for 1 / (2 w^2). So the law keeps what was fitted to it,
-and only its place on the bell moves: colder than at the peak friction falls with speed and sliding
-becomes unstable, warmer it rises and is stable. Times and speeds of a law are not shifted one by
-one: fitted over a single decade of speeds they saturate beyond it, on the wrong side (friction
-would rise with warmth).
+v_p is the speed of highest friction at the reference temperature. Lorenz, Oh, Nam, Jeon and Persson
+(2015, J. Chem. Phys. 142, 194701) find 0.1 for 1 / (2 w^2). So the fitted law stays, and only its
+place on the bell moves: colder than at the peak friction falls with speed and sliding becomes
+unstable, warmer it rises and sliding is stable. Times and speeds of a law are not shifted one by
+one: fitted over a single decade of speeds, they saturate beyond it on the wrong side (friction
+would rise with temperature).
 
-Limits: at the reference temperature all factors are one. Below the glass temperature an elastomer
-is none, and that temperature is held; WLF is good to 100 K above it, beyond which the rates change
-less. Nothing was measured at another temperature than 23 C, and the surface's own warmth, by up to
-26 K in a run, left friction as it was (Appendix G), where this takes the stick-slip away: its size
-is an upper bound. Not in it: interference that grows with thermal expansion, relaxation of the fit,
-the modulus in the contact's own stiffness.
+Limits: at the reference temperature all factors are one. Below the glass temperature, where the
+rubber is no elastomer, the factors are constant; WLF holds up to 100 K above it, beyond which the
+rates change less. All measurements are at 23 C. Self-heating of the surface by up to 26 K in a run
+did not change friction (Appendix G), whereas this model then ends the stick-slip, so its effect is
+an upper bound. Not included: interference that grows with thermal expansion, relaxation of the fit,
+and the modulus in the contact's own stiffness.
 """
 
 import math
@@ -82,17 +84,17 @@ from models.schema import Quantity, refuse_impossible
 from models.units import ABSOLUTE_ZERO
 
 _SHORT = 1e-3
-"""Below this L / (2 l) the share of the bulk is its leading term."""
+"""Value of L / (2 l) below which the bulk's share is replaced by its leading term."""
 
 
 @dataclass(frozen=True)
 class Sleeve:
-    """A rubber sleeve glued into a rigid housing, pressed on a rigid shaft.
+    """Rubber sleeve bonded into a rigid housing and pressed on a rigid shaft.
 
     Parameters
     ----------
     inner_radius : float
-        Of the shaft [m].
+        Radius of the shaft [m].
     wall : float
         Thickness [m].
     length : float
@@ -100,12 +102,12 @@ class Sleeve:
     youngs_modulus : float
         [Pa]
     poisson_ratio : float, optional
-        Up to 0.5, which is incompressible [-].
+        Up to 0.5 (incompressible) [-].
 
     Raises
     ------
     ParameterError
-        A value that cannot be.
+        A value is not possible.
 
     Examples
     --------
@@ -126,22 +128,22 @@ class Sleeve:
         refuse_impossible(self, "sleeve")
         if math.isinf(self.length) and self.poisson_ratio == 0.5:
             raise ParameterError(
-                "sleeve: without ends an incompressible one cannot give way; give a length, or a "
+                "sleeve: an endless incompressible sleeve cannot deform; give a length, or a "
                 "poisson_ratio below 0.5"
             )
 
     @property
     def outer_radius(self) -> float:
-        """Of the housing [m]."""
+        """Radius of the housing [m]."""
         return self.inner_radius + self.wall
 
     @property
     def shear_modulus(self) -> float:
-        """[Pa]."""
+        """Shear modulus [Pa]."""
         return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
 
     def pressure(self, interference: float) -> float:
-        """Mean contact pressure on the shaft [Pa].
+        """Return the mean contact pressure on the shaft [Pa].
 
         Parameters
         ----------
@@ -153,7 +155,7 @@ class Sleeve:
         return 2.0 * self.shear_modulus * a * interference / (b * b - a * a) * stiffness
 
     def friction_torque(self, interference: float, friction_coefficient: float) -> float:
-        """Torque of friction under the mean pressure, mu p A r [Nm].
+        """Return the friction torque under the mean pressure, mu p A r [Nm].
 
         Parameters
         ----------
@@ -173,7 +175,7 @@ class Sleeve:
 
     @property
     def torsional_stiffness(self) -> float:
-        """Of the sleeve held at both faces, 4 pi G L / (1/a^2 - 1/b^2) [Nm/rad]."""
+        """Torsional stiffness between both faces, 4 pi G L / (1/a^2 - 1/b^2) [Nm/rad]."""
         a, b = self.inner_radius, self.outer_radius
         return 4.0 * math.pi * self.shear_modulus * self.length / (a**-2 - b**-2)
 
@@ -183,7 +185,7 @@ class Sleeve:
         return self.length * (self.outer_radius**4 - self.inner_radius**4)
 
     def _confinement(self) -> float:
-        """By how much more than in plane stress the sleeve is confined, over G [-]."""
+        """Return the excess of the hydrostatic stiffness over plane stress, over G [-]."""
         a, b, nu = self.inner_radius, self.outer_radius, self.poisson_ratio
         area = math.pi * (b * b - a * a)
         flow = 0.25 * b**4 - (a * b) ** 2 + 0.75 * a**4 + a**4 * math.log(b / a)
@@ -199,11 +201,11 @@ class Sleeve:
 
 
 HARDNESS = Quantity("hardness_shore_A", 1.0, "Shore A", 20.0, 80.0)
-"""Of a rubber, as far as the relation of `shore_modulus` to its modulus holds."""
+"""Hardness of a rubber, within the range of `shore_modulus`."""
 
 
 def shore_modulus(shore_a: float) -> float:
-    """Young's modulus of a rubber by its hardness [Pa].
+    """Return Young's modulus of a rubber from its hardness [Pa].
 
     Parameters
     ----------
@@ -224,35 +226,35 @@ def shore_modulus(shore_a: float) -> float:
 
 
 _ABOVE_GLASS = 50.0
-"""Of the temperature theta_s to which the constants belong [K]."""
+"""Reference temperature theta_s of the constants above the glass temperature [K]."""
 
 _WLF_HOLDS = 100.0
-"""Above the glass temperature [K]."""
+"""Range of WLF above the glass temperature [K]."""
 
 
 @dataclass(frozen=True)
 class TemperatureDependence:
-    """How an elastomer depends on temperature.
+    """Temperature dependence of an elastomer.
 
     Parameters
     ----------
     reference : float
-        At which its stiffness, damping and friction are given [degree Celsius].
+        Temperature of the stated stiffness, damping and friction [degree Celsius].
     glass_transition : float
         theta_g [degree Celsius].
     c1, c2 : float
-        Of the shift about 50 K above the glass temperature [-] and [K].
+        Constants of the shift about 50 K above the glass temperature [-] and [K].
     stiffening : float
-        s: stiffness gained at the rates of the vibration, as a share of the static one.
+        s: increase of stiffness at the rates of the vibration, over the static stiffness.
     exponent : float
-        alpha: of the rate [-].
+        alpha: exponent of the rate [-].
     friction_peak : float, optional
-        v_p: speed of most friction at the reference temperature [rad/s]; without one the torques
-        stay, unless the friction law is a master curve itself.
+        v_p: speed of highest friction at the reference temperature [rad/s]; without one the torques
+        do not change, unless the friction law is itself a master curve.
     friction_width : float
         w: decades from the peak to 0.61 of its height [-].
     friction_floor : float
-        p_0: friction far from the peak, as a share of that at the peak.
+        p_0: friction far from the peak over that at the peak.
 
     Examples
     --------
@@ -284,8 +286,8 @@ class TemperatureDependence:
         """Lowest and highest temperature at which WLF holds [degree Celsius]."""
         return self.glass_transition, self.glass_transition + _WLF_HOLDS
 
-    def given_at(self, reference: float) -> "TemperatureDependence":
-        """Return the same dependence for numbers that are given at another temperature.
+    def at_reference(self, reference: float) -> "TemperatureDependence":
+        """Return the same dependence for numbers stated at another temperature.
 
         Parameters
         ----------
@@ -295,7 +297,7 @@ class TemperatureDependence:
         Examples
         --------
         >>> rubber = TemperatureDependence(23.0, -20.0, friction_peak=1.8)
-        >>> other = rubber.given_at(40.0)
+        >>> other = rubber.at_reference(40.0)
         >>> round(other.log_shift(5.0) + rubber.log_shift(40.0) - rubber.log_shift(5.0), 12)
         0.0
         """
@@ -308,13 +310,13 @@ class TemperatureDependence:
         )
 
     def log_shift(self, temperature: float) -> float:
-        """Return log10 of a_T at a temperature [degree Celsius], as a logarithm; 0 at reference."""
+        """Return log10 of a_T at a temperature [degree Celsius]; 0 at the reference."""
         return self._from_glass(temperature) - self._from_glass(self.reference)
 
     def stiffness_factor(self, temperature: float) -> float:
         """Return the factor on the stiffness at a temperature [degree Celsius]."""
-        gained = self.stiffening * float(10.0 ** (self.exponent * self.log_shift(temperature)))
-        return self._entropy(temperature) * (1.0 + gained) / (1.0 + self.stiffening)
+        increase = self.stiffening * float(10.0 ** (self.exponent * self.log_shift(temperature)))
+        return self._entropy(temperature) * (1.0 + increase) / (1.0 + self.stiffening)
 
     def damping_factor(self, temperature: float) -> float:
         """Return the factor on the elastomer's damping at a temperature [degree Celsius]."""
@@ -323,8 +325,8 @@ class TemperatureDependence:
         )
 
     def _entropy(self, temperature: float) -> float:
-        held = max(temperature, self.glass_transition)
-        return (held - ABSOLUTE_ZERO) / (self.reference - ABSOLUTE_ZERO)
+        above_glass = max(temperature, self.glass_transition)
+        return (above_glass - ABSOLUTE_ZERO) / (self.reference - ABSOLUTE_ZERO)
 
     def _from_glass(self, temperature: float) -> float:
         above = max(temperature, self.glass_transition) - self.glass_transition - _ABOVE_GLASS

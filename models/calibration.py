@@ -1,14 +1,13 @@
-"""Calibration of a sensor: from what a measurement chain reads to the quantity itself.
+"""Calibration of a sensor: conversion of readings into values of the quantity.
 
-A table of readings is a curve, straight from row to row. Beyond its ends nothing was calibrated:
-readings that lie out by up to a twentieth of its span are carried on straight, which is for noise
-and for a last step of the load, and any further are refused. A line, of a sensitivity and an
-offset, has no ends.
+A table of readings is interpolated linearly. Readings beyond its ends by up to a twentieth of its
+span (noise, or a last step of the load) are extrapolated linearly; readings further out are
+refused. A line, defined by sensitivity and offset, is valid everywhere.
 
-A rig file states a table as a CSV file of two columns, the reading and the value, as Appendices B
-and C of the thesis tabulate them, ``reading_mV,torque_Nm``, or as lists of these names. A line is
-``{ sensitivity = 12.19, offset = 0.4222, reading = "mV" }``, the regression (C3) of the same: the
-reading is the offset and the sensitivity times the value.
+In a rig file a table is a CSV file with a column of readings and one of values, as in Appendices B
+and C of the thesis (``reading_mV,torque_Nm``), or two lists of these names. A line is
+``{ sensitivity = 12.19, offset = 0.4222, reading = "mV" }``, the regression (C3) of the same data:
+reading = offset + sensitivity * value.
 """
 
 from __future__ import annotations
@@ -30,29 +29,29 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 READING_UNITS = {"V": ("voltage", 1.0), "mV": ("voltage", 1e-3), "counts": ("counts", 1.0)}
-"""What a chain reads in, before it is calibrated: dimension, and size of the unit in it."""
+"""Units of readings: dimension, and size of the unit in it."""
 
 _MARGIN = 0.05
-"""Of a table's span, by which readings may lie outside of it."""
+"""Share of a table's span by which readings may lie outside."""
 
 
 @short_repr
 @dataclass(frozen=True)
 class Calibration:
-    """A curve from readings to values.
+    """Calibration curve from readings to values.
 
     Parameters
     ----------
     readings : tuple of float
         Rising [`unit`].
     values : tuple of float
-        One a reading [unit of the channel].
+        One value per reading [unit of the channel].
     unit : str
-        Of the readings, one of `READING_UNITS`; empty where they are what a file holds.
+        Unit of the readings, one of `READING_UNITS`; empty for the numbers of a file.
     bounded : bool
-        Whether it ends with its readings: a table does, a line does not.
+        Whether it is valid between its readings only, as a table is.
     source : str
-        What messages call it.
+        Name of the curve in messages.
 
     Examples
     --------
@@ -75,11 +74,11 @@ class Calibration:
         Parameters
         ----------
         sensitivity : float
-            Not 0 [`unit` per unit of the channel].
+            Sensitivity, not 0 [`unit` per unit of the channel].
         offset : float
             Reading at a value of 0 [`unit`].
         unit : str
-            Of the readings.
+            Unit of the readings.
         """
         ends = sorted([(offset, 0.0), (offset + sensitivity, 1.0)])
         readings, values = zip(*ends, strict=True)
@@ -91,13 +90,13 @@ class Calibration:
         return (self.values[-1] - self.values[0]) / (self.readings[-1] - self.readings[0])
 
     def in_units_of(self, size: float) -> Calibration:
-        """Return it for readings that are told in units of another size [`unit`]."""
+        """Return the calibration for readings in units of another size [`unit`]."""
         ends = sorted(zip((x / size for x in self.readings), self.values, strict=True))
         readings, values = zip(*ends, strict=True)
         return replace(self, readings=readings, values=values, unit="")
 
     def beyond(self, readings: NDArray[np.float64]) -> float:
-        """How far readings lie outside of the curve, as a share of its span [-].
+        """Return the distance of readings outside the curve, as a share of its span [-].
 
         Parameters
         ----------
@@ -126,9 +125,9 @@ class Calibration:
         Raises
         ------
         ParameterError
-            Readings lie further outside than a twentieth of a table's span.
+            Readings lie outside a table by more than a twentieth of its span.
         """
-        import numpy as np  # rig files are read for help as well, which does without
+        import numpy as np  # not imported by `--help`, which reads rig files
 
         if self.beyond(readings) > _MARGIN:
             low, high = self.readings[0], self.readings[-1]
@@ -151,31 +150,31 @@ VALUE_COLUMNS = {
     "speed": "speed_rad_s",
     "force": "force_N",
 }
-"""Name of the column of values, by kind of channel."""
+"""Name of the column of values by kind of channel."""
 
 _READING_COLUMNS = {"reading": "", **{f"reading_{unit}": unit for unit in READING_UNITS}}
 
 _FEWEST = 3
-"""Rows of a table."""
+"""Fewest rows of a table."""
 
 
-def read_calibration(given: Any, kind: str, folder: Path, where: str) -> Calibration:
+def read_calibration(entry: Any, kind: str, folder: Path, where: str) -> Calibration:
     """Read the calibration of a kind of channel.
 
     Parameters
     ----------
-    given : str or mapping
-        As the TOML file holds it: the name of a table's file, or a line.
+    entry : str or mapping
+        Entry of the TOML file: the name of a table's file, or a line.
     kind : str
     folder : Path
-        Of the rig file; names of files are relative to it.
+        Folder of the rig file, to which names of files are relative.
     where : str
-        What messages call the entry.
+        Name of the entry in messages.
 
     Raises
     ------
     ParameterError
-        It cannot be used.
+        The entry cannot be used.
 
     Examples
     --------
@@ -183,10 +182,10 @@ def read_calibration(given: Any, kind: str, folder: Path, where: str) -> Calibra
     >>> read_calibration({"sensitivity": 0.101}, "angle", Path(), "rig, angle").gain
     9.900990099009901
     """
-    if isinstance(given, str):
+    if isinstance(entry, str):
         from models.foreign_table import read_table
 
-        path = folder / given
+        path = folder / entry
         where = f"{where}: {path}"
         with reading(path, "CSV table", where=where, largest=LARGEST_TEXT):
             table = read_table(path)
@@ -195,21 +194,21 @@ def read_calibration(given: Any, kind: str, folder: Path, where: str) -> Calibra
         )
         columns = dict(zip(names, table.values.T.tolist(), strict=True))
         return _curve(columns, kind, where, path.name)
-    if not isinstance(given, Mapping):
+    if not isinstance(entry, Mapping):
         raise ParameterError(
-            f'{where} = {given!r} must be the name of a table, "cell.csv", or a line, '
+            f'{where} = {entry!r} must be the name of a table, "cell.csv", or a line, '
             "{ sensitivity = 12.19, offset = 0.4222 }"
         )
-    if VALUE_COLUMNS[kind] in given:
-        return _curve(given, kind, where, "its table")
-    refuse_unknown(given, {"sensitivity", "offset", "reading"}, where)
-    sensitivity = number(given, "sensitivity", where, low=-math.inf)
-    offset = number({"offset": 0.0, **given}, "offset", where, low=-math.inf)
+    if VALUE_COLUMNS[kind] in entry:
+        return _curve(entry, kind, where, "its table")
+    refuse_unknown(entry, {"sensitivity", "offset", "reading"}, where)
+    sensitivity = number(entry, "sensitivity", where, low=-math.inf)
+    offset = number({"offset": 0.0, **entry}, "offset", where, low=-math.inf)
     if offset + sensitivity == offset:
         raise ParameterError(
-            f"{where}: sensitivity = {sensitivity:g} tells nothing; give readings per unit"
+            f"{where}: sensitivity = {sensitivity:g} is too small; give readings per unit"
         )
-    unit = as_text(given.get("reading", ""), "reading", where)
+    unit = as_text(entry.get("reading", ""), "reading", where)
     if unit and unit not in READING_UNITS:
         raise ParameterError(
             f"{where}: reading = {unit!r} must be one of {', '.join(READING_UNITS)}"
@@ -218,12 +217,12 @@ def read_calibration(given: Any, kind: str, folder: Path, where: str) -> Calibra
 
 
 def _curve(columns: Mapping[str, Any], kind: str, where: str, source: str) -> Calibration:
-    """Make a curve of the columns of a table."""
+    """Return the calibration curve of a table's columns."""
     value = VALUE_COLUMNS[kind]
     units = [name for name in columns if name in _READING_COLUMNS]
     if value not in columns or len(units) != 1:
-        known = (value, *_READING_COLUMNS)
-        hints = (did_you_mean(name, known) for name in columns if name not in known)
+        expected = (value, *_READING_COLUMNS)
+        hints = (did_you_mean(name, expected) for name in columns if name not in expected)
         raise ParameterError(
             f"{where}: has the columns {', '.join(columns) or 'none'}, expected {value} and one of "
             f"{', '.join(_READING_COLUMNS)}{next(filter(None, hints), '')}"
@@ -248,7 +247,7 @@ def _curve(columns: Mapping[str, Any], kind: str, where: str, source: str) -> Ca
 
 
 def _check_monotonic(points: list[tuple[float, float]], name: str, where: str) -> None:
-    """Refuse readings that do not rise, or do not fall, from value to value."""
+    """Raise if the readings are not strictly monotonic over the values."""
     sign = math.copysign(1.0, points[-1][1] - points[0][1])
     for (low, before), (high, after) in pairwise(points):
         if low == high:
@@ -261,7 +260,7 @@ def _check_monotonic(points: list[tuple[float, float]], name: str, where: str) -
 
 
 def calibration_table(calibration: Calibration, kind: str) -> dict[str, Any]:
-    """Return a calibration as a rig file states it for a kind of channel.
+    """Return the rig file's entry of a calibration, for a kind of channel.
 
     Examples
     --------

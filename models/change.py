@@ -1,16 +1,16 @@
 """Changes to a rig: factors, percentages and values for named quantities.
 
 A quantity of the bushing has a short name, ``damping``, and a long one with its unit,
-``damping_Nms_rad``. ``"x2"`` and ``"-20 %"`` go with both, a bare number with the long one alone,
-and is then the value at every fit and support. Parameters of the friction law and of effects go by
-their own names, ``slip_pulse.amplitude``, or by the last part of these where only one has it,
-``ageing_time``. A name of the bushing is always the bushing's, although an effect may have a
-parameter that is called alike, such as ``room_reflections.length``.
+``damping_Nms_rad``. ``"x2"`` and ``"-20 %"`` are allowed with both, a bare number with the long one
+only; it is then the value at every fit and support. Parameters of the friction law and of effects
+have names such as ``slip_pulse.amplitude``, or just ``ageing_time`` if that is unambiguous. A name
+of the bushing always means the bushing, even if an effect has a parameter of the same name, such as
+``room_reflections.length``.
 
 Size and modulus of the rubber, ``wall_mm``, ``length_mm``, ``youngs_modulus_MPa`` or
-``hardness_shore_A``, take the bushing along: its torques go with contact pressure, area and
-radius, as `models.bushing` has them, its stiffness and inertia with those of the sleeve. Damping
-and friction law stay.
+``hardness_shore_A``, scale the bushing: its torques with contact pressure, area and radius by
+`models.bushing`, its stiffness and inertia with those of the sleeve. Damping and friction law do
+not change.
 """
 
 import math
@@ -27,7 +27,7 @@ from models.schema import Quantity, declared, did_you_mean, number, refuse_impos
 
 
 def _numbers(kind: type, without: Iterable[str]) -> dict[str, str]:
-    """Long names of the quantities of a class, but for some, by short ones."""
+    """Return the long names of the quantities of a class by short name, without some."""
     entries = declared(kind).items()
     return {
         name: entry.key
@@ -40,7 +40,7 @@ _SLEEVE = _numbers(Sleeve, ("inner_radius", "poisson_ratio"))
 _FIT = _numbers(Fit, ("interference",))
 _RIG = _numbers(Rig, ("fastest_fitted",))
 _LONG = _FIT | _RIG | _SLEEVE
-"""Long names, with units, by short ones."""
+"""Long names, with units, by short name."""
 
 _FRICTION = "friction"
 
@@ -49,7 +49,7 @@ _PERCENT = re.compile(r"(?P<number>[+-]\s*[^\s%]+)\s*%")
 
 
 class _Amount(NamedTuple):
-    """How a value changes: it is multiplied, or replaced."""
+    """Change of a value: a factor, or a new value."""
 
     factor: float = 1.0
     value: float | None = None
@@ -59,16 +59,16 @@ class _Amount(NamedTuple):
 
 
 def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
-    """Return a rig with quantities changed; the one that is given stays as it is.
+    """Return a rig with quantities changed.
 
     Parameters
     ----------
     rig : Rig
     changes : mapping of str to str, float or mapping
-        Factor, percentage or value by the quantity's name; a table goes by the name of an effect,
-        or ``friction``.
+        Factor, percentage or value by the quantity's name; a table by the name of an effect, or
+        ``friction``.
     where : str
-        What messages begin with.
+        Prefix of messages.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
     Raises
     ------
     ParameterError
-        A name is unknown or means several quantities, or an amount cannot be used.
+        A name is unknown or ambiguous, or an amount cannot be used.
 
     Examples
     --------
@@ -88,14 +88,14 @@ def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
     (9.424, 0.000552)
     """
     amounts: dict[str, _Amount] = {}
-    for name, given in _flat(changes, where):
+    for name, change in _flat(changes, where):
         target = _target(rig, name, where)
         if target in amounts:
             raise ParameterError(f"{where}: {target} is changed twice; give one change")
-        amounts[target] = _amount(given, name, target, where)
+        amounts[target] = _amount(change, name, target, where)
     try:
         rig = _resized(rig, amounts, where)
-        made = replace(
+        changed = replace(
             rig,
             fits=tuple(replace(fit, **_changed(fit, _FIT, amounts)) for fit in rig.fits),
             friction=_changed_law(rig.friction, _FRICTION, amounts, where),
@@ -104,24 +104,24 @@ def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
         )
     except ParameterError as error:
         raise ParameterError(f"{where}: {str(error).removeprefix(f'{where}: ')}") from None
-    refuse_impossible(made, where)
-    return made
+    refuse_impossible(changed, where)
+    return changed
 
 
 def multiplied(
     rig: Rig, changes: Mapping[str, Any], factors: Mapping[str, float]
 ) -> dict[str, str | float]:
-    """Return changes to a rig with quantities of the bushing multiplied besides.
+    """Return changes to a rig combined with factors on quantities of the bushing.
 
-    Changes of effects are left out: who writes a rig file lists these as they have become.
+    Changes of effects are left out, since a rig file lists the changed effects themselves.
 
     Parameters
     ----------
     rig : Rig
     changes : mapping of str to str, float or mapping
-        As `changed_rig` has taken them.
+        As for `changed_rig`.
     factors : mapping of str to float
-        By short names [-].
+        Factors by short name [-].
 
     Examples
     --------
@@ -130,29 +130,29 @@ def multiplied(
     ...            {"damping": 1.01, "kinetic_torque": 0.5, "critical_torque": 0.9})
     {'damping': 'x2.02', 'kinetic_torque_Nm': 4.0, 'critical_torque': 'x0.9'}
     """
-    rest, found = dict(factors), dict[str, str | float]()
-    for name, given in _flat(changes, "change"):
+    rest, combined = dict(factors), dict[str, str | float]()
+    for name, change in _flat(changes, "change"):
         target = _target(rig, name, "change")
         if target in _LONG or target.startswith(f"{_FRICTION}."):
             factor = rest.pop(target, 1.0)
-            amount = _amount(given, name, target, "change")
+            amount = _amount(change, name, target, "change")
             value = amount.value
-            found[name] = f"x{amount.factor * factor:.6g}" if value is None else value * factor
-    return found | {name: f"x{factor:.6g}" for name, factor in rest.items()}
+            combined[name] = f"x{amount.factor * factor:.6g}" if value is None else value * factor
+    return combined | {name: f"x{factor:.6g}" for name, factor in rest.items()}
 
 
 def _flat(changes: Mapping[str, Any], where: str) -> Iterator[tuple[str, Any]]:
-    for name, given in changes.items():
+    for name, change in changes.items():
         if name == HARDNESS.key:
-            yield _LONG["youngs_modulus"], shore_modulus(HARDNESS.read(given, where)) / 1e6
-        elif isinstance(given, Mapping):
-            yield from ((f"{name}.{key}", value) for key, value in given.items())
+            yield _LONG["youngs_modulus"], shore_modulus(HARDNESS.read(change, where)) / 1e6
+        elif isinstance(change, Mapping):
+            yield from ((f"{name}.{key}", value) for key, value in change.items())
         else:
-            yield name, given
+            yield name, change
 
 
 def _target(rig: Rig, name: str, where: str) -> str:
-    """Name what a change is of: the short name of a quantity of the bushing, or `law.parameter`."""
+    """Return the target of a change: the short name of a quantity, or `law.parameter`."""
     owners = {_FRICTION: rig.friction, **{effect.name: effect for effect in rig.effects}}
     owner, dot, key = name.partition(".")
     if dot and owner == rig.friction.name:
@@ -164,36 +164,36 @@ def _target(rig: Rig, name: str, where: str) -> str:
             f"{where}: {name} is an operating condition, not a property of the bushing; leave it "
             "out and ask for it with --interference"
         )
-    # The whole name of a quantity of the bushing: that parameters end alike makes it no other.
+    # A full name of the bushing takes precedence over parameters of the same name.
     whole = [short for short, long in _LONG.items() if name in (short, long)]
-    found = whole or [f"{own}.{name}" for own, law in owners.items() if name in law.parameters]
-    if len(found) > 1:
-        possible = " or ".join(found)
+    targets = whole or [f"{own}.{name}" for own, law in owners.items() if name in law.parameters]
+    if len(targets) > 1:
+        possible = " or ".join(targets)
         raise ParameterError(f"{where}: {name} can mean {possible}; write which")
-    if not found:
+    if not targets:
         parameters = {f"{own}.{key}": key for own, law in owners.items() for key in law.parameters}
-        known = [*dict.fromkeys((*_LONG, *_LONG.values(), *parameters))]
-        hint = did_you_mean(name, [*known, *parameters.values()])
-        raise ParameterError(f"{where}: cannot change {name!r}{hint}; known are {', '.join(known)}")
-    return found[0]
+        names = [*dict.fromkeys((*_LONG, *_LONG.values(), *parameters))]
+        hint = did_you_mean(name, [*names, *parameters.values()])
+        raise ParameterError(f"{where}: cannot change {name!r}{hint}; known are {', '.join(names)}")
+    return targets[0]
 
 
-def _amount(given: Any, name: str, target: str, where: str) -> _Amount:
-    stated = f"{where}: {name} = {given!r}"
-    if isinstance(given, str):
-        text, by = given.strip(), math.nan
+def _amount(change: Any, name: str, target: str, where: str) -> _Amount:
+    stated = f"{where}: {name} = {change!r}"
+    if isinstance(change, str):
+        text, by = change.strip(), math.nan
         with suppress(ValueError):
-            if found := _FACTOR.fullmatch(text):
-                by = float(found["number"])
-            elif found := _PERCENT.fullmatch(text):
-                by = 1.0 + float(found["number"].replace(" ", "")) / 100.0
+            if match := _FACTOR.fullmatch(text):
+                by = float(match["number"])
+            elif match := _PERCENT.fullmatch(text):
+                by = 1.0 + float(match["number"].replace(" ", "")) / 100.0
         if not 0.0 < by < math.inf:
             raise ParameterError(
                 f"{stated} is not a valid change; write a factor above 0 such as 'x2', a "
                 "percentage above -100 % with its sign such as '-20 %', or a number"
             )
         return _Amount(factor=by)
-    to = number({name: given}, name, where, low=-math.inf)
+    to = number({name: change}, name, where, low=-math.inf)
     if target in _LONG and name != _LONG[target]:
         raise ParameterError(
             f"{stated} has no unit; write {_LONG[target]} = {to:g}, or a factor such as 'x2'"
@@ -204,7 +204,7 @@ def _amount(given: Any, name: str, target: str, where: str) -> _Amount:
 
 
 def _resized(rig: Rig, amounts: Mapping[str, _Amount], where: str) -> Rig:
-    """Return the rig with another sleeve, and what follows from that."""
+    """Return a rig with a changed sleeve, and its bushing scaled accordingly."""
     named = [name for name in _SLEEVE if name in amounts]
     if not named:
         return rig
@@ -238,13 +238,13 @@ def _resized(rig: Rig, amounts: Mapping[str, _Amount], where: str) -> Rig:
     )
 
 
-def _changed(shown: Any, names: Iterable[str], amounts: Mapping[str, _Amount]) -> dict[str, Any]:
-    """Return what becomes of the fields of an object that have an amount."""
-    found: dict[str, Any] = {}
+def _changed(obj: Any, names: Iterable[str], amounts: Mapping[str, _Amount]) -> dict[str, Any]:
+    """Return the new values of the fields of an object that have an amount."""
+    values: dict[str, Any] = {}
     for name in amounts.keys() & set(names):
-        old, of = getattr(shown, name), amounts[name].of
-        found[name] = {k: of(v) for k, v in old.items()} if isinstance(old, Mapping) else of(old)
-    return found
+        old, of = getattr(obj, name), amounts[name].of
+        values[name] = {k: of(v) for k, v in old.items()} if isinstance(old, Mapping) else of(old)
+    return values
 
 
 def _changed_law(law: LawSpec, owner: str, amounts: Mapping[str, _Amount], where: str) -> LawSpec:
@@ -255,7 +255,7 @@ def _changed_law(law: LawSpec, owner: str, amounts: Mapping[str, _Amount], where
             continue
         old = parameters.get(name)
         if amount.value is None and not isinstance(old, int | float):
-            stated = "does not state it as a number" if old is None else f"says {old!r}"
+            stated = "does not state it as a number" if old is None else f"states {old!r}"
             raise ParameterError(
                 f"{where}: {target} cannot be multiplied, since the rig {stated}; write its value "
                 "as a number"

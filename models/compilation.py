@@ -1,9 +1,9 @@
-"""Compiled functions: their options, and the folder that keeps them where numba finds none.
+"""Options of compiled functions, and the fallback folder of numba's cache.
 
-Compiling is most of what a first run waits for. numba keeps what it compiled beside the source, or
-in the user's cache folder. A user without a home, as containers and services have them, gets a
-folder among the temporary files that lasts as long as the process: it holds machine code, which is
-run as it is found, so one that anybody else could have prepared is not used.
+Compilation dominates the first run. numba caches compiled code beside the source or in the user's
+cache folder. Users without a home, as in containers and services, get a private temporary folder
+for the life of the process: it contains machine code, so a folder that others could write to is not
+used.
 """
 
 import atexit
@@ -16,20 +16,20 @@ from typing import Any
 import platformdirs
 
 COMPILED: dict[str, Any] = {"error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
-"""Of functions that only read and write arrays of their caller's.
+"""Options of functions that only read and write arrays of their caller.
 
-Without the counting of references to arrays, and without what calling them from C would need.
+They leave out reference counting of arrays and the wrapper for calls from C.
 """
 
 PART: dict[str, Any] = {**COMPILED, "no_cpython_wrapper": True}
-"""Of such functions that only compiled functions call, in whose place in the cache they lie."""
+"""Options of such functions that only compiled functions call, cached with their caller."""
 
 
 def ensure_compile_cache() -> None:
-    """Name numba a folder where it would find none, before the first function asks for it.
+    """Set a cache folder for numba if it has none, before the first compilation.
 
-    A folder that the user names (``NUMBA_CACHE_DIR``) comes first. matplotlib, which keeps a list
-    of fonts, is in the same plight, and is given the same folder.
+    A folder that the user sets (``NUMBA_CACHE_DIR``) takes precedence. matplotlib's cache of fonts
+    gets the same folder.
 
     Examples
     --------
@@ -42,5 +42,5 @@ def ensure_compile_cache() -> None:
         return
     private = tempfile.mkdtemp(prefix="bushing-noise-")
     atexit.register(shutil.rmtree, private, ignore_errors=True)
-    os.environ["NUMBA_CACHE_DIR"] = private  # which the processes that we start inherit
+    os.environ["NUMBA_CACHE_DIR"] = private  # inherited by child processes
     os.environ.setdefault("MPLCONFIGDIR", private)

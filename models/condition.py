@@ -1,4 +1,4 @@
-"""The operating condition of a recording or of a run: what the engineer sets on the rig."""
+"""Operating condition of a recording or a run: speed, fit, support, material, temperature."""
 
 import math
 from dataclasses import dataclass
@@ -41,19 +41,19 @@ _TEMPERATURE = Quantity(
 
 @dataclass(frozen=True)
 class Condition:
-    """Operating condition; ``None`` where it is not known.
+    """Operating condition; ``None`` for unknown quantities.
 
     Parameters
     ----------
     speed : float, optional
-        Angular speed of the shaft [rad/s], signed. ``None`` also where it varied during the run.
+        Angular speed of the shaft [rad/s], signed. ``None`` also if it varies during the run.
     interference : float, optional
         Interference fit between shaft and compressed bushing [m].
     support_stiffness : float, optional
-        Torsional stiffness of the beams that hold the clamp [Nm/rad]; `FIXED` where the clamp
-        is bolted to the baseplate.
+        Torsional stiffness of the beams that hold the clamp [Nm/rad]; `FIXED` for the clamp bolted
+        to the baseplate.
     material : str, optional
-        Elastomer, named as the material files are.
+        Elastomer, by the name of its material file.
     temperature : float, optional
         Ambient temperature [degree Celsius].
 
@@ -72,7 +72,7 @@ class Condition:
 
     @property
     def words(self) -> list[str]:
-        """Material, fit, support and speed as far as they are known, as titles tell them.
+        """Material, fit, support and speed for titles, as far as known.
 
         Examples
         --------
@@ -93,12 +93,12 @@ class Condition:
 CONDITION: dict[str, Quantity] = {
     name: entry for name, entry in declared(Condition).items() if isinstance(entry, Quantity)
 }
-"""Keys, units, bounds, defaults and help of a condition's numbers, by the names of the fields."""
+"""Declared quantities of a condition, by the names of the fields."""
 
 
 @dataclass(frozen=True)
 class KnownCondition(Condition):
-    """Operating condition of which speed, interference and support stiffness are known.
+    """Operating condition with known speed, interference and support stiffness.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class KnownCondition(Condition):
     support_stiffness : float
         Torsional stiffness of the beams [Nm/rad], or `FIXED`.
     material, temperature
-        As of `Condition`.
+        As for `Condition`.
 
     Examples
     --------
@@ -123,7 +123,7 @@ class KnownCondition(Condition):
 
 
 def known_condition(condition: Condition) -> KnownCondition:
-    """Return a condition as one that is known, for whatever simulates it.
+    """Return a condition as a `KnownCondition`, for simulations.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def known_condition(condition: Condition) -> KnownCondition:
     Raises
     ------
     ParameterError
-        What is not known; the message names all of it.
+        A quantity is unknown; the message names all of them.
 
     Examples
     --------
@@ -164,7 +164,7 @@ def known_condition(condition: Condition) -> KnownCondition:
 
 
 def same_support(one: float, other: float) -> bool:
-    """Whether two support stiffnesses [Nm/rad] are the same, to a tenth of a percent.
+    """Return whether two support stiffnesses [Nm/rad] are equal to a tenth of a percent.
 
     Examples
     --------

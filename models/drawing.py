@@ -1,12 +1,11 @@
-"""Drawing of curves: style, colours, frequency axes, and the thinning of long curves.
+"""Drawing of curves: style, colours, frequency axes, and thinning of long curves.
 
-A curve is thinned to what the paper can show, the lowest and the highest point of each column, so
-that an hour costs no more than a second and no peak is lost. An axis spans no less than what a
-reader would call a change, or else rounding errors would look like a vibration.
+A curve is thinned to the lowest and the highest point of each column, so that an hour costs no more
+than a second and no peak is lost. An axis has a minimum span, so that rounding errors do not look
+like a vibration.
 
-Objects draw themselves on axes that they are given, in the caller's style, or on those of a new
-figure of pyplot, which is what a notebook shows; nothing else here touches pyplot, and nothing that
-draws is imported before it is called.
+Objects draw on the caller's axes in the caller's style, or on axes of a new pyplot figure, which a
+notebook shows. Only `axes_or_new` uses pyplot, and matplotlib is imported at the first call.
 """
 
 from __future__ import annotations
@@ -24,14 +23,14 @@ if TYPE_CHECKING:
 
 
 BLUE, VERMILION, GREEN, ORANGE, GREY = "#0072b2", "#d55e00", "#008060", "#e69f00", "#666666"
-"""Told apart by every eye (Okabe and Ito, Color universal design, 2008)."""
+"""Colours that are distinct for all readers (Okabe and Ito, Color universal design, 2008)."""
 
 CURVES = (BLUE, VERMILION, GREEN, ORANGE, "#b5478a", GREY)
-"""Colours of curves, in the order in which they are taken."""
+"""Colours of curves, in order of use."""
 
 
 class Look(NamedTuple):
-    """Of a kind of channel: its name and unit on an axis, and its colour."""
+    """Name and unit on an axis, and colour, of a kind of channel."""
 
     name: str
     unit: str
@@ -46,26 +45,26 @@ CHANNEL_LOOKS = {
     "speed": Look("Speed of the shaft", "rad/s", VERMILION),
     "force": Look("Force", "N", ORANGE),
 }
-"""By kind of channel."""
+"""Axis label and colour by kind of channel."""
 
 STYLE = Path(__file__).parent / "data" / "curves.mplstyle"
-"""Settings of matplotlib, beside its defaults, under which pictures are made and written."""
+"""Style sheet of matplotlib for all pictures."""
 
 _SIZE = (9.0, 3.8)
-"""Of a new figure [inch]."""
+"""Size of a new figure [inch]."""
 
 _COLUMNS = 1200
-"""Steps across a picture that the eye can tell apart."""
+"""Columns of a thinned curve, which the eye can still resolve."""
 
 _TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 10e3, 15e3, 20e3, 50e3, 100e3, 200e3)
-"""Of a frequency axis [Hz]."""
+"""Ticks of a frequency axis [Hz]."""
 
 _SMALLEST = 1e-60  # stands for a density of zero
 
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Make figures in the style of this project, leaving the caller's as it is.
+    """Use the style of this project within the block.
 
     Examples
     --------
@@ -82,14 +81,14 @@ def styled() -> Iterator[None]:
 
 @contextmanager
 def axes_or_new(ax: Axes | None) -> Iterator[Axes]:
-    """Give axes to draw on: those given, or else those of a new figure of pyplot, styled.
+    """Yield `ax`, or by default the axes of a new styled pyplot figure.
 
     Examples
     --------
     >>> from matplotlib.figure import Figure
-    >>> given = Figure().subplots()
-    >>> with axes_or_new(given) as axes:
-    ...     axes is given
+    >>> own = Figure().subplots()
+    >>> with axes_or_new(own) as axes:
+    ...     axes is own
     True
     """
     if ax is not None:
@@ -108,20 +107,20 @@ def thinned(
     position: NDArray[np.float64] | None = None,
     columns: int = _COLUMNS,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Keep the lowest and the highest point of each column, where it is too narrow to show more.
+    """Reduce a long curve to the lowest and the highest point of each column.
 
     Parameters
     ----------
     x, y : ndarray, shape (n,)
-        A curve, each in its own [unit]; `x` rises.
+        Curve, each in its own [unit]; `x` rises.
     position : ndarray, shape (n,), optional
-        Where on the axis each point is drawn, if not in proportion to `x` [-].
+        Position of each point on the axis [-], if not proportional to `x`.
     columns : int
 
     Returns
     -------
     x, y : ndarray, shape (m,)
-        In the same [unit], of no more than ``2 * columns + 2`` points.
+        In the same [unit], at most ``2 * columns + 2`` points.
 
     Examples
     --------
@@ -133,17 +132,17 @@ def thinned(
         return x, y
     place = x if position is None else position
     edges = np.searchsorted(place, np.linspace(place[0], place[-1], columns + 1)[1:-1])
-    kept = {0, x.size - 1}
+    points = {0, x.size - 1}
     for start, stop in zip([0, *edges], [*edges, x.size], strict=True):
         if stop > start:
-            kept.add(int(start + y[start:stop].argmin()))
-            kept.add(int(start + y[start:stop].argmax()))
-    chosen = np.array(sorted(kept))
+            points.add(int(start + y[start:stop].argmin()))
+            points.add(int(start + y[start:stop].argmax()))
+    chosen = np.array(sorted(points))
     return x[chosen], y[chosen]
 
 
 def padded(low: float, high: float, least: float) -> tuple[float, float]:
-    """Return limits of an axis somewhat wider than from `low` to `high`, and wider than `least`.
+    """Return limits of an axis slightly wider than `low` to `high`, with at least the span `least`.
 
     All in the [unit] of the axis.
 
@@ -157,7 +156,7 @@ def padded(low: float, high: float, least: float) -> tuple[float, float]:
 
 
 def levels(density: NDArray[np.float64], reference: float) -> NDArray[np.float64]:
-    """Levels of a spectral density [unit^2/Hz] in dB re (`reference` [unit])^2/Hz, in its shape.
+    """Return the levels of a spectral density [unit^2/Hz] in dB re (`reference` [unit])^2/Hz.
 
     Examples
     --------
@@ -168,7 +167,7 @@ def levels(density: NDArray[np.float64], reference: float) -> NDArray[np.float64
 
 
 def frequency_axis(axes: Axes, low: float, high: float) -> None:
-    """Make the horizontal axis one of frequency, logarithmic from `low` to `high` [Hz].
+    """Set a logarithmic horizontal axis of frequency from `low` to `high` [Hz].
 
     Examples
     --------

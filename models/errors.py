@@ -1,15 +1,15 @@
-"""The exceptions of bushing-noise, as few as callers need to tell apart.
+"""Exceptions of bushing-noise.
 
-Every message names the place (file, channel, field), the value found and what would be right,
-in one line: the command line shows it as it is. Values come from files, and may be of any length
-and hold line breaks; so the root makes of each message one line that can be read.
+Every message names the place (file, channel, field), the value and what would be right, in one
+line, which the command line prints unchanged. Values come from files and may be long or contain
+line breaks, so the root class turns each message into one line of bounded length.
 """
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 _LONGEST = 2000
-"""Letters of a message, of which the end is left out."""
+"""Longest message in characters; the rest is cut off."""
 
 
 class BushingNoiseError(Exception):
@@ -18,7 +18,7 @@ class BushingNoiseError(Exception):
     Parameters
     ----------
     message : str
-        Becomes one line of bounded length.
+        Message, which becomes one line of bounded length.
 
     Examples
     --------
@@ -32,28 +32,28 @@ class BushingNoiseError(Exception):
 
 
 class ParameterError(BushingNoiseError, ValueError):
-    """A value, name or option that cannot be used; the call as a whole is refused."""
+    """Error for an unusable value, name or option; the whole call is refused."""
 
 
 class RecordingError(BushingNoiseError):
-    """A recording that cannot be read; a batch goes on with the next file."""
+    """Error for a recording that cannot be read; a batch continues with the next file."""
 
 
 @contextmanager
 def naming(place: str, error: type[BushingNoiseError] | None = None) -> Iterator[None]:
-    """Let errors of the block name a place before what they say, such as an option.
+    """Prefix the errors of the block with a place, such as an option.
 
     Parameters
     ----------
     place : str
-        With what stands between it and the message.
+        Prefix, including the separator before the message.
     error : type, optional
-        Of the error; by default it stays what it is.
+        Type of the raised error; by default that of the original.
 
     Raises
     ------
     BushingNoiseError
-        Whatever the block raises of these, with the place.
+        The error of the block, with the prefix.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def naming(place: str, error: type[BushingNoiseError] | None = None) -> Iterator
 
 
 def not_installed(what: str, package: str, extra: str) -> str:
-    """Message of an error for a missing extra: `what` is a subject with its verb.
+    """Return the message for a missing extra; `what` is a subject with its verb.
 
     Examples
     --------

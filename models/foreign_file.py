@@ -1,10 +1,10 @@
-"""Files from outside: looked at before they are opened, and read without trust.
+"""Safe reading of foreign files: checks before opening, bounded sizes, uniform errors.
 
-Every reader goes through here. What is no plain file (a pipe, a device, a folder) is refused
-without being opened, since opening it may wait forever. Sizes are bounded before anything is set
-aside for them: of the file, of how deep its lists lie in one another, of what an archive inflates
-to and an array's header announces. Nothing is unpickled. And whatever a library raises over a
-damaged file becomes one error of one line that names the file.
+All readers use this module. Anything but a plain file (a pipe, a device, a folder) is refused
+without opening it, since opening may block forever. Sizes are bounded before memory is allocated:
+of the file, the depth of nested lists, the inflated size of an archive, and the size in an array's
+header. Nothing is unpickled. Whatever a library raises for a damaged file becomes one error of one
+line that names the file.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LARGEST_TEXT = 1 << 30
-"""Of a table in text, which is read line by line [byte]."""
+"""Largest text table, which is read line by line [byte]."""
 
 LARGEST_TOML = 2 << 20
-"""Of a TOML file, whose parser takes about a second a megabyte [byte]."""
+"""Largest TOML file, whose parser takes about a second per megabyte [byte]."""
 
 LARGEST_JSON = 64 << 20
-"""Of a JSON file, which is held as a whole [byte]."""
+"""Largest JSON file, which is read as a whole [byte]."""
 
 _ALLOWANCE, _MOST = 64 << 20, 100
-"""An archive may inflate to so many bytes, or to so many times its size."""
+"""Allowed inflated size of an archive in bytes, and as a multiple of its size."""
 
-_LONGEST_REASON = 200  # letters
+_LONGEST_REASON = 200  # characters
 
 _KINDS = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket"}
 
 
 class ExcessError(ValueError):
-    """A file asks for more than it may; the message goes on from its name."""
+    """Error for a file beyond a limit; the message continues after the file's name."""
 
 
 @contextmanager
@@ -52,20 +52,20 @@ def reading(
     error: type[BushingNoiseError] = ParameterError,
     largest: int | None = None,
 ) -> Iterator[None]:
-    """Read a file from outside within this block: what goes wrong there is one line about it.
+    """Context of reading a foreign file: every error in it becomes one line about the file.
 
     Parameters
     ----------
     path : Path
-        Refused without being opened unless it is a plain file.
+        Path of the file; anything but a plain file is refused without opening it.
     what : str
-        What it should be, such as ``"NPZ file"``.
+        Expected kind of file, such as ``"NPZ file"``.
     where : str, optional
-        What messages call the file; by default its path.
+        Name of the file in messages; by default its path.
     error : type
-        Of the error; errors of `models.errors` pass as they are.
+        Type of the error; errors of `models.errors` pass unchanged.
     largest : int, optional
-        Size up to which it is opened [byte].
+        Largest size [byte].
 
     Raises
     ------
@@ -97,7 +97,7 @@ def reading(
 def refusing(
     where: str, what: str, error: type[BushingNoiseError] = ParameterError
 ) -> Iterator[None]:
-    """Make one line of whatever is raised in this block over values from a file.
+    """Context of using a file's values: every error in it becomes one line.
 
     Parameters
     ----------
@@ -130,22 +130,22 @@ def refusing(
         raise error(f"{where}: needs more memory than there is") from raised
     except RecursionError as raised:
         raise error(f"{where}: is no {what} (too deep)") from raised
-    except Exception as raised:  # libraries raise whatever comes to them
+    except Exception as raised:  # libraries raise exceptions of any type
         raise error(f"{where}: is damaged or no {what} ({_reason(raised)})") from raised
 
 
 def check_plain_file(
     path: Path, *, where: str | None = None, error: type[BushingNoiseError] = ParameterError
 ) -> None:
-    """Refuse what is no plain file, such as a pipe, without opening it; missing ones as well.
+    """Raise unless a path is an existing plain file, without opening it.
 
     Parameters
     ----------
     path : Path
     where : str, optional
-        What messages call the file; by default its path.
+        Name of the file in messages; by default its path.
     error : type
-        Of the error.
+        Type of the error.
 
     Raises
     ------
@@ -163,17 +163,17 @@ def check_plain_file(
 
 
 def check_inflation(path: Path) -> None:
-    """Refuse a ZIP archive whose members would inflate beyond measure.
+    """Raise if a ZIP archive would inflate beyond the limits.
 
     Parameters
     ----------
     path : Path
-        Of an NPZ file, a workbook.
+        Path of an NPZ file or a workbook.
 
     Raises
     ------
     ValueError
-        They would. What the library raises over no archive is left to `reading`.
+        It would. Errors of the library for other files are left to `reading`.
     """
     size = path.stat().st_size
     with zipfile.ZipFile(path) as archive:
@@ -209,7 +209,7 @@ def parse_json(text: str | bytes) -> Any:
     Raises
     ------
     ValueError
-        It is no JSON, or too deep.
+        The text is not JSON, or nested too deep.
 
     Examples
     --------
@@ -225,10 +225,10 @@ def parse_json(text: str | bytes) -> Any:
 def _reason(raised: Exception) -> str:
     if isinstance(raised, KeyError):
         return one_line(f"lacks {raised}")
-    said = one_line(raised)
-    if said and isinstance(raised, ValueError):
-        return said
-    return f"{type(raised).__name__}: {said}" if said else type(raised).__name__
+    message = one_line(raised)
+    if message and isinstance(raised, ValueError):
+        return message
+    return f"{type(raised).__name__}: {message}" if message else type(raised).__name__
 
 
 def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
@@ -246,8 +246,8 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
     Raises
     ------
     ValueError
-        It is damaged, holds something else than arrays of numbers and texts, or would inflate
-        beyond measure. What the libraries raise on top of that is left to `reading`.
+        The file is damaged, contains anything but arrays of numbers and texts, or would inflate
+        beyond the limits. Other errors of the libraries are left to `reading`.
 
     Examples
     --------
@@ -284,7 +284,7 @@ def read_array(path: Path) -> NDArray[Any]:
     Raises
     ------
     ValueError
-        It is damaged, or its header announces more than there is.
+        The file is damaged, or its header announces more than it contains.
 
     Examples
     --------
@@ -297,7 +297,7 @@ def read_array(path: Path) -> NDArray[Any]:
     """
     import numpy as np
 
-    found = np.load(path, allow_pickle=False)
-    if not isinstance(found, np.ndarray):
+    array = np.load(path, allow_pickle=False)
+    if not isinstance(array, np.ndarray):
         raise ValueError("is an archive, expected one array")
-    return found
+    return array

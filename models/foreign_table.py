@@ -1,7 +1,7 @@
-"""Tables of numbers in text (CSV), as loggers, analysers and spreadsheets write them.
+"""Reader of text tables of numbers (CSV) written by loggers, analysers and spreadsheets.
 
-Columns are parted by semicolons, tabs, commas or blanks; a number may have a decimal comma where
-commas do not part columns. What stands above the numbers is read for the columns' names and units:
+Columns are separated by semicolons, tabs, commas or blanks; numbers may have a decimal comma unless
+commas separate columns. The rows above the numbers give names and units of the columns:
 ``Force [kN]``, or a row of units below a row of names.
 """
 
@@ -22,14 +22,14 @@ _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 @dataclass(frozen=True, eq=False)
 class ForeignTable:
-    """A table of numbers.
+    """Table of numbers with named columns.
 
     Parameters
     ----------
     names, units : tuple of str
-        One a column, of `units` as the file spells them; empty where it states none.
+        One per column; units as the file spells them, empty where it states none.
     values : ndarray, shape (n_rows, n_columns)
-        [units as stated]; NaN where a cell is empty.
+        [units of the file]; NaN for an empty cell.
     """
 
     names: tuple[str, ...]
@@ -38,7 +38,7 @@ class ForeignTable:
 
 
 def read_table(path: Path) -> ForeignTable:
-    r"""Read a table of two columns or more, within `models.foreign_file.reading`.
+    r"""Read a table of two or more columns, within `models.foreign_file.reading`.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def read_table(path: Path) -> ForeignTable:
     Raises
     ------
     ValueError
-        There are no numbers in it, rows differ in length, or a cell is no number.
+        The table has no numbers, rows differ in length, or a cell is not a number.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def read_table(path: Path) -> ForeignTable:
         if first is not None:
             break
     else:
-        raise ExcessError("holds no rows of numbers; columns are parted by ; or , or tabs")
+        raise ExcessError("holds no rows of numbers; columns are separated by ; or , or tabs")
     n = len(rows[first][1])
     if not any(row[-1] for _, row in rows[first:]):  # a separator at the end of each line
         n -= 1
@@ -82,7 +82,8 @@ def read_table(path: Path) -> ForeignTable:
         if len(row) < n or any(row[n:]):
             raise ExcessError(
                 f"line {line} has {len(row)} columns, those before it have {n}"
-                + "; where commas part columns, numbers have a decimal point" * (separator == ",")
+                + "; where commas separate columns, numbers have a decimal point"
+                * (separator == ",")
             )
         for column, cell in enumerate(row[:n]):
             try:
@@ -111,7 +112,7 @@ def _begins_numbers(row: list[str]) -> bool:
 
 
 def _headings(rows: list[list[str]], n: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names and units of columns from the rows above the numbers; the nearest rows count."""
+    """Return names and units of columns from the rows nearest above the numbers."""
     stated = [""] * n
     for row in reversed(rows):
         if quantity_of_unit(row[0]) and not any(stated):  # a row of units

@@ -1,4 +1,4 @@
-"""A recording: samples of several channels in physical units, and what is known about them."""
+"""Recording: samples of several channels in physical units, with their operating condition."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 REFERENCE_PRESSURE = 20e-6
-"""Of sound pressure levels [Pa]."""
+"""Reference of sound pressure levels [Pa]."""
 
 
 @short_repr
 @dataclass(frozen=True)
 class Channel:
-    """What one channel of a recording measures.
+    """Channel of a recording: its quantity, position and direction.
 
     Parameters
     ----------
     name : str
         A key of `CHANNEL_UNITS`; further channels of a kind are ``pressure_2``, ``pressure_3`` ...
     position : tuple of 3 floats, optional
-        Where the sensor sits [m].
+        Position of the sensor [m].
     direction : tuple of 3 floats, optional
-        Unit vector along which it measures [-].
+        Unit vector of its sensitive direction [-].
     full_scale : float
-        Value of the channel, in its unit, at digital full scale of the file it came from
-        [the channel's unit]; the reference of levels in dBFS.
+        Value at digital full scale of the file [the channel's unit]; the reference of levels in
+        dBFS.
 
     Raises
     ------
     ParameterError
-        A name of no known kind.
+        The name is of no known kind.
 
     Examples
     --------
@@ -56,15 +56,15 @@ class Channel:
     def __post_init__(self) -> None:
         stem, _, number = self.name.partition("_")
         if stem not in CHANNEL_UNITS or (number and not (number.isdecimal() and int(number) > 1)):
-            known = ", ".join(CHANNEL_UNITS)
+            kinds = ", ".join(CHANNEL_UNITS)
             raise ParameterError(
-                f"channel {self.name!r} is of no known kind; use {known}, or one of them followed "
+                f"channel {self.name!r} is of no known kind; use {kinds}, or one of them followed "
                 f"by _2, _3 ..."
             )
 
     @property
     def kind(self) -> str:
-        """The key of `CHANNEL_UNITS` that the channel belongs to."""
+        """Kind of the channel, a key of `CHANNEL_UNITS`."""
         return self.name.partition("_")[0]
 
     @property
@@ -76,29 +76,30 @@ class Channel:
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Samples of all channels of one run, with what is known about it.
+    """Samples of all channels of one run, with its operating condition.
 
     Parameters
     ----------
     samples : ndarray, shape (n_channels, n_samples)
-        In the unit of each channel; in fractions of full scale where not `calibrated`.
+        In the unit of each channel; in fractions of full scale if not `calibrated`.
     rate : float
         Sampling rate [Hz].
     channels : tuple of Channel
-        One a row of `samples`.
+        One per row of `samples`.
     condition : Condition
-        Operating condition, as far as it is known.
+        Operating condition, as far as known.
     calibrated : bool
         Whether the samples are in physical units.
     name : str
-        What the recording is called in tables and messages, usually its file.
+        Name in tables and messages, usually the file's.
     notes : tuple of str
-        What a reader should know of it, a line each.
+        Notes for the reader, one line each.
 
     Raises
     ------
     ParameterError
-        Samples that are not one row per channel, two channels of one name, or a rate that is none.
+        The samples are not one row per channel, two channels have one name, or the rate is not
+        positive.
 
     Examples
     --------
@@ -130,8 +131,13 @@ class Recording:
             )
 
     @property
+    def n_samples(self) -> int:
+        """Samples of each channel."""
+        return int(self.samples.shape[1])
+
+    @property
     def duration(self) -> float:
-        """Length [s]."""
+        """Duration [s]."""
         return float(self.samples.shape[1] / self.rate)
 
     @property
@@ -140,7 +146,7 @@ class Recording:
         return tuple(channel.name for channel in self.channels)
 
     def first(self, kind: str) -> int | None:
-        """Row of the first channel of a kind; ``None`` where there is none."""
+        """Return the row of the first channel of a kind; ``None`` if there is none."""
         rows = (row for row, channel in enumerate(self.channels) if channel.kind == kind)
         return next(rows, None)
 

@@ -1,8 +1,8 @@
-"""The test rig and its bushing as plain data, and how files state them.
+"""Test rig and bushing as plain data, with their declared entries of rig files.
 
 Quantities are in SI units; the keys of rig files, their units and bounds are declared beside the
-fields (`models.schema`), and `models.rig_file` reads and writes by them. Sources of bounds are the
-thesis's rig, and bushings from a wiper's to a lorry's spring eye.
+fields (`models.schema`), from which `models.rig_file` reads and writes. Bounds follow from the
+thesis's rig, and from bushings of wipers up to spring eyes of lorries.
 """
 
 import itertools
@@ -44,14 +44,14 @@ _INERTIA_SLIPS = ((1e-4, "kg cm2"), (1e-6, "kg mm2"))
 
 @dataclass(frozen=True)
 class LawSpec:
-    """A friction law or an effect by name, with its parameters.
+    """Name of a friction law or an effect, with its parameters.
 
     Parameters
     ----------
     name : str
-        Of a file in `sim.friction` or of an effect in `sim.effects`.
+        Name of a law in `sim.friction` or an effect in `sim.effects`.
     parameters : mapping of str to float or str
-        Those that differ from the law's own, each in the unit that its `Parameter` declares [unit].
+        Parameters that differ from the defaults, in the units of their `Parameter` [unit].
 
     Examples
     --------
@@ -99,15 +99,14 @@ def parse_spec(text: str, where: str = "effect") -> LawSpec:
 
 
 class _Law(Entry):
-    """The friction law by name, with parameters; one that names none changes those of the base."""
+    """Entry of the friction law; a table without a name changes the parameters of the base."""
 
     def read(self, value: Any, where: str, old: LawSpec | None = None) -> LawSpec:
         table = dict(as_table(value, self.key, where))
-        stays = LawSpec("coulomb") if old is None else old
-        named = as_text(table.pop("law", stays.name), "friction.law", where)
-        given = {key: number(table, key, f"{where}, friction", low=-math.inf) for key in table}
-        stated = {} if "law" in value else stays.parameters
-        return LawSpec(named, {**stated, **given})
+        base = LawSpec("coulomb") if old is None else old
+        name = as_text(table.pop("law", base.name), "friction.law", where)
+        stated = {key: number(table, key, f"{where}, friction", low=-math.inf) for key in table}
+        return LawSpec(name, stated if "law" in value else {**base.parameters, **stated})
 
     def write(self, value: LawSpec) -> dict[str, Any]:
         return {"law": value.name, **value.parameters}
@@ -121,7 +120,7 @@ def _effects(value: Any, key: str, where: str) -> tuple[LawSpec, ...]:
 
 @dataclass(frozen=True)
 class _BySupport(Entry):
-    """A quantity by support stiffness [Nm/rad], or one number for all supports."""
+    """Entry of a quantity by support stiffness [Nm/rad], or one number for all supports."""
 
     value: Quantity
 
@@ -129,7 +128,7 @@ class _BySupport(Entry):
         by_support = value if isinstance(value, Mapping) else {"fixed": value}
         if not by_support:
             raise ParameterError(f"{where}: {self.key} is empty")
-        found = {}
+        values = {}
         for key, each in by_support.items():
             try:
                 support = support_stiffness(key)
@@ -137,20 +136,20 @@ class _BySupport(Entry):
                 raise ParameterError(
                     f"{where}: {self.key} has the entry {key!r}; {error}"
                 ) from None
-            found[support] = self.value.read(each, where)
-        return found
+            values[support] = self.value.read(each, where)
+        return values
 
     def write(self, value: Mapping[float, float]) -> dict[str, float]:
         return {support_name(support): each for support, each in value.items()}
 
 
 def support_stiffness(text: str) -> float:
-    """Return the support stiffness [Nm/rad] that a text states; ``fixed`` is infinite.
+    """Parse a support stiffness [Nm/rad]; ``fixed`` is infinite.
 
     Raises
     ------
     ParameterError
-        It is neither a positive number nor ``fixed``.
+        The text is neither a positive number nor ``fixed``.
 
     Examples
     --------
@@ -158,16 +157,16 @@ def support_stiffness(text: str) -> float:
     (2214.0, inf)
     """
     try:
-        found = math.inf if text == "fixed" else float(text)
+        stiffness = math.inf if text == "fixed" else float(text)
     except ValueError:
-        found = math.nan
-    if not found > 0.0 or (math.isinf(found) and text != "fixed"):
+        stiffness = math.nan
+    if not stiffness > 0.0 or (math.isinf(stiffness) and text != "fixed"):
         raise ParameterError("supports are stiffnesses in Nm/rad, or fixed")
-    return found
+    return stiffness
 
 
 def support_name(support: float) -> str:
-    """Name a support stiffness [Nm/rad] as keys and names of files do.
+    """Return the name of a support stiffness [Nm/rad] in keys and file names.
 
     Examples
     --------
@@ -189,15 +188,15 @@ class Fit:
     elastomer_stiffness : float
         Torsional stiffness k_E [Nm/rad] (Table 5.3).
     critical_torque, kinetic_torque : float
-        Friction torque at which the contact breaks, and while it slides [Nm] (Section 4.2).
+        Friction torque at which the contact breaks, and in sliding [Nm] (Section 4.2).
     damping : mapping of float to float
         Torsional damping c_E of bushing and beams together [Nm s/rad] by support stiffness
-        [Nm/rad], the bolted clamp being ``math.inf`` (Table 5.5).
+        [Nm/rad], ``math.inf`` for the bolted clamp (Table 5.5).
 
     Raises
     ------
     ParameterError
-        A value that is not positive or not finite, or a kinetic torque above the critical one.
+        A value is not positive or not finite, or the kinetic torque is above the critical one.
     """
 
     interference: Annotated[
@@ -234,7 +233,7 @@ class Fit:
 
 
 def _fits(value: Any, key: str, where: str) -> tuple[Fit, ...]:
-    """Read ``[[fit]]`` tables, by rising interference."""
+    """Read ``[[fit]]`` tables, sorted by interference."""
     if not (isinstance(value, list) and value):
         raise ParameterError(f"{where}: fit must be given as [[fit]] tables, one at least")
     fits = [read_table(Fit, one, f"{where}, {key} {i}") for i, one in enumerate(value, start=1)]
@@ -244,7 +243,7 @@ def _fits(value: Any, key: str, where: str) -> tuple[Fit, ...]:
 
 
 class _SleeveTable(Table):
-    """The sleeve, whose modulus may be stated by its hardness."""
+    """Entry of the sleeve, whose modulus may be stated by its hardness."""
 
     def read(self, value: Any, where: str, old: Sleeve | None = None) -> Sleeve:
         table, inside = dict(as_table(value, self.key, where)), f"{where}, {self.key}"
@@ -262,7 +261,7 @@ class _SleeveTable(Table):
 @short_repr
 @dataclass(frozen=True)
 class Rig:
-    """Everything that the simulation needs to know about a test rig and its bushing.
+    """Test rig with its bushing: all data that the simulation needs.
 
     Parameters
     ----------
@@ -270,27 +269,27 @@ class Rig:
     elastomer_inertia, clamp_inertia : float
         J_E and J_C [kg m2].
     fits : tuple of Fit
-        By rising interference.
+        Fits by rising interference.
     friction : LawSpec
-        Friction law of the contact; its torques come from the fit.
+        Friction law of the contact; its torques are those of the fit.
     elastomer_damping_share : float
-        Share of c_E that acts in the elastomer, the rest in the beams; the thesis assumes 0.5.
+        Share of c_E in the elastomer, with the rest in the beams; the thesis assumes 0.5.
     effects : tuple of LawSpec
-        What the model includes beyond the friction law.
+        Effects beyond the friction law.
     beams, plate, microphone
-        The structure and the sound's way.
+        Structure and radiation.
     assumed : tuple of str
-        The entries of the files that no source gives.
+        Entries of the files that have no source.
     measured : tuple of MeasuredResponse
-        Responses measured on the rig, each in place of the modelled one of its support.
+        Responses measured on the rig, which replace the modelled ones of their support.
     sensors : Sensors
-        What its signals are recorded through.
+        Sensors of the recordings.
     fastest_fitted : float
-        Fastest speed that the bushing was fitted at [rad/s]; infinite if none is stated.
+        Highest speed of the fit [rad/s]; infinite if none is stated.
     sleeve : Sleeve, optional
-        The rubber that the fits were measured on, by which they change with its size and modulus.
+        Rubber sleeve of the fits, from which they are scaled to other sizes and moduli.
     temperature : TemperatureDependence, optional
-        How stiffness, damping and friction follow the temperature; without one they stay.
+        Temperature dependence of stiffness, damping and friction; by default none.
     """
 
     name: Annotated[str, Text("name")]
@@ -332,28 +331,27 @@ class Rig:
 
     @property
     def interference_range(self) -> tuple[float, float]:
-        """Smallest and largest interference for which the bushing's properties are given [m]."""
+        """Smallest and largest interference of the fits [m]."""
         return self.fits[0].interference, self.fits[-1].interference
 
     def changed(self, **changes: str | float | Mapping[str, str | float]) -> "Rig":
-        """Return the rig with quantities changed, as ``[change]`` in a rig file does.
+        """Return a rig with quantities changed, like ``[change]`` in a rig file.
 
         Parameters
         ----------
         **changes : str, float or mapping
-            ``"x2"`` or ``"-20 %"`` by short or long name, a number by the long one, which names
-            its unit; parameters of the friction law and of effects by their own names, where
-            several have the name in a mapping by that of the effect, or ``friction``.
+            ``"x2"`` or ``"-20 %"`` by short or long name, a number by the long one, which includes
+            the unit; parameters of the friction law and of effects by their own names, or, if these
+            are ambiguous, in a mapping by the name of the effect, or ``friction``.
 
         Returns
         -------
         Rig
-            Another one; this one stays as it is.
 
         Raises
         ------
         ParameterError
-            A name is unknown or means several quantities, or an amount cannot be used.
+            A name is unknown or ambiguous, or an amount cannot be used.
 
         Examples
         --------
@@ -372,7 +370,7 @@ class Rig:
         return changed_rig(self, changes, f"rig {self.name!r}")
 
     def fit(self, interference: float) -> Fit:
-        """Properties at `interference` [m]: linear between the given fits, held outside them."""
+        """Return the fit at `interference` [m]: linear between the fits, constant beyond them."""
         low, high = self.interference_range
         interference = min(max(interference, low), high)
         for left, right in zip(self.fits, self.fits[1:], strict=False):
@@ -383,7 +381,7 @@ class Rig:
 
 
 def damping_at(fit: Fit, support_stiffness: float) -> float:
-    """Damping c_E [Nm s/rad] at a support stiffness, linear in the compliance between entries.
+    """Return the damping c_E [Nm s/rad] at a support stiffness, interpolated over compliance.
 
     Examples
     --------
@@ -402,7 +400,7 @@ def damping_at(fit: Fit, support_stiffness: float) -> float:
 
 
 def effective_stiffness(fit: Fit, support_stiffness: float) -> float:
-    """Stiffness k_EFF of elastomer and beams in series [Nm/rad], as the shaft feels it in stick.
+    """Return the stiffness k_EFF of elastomer and beams in series [Nm/rad], seen by the shaft.
 
     Notes
     -----

@@ -1,14 +1,13 @@
-"""Rig files (TOML): read and lay over a base, or over the bench that is shipped; write.
+"""Rig files (TOML): reading with inheritance from a base, and writing.
 
-A rig is the shipped bench, with what the material's file states of the bushing laid over it, with
-what the user's file states laid over both. ``base`` names a material or another rig file instead,
-of which all stays that the file does not state; ``[change]`` then multiplies or sets quantities. A
-file without ``base`` that brings its own ``[[fit]]`` entries describes a bushing of its own:
-constant critical and kinetic torque, damping split evenly, no effects, unless it says otherwise.
-Under the name of a shipped material it must say which friction law it means.
+A rig is the shipped bench, overridden by the material's file, overridden by the user's file.
+``base`` names a material or another rig file whose values the file inherits; ``[change]`` then
+multiplies or sets quantities. A file without ``base`` but with its own ``[[fit]]`` entries
+describes its own bushing: constant critical and kinetic torque, damping split evenly, no effects,
+unless it states otherwise. Under the name of a shipped material it must state the friction law.
 
-The same file serves every command: what ``[design]`` and ``[tolerances]`` state is read where it is
-used. Keys and bounds are declared in `models.rig` and `models.bench`.
+The same file serves every command; ``[design]`` and ``[tolerances]`` are read where they are used.
+Keys and bounds are declared in `models.rig` and `models.bench`.
 """
 
 from __future__ import annotations
@@ -46,10 +45,10 @@ if TYPE_CHECKING:
 _DATA = resources.files("models") / "data"
 
 _APART = {"base", "change", "measured_response", "design", "tolerances", "sensors"}
-"""Keys that are read here, or by who uses them."""
+"""Keys that are not fields of `Rig`."""
 
 _MOST_DOTS = 200
-"""Of a key of TOML: the time to read it grows with their square."""
+"""Most dots in a TOML key: the time to parse it grows with their square."""
 
 _PLAIN_BUSHING = {
     "elastomer_damping_share": 0.5,
@@ -61,7 +60,7 @@ _RESPONSES = ("torque_to_acceleration", "torque_to_pressure")
 
 
 def material_names() -> tuple[str, ...]:
-    """Names of the materials that are shipped.
+    """Return the names of the shipped materials.
 
     Returns
     -------
@@ -76,19 +75,19 @@ def material_names() -> tuple[str, ...]:
 
 
 def shipped_name(name: str) -> str | None:
-    """Return the name of a shipped material as it is written; case does not matter.
+    """Return the exact name of a shipped material, or None; case does not matter.
 
     Examples
     --------
     >>> shipped_name("pdms"), shipped_name("our rubber")
     ('PDMS', None)
     """
-    known = {each.lower(): each for each in material_names()}
-    return known.get(name.strip().lower())
+    names = {each.lower(): each for each in material_names()}
+    return names.get(name.strip().lower())
 
 
 def material_of(path: Path) -> str | None:
-    """Return the shipped material that stands in the place of a rig file, None where none does.
+    """Return the shipped material that a path of a rig file names, or None.
 
     Examples
     --------
@@ -130,7 +129,7 @@ def load_rig(path: str | Path) -> Rig:
     Parameters
     ----------
     path : path-like
-        TOML file of what differs from the shipped bench; or, where there is no such file, the name
+        TOML file of the differences from the shipped bench; or, if there is no such file, the name
         of a shipped material.
 
     Returns
@@ -140,7 +139,7 @@ def load_rig(path: str | Path) -> Rig:
     Raises
     ------
     ParameterError
-        If the file cannot be read, or holds what cannot be used; the message names the key.
+        If the file cannot be read, or an entry cannot be used; the message names the key.
 
     Examples
     --------
@@ -158,7 +157,7 @@ def load_rig(path: str | Path) -> Rig:
 
 
 def read_toml(path: Path, where: str) -> dict[str, Any]:
-    """Read a TOML file; `where` is what messages call it.
+    """Read a TOML file, called `where` in messages.
 
     Raises
     ------
@@ -176,12 +175,12 @@ def read_toml(path: Path, where: str) -> dict[str, Any]:
 
 
 def rig_from(content: Mapping[str, Any], folder: Path, where: str) -> Rig:
-    """Build a rig from what a rig file holds; `folder` is that of the files it names.
+    """Build a rig from the content of a rig file in a folder.
 
     Raises
     ------
     ParameterError
-        If it holds what cannot be used; the message begins with `where` and names the key.
+        If an entry cannot be used; the message begins with `where` and names the key.
 
     Examples
     --------
@@ -189,7 +188,7 @@ def rig_from(content: Mapping[str, Any], folder: Path, where: str) -> Rig:
     'lugre'
     """
     with refusing(where, "rig file"):
-        return _laid(content, folder, where, ())
+        return _layered(content, folder, where, ())
 
 
 def _bench() -> dict[str, Any]:
@@ -197,43 +196,42 @@ def _bench() -> dict[str, Any]:
 
 
 def _material(name: str) -> dict[str, Any]:
-    known = shipped_name(name)
-    if known is None:
+    shipped = shipped_name(name)
+    if shipped is None:
         names = material_names()
         raise ParameterError(
             f"material {name!r} is unknown{did_you_mean(name, names)}; there are {', '.join(names)}"
         )
-    text = (_DATA / "materials" / f"{known}.toml").read_text(encoding="utf-8")
-    return tomllib.loads(text) | {"material": known}
+    text = (_DATA / "materials" / f"{shipped}.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text) | {"material": shipped}
 
 
-def _laid(content: Mapping[str, Any], folder: Path, where: str, chain: tuple[Path, ...]) -> Rig:
-    """Rig of a file's content; `chain` led to the file."""
+def _layered(content: Mapping[str, Any], folder: Path, where: str, chain: tuple[Path, ...]) -> Rig:
+    """Return the rig of a file's content; `chain` lists the files that refer to it."""
     if "suspension" in content:
         raise ParameterError(
-            f"{where}: [suspension] is a car's bar in two bushings, which simulate --rig alone "
-            "takes; take the table out for the bushing on the rig"
+            f"{where}: [suspension] is a car's bar in two bushings, which only simulate --rig "
+            "takes; remove the table for the bushing on the rig"
         )
     keys = [entry.key for entry in declared(Rig).values()]
     refuse_unknown(content, {*keys, *_APART}, where)
-    given = {key: value for key, value in content.items() if key not in _APART}
+    entries = {key: value for key, value in content.items() if key not in _APART}
     if "base" in content:
         base = _base(as_text(content["base"], "base", where), folder, where, chain)
-        _check_name(given, base, where)
-    elif "fit" in given:
-        base = _own_bushing(given, where)
+        _check_name(entries, base, where)
+    elif "fit" in entries:
+        base = _own_bushing(entries, where)
     else:
-        named = as_text(given.get("material", _bench()["material"]), "material", where)
+        named = as_text(entries.get("material", _bench()["material"]), "material", where)
         base = load_material_rig(named)
-        given["material"] = base.material
-    rig = read_table(Rig, given, where, base)
+        entries["material"] = base.material
+    rig = read_table(Rig, entries, where, base)
     refuse_plate(rig.plate, f"{where}, plate")
     depends = rig.temperature
     if depends is not None and not depends.reference > depends.glass_transition:
         raise ParameterError(
             f"{where}, temperature: reference_C = {depends.reference:g} is not above "
-            f"glass_transition_C = {depends.glass_transition:g}; what is no elastomer there has no "
-            "friction to be shifted"
+            f"glass_transition_C = {depends.glass_transition:g}, below which rubber is no elastomer"
         )
     if "measured_response" in content:
         rig = replace(rig, measured=measured_responses(content["measured_response"], folder, where))
@@ -259,29 +257,29 @@ def _base(named: str, folder: Path, where: str, chain: tuple[Path, ...]) -> Rig:
             f"{did_you_mean(named, names)}; there are {', '.join(names)}"
         )
     below = f"{where}: base {named}"
-    return _laid(read_toml(path, below), path.parent, below, (*chain, path))
+    return _layered(read_toml(path, below), path.parent, below, (*chain, path))
 
 
-def _check_name(given: dict[str, Any], base: Rig, where: str) -> None:
-    """Refuse a base of one material under the name of another."""
-    if "material" not in given:
+def _check_name(entries: dict[str, Any], base: Rig, where: str) -> None:
+    """Raise if a base of one material has the name of another."""
+    if "material" not in entries:
         return
-    shipped = shipped_name(as_text(given["material"], "material", where))
+    shipped = shipped_name(as_text(entries["material"], "material", where))
     if shipped is not None and shipped != base.material:
         raise ParameterError(
-            f"{where}: material = {given['material']!r} contradicts base, which is of "
+            f"{where}: material = {entries['material']!r} contradicts base, which is of "
             f"{base.material}; leave material out"
         )
-    given["material"] = shipped or given["material"]
+    entries["material"] = shipped or entries["material"]
 
 
-def _own_bushing(given: Mapping[str, Any], where: str) -> Rig:
-    """Rig with fits of a file's own: a plain bushing on the bench, whose sleeve is not its own."""
+def _own_bushing(entries: Mapping[str, Any], where: str) -> Rig:
+    """Return a rig with the file's own fits: a plain bushing on the bench, without a sleeve."""
     bench = _bench()
-    named = as_text(given.get("material", bench["material"]), "material", where)
+    named = as_text(entries.get("material", bench["material"]), "material", where)
     shipped = shipped_name(named)
-    law_is_named = "law" in as_table(given.get("friction", {}), "friction", where)
-    if "material" in given and shipped is not None and not law_is_named:
+    law_is_named = "law" in as_table(entries.get("friction", {}), "friction", where)
+    if "material" in entries and shipped is not None and not law_is_named:
         law = _material(shipped)["friction"]["law"]
         raise ParameterError(
             f"{where}: has its own [[fit]] under the name of {shipped}, but no friction law (that "
@@ -289,28 +287,28 @@ def _own_bushing(given: Mapping[str, Any], where: str) -> Rig:
             f'and effects of {shipped}, or [friction] law = "coulomb" for constant torques'
         )
     del bench["sleeve"]
-    return read_table(Rig, bench | _PLAIN_BUSHING | {"fit": given["fit"]}, where)
+    return read_table(Rig, bench | _PLAIN_BUSHING | {"fit": entries["fit"]}, where)
 
 
 def measured_responses(tables: Any, folder: Path, where: str) -> tuple[MeasuredResponse, ...]:
-    """Read what the ``[[measured_response]]`` entries of a rig file name.
+    """Read the measured responses of a rig file's ``[[measured_response]]`` entries.
 
-    An entry names a support and the files of its responses from the torque that the bushing puts
-    into clamp and beams, bushing removed, to the acceleration, to the sound, or both.
+    An entry names a support and the files of its responses from the torque on clamp and beams,
+    with the bushing removed, to the acceleration, to the sound, or both.
 
     Parameters
     ----------
     tables : list of mapping
-        As the TOML file holds them.
+        Entries of the TOML file.
     folder : Path
-        Of the rig file; names of files are relative to it.
+        Folder of the rig file, to which names of files are relative.
     where : str
-        What messages call the rig file.
+        Name of the rig file in messages.
 
     Raises
     ------
     ParameterError
-        An entry, or a file that it names, cannot be used.
+        An entry or its file cannot be used.
 
     Examples
     --------
@@ -322,28 +320,28 @@ def measured_responses(tables: Any, folder: Path, where: str) -> tuple[MeasuredR
 
     if not isinstance(tables, list):
         raise ParameterError(
-            f"{where}: measured_response must be given as [[measured_response]] tables"
+            f"{where}: measured_response must be entries as [[measured_response]] tables"
         )
-    found: list[MeasuredResponse] = []
-    for i, given in enumerate(tables, start=1):
+    responses: list[MeasuredResponse] = []
+    for i, content in enumerate(tables, start=1):
         here = f"{where}, measured_response {i}"
-        table = dict(as_table(given, "measured_response", here))
+        table = dict(as_table(content, "measured_response", here))
         for key in table.keys() & set(_RESPONSES):
             table[key] = folder / as_text(table[key], key, here)
         entry = read_table(MeasuredResponse, table, here)
         if entry.torque_to_acceleration is entry.torque_to_pressure is None:
             raise ParameterError(f"{here}: names no response; give {' or '.join(_RESPONSES)}")
-        if measured_with(tuple(found), entry.support_stiffness) is not None:
+        if measured_with(tuple(responses), entry.support_stiffness) is not None:
             raise ParameterError(
                 f"{here}: support_stiffness_Nm_rad = {entry.support_stiffness:g} has an entry "
                 "already; give one a support"
             )
-        found.append(entry)
-    return tuple(found)
+        responses.append(entry)
+    return tuple(responses)
 
 
 def rig_text(rig: Rig, notes: Sequence[str] = (), base: str | None = None) -> str:
-    """Write a rig as a file; numbers of the bushing have six significant digits.
+    """Return the text of a rig file; numbers of the bushing have six significant digits.
 
     Parameters
     ----------
@@ -351,8 +349,9 @@ def rig_text(rig: Rig, notes: Sequence[str] = (), base: str | None = None) -> st
     notes : sequence of str
         Lines of comment at the top.
     base : str, optional
-        Rig file whose structure, responses, sensors and material stay. Without one the structure
-        is written where it is another than the shipped bench's; responses and sleeve are not.
+        Rig file from which structure, responses, sensors and material are inherited. Without a base
+        the structure is written where it differs from the shipped bench; responses and sleeve are
+        not written.
 
     Returns
     -------
@@ -385,26 +384,26 @@ def changed_rig_text(
     tolerances: Mapping[str, float],
     notes: Sequence[str] = (),
     friction: LawSpec | None = None,
-    heard: Mapping[str, str | float] | None = None,
+    condition: Mapping[str, str | float] | None = None,
 ) -> str:
-    """Write a rig file of what differs from another rig.
+    """Return the text of a rig file of the differences from another rig.
 
     Parameters
     ----------
     base : str
-        Material or file, as `base_name` gives it.
+        Material or file, as from `base_name`.
     changes : mapping of str to str or float
-        As ``[change]`` takes them.
+        Entries of ``[change]``.
     effects : sequence of LawSpec
-        All that the rig has, those of the base as well.
+        All effects of the rig, including those of the base.
     tolerances : mapping of str to float
-        Relative standard deviations [-]; ``"slip_pulse.amplitude"`` is one of an effect.
+        Relative standard deviations [-]; ``"slip_pulse.amplitude"`` is that of an effect.
     notes : sequence of str
         Lines of comment at the top.
     friction : LawSpec, optional
-        The law where it is another than that of the base.
-    heard : mapping of str to str or float, optional
-        The condition that the app begins with, as ``[design.heard]`` takes it [unit of the key].
+        Friction law, if it differs from that of the base.
+    condition : mapping of str to str or float, optional
+        Initial condition of the app, entries of ``[design.heard]`` [unit of the key].
 
     Returns
     -------
@@ -427,7 +426,7 @@ def changed_rig_text(
         "friction": {} if friction is None else {"law": friction.name, **friction.parameters},
         "change": _nested(changes),
         "tolerances": _nested(tolerances),
-        "design": {"heard": heard} if heard else {},
+        "design": {"heard": condition} if condition else {},
     }
     content: dict[str, Any] = {"base": base, "effects": [str(spec) for spec in effects]}
     content |= {name: table for name, table in tables.items() if table}
@@ -435,12 +434,12 @@ def changed_rig_text(
 
 
 def _nested(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Put ``law.parameter`` into a table of the law."""
-    found: dict[str, Any] = {}
+    """Return a table with entries ``law.parameter`` moved into tables by law."""
+    nested: dict[str, Any] = {}
     for name, value in table.items():
         law, _, parameter = name.rpartition(".")
-        (found.setdefault(law, {}) if law else found)[parameter] = value
-    return found
+        (nested.setdefault(law, {}) if law else nested)[parameter] = value
+    return nested
 
 
 def _rounded(value: Any) -> Any:
@@ -453,7 +452,7 @@ def _rounded(value: Any) -> Any:
 
 
 def base_name(file: Path, folder: Path) -> str:
-    """Name a rig file as ``base`` in a file of a folder does.
+    """Return the ``base`` entry for a rig file, in a file of a folder.
 
     Parameters
     ----------
@@ -462,7 +461,7 @@ def base_name(file: Path, folder: Path) -> str:
     Returns
     -------
     str
-        Relative to the folder; absolute where nothing leads from one to the other.
+        Path relative to the folder, or absolute on another drive.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""Declared entries of rig files: key, unit, bounds and plausible range of each, stated once.
+"""Declared entries of rig files: key, unit, bounds and usual range of each.
 
-A dataclass declares how a file states a field: ``Annotated[float, Quantity("wall_mm", 1e-3)]``.
-From the declarations follow reading, with refusals that name key, value and what would be right;
-remarks on values that are unusual; and writing. Fields without a declaration are in no file.
+A dataclass declares the file's entry of a field: ``Annotated[float, Quantity("wall_mm", 1e-3)]``.
+Reading, error messages with key, value and the expected value, remarks on unusual values, and
+writing follow from the declarations. Fields without a declaration are in no file.
 """
 
 import math
@@ -20,35 +20,35 @@ from models.errors import ParameterError
 _Kind = TypeVar("_Kind")
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return the question whether the nearest known name was meant, empty where none is near.
+def did_you_mean(name: str, names: Iterable[str]) -> str:
+    """Return a question for the nearest names name, empty if none is near.
 
     Examples
     --------
     >>> did_you_mean("desing", ["design", "fit"]), did_you_mean("x", ["design"])
     ("; did you mean 'design'?", '')
     """
-    near = get_close_matches(name, list(known), n=1)
+    near = get_close_matches(name, list(names), n=1)
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
-def refuse_unknown(table: Mapping[str, Any], known: Iterable[str], where: str) -> None:
-    """Refuse keys that are not known, which are most often misspelt.
+def refuse_unknown(table: Mapping[str, Any], names: Iterable[str], where: str) -> None:
+    """Raise if a table has an unknown key, most often a misspelt one.
 
     Raises
     ------
     ParameterError
-        A key is not among `known`.
+        A key is not among `names`.
 
     Examples
     --------
     >>> refuse_unknown({"speed": 1.0}, {"speed"}, "rig.toml")
     """
     for key in table:
-        if key not in (names := sorted(known)):
+        if key not in (known := sorted(names)):
             raise ParameterError(
-                f"{where}: unknown key {key!r}{did_you_mean(key, names)}; known are "
-                f"{', '.join(names)}"
+                f"{where}: unknown key {key!r}{did_you_mean(key, known)}; known are "
+                f"{', '.join(known)}"
             )
 
 
@@ -90,52 +90,52 @@ def as_text(value: Any, key: str, where: str) -> str:
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of a file.
+    """Entry of a file.
 
     Parameters
     ----------
     key : str
-        By which files state it.
+        Key of the entry in files.
     """
 
     key: str
 
     def read(self, value: Any, where: str, old: Any = None) -> Any:
-        """Return what a file's value means; `old` is that of the base which the file changes.
+        """Convert a file's value; `old` is the value of the base that the file changes.
 
         Raises
         ------
         ParameterError
-            It cannot be used; the message begins with `where` and names the key.
+            The value cannot be used; the message begins with `where` and names the key.
         """
         raise NotImplementedError
 
     def write(self, value: Any) -> Any:
-        """Return the value as a file states it."""
+        """Convert a value to the file's representation."""
         return value
 
 
 @dataclass(frozen=True)
 class ReadBy(Entry):
-    """An entry that functions read and write.
+    """Entry that is read and written by functions.
 
     Parameters
     ----------
     reads : callable
-        From a file's value, the key and what messages begin with to what the value means.
+        Function of a file's value, the key and the prefix of messages that returns the value.
     writes : callable
-        Back to a file's value.
+        Function of the value that returns the file's value.
     """
 
     reads: Callable[[Any, str, str], Any]
     writes: Callable[[Any], Any] = lambda value: value
 
     def read(self, value: Any, where: str, old: Any = None) -> Any:  # noqa: ARG002
-        """Return what `reads` makes of a file's value."""
+        """Convert a file's value by `reads`."""
         return self.reads(value, self.key, where)
 
     def write(self, value: Any) -> Any:
-        """Return what `writes` makes of the value."""
+        """Convert a value by `writes`."""
         return self.writes(value)
 
 
@@ -158,67 +158,67 @@ def _vector(value: Any, key: str, where: str, size: int) -> tuple[float, ...]:
 
 
 Text = partial(ReadBy, reads=as_text)
-"""A text."""
+"""Entry of a text."""
 
 Texts = partial(ReadBy, reads=_texts, writes=list)
-"""A list of texts."""
+"""Entry of a list of texts."""
 
 Flag = partial(ReadBy, reads=_flag)
-"""True or false."""
+"""Entry that is true or false."""
 
 
-def Vector(key: str, size: int) -> Entry:  # noqa: N802  # stands among types
-    """Declare a list of so many finite numbers."""
+def Vector(key: str, size: int) -> Entry:  # noqa: N802  # used like the other entries
+    """Return the entry of a list of `size` finite numbers."""
     return ReadBy(key, partial(_vector, size=size), list)
 
 
 @dataclass(frozen=True)
 class Table(Entry):
-    """A table of the entries that a dataclass declares.
+    """Entry of a table, whose entries a dataclass declares.
 
     Parameters
     ----------
     kind : type
         The dataclass.
     whole : bool
-        Whether the table states all, or changes the base's.
+        Whether the table is complete, or changes that of the base.
     """
 
     kind: Any
     whole: bool = False
 
     def read(self, value: Any, where: str, old: Any = None) -> Any:
-        """Return the object; what the table does not state is that of `old`."""
+        """Return the object; fields that the table does not state are those of `old`."""
         return read_table(self.kind, value, f"{where}, {self.key}", None if self.whole else old)
 
     def write(self, value: Any) -> Any:
-        """Return the table."""
+        """Return the table of an object."""
         return table_of(value)
 
 
 @dataclass(frozen=True)
 class Quantity(Entry):
-    """A number with a unit and bounds.
+    """Entry of a number with a unit and bounds.
 
     Parameters
     ----------
     size : float
-        Of the unit of the key [SI unit].
+        Size of the unit of the key [SI unit].
     unit : str
-        Shown behind values.
+        Unit after values.
     low, high : float
-        Between which a value is possible, as wide as numbers still mean something [`unit`].
+        Bounds of possible values [`unit`].
     usual : tuple of float
-        Outside of which a value is used with a remark [`unit`]: from the thesis's rig to bushings
-        of a wiper and of a lorry's spring eye.
+        Range outside of which a value is used with a remark [`unit`]: from bushings of wipers to
+        spring eyes of lorries.
     slips : tuple of (float, str)
-        Factors that bring a value in a wrong unit to the right one, and that unit.
+        Factors from a mistaken unit to the right one, and the mistaken unit.
     default : float
-        Where nothing is stated [`unit`].
+        Default value [`unit`].
     closed : bool, optional
-        Whether `low` itself is possible; by default, unless it is 0.
+        Whether `low` itself is possible; by default unless it is 0.
     infinite : str
-        Word that stands for infinity.
+        Word for infinity.
 
     Examples
     --------
@@ -241,7 +241,7 @@ class Quantity(Entry):
     infinite: str = ""
 
     def possible(self, value: float) -> bool:
-        """Whether a value [`unit`] can be."""
+        """Return whether a value [`unit`] is within the bounds."""
         closed = self.low != 0.0 if self.closed is None else self.closed
         above = self.low <= value if closed else self.low < value
         largest = sys.float_info.max  # an integer may be larger than any float
@@ -249,7 +249,7 @@ class Quantity(Entry):
 
     @property
     def wanted(self) -> str:
-        """What would be right, in words."""
+        """Expected value in words."""
         closed = self.low != 0.0 if self.closed is None else self.closed
         if math.isinf(self.low) and math.isinf(self.high):
             words = "a number"
@@ -263,27 +263,27 @@ class Quantity(Entry):
         )
 
     def read(self, value: Any, where: str, old: Any = None) -> Any:  # noqa: ARG002
-        """Return a number in SI units."""
+        """Convert a number of a file to SI units."""
         if self.infinite and value == self.infinite:
             return math.inf
-        found = math.nan
+        converted = math.nan
         if isinstance(value, int | float) and not isinstance(value, bool):
             with suppress(OverflowError):
-                found = float(value)
-        if not self.possible(found):
+                converted = float(value)
+        if not self.possible(converted):
             raise ParameterError(f"{where}: {self.key} = {show(value)} must be {self.wanted}")
-        return self.size * found
+        return self.size * converted
 
     def write(self, value: Any) -> Any:
-        """Return a number in the unit of the key, or the word for infinity."""
+        """Convert a number to the unit of the key, or to the word for infinity."""
         return self.infinite if math.isinf(value) else self.of(value)
 
     def of(self, value: float) -> float:
-        """Return a value [SI unit] in the unit of the key [`unit`], without noise of rounding."""
+        """Convert a value [SI unit] to the unit of the key [`unit`], without rounding noise."""
         return value if self.size == 1.0 else float(f"{value / self.size:.12g}")
 
     def remark(self, *values: float) -> str:
-        """Say in one line which values [`unit`] are outside the usual; empty where none is."""
+        """Return a remark on values [`unit`] outside the usual range; empty if there are none."""
         low, high = self.usual
         outside = sorted({value for value in values if not low <= value <= high})
         if not outside:
@@ -300,12 +300,12 @@ class Quantity(Entry):
 
 
 def number(table: Mapping[str, Any], key: str, where: str, **bounds: Any) -> float:
-    """Return the number at a key; the bounds are those of `Quantity` [unit of the key].
+    """Read the number at a key; the bounds are those of `Quantity` [unit of the key].
 
     Raises
     ------
     ParameterError
-        It is missing, no number, or out of bounds.
+        The number is missing, not a number, or out of bounds.
 
     Examples
     --------
@@ -319,7 +319,7 @@ def number(table: Mapping[str, Any], key: str, where: str, **bounds: Any) -> flo
 
 @lru_cache
 def declared(kind: Any) -> dict[str, Any]:
-    """Entries that a dataclass declares, by the names of its fields.
+    """Return the declared entries of a dataclass, by the names of its fields.
 
     Examples
     --------
@@ -338,20 +338,20 @@ def declared(kind: Any) -> dict[str, Any]:
 def read_table(
     kind: type[_Kind], table: Any, where: str, old: _Kind | None = None, **others: Any
 ) -> _Kind:
-    """Build an object of a table that states its fields.
+    """Build an object from a table of its fields.
 
     Parameters
     ----------
     kind : type
         Dataclass that declares its entries.
     table : mapping
-        As TOML or JSON gives it.
+        Table of TOML or JSON.
     where : str
-        What messages begin with; it ends with the table's name.
+        Prefix of messages, which ends with the table's name.
     old : object, optional
-        Of the same kind: what the table does not state stays as it is in this one.
+        Object of the same kind, from which fields that the table does not state are taken.
     **others : object
-        Fields that no table states.
+        Fields that are not in the table.
 
     Raises
     ------
@@ -368,38 +368,38 @@ def read_table(
     table = as_table(table, name, where.removesuffix(f", {name}"))
     entries: dict[str, Entry] = declared(kind)  # type: ignore[arg-type]
     refuse_unknown(table, [entry.key for entry in entries.values()], where)
-    found = {
+    values = {
         field: entry.read(table[entry.key], where, getattr(old, field, None))
         for field, entry in entries.items()
         if entry.key in table
     }
     if old is None:
         for field in fields(kind):  # type: ignore[arg-type]
-            given = field.name in found or field.name not in entries
-            if not given and field.default is field.default_factory is MISSING:
+            stated = field.name in values or field.name not in entries
+            if not stated and field.default is field.default_factory is MISSING:
                 raise ParameterError(f"{where}: {entries[field.name].key} is missing")
     try:
         if old is None:
-            return kind(**found, **others)
-        return replace(old, **found, **others)  # type: ignore[type-var]
+            return kind(**values, **others)
+        return replace(old, **values, **others)  # type: ignore[type-var]
     except ParameterError as error:
         raise ParameterError(f"{where}: {str(error).removeprefix(f'{name}: ')}") from None
 
 
-def table_of(shown: Any, *, whole: bool = False) -> dict[str, Any]:
-    """Return the table of an object's entries, with those that have their default if `whole`."""
-    defaults = {field.name: field.default for field in fields(shown)}
+def table_of(obj: Any, *, whole: bool = False) -> dict[str, Any]:
+    """Return the table of an object's entries, without those at their default unless `whole`."""
+    defaults = {field.name: field.default for field in fields(obj)}
     return {
         entry.key: entry.write(value)
-        for name, entry in declared(type(shown)).items()  # type: ignore[arg-type]
-        if (value := getattr(shown, name)) is not None and (whole or value != defaults[name])
+        for name, entry in declared(type(obj)).items()  # type: ignore[arg-type]
+        if (value := getattr(obj, name)) is not None and (whole or value != defaults[name])
     }
 
 
-def quantities(shown: Any) -> Iterator[tuple[Quantity, list[float]]]:
-    """Go through the declared quantities of an object and of those in it, each with its values.
+def quantities(obj: Any) -> Iterator[tuple[Quantity, list[float]]]:
+    """Yield the declared quantities of an object and its parts, each with its values.
 
-    Values are in the unit of the key; infinite ones that a word may stand for are left out.
+    Values are in the unit of the key; infinite ones that have a word are left out.
 
     Examples
     --------
@@ -407,33 +407,34 @@ def quantities(shown: Any) -> Iterator[tuple[Quantity, list[float]]]:
     >>> [(one.key, values) for one, values in quantities(Sleeve(0.015, 0.0045, 0.04, 7e6))][:2]
     [('inner_radius_mm', [15.0]), ('wall_mm', [4.5])]
     """
-    found: dict[Quantity, list[float]] = {}
-    _collect(shown, found)
-    yield from found.items()
+    values: dict[Quantity, list[float]] = {}
+    _collect(obj, values)
+    yield from values.items()
 
 
-def _collect(shown: Any, found: dict[Quantity, list[float]]) -> None:
-    if isinstance(shown, tuple):
-        for each in shown:
-            _collect(each, found)
-    elif hasattr(shown, "quantities"):
-        for quantity, values in shown.quantities():
-            found.setdefault(quantity, []).extend(values)
-    elif is_dataclass(shown) and not isinstance(shown, type):
-        entries = declared(type(shown))
-        for field in fields(shown):
-            value, entry = getattr(shown, field.name), entries.get(field.name)
-            quantity = getattr(entry, "value", entry)  # of a table by support
+def _collect(obj: Any, collected: dict[Quantity, list[float]]) -> None:
+    """Add the quantities of an object and its parts to `collected`."""
+    if isinstance(obj, tuple):
+        for each in obj:
+            _collect(each, collected)
+    elif hasattr(obj, "quantities"):
+        for quantity, values in obj.quantities():
+            collected.setdefault(quantity, []).extend(values)
+    elif is_dataclass(obj) and not isinstance(obj, type):
+        entries = declared(type(obj))
+        for field in fields(obj):
+            value, entry = getattr(obj, field.name), entries.get(field.name)
+            quantity = getattr(entry, "value", entry)  # the value of a table by support
             if not isinstance(quantity, Quantity):
-                _collect(value, found)
+                _collect(value, collected)
                 continue
             values = value.values() if isinstance(value, Mapping) else (value,)
             stated = [x for x in values if not (x is None or (quantity.infinite and x == math.inf))]
-            found.setdefault(quantity, []).extend(map(quantity.of, stated))
+            collected.setdefault(quantity, []).extend(map(quantity.of, stated))
 
 
-def remarks(shown: Any) -> tuple[str, ...]:
-    """Say of each quantity of an object that is outside the usual so, a line a quantity.
+def remarks(obj: Any) -> tuple[str, ...]:
+    """Return a remark for each quantity of an object outside its usual range.
 
     Examples
     --------
@@ -441,25 +442,25 @@ def remarks(shown: Any) -> tuple[str, ...]:
     >>> remarks(load_material_rig("fluorocarbon"))
     ()
     """
-    return tuple(text for one, values in quantities(shown) if (text := one.remark(*values)))
+    return tuple(text for one, values in quantities(obj) if (text := one.remark(*values)))
 
 
-def refuse_impossible(shown: Any, where: str) -> None:
-    """Refuse an object of which a declared quantity cannot be.
+def refuse_impossible(obj: Any, where: str) -> None:
+    """Raise if a declared quantity of an object is not possible.
 
     Raises
     ------
     ParameterError
-        A value is not possible; the message begins with `where` and names it.
+        A value is out of bounds; the message begins with `where` and names it.
     """
-    for one, values in quantities(shown):
+    for one, values in quantities(obj):
         for value in values:
             if not one.possible(value):
                 raise ParameterError(f"{where}: {one.key} = {value:g} must be {one.wanted}")
 
 
 def toml_text(content: Mapping[str, Any], notes: Iterable[str] = ()) -> str:
-    """Write tables as TOML.
+    """Return tables as TOML text.
 
     Parameters
     ----------

@@ -1,13 +1,13 @@
-"""Sensors of a rig: what stands between a quantity and the number that a recording holds.
+"""Sensors of a rig, with their amplifiers, filters and converters.
 
 A signal passes the anti-alias filter, gets the noise of sensor and amplifier, and is rounded to the
-steps of a converter that clips at its range. What a file leaves out is ideal, but for the noise,
-which is then that of `sim.acquisition`.
+steps of a converter that clips at its range. Properties that a file leaves out are ideal, except
+for the noise, which is then that of `sim.acquisition`.
 
 Each key of the ``[sensors]`` table of a rig file is a table by kind of channel, ``range = { torque
-= 102.5 }``; ``bits`` and ``antialias_hz`` may be one number for all: that of the converter holds
-for the channels whose range is stated, since a step is a share of the range. ``noise = "from
-recordings"`` leaves the noise to be estimated where there are recordings to estimate it from.
+= 102.5 }``. ``bits`` and ``antialias_hz`` may be one number for all channels; bits then apply to
+the channels with a stated range, since a step is a share of the range. With ``noise = "from
+recordings"`` the noise is estimated where there are recordings.
 """
 
 import math
@@ -32,7 +32,7 @@ _USUAL = {  # full scale, of the rig (Appendices B to E) and of the field; most 
     "speed": (0.1, 1e4, 0.5),
     "force": (1.0, 1e6, 5.0),  # hammers of 20 N to 200 kN
 }
-"""Noise: ten steps of the rig's 12 bits (3.1.2)."""
+"""Usual range and highest usual noise; the noise is ten steps of the rig's 12 bits (3.1.2)."""
 
 # Below half of 30 kHz at the rig (3.1.2); slips repeat above 100 Hz.
 _ANTIALIAS = Quantity("antialias_hz", 1.0, "Hz", 1.0, 1e9, (500.0, 1e5), ((1e3, "kHz"),))
@@ -48,26 +48,26 @@ SENSOR_QUANTITIES = {
 """Quantities of a sensor by the names of its fields, by kind of channel."""
 
 _KEYS = {"noise": "noise", "full_scale": "range", "bits": "bits", "antialias": "antialias_hz"}
-"""Of a rig file's table, by the names of the fields."""
+"""Keys of the rig file's table, by the names of the fields."""
 
 
 @short_repr
 @dataclass(frozen=True)
 class Sensor:
-    """The sensor of one kind of channel, with its amplifier, filter and converter.
+    """Sensor of one kind of channel, with its amplifier, filter and converter.
 
     Parameters
     ----------
     noise : float, optional
         Standard deviation of its white noise [unit of the channel].
     full_scale : float, optional
-        Largest value of either sign, beyond which it clips [unit of the channel].
+        Largest magnitude, beyond which the converter clips [unit of the channel].
     bits : int, optional
-        Of the converter: `full_scale` in both signs are ``2**bits`` steps.
+        Resolution of the converter: its range in both signs has ``2**bits`` steps.
     antialias : float, optional
-        Corner of the anti-alias filter, at which it takes 3 dB [Hz].
+        Corner of the anti-alias filter at -3 dB [Hz].
     calibration : Calibration, optional
-        From what is recorded to the quantity, where a recording is not calibrated otherwise.
+        Conversion of recorded numbers to the quantity, for recordings without another calibration.
 
     Examples
     --------
@@ -89,22 +89,22 @@ class Sensor:
         return math.ldexp(self.full_scale, 1 - self.bits)
 
     def over(self, other: "Sensor") -> "Sensor":
-        """Return this sensor, with what it does not say taken from another."""
-        said = {each.name: getattr(self, each.name) for each in fields(self)}
-        return replace(other, **{name: x for name, x in said.items() if x is not None})
+        """Return this sensor, with properties that it does not state taken from another."""
+        own = {each.name: getattr(self, each.name) for each in fields(self)}
+        return replace(other, **{name: x for name, x in own.items() if x is not None})
 
 
 @short_repr
 @dataclass(frozen=True)
 class Sensors:
-    """The sensors of a rig.
+    """Sensors of a rig by kind of channel.
 
     Parameters
     ----------
     by_kind : mapping of str to Sensor
-        By kind of channel; a kind that is missing has an ideal one.
+        Sensors by kind of channel; a missing kind has an ideal one.
     noise_from_recordings : bool
-        Whether the noise is to be estimated where there are recordings.
+        Whether the noise is estimated where there are recordings.
 
     Examples
     --------
@@ -117,31 +117,31 @@ class Sensors:
     noise_from_recordings: bool = False
 
     def quantities(self) -> Iterator[tuple[Quantity, list[float]]]:
-        """Go through the quantities that are stated, each with its values [unit of the key]."""
-        found: dict[Quantity, list[float]] = {}
+        """Yield the quantities that are stated, each with its values [unit of the key]."""
+        stated: dict[Quantity, list[float]] = {}
         for kind, sensor in self.by_kind.items():
             for name, quantity in SENSOR_QUANTITIES[kind].items():
                 if (value := getattr(sensor, name)) is not None:
-                    found.setdefault(quantity, []).append(value)
-        yield from found.items()
+                    stated.setdefault(quantity, []).append(value)
+        yield from stated.items()
 
     def of(self, kind: str) -> Sensor:
         """Return the sensor of a kind of channel."""
         return self.by_kind.get(kind, _IDEAL)
 
     def unfiltered(self) -> "Sensors":
-        """Return these sensors for signals that have passed their filters."""
-        kept = {kind: replace(sensor, antialias=None) for kind, sensor in self.by_kind.items()}
-        return replace(self, by_kind=kept)
+        """Return these sensors without anti-alias filters."""
+        without = {kind: replace(sensor, antialias=None) for kind, sensor in self.by_kind.items()}
+        return replace(self, by_kind=without)
 
     @property
     def calibrations(self) -> dict[str, Calibration]:
         """Calibrations by kind of channel."""
-        found = ((kind, sensor.calibration) for kind, sensor in self.by_kind.items())
-        return {kind: calibration for kind, calibration in found if calibration is not None}
+        pairs = ((kind, sensor.calibration) for kind, sensor in self.by_kind.items())
+        return {kind: calibration for kind, calibration in pairs if calibration is not None}
 
     def over(self, other: "Sensors") -> "Sensors":
-        """Return these sensors, with what they do not say taken from others."""
+        """Return these sensors, with properties that they do not state taken from others."""
         kinds = dict.fromkeys((*other.by_kind, *self.by_kind))
         return Sensors(
             {kind: self.of(kind).over(other.of(kind)) for kind in kinds},
@@ -153,23 +153,23 @@ _IDEAL = Sensor()
 
 
 def read_sensors(table: Any, base: Sensors, folder: Path, where: str) -> Sensors:
-    """Read sensors from a rig file's table, laid over those of its base.
+    """Read sensors from a rig file's table, on top of those of its base.
 
     Parameters
     ----------
     table : mapping
-        As the TOML file holds it.
+        Table of the TOML file.
     base : Sensors
-        Of what the file changes.
+        Sensors of the base.
     folder : Path
-        Of the rig file; names of tables are relative to it.
+        Folder of the rig file, to which names of tables are relative.
     where : str
-        What messages call the table.
+        Name of the table in messages.
 
     Raises
     ------
     ParameterError
-        It holds what cannot be used; the message names the key.
+        An entry cannot be used; the message names the key.
 
     Examples
     --------
@@ -182,26 +182,26 @@ def read_sensors(table: Any, base: Sensors, folder: Path, where: str) -> Sensors
     estimated = table.get("noise") == FROM_RECORDINGS
     stated: dict[str, dict[str, Any]] = {}
     for name, key in _KEYS.items():
-        given = {} if key == "noise" and estimated else table.get(key, {})
-        if not isinstance(given, Mapping):
-            known = {kind: s.full_scale for kind, s in base.by_kind.items()}
-            known |= stated.get("full_scale", {})
-            given = _for_all(given, name, [k for k, scale in known.items() if scale], where)
-        refuse_unknown(given, CHANNEL_UNITS, f"{where}, {key}")
+        entry = {} if key == "noise" and estimated else table.get(key, {})
+        if not isinstance(entry, Mapping):
+            ranges = {kind: s.full_scale for kind, s in base.by_kind.items()}
+            ranges |= stated.get("full_scale", {})
+            entry = _for_all(entry, name, [k for k, scale in ranges.items() if scale], where)
+        refuse_unknown(entry, CHANNEL_UNITS, f"{where}, {key}")
         stated[name] = {
-            kind: SENSOR_QUANTITIES[kind][name].read(value, where) for kind, value in given.items()
+            kind: SENSOR_QUANTITIES[kind][name].read(value, where) for kind, value in entry.items()
         }
     calibrations = as_table(table.get("calibration", {}), "calibration", where)
     refuse_unknown(calibrations, CHANNEL_UNITS, f"{where}, calibration")
     stated["calibration"] = {
-        kind: read_calibration(given, kind, folder, f"{where}, calibration of {kind}")
-        for kind, given in calibrations.items()
+        kind: read_calibration(entry, kind, folder, f"{where}, calibration of {kind}")
+        for kind, entry in calibrations.items()
     }
     kinds = dict.fromkeys(kind for values in stated.values() for kind in values)
     own = Sensors(
         {kind: Sensor(**{n: v[kind] for n, v in stated.items() if kind in v}) for kind in kinds}
     )
-    # What is stated ends an estimate of the base's, and an estimate what the base states.
+    # A stated noise replaces an estimate of the base, and an estimate replaces a noise of the base.
     below = replace(base, noise_from_recordings=base.noise_from_recordings and not stated["noise"])
     if estimated:
         quiet = {kind: replace(sensor, noise=None) for kind, sensor in base.by_kind.items()}
@@ -209,21 +209,21 @@ def read_sensors(table: Any, base: Sensors, folder: Path, where: str) -> Sensors
     return _checked(own.over(below), where)
 
 
-def _for_all(given: Any, name: str, ranged: list[str], where: str) -> dict[str, Any]:
-    """One number for all kinds of channel, or for those whose range is stated."""
+def _for_all(value: Any, name: str, ranged: list[str], where: str) -> dict[str, Any]:
+    """Return one number for all kinds of channel, or for those whose range is stated."""
     if name == "antialias":
-        return dict.fromkeys(CHANNEL_UNITS, given)
+        return dict.fromkeys(CHANNEL_UNITS, value)
     if name == "bits":
-        return dict.fromkeys(ranged or CHANNEL_UNITS, given)
+        return dict.fromkeys(ranged or CHANNEL_UNITS, value)
     words = f'"{FROM_RECORDINGS}", or ' if name == "noise" else ""
     raise ParameterError(
-        f"{where}: {_KEYS[name]} = {given!r} must be {words}a table by channel, such as "
+        f"{where}: {_KEYS[name]} = {value!r} must be {words}a table by channel, such as "
         "{ torque = 50 }"
     )
 
 
 def _checked(sensors: Sensors, where: str) -> Sensors:
-    """Refuse bits that are not whole, or without a range; return them as whole numbers."""
+    """Return sensors with bits as integers; raise if bits are fractional or have no range."""
     checked = {}
     for kind, sensor in sensors.by_kind.items():
         bits = None if sensor.bits is None else int(sensor.bits)
@@ -239,7 +239,7 @@ def _checked(sensors: Sensors, where: str) -> Sensors:
 
 
 def sensors_table(sensors: Sensors) -> dict[str, Any]:
-    """Return sensors as the table of a rig file; empty where all are ideal.
+    """Return the rig file's table of sensors, empty if all are ideal.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Results shown: one short line for ``print``, a data frame for a table."""
+"""Display of results: a short representation for ``print``, and a data frame for tables."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
 _Class = TypeVar("_Class", bound=type)
 
 _LONGEST = 400
-"""Characters of the whole."""
+"""Longest representation in characters."""
 
 
 class _Short(reprlib.Repr):
-    """Values in a few words: arrays by shape and type, dataclasses by name."""
+    """Short representation of values: arrays by shape and type, dataclasses by name."""
 
     def repr1(self, x: Any, level: int) -> str:
         if dataclasses.is_dataclass(x):
-            return f"<{type(x).__name__}>"  # before anything is asked of it, which may take long
+            return f"<{type(x).__name__}>"  # without its attributes, which may be slow
         if hasattr(x, "shape") and hasattr(x, "dtype"):
             return f"<{' x '.join(map(str, x.shape))} {x.dtype}>" if x.shape else repr(x.item())
         return super().repr1(x, level)
@@ -34,18 +34,18 @@ _short.maxstring = _short.maxother = 60
 
 
 def short_repr(cls: _Class) -> _Class:
-    """Give a dataclass a representation that fits on a few lines, whatever it holds.
+    """Give a dataclass a representation of bounded length.
 
     Examples
     --------
     >>> import numpy as np
     >>> @short_repr
     ... @dataclasses.dataclass
-    ... class Heard:
+    ... class Sound:
     ...     name: str
     ...     samples: np.ndarray
-    >>> Heard("run07", np.zeros((2, 48000)))
-    Heard(name='run07', samples=<2 x 48000 float64>)
+    >>> Sound("run07", np.zeros((2, 48000)))
+    Sound(name='run07', samples=<2 x 48000 float64>)
     """
 
     def representation(self: object) -> str:
@@ -64,18 +64,18 @@ def short_repr(cls: _Class) -> _Class:
 
 
 def data_frame(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> DataFrame:
-    """Return a table as a data frame.
+    """Return a table as a pandas data frame.
 
     Parameters
     ----------
     columns : sequence of str
-        All columns in their order; keys of a row that are not among them are left out.
+        Columns in order; other keys of a row are left out.
     rows : iterable of mapping
 
     Returns
     -------
     pandas.DataFrame
-        What is not there is NaN among numbers, and None elsewhere.
+        Missing values are NaN among numbers, and None elsewhere.
 
     Raises
     ------

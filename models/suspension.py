@@ -1,21 +1,20 @@
-r"""A stabilizer bar in its two bushings, on its links: the car's model of Recommendation 7.
+r"""Stabilizer bar in two bushings, with its links: the car's model of Recommendation 7.
 
-The bar turns in two bushings on the body; an arm at each end hangs on a link to its wheel. In
-torsion it is a chain of inertias and springs,
+The bar turns in two bushings on the body; an arm at each end is linked to a wheel. In torsion it is
+a chain of inertias and springs,
 
 .. math::
     k = G J / l, \qquad J_i = \rho J l, \qquad J = \pi (d^4 - d_i^4) / 32
 
-for each piece of length l, with an arm's inertia at either end, where the link pulls with
-k_L (s - r theta) at the arm r, s being the travel of the wheel. The travel is given as the angle
-s / r that it asks of the arm.
+for each piece of length l, with an arm's inertia at either end, where the link exerts the force k_L
+(s - r theta) on the arm r; s is the travel of the wheel, expressed as the angle s / r of the arm.
 
-Links load the bar in bending too, and its two supports carry that. Statics of a beam on two
-supports, of the spacing w, with forces at its ends, the length B apart: the left bushing bears
-F_l (1/2 + B / 2w) + F_r (1/2 - B / 2w), so that wheels which go opposite ways load a bushing by
-B / w times the force in a link.
+Links also load the bar in bending. By the statics of a beam of length B on two supports of spacing
+w, with forces F_l and F_r at its ends, the left bushing carries F_l (1/2 + B / 2w) +
+F_r (1/2 - B / 2w), so wheels in opposite directions load a bushing with B / w times the force of a
+link.
 
-Limits: a bar without twist, wheels that go together, is the rig, twice.
+Limits: wheels that move together do not twist the bar, which is then the rig twice.
 """
 
 import math
@@ -33,32 +32,32 @@ from models.rig_file import read_toml, rig_from
 from models.schema import Quantity, Text, as_table, declared, read_table, refuse_unknown
 
 WHEELS = {"together": (1.0, 1.0), "opposite": (1.0, -1.0), "left": (1.0, 0.0)}
-"""Travel of the left and the right wheel, over the angle that is asked for."""
+"""Travel of the left and the right wheel, relative to the drive."""
 
 _PIECES = 12
-"""Of the bar, about; between arms that hold it its first mode, c / 2 L, comes out 0.3 % low."""
+"""Approximate number of pieces of the bar; its first mode between fixed arms is then 0.3 % low."""
 
 
 @dataclass(frozen=True)
 class Bar:
-    """The stabilizer bar.
+    """Stabilizer bar.
 
     Parameters
     ----------
     diameter, wall : float
-        Of its tube [m]; a wall of half the diameter is a solid bar.
+        Dimensions of the tube [m]; a wall of half the diameter is a solid bar.
     length : float
-        Between its arms [m].
+        Length between the arms [m].
     arm_length : float
-        From its axis to a link [m].
+        Distance from the axis to a link [m].
     arm_inertia : float
-        Of one arm about that axis [kg m2].
+        Inertia of one arm about that axis [kg m2].
     shear_modulus : float
         [Pa]
     density : float
         [kg/m3]
     damping_ratio : float
-        Of the first torsional mode of the bar alone [-]; higher ones more, in proportion.
+        Damping ratio of the bar's first torsional mode [-], proportional to frequency.
     """
 
     diameter: Annotated[float, Quantity("bar_diameter_mm", 1e-3, "mm")]
@@ -72,31 +71,31 @@ class Bar:
 
     @property
     def polar_moment(self) -> float:
-        """Of the section [m4]."""
+        """Polar moment of the section [m4]."""
         inner = self.diameter - 2.0 * self.wall
         return math.pi / 32.0 * (self.diameter**4 - inner**4)
 
 
 @dataclass(frozen=True)
 class Suspension:
-    """Bar, links and bushings; both bushings and their brackets are the rig's.
+    """Suspension of bar, links and two bushings, whose brackets are those of the rig.
 
     Parameters
     ----------
     rig : Rig
-        Bushing, clamp and what carries and radiates; the bar lies along the plate's y.
+        Bushing, clamp, structure and plate; the bar lies along the plate's y.
     bar : Bar
     spacing : float
-        Between the bushings, which lie symmetrically [m].
+        Distance between the bushings, which lie symmetrically [m].
     link_stiffness : float
-        Of a link with its joints [N/m].
+        Stiffness of a link with its joints [N/m].
     link_damping : float
         [N s/m]
     wheels : str
-        Of `WHEELS`: how they go.
+        Travel of the wheels, a key of `WHEELS`.
     friction_coefficient : float, optional
-        By which the contact pressure follows from the kinetic torque [-]; by default the pressure
-        is Lame's, of the rig's sleeve.
+        Friction coefficient that gives the contact pressure from the kinetic torque [-]; by default
+        the pressure is Lame's for the rig's sleeve.
 
     Raises
     ------
@@ -143,11 +142,11 @@ class Suspension:
 
     @property
     def positions(self) -> tuple[float, float]:
-        """Of left and right bushing along the plate's y [m]."""
+        """Positions of left and right bushing along the plate's y [m]."""
         return -0.5 * self.spacing, 0.5 * self.spacing
 
     def contact_pressure(self, interference: float) -> float:
-        """Mean pressure in a bushing by its interference [m], before any load [Pa].
+        """Return the mean pressure in an unloaded bushing [Pa], by its interference [m].
 
         Examples
         --------
@@ -158,38 +157,38 @@ class Suspension:
         0.277
         """
         sleeve = self.rig.sleeve
-        assert sleeve is not None  # or it had been refused
+        assert sleeve is not None  # checked in __post_init__
         if self.friction_coefficient is None:
             return sleeve.pressure(interference)
         of_unit = 2.0 * math.pi * sleeve.inner_radius**2 * sleeve.length
         return self.rig.fit(interference).kinetic_torque / (self.friction_coefficient * of_unit)
 
     def preload(self, interference: float) -> float:
-        """Return that pressure times radius and length of a bushing [N], by interference [m]."""
+        """Return contact pressure times radius and length of a bushing [N], by interference [m]."""
         sleeve = self.rig.sleeve
         assert sleeve is not None
         return self.contact_pressure(interference) * sleeve.inner_radius * sleeve.length
 
 
 class TorsionChain(NamedTuple):
-    """A bar in torsion as inertias in a row, with springs between them and links to the travel.
+    """Bar in torsion as a chain of inertias with springs between them and links to the travel.
 
     Parameters
     ----------
     inertia : ndarray, shape (n,)
-        [kg m2]; what is infinite keeps its speed.
+        [kg m2]; an infinite inertia keeps its speed.
     stiffness, damping : ndarray, shape (n - 1,)
         Between neighbours [Nm/rad], [Nm s/rad].
     link_stiffness, link_damping : ndarray, shape (n,)
-        From the travel to each [Nm/rad], [Nm s/rad].
+        Between the travel and each inertia [Nm/rad], [Nm s/rad].
     travel : ndarray, shape (n,)
-        Angle asked of each over the angle of the travel [-].
+        Travel at each inertia over that of the drive [-].
     start : ndarray, shape (n,)
-        Speed at the start over that of the travel [-].
+        Initial speed over that of the drive [-].
     bushings : ndarray of int, shape (n_bushings,)
-        Where the bushings sit.
+        Inertias at the bushings.
     load : ndarray, shape (n_bushings, n)
-        Normal force on each bushing by the torque of each link [N/Nm].
+        Normal force on each bushing per torque of each link [N/Nm].
 
     Examples
     --------
@@ -214,17 +213,17 @@ class TorsionChain(NamedTuple):
 def torsion_chain(
     bar: Bar, spacing: float, link_stiffness: float, link_damping: float, wheels: str
 ) -> TorsionChain:
-    """Return the chain of a bar with two bushings.
+    """Return the torsion chain of a bar with two bushings.
 
     Parameters
     ----------
     bar, spacing, link_stiffness, link_damping, wheels
-        As of `Suspension`.
+        As for `Suspension`.
 
     Returns
     -------
     TorsionChain
-        From the left arm to the right one.
+        Chain from the left arm to the right one.
     """
     overhang = 0.5 * (bar.length - spacing)
     spans = (overhang, spacing, overhang)
@@ -261,7 +260,7 @@ def torsion_chain(
 
 
 def suspension_file(named: Path = Path("suspension")) -> Path | None:
-    """Return the file that ``--rig`` names if it holds a suspension, else None.
+    """Return the file that ``--rig`` names if it describes a suspension, else None.
 
     Parameters
     ----------
@@ -278,17 +277,17 @@ def suspension_file(named: Path = Path("suspension")) -> Path | None:
     try:
         content = read_toml(named, "")
     except ParameterError:
-        return None  # who reads it next says why
+        return None  # the next reader raises the reason
     return named if "suspension" in content else None
 
 
 def load_suspension(path: Path) -> Suspension:
-    """Read a rig file with a ``[suspension]`` table: a stabilizer bar in two of the rig's bushings.
+    """Read a rig file with a ``[suspension]`` table.
 
     Parameters
     ----------
     path : Path
-        As of `suspension_file`.
+        As from `suspension_file`.
 
     Returns
     -------
@@ -297,7 +296,7 @@ def load_suspension(path: Path) -> Suspension:
     Raises
     ------
     ParameterError
-        It holds what cannot be used; the message names the key.
+        An entry cannot be used; the message names the key.
 
     Examples
     --------

@@ -1,17 +1,17 @@
-"""Units of measured quantities: the spellings of files, what each measures, its value in SI.
+"""Units of measured quantities: spellings in files, quantity and value in SI.
 
-A unit names its quantity, so it decides what a channel is: loggers' channel names are free text.
-Only units that can mean one thing are listed, and a further spelling is an entry here.
+A unit implies its quantity, so it determines the kind of a channel; loggers' channel names are free
+text. Only unambiguous units are listed; a further spelling is an entry here.
 """
 
 import math
 import re
 
 ABSOLUTE_ZERO = -273.15
-"""[degree Celsius]"""
+"""Absolute zero [degree Celsius]."""
 
 STANDARD_GRAVITY = 9.80665
-"""By definition [m/s^2]."""
+"""Standard gravity by definition [m/s^2]."""
 
 _DEGREE = math.pi / 180.0
 _TURN = 2.0 * math.pi
@@ -25,7 +25,7 @@ CHANNEL_UNITS = {
     "speed": "rad/s",
     "force": "N",
 }
-"""The kinds of channel and the SI unit of the samples of each."""
+"""SI unit of the samples by kind of channel."""
 
 SI_UNITS = {
     **CHANNEL_UNITS,
@@ -34,7 +34,7 @@ SI_UNITS = {
     "displacement": "m",
     "velocity": "m/s",
 }
-"""Quantity -> the SI unit that its values are kept in."""
+"""SI unit by quantity."""
 
 _IN_SI = {
     "torque": {
@@ -80,7 +80,7 @@ _IN_SI = {
         "in/s": _INCH,
     },
 }  # fmt: skip
-"""Quantity -> spelling of a unit, without signs of multiplication -> its value in SI."""
+"""Value in SI by quantity and spelling, without multiplication signs."""
 
 _BY_SPELLING = {
     spelling: (quantity, value)
@@ -94,10 +94,11 @@ _BY_SPELLING |= {
         "deg/s", "rpm", "s", "sec", "m", "mm", "Hz", "kHz",
     )
 }  # fmt: skip
-"""In capitals only where they cannot be another unit: MPA may be thousandths or millions."""
+"""Quantity and value in SI by spelling. Capitals are allowed only where they are unambiguous: MPA
+may be mPa or MPa."""
 
 _SHORTEST_WORD = 5
-"""Letters from which a unit is a word, which may be written in capitals or not."""
+"""Length from which a unit is a word, whose case does not matter."""
 
 _SIGNS = str.maketrans({"²": "2", "µ": "u", "μ": "u", "º": "°", **dict.fromkeys(" \t^·⋅*.()[]<>")})
 _HYPHEN = re.compile(r"(?<=[^\W\d_])-(?=[^\W\d_])")
@@ -109,18 +110,18 @@ _ENDS_IN_UNIT = (
 
 
 def quantity_of_unit(unit: str) -> tuple[str, float] | None:
-    """Quantity that a unit measures, and the unit's value in the SI unit of `SI_UNITS`.
+    """Return the quantity of a unit, and its value in the unit of `SI_UNITS`.
 
     Parameters
     ----------
     unit : str
-        As a file spells it; signs of multiplication and powers, dots, blanks and brackets do not
+        Spelling of a file; signs of multiplication and powers, dots, blanks and brackets do not
         matter.
 
     Returns
     -------
     tuple of (str, float), optional
-        Quantity, and the value [SI unit]; None for a unit that is not known.
+        Quantity, and the value [SI unit]; None for an unknown unit.
 
     Examples
     --------
@@ -134,7 +135,7 @@ def quantity_of_unit(unit: str) -> tuple[str, float] | None:
 
 
 def kind_of_unit(unit: str) -> tuple[str, float] | None:
-    """Kind of channel that a unit belongs to, and the unit's value in that channel's SI unit.
+    """Return the kind of channel of a unit, and its value in that channel's SI unit.
 
     Parameters
     ----------
@@ -144,30 +145,19 @@ def kind_of_unit(unit: str) -> tuple[str, float] | None:
     Returns
     -------
     tuple of (str, float), optional
-        Kind, and the value [SI unit]; None for a unit that is no channel's.
+        Kind, and the value [SI unit]; None for a unit of no channel.
 
     Examples
     --------
     >>> kind_of_unit("N·mm"), kind_of_unit("m/s²"), kind_of_unit("[Pa]"), kind_of_unit("ms")
     (('torque', 0.001), ('acceleration', 1.0), ('pressure', 1.0), None)
     """
-    found = quantity_of_unit(unit)
-    return found if found is not None and found[0] in CHANNEL_UNITS else None
-
-
-def known_units() -> str:
-    """SI units of all channels, for a message.
-
-    Examples
-    --------
-    >>> known_units()
-    'N m, m/s^2, Pa, rad, rad/s, N'
-    """
-    return ", ".join(CHANNEL_UNITS.values())
+    quantity = quantity_of_unit(unit)
+    return quantity if quantity is not None and quantity[0] in CHANNEL_UNITS else None
 
 
 def split_unit(heading: str) -> tuple[str, str]:
-    """Part the heading of a column into name and unit; the unit is empty where none is stated.
+    """Split the heading of a column into name and unit, empty if none is stated.
 
     Examples
     --------
@@ -178,14 +168,14 @@ def split_unit(heading: str) -> tuple[str, str]:
     """
     heading = heading.strip()
     for ending in _ENDS_IN_UNIT:
-        if found := ending.fullmatch(heading):
-            return found[1].strip(), found[2].strip()
+        if match := ending.fullmatch(heading):
+            return match[1].strip(), match[2].strip()
     name, _, unit = heading.partition("_")
     return (name, unit) if quantity_of_unit(unit) else (heading, "")
 
 
 def split_ratio(unit: str) -> tuple[str, str]:
-    """Part the unit of a response into those of output and input, empty where it has none.
+    """Split the unit of a response into those of output and input, empty if it has none.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""The impulse responses from torque and pulse to acceleration and sound at one condition.
+"""Impulse responses from torque and pulse to acceleration and sound at one condition.
 
-Time domain, because simulated torques are signals without a period, and because a measured
-response can stand in for a modelled one once it is an impulse response too.
+The time domain is used because simulated torques are not periodic, and because a measured response
+can replace a modelled one once it is an impulse response too.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from scipy.fft import rfft
 from models.transfer_functions.filtering import convolve, transform_size
 
 Source = Literal["torque", "pulse"]
-"""What drives the structure: the bushing's torque, or the anchors' pulse force."""
+"""Excitation of the structure: the bushing's torque, or the anchors' pulse force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +27,9 @@ class ImpulseResponses:
     rate : float
         Sampling rate [Hz].
     torque_to_acceleration, torque_to_pressure : ndarray, shape (n,)
-        To a unit sample of the bushing's torque on the clamp [m/s2 and Pa per Nm].
+        Responses to a unit sample of the bushing's torque on the clamp [m/s2 and Pa per Nm].
     pulse_to_acceleration, pulse_to_pressure : ndarray, shape (n,)
-        To a unit sample of the anchors' pulse force [m/s2 and Pa per N].
+        Responses to a unit sample of the anchors' pulse force [m/s2 and Pa per N].
 
     Examples
     --------
@@ -49,10 +49,9 @@ class ImpulseResponses:
 def radiate(
     paths: ImpulseResponses, signal: NDArray[np.float64], source: Source = "torque"
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Acceleration and sound pressure that a torque, or pulses of force, cause.
+    """Compute acceleration and sound pressure from a torque or from pulses of force.
 
-    The first sample of a torque is taken to have acted for ever before, so a torque that starts at
-    a constant part makes no thump.
+    A torque is assumed constant before its first sample, so a non-zero start causes no transient.
 
     Parameters
     ----------
@@ -61,7 +60,7 @@ def radiate(
         Torque of the bushing on the clamp [Nm] or pulse force of the anchors on the plate [N],
         sampled at their rate.
     source : {"torque", "pulse"}
-        Which it is.
+        Kind of the signal.
 
     Returns
     -------

@@ -1,10 +1,10 @@
-"""Sound of a vibrating surface in a rigid baffle: Rayleigh's integral as a short filter.
+"""Rayleigh's integral for the sound of a vibrating surface in a rigid baffle, as a short filter.
 
 p(t) = rho_0 / (2 pi) * integral of a(t - r/c) / r dA, where a is the normal acceleration at the
-distance r from the microphone. Travel times differ by a few milliseconds at most over a plate,
-so for a given distribution of the acceleration the integral is a filter of some hundred taps,
-and it is one sparse matrix for all distributions. Times between samples are interpolated by
-Lagrange's cubic, which costs 0.1 dB at a sixth of the sampling rate.
+distance r from the microphone. Travel times over a plate differ by a few milliseconds at most, so
+for a fixed distribution of the acceleration the integral is a filter of some hundred taps, and one
+sparse matrix serves all distributions. Times between samples are interpolated by Lagrange's cubic,
+with an error of 0.1 dB at a sixth of the sampling rate.
 """
 
 from dataclasses import dataclass
@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 AIR_DENSITY = 1.204
-"""Of dry air at 20 degree Celsius and 1013 hPa [kg/m3]."""
+"""Density of dry air at 20 degree Celsius and 1013 hPa [kg/m3]."""
 
 SOUND_SPEED = 343.2
-"""In dry air at 20 degree Celsius [m/s]."""
+"""Speed of sound in dry air at 20 degree Celsius [m/s]."""
 
 GRID_STEP = 3e-3
 """Largest surface element: a seventh of the wavelength in air at 16 kHz [m]."""
@@ -30,26 +30,26 @@ class RayleighIntegral:
     Parameters
     ----------
     matrix : sparse array, shape (n_taps, n_elements)
-        Takes the elements' acceleration [m/s2] to filter taps [Pa].
+        Maps the elements' acceleration [m/s2] to filter taps [Pa].
     delay : int
-        Samples that pass before the first tap.
+        Samples before the first tap.
     """
 
     matrix: csr_array
     delay: int
 
     def taps(self, distribution: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Filter from the time course of an acceleration to the sound pressure.
+        """Return the filter from the time course of an acceleration to the sound pressure.
 
         Parameters
         ----------
         distribution : ndarray, shape (n_elements,) or (n_elements, n_distributions)
-            The acceleration of each element in units of that time course.
+            Acceleration of each element relative to that time course.
 
         Returns
         -------
         ndarray, shape (n_taps,) or (n_taps, n_distributions)
-            [Pa per m/s2], the first one `delay` samples late.
+            [Pa per m/s2], delayed by `delay` samples.
         """
         return np.asarray(self.matrix @ distribution)
 
@@ -61,12 +61,12 @@ def rayleigh_integral(
     microphone: tuple[float, float, float],
     rate: float,
 ) -> RayleighIntegral:
-    """Set up Rayleigh's integral.
+    """Return Rayleigh's integral over surface elements.
 
     Parameters
     ----------
     x, y : ndarray, shape (n_elements,)
-        Middle of each surface element, all of them at z = 0 [m].
+        Middle of each surface element at z = 0 [m].
     area : ndarray, shape (n_elements,), or float
         [m2]; the elements must be small against the wavelength and the microphone's height.
     microphone : tuple of 3 floats
@@ -84,7 +84,7 @@ def rayleigh_integral(
 
     Examples
     --------
-    A small piston of 1 cm2 that accelerates by 1 m/s2, heard at 1 m:
+    A small piston of 1 cm2 with an acceleration of 1 m/s2, at 1 m:
 
     >>> middle = np.zeros(1)
     >>> piston = rayleigh_integral(middle, middle, 1e-4, (0.0, 0.0, 1.0), 96e3)
@@ -110,12 +110,12 @@ def rayleigh_integral(
 
 
 def cubic_weights(f: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Weights of Lagrange's cubic between samples.
+    """Return the weights of Lagrange's cubic between samples.
 
     Parameters
     ----------
     f : ndarray, shape (n,)
-        Place after the second of four samples, 0 to 1 [samples].
+        Distance from the second of four samples, 0 to 1 [samples].
 
     Returns
     -------
@@ -140,7 +140,7 @@ def cubic_weights(f: NDArray[np.float64]) -> NDArray[np.float64]:
 def rectangle_integral(
     length: float, width: float, microphone: tuple[float, float, float], rate: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], RayleighIntegral]:
-    """Set up Rayleigh's integral over a rectangle about the origin.
+    """Return Rayleigh's integral over a rectangle about the origin.
 
     Parameters
     ----------
@@ -152,9 +152,9 @@ def rectangle_integral(
     Returns
     -------
     x, y : ndarray, shapes (n_x,) and (n_y,)
-        Lines of the grid of elements' middles [m].
+        Coordinates of the elements' middles [m].
     integral : RayleighIntegral
-        Of n_x * n_y elements, y varying fastest.
+        Integral over n_x * n_y elements, y varying fastest.
 
     Examples
     --------

@@ -1,16 +1,16 @@
-"""The impulse responses of a rig: from torque to accelerometer and microphone.
+"""Impulse responses of a rig: from torque and pulse to accelerometer and microphone.
 
-A chain of linear parts, put together once into four impulse responses: clamp and beams carry the
-torque to their anchors (`models.structure.beams`), the anchors drive the plate, and the plate
-radiates (`models.structure.plate`). A second input is the pulse of a micro-impact in the joint of
-beam and anchor, as slips may excite it: the torque itself has next to nothing above 2 kHz, but a
-creak sounds to 15 kHz. It pushes the plate under the anchors, up on one side and down on the other,
-and its reaction bends the beams there, which the accelerometer picks up; while it shuts the joint,
-the beams are taken to pass nothing else on to the plate. With the clamp bolted to the plate there
-is neither beam nor joint: the torque is a moment on the plate, the pulse is without effect, and the
-acceleration is that of the plate at the clamp's edge.
+A chain of linear parts is combined into four impulse responses: clamp and beams transmit the torque
+to their anchors (`models.structure.beams`), the anchors excite the plate, and the plate radiates
+(`models.structure.plate`). A second input is the pulse of a micro-impact in the joint of beam and
+anchor, which slips may excite: the torque has almost nothing above 2 kHz, but a creak extends to
+15 kHz. The pulse pushes the plate under the anchors, up on one side and down on the other, and its
+reaction bends the beams there, which the accelerometer measures; while it closes the joint, the
+beams transmit nothing else to the plate. With the clamp bolted to the plate there is neither beam
+nor joint: the torque is a moment on the plate, the pulse has no effect, and the acceleration is
+that of the plate at the clamp's edge.
 
-Beams and clamp are heard as well where the rig says so (`models.structure.beams`). Only
+The sound of beams and clamp is added if the rig asks for it (`models.radiation.beam_sound`). Only
 direct sound is modelled, and the plate does not act back on the beams.
 """
 
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from models.bench import HIGHEST_PLATE_FREQUENCY, Beams, Microphone, Plate
 from models.errors import ParameterError
+from models.radiation.beam_sound import beams_pressure
 from models.radiation.impulse_responses import ImpulseResponses
 from models.rig import Rig, damping_at
 from models.structure.beams import (
@@ -32,7 +33,6 @@ from models.structure.beams import (
     TORQUE,
     beam_length,
     beam_structure,
-    beams_pressure,
 )
 from models.structure.plate import (
     PlateModes,
@@ -44,13 +44,13 @@ from models.transfer_functions.filtering import convolve
 from models.transfer_functions.measured import with_measured
 
 HIGHEST_BEAM_FREQUENCY = 40e3
-"""Beam modes are kept up to it, for what lies below 20 kHz to be complete [Hz]."""
+"""Highest beam mode [Hz], so that the response below 20 kHz is complete."""
 
 BAND = 0.45
-"""Share of the sampling rate up to which modes are kept, short of the Nyquist frequency."""
+"""Share of the sampling rate up to which modes are included, below the Nyquist frequency."""
 
 FADE = 0.1
-"""Last part of the responses, over which modes that still ring are faded out."""
+"""Last share of the responses, over which they are faded out."""
 
 
 def impulse_responses(
@@ -60,12 +60,11 @@ def impulse_responses(
     rate: float,
     seconds: float = 0.7,
 ) -> ImpulseResponses:
-    """Impulse responses of a rig at one operating condition.
+    """Return the impulse responses of a rig at one operating condition.
 
-    The first torsional mode has the damping that the lumped model leaves to the beams,
-    (1 - share) c_E / (2 sqrt(k_B J_C)). What the interference does not change is kept, so a
-    further one of the same rig and support costs little. A response that the rig has measured with
-    this support stands in for the modelled one of the torque.
+    The first torsional mode has the damping of the beams in the lumped model,
+    (1 - share) c_E / (2 sqrt(k_B J_C)). Results are cached as far as the interference does not
+    change them. A measured response with this support replaces the modelled one of the torque.
 
     Parameters
     ----------
@@ -75,10 +74,10 @@ def impulse_responses(
     support_stiffness : float
         k_B [Nm/rad], or `models.condition.FIXED`.
     rate : float
-        Sampling rate of torque, pulse and outputs [Hz]. 96 kHz carries all modes; lower ones
-        leave out those above 0.45 of the rate and lose accuracy above a quarter of it.
+        Sampling rate of torque, pulse and outputs [Hz]. 96 kHz includes all modes; lower rates
+        omit those above 0.45 of the rate and are less accurate above a quarter of it.
     seconds : float, optional
-        Length of the responses [s]; modes that still ring at their end are faded out.
+        Length of the responses [s], which are faded out at their end.
 
     Returns
     -------
@@ -87,8 +86,8 @@ def impulse_responses(
     Raises
     ------
     ParameterError
-        If no beams of this stiffness fit between clamp and plate, or a measured response cannot
-        be made causal.
+        If no beams of this stiffness fit between clamp and plate, or a measured response is not
+        causal.
 
     Examples
     --------
@@ -124,7 +123,7 @@ def impulse_responses(
 
 
 def first_mode_damping(rig: Rig, interference: float, support_stiffness: float) -> float:
-    """Damping ratio of the first torsional mode of clamp and beams [-].
+    """Return the damping ratio of the first torsional mode of clamp and beams [-].
 
     Parameters
     ----------
@@ -141,7 +140,7 @@ def first_mode_damping(rig: Rig, interference: float, support_stiffness: float) 
 
 
 def anchor_drives(modes: PlateModes, arm: float) -> NDArray[np.float64]:
-    """Drives of the plate by the right anchor's force and moment, the left one acting along.
+    """Return the drives of the plate by the anchors' force and moment, acting antisymmetrically.
 
     Parameters
     ----------
@@ -152,7 +151,7 @@ def anchor_drives(modes: PlateModes, arm: float) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (n_modes, 2)
-        Modal force for a unit of each [1/sqrt(kg)] and [1/(m sqrt(kg))].
+        Modal force for a unit of force and of moment [1/sqrt(kg)] and [1/(m sqrt(kg))].
     """
     x, y = modes.plate.clamp_position
     return np.stack(
@@ -165,7 +164,7 @@ def anchor_drives(modes: PlateModes, arm: float) -> NDArray[np.float64]:
 
 
 def anchor_arm(beams: Beams, plate: Plate, support_stiffness: float) -> float:
-    """Distance of the anchors from the shaft's axis [m].
+    """Return the distance of the anchors from the shaft's axis [m].
 
     Parameters
     ----------
@@ -177,7 +176,7 @@ def anchor_arm(beams: Beams, plate: Plate, support_stiffness: float) -> float:
     Raises
     ------
     ParameterError
-        If that is off the plate.
+        If an anchor is off the plate.
     """
     arm = beams.lever + beam_length(beams, support_stiffness)
     left, right = plate.clamp_position[0] - arm, plate.clamp_position[0] + arm
@@ -231,7 +230,7 @@ def _beam_response(
 def _anchors_to_pressure(
     plate: Plate, microphone: Microphone, arm: float, rate: float, n_samples: int
 ) -> NDArray[np.float64]:
-    """Pressure by the right anchor's force and moment, the left one acting along."""
+    """Return the pressure responses to the anchors' force and moment."""
     modes = _modes(plate, rate)
     return pressure_response(modes, anchor_drives(modes, arm), microphone, rate, n_samples)
 
@@ -264,5 +263,5 @@ def _faded(rate: float, *responses: NDArray[np.float64]) -> ImpulseResponses:
     window[n_samples - end :] = 0.5 + 0.5 * np.cos(np.pi * (np.arange(end) + 1) / end)
     faded = [window * impulse_response for impulse_response in responses]
     for impulse_response in faded:
-        impulse_response.flags.writeable = False  # shared by all that ask for the same rig
+        impulse_response.flags.writeable = False  # shared by the cache
     return ImpulseResponses(rate, *faded)

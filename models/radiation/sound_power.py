@@ -1,24 +1,24 @@
 """Sound power of the plate under steady drives, in one-third octaves.
 
-Radiated power follows from the plate's velocity spectrum over wavenumbers: only components slower
-than k = omega / c travel away. Over that disc the integral is smooth once k_x = k s and
-k_y = k sqrt(1 - s^2) sin(v) are its variables, so that Gauss's and the midpoint rule take it to
-rounding with a few nodes a wavelength, where sums of pressure over a hemisphere need thousands of
-Rayleigh integrals. All modes radiate together, cross terms included. What they radiate damps them
-too, which for a steel plate in air is less than a tenth of its loss factor, and is left out.
+Radiated power follows from the plate's velocity spectrum over wavenumbers: only components below k
+= omega / c radiate. The integral over that disc is smooth in the variables s and v, with k_x = k s
+and k_y = k sqrt(1 - s^2) sin(v), so Gauss's and the midpoint rule are exact to rounding with a few
+nodes per wavelength, whereas sums of pressure over a hemisphere need thousands of Rayleigh
+integrals. All modes radiate together, cross terms included. Radiation damping, for a steel plate in
+air less than a tenth of the loss factor, is left out.
 
-The plate is part of a rigid baffle, as for the sound at the microphone. One that stands free
-short-circuits about its edges what the baffle keeps apart, and is quieter below its critical
-frequency. By that the baffle is too loud [dB], for a steel plate of 0.9 x 0.6 m and 10 mm (critical
-frequency 1.2 kHz), per one-third octave, mean of four point forces (Laulagnet, J. Acoust. Soc. Am.
-103 (1998) 2451-2462, solved with Chebyshev functions for the pressure jump):
+The plate is part of a rigid baffle, as for the sound at the microphone. A free-standing plate has
+an acoustic short circuit around its edges, and is quieter below its critical frequency. The excess
+of the baffled plate [dB] for steel of 0.9 x 0.6 m and 10 mm (critical frequency 1.2 kHz), per
+one-third octave, mean of four point forces (Laulagnet, J. Acoust. Soc. Am. 103 (1998) 2451-2462,
+solved with Chebyshev functions for the pressure jump), is:
 
     Hz                    63   125   250   500  1000
     simply supported      17    10     7     6     0
     free                  10    12     2    -1     0
 
-Bands are those of base ten (IEC 61260-1). In each one the frequencies computed lie close enough for
-the narrowest resonance: half its width apart, which sums a resonance to half a percent.
+Bands are those of base ten (IEC 61260-1). The frequencies in each band are half the width of the
+narrowest resonance apart, which integrates a resonance to half a percent.
 """
 
 from collections.abc import Callable
@@ -36,16 +36,16 @@ from models.show import short_repr
 from models.structure.plate import PlateModes
 
 SPARE_NODES = 12
-"""Nodes of the wavenumber integral beyond one for each unit of its phase."""
+"""Nodes of the wavenumber integral in addition to one per unit of its phase."""
 
 REFERENCE = 1e-12
-"""Of sound power levels [W]."""
+"""Reference of sound power levels [W]."""
 
 FEWEST = 8
-"""Frequencies in a band."""
+"""Fewest frequencies in a band."""
 
 BAND = 10**0.1
-"""Upper over lower edge of a band."""
+"""Ratio of the edges of a band."""
 
 LOWEST, HIGHEST = 50.0, 10e3
 """Middles of the lowest and the highest band [Hz]."""
@@ -54,14 +54,14 @@ LOWEST, HIGHEST = 50.0, 10e3
 @short_repr
 @dataclass(frozen=True, eq=False)
 class BandPower:
-    """Power per one-third octave.
+    """Sound power per one-third octave.
 
     Parameters
     ----------
     centre : ndarray, shape (n_bands,)
         Exact middle of each band [Hz].
     radiated : ndarray, shape (n_bands,)
-        As sound of the plate's upper side [W].
+        Sound power of the plate's upper side [W].
     """
 
     centre: NDArray[np.float64]
@@ -80,7 +80,7 @@ def radiated_spectrum(
     spectra: NDArray[np.complex128],
     frequency: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Sound power of the upper side under harmonic drives.
+    """Return the sound power of the upper side under harmonic drives.
 
     Parameters
     ----------
@@ -88,8 +88,8 @@ def radiated_spectrum(
     drives : ndarray, shape (n_modes, n_drives)
         As for `models.structure.plate.acceleration_model`.
     spectra : ndarray, shape (n_sets, n_drives, n)
-        Force [N] or moment [Nm] of each drive, complex, root mean square; those of a set act
-        together. Sets know nothing of each other's phase, so that their powers add up.
+        Force [N] or moment [Nm] of each drive, complex, root mean square. Drives of a set are
+        coherent; sets are incoherent, so their powers add up.
     frequency : ndarray, shape (n,)
         [Hz]
 
@@ -116,7 +116,7 @@ def radiated_spectrum(
         1j * omega * forces / modes.mass / (natural**2 - omega**2 + 2j * ratios * natural * omega)
     )
     columns = velocity.transpose(2, 0, 1)
-    # Small products: threads that wait for each other take ten times as long as one.
+    # Small products: several threads take ten times as long as one.
     with threadpool_limits(limits=1, user_api="blas"):
         return np.array(
             [
@@ -127,7 +127,7 @@ def radiated_spectrum(
 
 
 def radiated_power(modes: PlateModes, velocity: NDArray[np.complex128], frequency: float) -> float:
-    """Sound power of the upper side.
+    """Return the sound power of the upper side at a frequency.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def radiated_power(modes: PlateModes, velocity: NDArray[np.complex128], frequenc
 def _transforms(
     modes: PlateModes, k: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Give transforms of the bases at a quarter of the disc's nodes, and the nodes' weights."""
+    """Return transforms of the bases at a quarter of the disc's nodes, and their weights."""
     n_s = int(k * modes.plate.length / 4) + SPARE_NODES
     n_v = int(k * modes.plate.width / 4) + SPARE_NODES
     s, weight = _upper_gauss(8 * (n_s // 8 + 1))
@@ -184,7 +184,7 @@ def _transforms(
 
 @lru_cache(maxsize=32)
 def _upper_gauss(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Upper half of Gauss's rule with twice as many nodes."""
+    """Return the upper half of Gauss's rule with twice as many nodes."""
     nodes, weights = leggauss(2 * count)
     return nodes[count:], weights[count:]
 
@@ -194,7 +194,7 @@ def third_octave_power(
     drives: NDArray[np.float64],
     density: Callable[[NDArray[np.float64]], NDArray[np.complex128]],
 ) -> BandPower:
-    """Sound power of the plate under steady drives, band by band from `LOWEST` to `HIGHEST`.
+    """Return the sound power of the plate in bands from `LOWEST` to `HIGHEST`.
 
     Parameters
     ----------
@@ -202,9 +202,9 @@ def third_octave_power(
     drives : ndarray, shape (n_modes, n_drives)
         As for `models.structure.plate.acceleration_model`.
     density : callable
-        Takes frequencies, shape (n,), each a fixed ratio above the last, to sets of the complex
-        spectra of all drives, shape (n_sets, n_drives, n), whose squared magnitude is a power
-        spectral density [N2/Hz or (Nm)2/Hz]; phases between drives of a set count.
+        Function of frequencies, shape (n,), with a fixed ratio, that returns sets of the complex
+        spectra of all drives, shape (n_sets, n_drives, n). Their squared magnitude is a power
+        spectral density [N2/Hz or (Nm)2/Hz]; drives of a set are coherent.
 
     Returns
     -------

@@ -1,19 +1,19 @@
-"""A structure as the sum of its modes, on a frequency axis and as sampled impulse responses.
+"""Modal model of a structure: frequency responses and sampled impulse responses.
 
-Modes are kept with viscous damping, so every impulse response is causal. Each becomes a digital
-section of second order with the poles of the continuous mode. Its numerator has the zeros that
-the quantity itself has: two at 0 Hz for the acceleration, none for the displacement, for which
-Numerov's weights (1, 10, 1)/12 straighten the band. Gain is matched at low frequencies. Up to
-a sixth of the sampling rate the result differs from the continuous mode by less than 0.2 dB, up
-to a quarter by less than 1 dB; sampling the continuous impulse response would alias, the more
-so as an acceleration does not fall off towards high frequencies.
+Modes have viscous damping, so every impulse response is causal. Each becomes a digital section of
+second order with the poles of the continuous mode. Its numerator has the zeros of the quantity: two
+at 0 Hz for the acceleration, none for the displacement, for which Numerov's weights (1, 10, 1)/12
+flatten the band. The gain is matched at low frequencies. Up to a sixth of the sampling rate the
+result differs from the continuous mode by less than 0.2 dB, up to a quarter by less than 1 dB;
+sampling the continuous impulse response would alias, in particular for an acceleration, which does
+not fall off towards high frequencies.
 
-From zeta = 1 on a mode rings no more: s^2 + 2 zeta omega s + omega^2 = 0 has the two real roots
+From zeta = 1 on a mode does not oscillate: s^2 + 2 zeta omega s + omega^2 = 0 has two real roots
 
     s = -omega (zeta -+ sqrt(zeta^2 - 1)),
 
-of which the slower, -omega / (zeta + sqrt(zeta^2 - 1)), decides how long the mode is followed. Up
-to a sixth of the sampling rate such a mode differs by less than 0.5 dB, however much it is damped.
+of which the slower, -omega / (zeta + sqrt(zeta^2 - 1)), determines the length of the response. Up
+to a sixth of the sampling rate such a mode differs by less than 0.5 dB at any damping.
 """
 
 from dataclasses import dataclass
@@ -24,12 +24,12 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.signal import lfilter
 
 DECAY_EXPONENT = 14.0
-"""A mode is followed until it has decayed by exp(14), 122 dB."""
+"""Exponent of the decay at which the response of a mode ends: exp(14), 122 dB."""
 
 
 @dataclass(frozen=True, eq=False)
 class ModalModel:
-    """Linear structure with modes r, each obeying q'' + 2 zeta omega q' + omega^2 q = inputs.
+    """Linear structure of modes with q'' + 2 zeta omega q' + omega^2 q = inputs.
 
     Parameters
     ----------
@@ -39,10 +39,10 @@ class ModalModel:
         Modal force for a unit of each input [1/sqrt(kg) for a force], with mode shapes normalised
         to unit modal mass.
     displacements, accelerations : ndarray, shape (n_outputs, n_modes)
-        What each output gathers from q and from q'' [unit of the output over that of each].
+        Contributions of q and q'' to each output [unit of the output over that of each].
     feedthrough : ndarray, shape (n_outputs, n_inputs)
-        Instant part of the outputs [unit of the output over that of the input], for what modes
-        left out contribute statically.
+        Instantaneous part of the outputs [unit of the output over that of the input]: the static
+        contribution of the modes left out.
 
     Examples
     --------
@@ -63,7 +63,7 @@ class ModalModel:
     feedthrough: NDArray[np.float64]
 
     def frequency_response(self, frequency: ArrayLike) -> NDArray[np.complex128]:
-        """Give the outputs for a unit of each input, exact in continuous time.
+        """Return the frequency response of the outputs to each input, exact in continuous time.
 
         Parameters
         ----------
@@ -87,7 +87,7 @@ class ModalModel:
         )
 
     def impulse_response(self, rate: float, n_samples: int) -> NDArray[np.float64]:
-        """Give the outputs for a unit sample of each input, for convolution with samples.
+        """Return the sampled impulse response of the outputs to each input.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class ModalModel:
 def acceleration_section(
     frequency: float, damping_ratio: float, rate: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Digital filter from the modal force to q'' of a mode of unit modal mass.
+    """Return the digital filter from modal force to q'' of a mode of unit modal mass.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def acceleration_section(
 def displacement_section(
     frequency: float, damping_ratio: float, rate: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Digital filter from the modal force to q of a mode of unit modal mass.
+    """Return the digital filter from modal force to q of a mode of unit modal mass.
 
     Parameters and returns are those of `acceleration_section`, shapes (3,), the
     numerator in [s2].
@@ -174,29 +174,29 @@ def add_ringing(
     delay: int,
     rate: float,
 ) -> None:
-    """Add what modes radiate, each known for an impulse of its acceleration.
+    """Add the sound of modes to the impulse responses of inputs.
 
     Parameters
     ----------
     response : ndarray, shape (n_inputs, n_samples)
-        What is heard after a unit sample of each input; it is added to [unit of what is heard].
+        Sound pressure after a unit sample of each input, changed in place [Pa per unit].
     modes : object
         With `frequencies` [Hz] and `damping_ratios` [-], ndarrays of shape (n_modes,).
     inputs : ndarray, shape (n_modes, n_inputs)
         Modal force for a unit of each input [1/sqrt(kg) for a force].
     taps : ndarray, shape (n_taps, n_modes)
-        Filter from the acceleration q'' of each mode to what is heard [its unit over that of q''].
+        Filter from the acceleration q'' of each mode to the sound pressure [Pa over unit of q''].
     delay : int
-        Samples that pass before the first tap.
+        Samples before the first tap.
     rate : float
         Sampling rate [Hz].
 
     Examples
     --------
-    >>> heard, one = np.zeros((1, 8)), np.ones((1, 1))
+    >>> sound, one = np.zeros((1, 8)), np.ones((1, 1))
     >>> mode = ModalModel(np.array([100.0]), np.array([0.01]), one, one, one, 0 * one)
-    >>> add_ringing(heard, mode, one, one, 3, 8e3)
-    >>> heard[0, :4].round(2)
+    >>> add_ringing(sound, mode, one, one, 3, 8e3)
+    >>> sound[0, :4].round(2)
     array([0., 0., 0., 1.])
     """
     n_samples = response.shape[1]
@@ -207,12 +207,12 @@ def add_ringing(
         end = min(delay + ringing, n_samples)
         excitation = np.zeros(ringing)
         excitation[: taps.shape[0]] = taps[:, r]
-        heard = lfilter(*acceleration_section(frequency, ratio, rate), excitation)
-        response[:, delay:end] += np.outer(inputs[r], heard[: end - delay])
+        sound = lfilter(*acceleration_section(frequency, ratio, rate), excitation)
+        response[:, delay:end] += np.outer(inputs[r], sound[: end - delay])
 
 
 def ringing_samples(frequency: float, damping_ratio: float, rate: float, n_samples: int) -> int:
-    """Count the samples until a mode has died away (122 dB down), at most `n_samples`.
+    """Return the number of samples until a mode has decayed by 122 dB, at most `n_samples`.
 
     Examples
     --------
@@ -236,6 +236,6 @@ def _poles(frequency: float, damping_ratio: float, rate: float) -> NDArray[np.fl
 
 
 def _real_decays(angle: float, damping_ratio: float) -> tuple[float, float]:
-    """Exponents per sample of an overdamped mode; the product of the two is `angle`**2."""
+    """Return the two decay exponents per sample of an overdamped mode."""
     apart = damping_ratio + float(np.sqrt(damping_ratio**2 - 1))
     return angle / apart, angle * apart

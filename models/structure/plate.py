@@ -1,16 +1,16 @@
-"""The baseplate: its modes, how points and moments drive them, the sound that they radiate.
+"""Baseplate: its modes, their excitation by forces and moments, and their sound.
 
-Thin plate (Kirchhoff) in a rigid baffle, its edges simply supported, so that modes have a closed
-form: they cost nothing and can be checked. Edges hardly change the plate's mean mobility, but much
-of what it radiates: between 200 and 500 Hz free ones would make the shipped plate's radiation
-efficiency 6 to 13 dB lower, above its critical frequency of 1.2 kHz not at all. The loss factor
-acts as viscous damping of each mode, half of it being the damping ratio, which keeps responses
-causal. Left out: the air's load on the plate, its sides and rear, and the sound that goes round an
-edge without baffle, which weakens the lowest modes of a free-standing plate.
+The model is a thin plate (Kirchhoff) in a rigid baffle with simply supported edges, so modes have a
+closed form. The edges hardly change the plate's mean mobility, but much of its radiation: with free
+edges the shipped plate's radiation efficiency would be 6 to 13 dB lower between 200 and 500 Hz, and
+the same above its critical frequency of 1.2 kHz. The loss factor acts as viscous damping of each
+mode, with half of it as damping ratio, so responses are causal. Not included: the air's load on the
+plate, its sides and rear, and the sound around an edge without baffle, which weakens the lowest
+modes of a free-standing plate.
 
-A mode shape is a product of sines along x and y. They alternate between even and odd about the
-middle, beginning with an even one: parts of unlike parity never radiate together, which saves three
-quarters of the integration of power.
+A mode shape is a product of sines along x and y. They are alternately even and odd about the
+middle: parts of different parity do not radiate together, which saves three quarters of the
+integration of power.
 """
 
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ from models.structure.modal import ModalModel, add_ringing
 
 @dataclass(frozen=True)
 class SineBasis:
-    """sin(m pi (x / length + 1/2)), m = 1 ... `count`: even and odd ones in turn.
+    """Sine basis sin(m pi (x / length + 1/2)), m = 1 ... `count`, alternately even and odd.
 
     Examples
     --------
@@ -39,14 +39,14 @@ class SineBasis:
     count: int
 
     def values(self, x: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
-        """Values [-], or first derivatives [1/m], shape (..., n)."""
+        """Return the values [-], or first derivatives [1/m], shape (..., n)."""
         half_turns = np.arange(1, self.count + 1) * np.pi
         argument = half_turns * (np.asarray(x, dtype=np.float64)[..., None] / self.length + 0.5)
         values = half_turns / self.length * np.cos(argument) if derivative else np.sin(argument)
         return np.asarray(values, dtype=np.float64)
 
     def transform(self, wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Cosine or sine transforms [m], shape (..., n), at wavenumbers [rad/m]."""
+        """Return the cosine or sine transforms [m], shape (..., n), at wavenumbers [rad/m]."""
         m = np.arange(1, self.count + 1)
         even = m % 2 == 1
         sign = np.where(m % 4 < 2, 1.0, -1.0)  # sin(m pi/2) of even ones, cos(m pi/2) of odd ones
@@ -58,7 +58,7 @@ class SineBasis:
 def supported_modes(
     sides: tuple[float, float], stiffness_per_mass: float, highest_frequency: float
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-    """All modes up to a frequency.
+    """Return all modes of a simply supported plate up to a frequency.
 
     Parameters
     ----------
@@ -93,14 +93,14 @@ def supported_modes(
         np.arange(1, int(largest * sides[0]) + 1), np.arange(1, int(largest * sides[1]) + 1)
     )
     frequencies = scale * ((m / sides[0]) ** 2 + (n / sides[1]) ** 2)
-    kept = frequencies <= highest_frequency
-    m, n, frequencies = m[kept], n[kept], frequencies[kept]
+    below = frequencies <= highest_frequency
+    m, n, frequencies = m[below], n[below], frequencies[below]
     order = np.argsort(frequencies, kind="stable")
     return frequencies[order], m[order], n[order]
 
 
 MODES_AT_ONCE = 32
-"""Shapes held in memory together, 15 MB for a plate of half a square metre."""
+"""Mode shapes in memory at a time, 15 MB for a plate of half a square metre."""
 
 
 @short_repr
@@ -129,11 +129,11 @@ class PlateModes:
 
     @property
     def mass(self) -> float:
-        """Modal mass [kg], the same for all: shapes have the mean square of a product of sines."""
+        """Modal mass [kg], equal for all modes."""
         return self.plate.mass_per_area * self.plate.length * self.plate.width / 4
 
     def shape(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
-        """Give the normal displacement of each mode, on which a point force works.
+        """Return the normal displacement of each mode, on which a point force works.
 
         Parameters
         ----------
@@ -148,17 +148,17 @@ class PlateModes:
         return self._at(x, y, 0)
 
     def slope(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
-        """Give the derivative of `shape` along x [1/m], on which a moment works.
+        """Return the derivative of `shape` along x [1/m], on which a moment works.
 
-        The moment is one about y that lifts the side of larger x. Parameters and returns are those
-        of `shape`.
+        The moment is about y and lifts the side of larger x. Parameters and returns are those of
+        `shape`.
         """
         return self._at(x, y, 1)
 
     def on_grid(
         self, x: NDArray[np.float64], y: NDArray[np.float64], some: slice
     ) -> NDArray[np.float64]:
-        """Give `shape` of some modes on all pairs of x and y, shape (n_x, n_y, n_some)."""
+        """Return `shape` of some modes on all pairs of x and y, shape (n_x, n_y, n_some)."""
         along = self.along.values(x)[:, self.m[some] - 1]
         return along[:, None] * self.across.values(y)[None][..., self.n[some] - 1]
 
@@ -171,7 +171,7 @@ class PlateModes:
 
 @lru_cache(maxsize=8)
 def plate_modes(plate: Plate, highest_frequency: float) -> PlateModes:
-    """All modes of a plate up to a frequency.
+    """Return the modes of a plate up to a frequency.
 
     Parameters
     ----------
@@ -204,21 +204,21 @@ def plate_modes(plate: Plate, highest_frequency: float) -> PlateModes:
 def acceleration_model(
     modes: PlateModes, drives: NDArray[np.float64], x: ArrayLike, y: ArrayLike
 ) -> ModalModel:
-    """Build the modal model from drives to the normal acceleration of points.
+    """Return the modal model from drives to the normal acceleration of points.
 
     Parameters
     ----------
     modes : PlateModes
     drives : ndarray, shape (n_modes, n_drives)
         Work of a unit of each drive on the modes [1/sqrt(kg) for a force]: `PlateModes.shape` at
-        the point of a force, `PlateModes.slope` at that of a moment, and sums of such.
+        the point of a force, `PlateModes.slope` at that of a moment, and sums of these.
     x, y : array_like, shape (n_points,)
         [m]
 
     Returns
     -------
     ModalModel
-        With a drive an input and a point an output [m/s2 per N or Nm].
+        With one input per drive and one output per point [m/s2 per N or Nm].
 
     Examples
     --------
@@ -247,16 +247,15 @@ def pressure_response(
     rate: float,
     n_samples: int,
 ) -> NDArray[np.float64]:
-    """Sound pressure at the microphone after a unit sample of each drive.
+    """Return the impulse responses from each drive to the sound pressure at the microphone.
 
     Parameters
     ----------
     modes : PlateModes
-        All of them below half of `rate`.
+        Modes below half of `rate`.
     drives : ndarray, shape (n_modes, n_drives)
         As for `acceleration_model`.
     microphone : Microphone
-        Further ones cost a call each; the modes are shared.
     rate : float
         Sampling rate [Hz].
     n_samples : int
@@ -264,7 +263,7 @@ def pressure_response(
     Returns
     -------
     ndarray, shape (n_drives, n_samples)
-        [Pa per N or Nm]; the sound's travel is in it.
+        [Pa per N or Nm]; the travel time is included.
 
     Examples
     --------
@@ -273,8 +272,8 @@ def pressure_response(
     >>> modes = plate_modes(steel, 500.0)
     >>> from models.bench import Microphone
     >>> force = modes.shape([0.1], [0.05]).T
-    >>> heard = pressure_response(modes, force, Microphone((0.2, 0.1, 1.0)), 48e3, 4800)
-    >>> bool(np.any(heard[0, :138])), bool(np.any(heard[0, 138:]))
+    >>> response = pressure_response(modes, force, Microphone((0.2, 0.1, 1.0)), 48e3, 4800)
+    >>> bool(np.any(response[0, :138])), bool(np.any(response[0, 138:]))
     (False, True)
     """
     response = np.zeros((drives.shape[1], n_samples))
@@ -288,7 +287,7 @@ def pressure_response(
 def _mode_taps(
     modes: PlateModes, position: tuple[float, float, float], rate: float
 ) -> tuple[NDArray[np.float64], int]:
-    """Rayleigh's filters of all modes, shape (n_taps, n_modes), and their common delay."""
+    """Return Rayleigh's filters of all modes, shape (n_taps, n_modes), and their common delay."""
     x, y, integral = rectangle_integral(modes.plate.length, modes.plate.width, position, rate)
     parts = []
     for first in range(0, modes.frequencies.size, MODES_AT_ONCE):

@@ -1,11 +1,11 @@
-"""Files of transfer functions: NPZ, CSV and universal files, by their ending, and their checks.
+"""Reading, checking and writing of transfer functions: NPZ, CSV and universal files by ending.
 
 NPZ: ``frequency_hz``, ``response`` (complex), ``coherence`` (optional), ``input_unit``,
-``output_unit``. CSV: the columns ``frequency_hz, real, imag``, and ``coherence`` where there is
-one; units may stand in its headings, ``real (m/s^2/N)``, else those that the reader expects are
-taken. Universal files (dataset 58) hold a frequency response, and its coherence as a function of
-its own. Whatever the format, lines rise, numbers are finite, and units are those asked for or are
-converted to them.
+``output_unit``. CSV: columns ``frequency_hz, real, imag`` and optionally ``coherence``; units may
+be stated in the headings, ``real (m/s^2/N)``, and are otherwise those that the reader expects.
+Universal files (dataset 58) contain a frequency response, and its coherence as a separate function.
+In every format lines must rise, numbers must be finite, and units are converted to the requested
+ones.
 """
 
 import csv
@@ -33,26 +33,26 @@ from models.transfer_functions.uff import (
 from models.units import quantity_of_unit, split_ratio
 
 FEWEST_LINES = 8
-"""Fewer lines describe no resonance."""
+"""Fewest lines of a response; fewer describe no resonance."""
 
 _MOTION = {"displacement": 0, "velocity": 1, "acceleration": 2}
-"""Times that a motion is differentiated."""
+"""Order of the time derivative of a motion."""
 
 _LARGEST = 1e15
-"""Of a response, in any unit, and of a frequency [Hz]."""
+"""Largest magnitude of a response, in any unit, and of a frequency [Hz]."""
 
 _LEAST_STEP = 1e-9
-"""Between two lines, of the highest frequency [-]; less is lost in rounding."""
+"""Least spacing of lines over the highest frequency [-]; less is lost in rounding."""
 
 
 def check_transfer_function(transfer: TransferFunction) -> TransferFunction:
-    """Refuse a response that nothing can be done with.
+    """Return a response unchanged, or raise if it is unusable.
 
     Raises
     ------
     ParameterError
-        Shapes that do not fit, values that are not finite, lines that do not rise, a coherence
-        outside 0 to 1, or nothing but zeros.
+        Shapes do not fit, values are not finite, lines do not rise, a coherence lies outside 0 to
+        1, or all values are zero.
 
     Examples
     --------
@@ -76,7 +76,7 @@ def check_transfer_function(transfer: TransferFunction) -> TransferFunction:
                 f"{name}: {key} has shape {values.shape}, frequency_hz {f.shape}; they must be "
                 "alike"
             )
-        possible = np.abs(values) < _LARGEST  # no NaN is
+        possible = np.abs(values) < _LARGEST  # False for NaN
         if not possible.all():
             first = int(np.argmin(possible))
             raise ParameterError(
@@ -104,7 +104,7 @@ def check_transfer_function(transfer: TransferFunction) -> TransferFunction:
 
 
 def in_units(transfer: TransferFunction, input_unit: str, output_unit: str) -> TransferFunction:
-    """Convert a response to other units of the same quantities; motion becomes acceleration.
+    """Convert a response to other units of the same quantities, and motion to acceleration.
 
     A displacement per force (receptance) becomes an accelerance by the factor -(2 pi f)^2, a
     velocity (mobility) by 2 pi i f.
@@ -113,17 +113,17 @@ def in_units(transfer: TransferFunction, input_unit: str, output_unit: str) -> T
     ----------
     transfer : TransferFunction
     input_unit, output_unit : str
-        Those wanted.
+        Requested units.
 
     Returns
     -------
     TransferFunction
-        With the units as they are spelled here.
+        In the requested units.
 
     Raises
     ------
     ParameterError
-        A unit is not known, or is that of another quantity.
+        A unit is unknown, or belongs to another quantity.
 
     Examples
     --------
@@ -134,15 +134,15 @@ def in_units(transfer: TransferFunction, input_unit: str, output_unit: str) -> T
     np.complex128(0.00628j)
     """
     factors = []
-    for key, found, wanted in (
+    for key, stated, wanted in (
         ("input_unit", transfer.input_unit, input_unit),
         ("output_unit", transfer.output_unit, output_unit),
     ):
-        (have, value), (want, unit) = (quantity_of_unit(u) or ("", 1.0) for u in (found, wanted))
+        (have, value), (want, unit) = (quantity_of_unit(u) or ("", 1.0) for u in (stated, wanted))
         times = _MOTION.get(want, 0) - _MOTION.get(have, 0) if key == "output_unit" else 0
         moved = times > 0 and {have, want} <= set(_MOTION)
         if not have or (have != want and not moved):
-            raise ParameterError(f"{transfer.name}: {key} is {found!r}; it must be {wanted!r}")
+            raise ParameterError(f"{transfer.name}: {key} is {stated!r}; it must be {wanted!r}")
         rise = (2j * np.pi * transfer.frequencies) ** times if moved else 1.0
         factors.append(np.asarray(value / unit * rise))
     return replace(
@@ -154,14 +154,14 @@ def in_units(transfer: TransferFunction, input_unit: str, output_unit: str) -> T
 
 
 ENDINGS = (".npz", ".csv", *UFF_ENDINGS)
-"""Endings of the formats that responses are read from and written to."""
+"""Endings of the supported formats."""
 
 _WHATS = {".npz": "NPZ file", ".csv": "CSV table", **dict.fromkeys(UFF_ENDINGS, "universal file")}
-"""What messages call a file by its ending."""
+"""Name of the format in messages, by ending."""
 
 
 def check_transfer_function_path(path: Path) -> None:
-    """Refuse a path of no known format, or one whose library is not installed.
+    """Raise if a path has no known format, or its library is not installed.
 
     Raises
     ------
@@ -188,17 +188,17 @@ def read_transfer_function(path: Path, *, input_unit: str, output_unit: str) -> 
     ----------
     path : Path
     input_unit, output_unit : str
-        Those wanted; taken for the file's where it states none.
+        Requested units, assumed for the file if it states none.
 
     Returns
     -------
     TransferFunction
-        In the units wanted, converted from those that the file states.
+        In the requested units.
 
     Raises
     ------
     ParameterError
-        The file cannot be read, or what it holds cannot be used.
+        The file cannot be read, or its content cannot be used.
 
     Examples
     --------
@@ -229,7 +229,7 @@ def write_transfer_function(path: Path, transfer: TransferFunction) -> None:
     Parameters
     ----------
     path : Path
-        A file that does not exist yet, in a folder that does.
+        A new file in an existing folder.
     transfer : TransferFunction
 
     Raises
@@ -296,25 +296,25 @@ _KEYS = {
     "input_unit": ("US", "a text"),
     "output_unit": ("US", "a text"),
 }
-"""Of an NPZ file: kinds of array, and what messages call them."""
+"""Keys of an NPZ file: kinds of array, and their name in messages."""
 
 
 def _read_npz(path: Path) -> TransferFunction:
-    held = read_arrays(path)
+    arrays = read_arrays(path)
     for key, (kinds, words) in _KEYS.items():
-        if key not in held and key != "coherence":
-            raise ParameterError(f"{path}: has no {key}; it holds {', '.join(held) or 'nothing'}")
-        array = held.get(key)
+        if key not in arrays and key != "coherence":
+            raise ParameterError(f"{path}: has no {key}; it holds {', '.join(arrays) or 'nothing'}")
+        array = arrays.get(key)
         if array is not None and (
             array.dtype.kind not in kinds or ("US" in kinds and array.size > 1)
         ):
             raise ParameterError(f"{path}: {key} has type {array.dtype}; it must be {words}")
-    coherence = held.get("coherence")
-    units = [held[key].reshape(()).item() for key in ("input_unit", "output_unit")]
+    coherence = arrays.get("coherence")
+    units = [arrays[key].reshape(()).item() for key in ("input_unit", "output_unit")]
     input_unit, output_unit = (u.decode() if isinstance(u, bytes) else str(u) for u in units)
     return TransferFunction(
-        held["frequency_hz"].astype(np.float64),
-        held["response"].astype(np.complex128),
+        arrays["frequency_hz"].astype(np.float64),
+        arrays["response"].astype(np.complex128),
         None if coherence is None else coherence.astype(np.float64),
         input_unit,
         output_unit,
@@ -365,10 +365,10 @@ def _read_uff(path: Path, input_unit: str, output_unit: str) -> TransferFunction
             f"{path}: holds {len(responses)} frequency response functions in {output_unit}; "
             "it must be one"
         )
-    (found,) = responses
-    if found.unclear:
-        raise ParameterError(f"{path}: function {found.name!r} has unit {found.unclear}")
-    if not found.unit or not found.denominator_unit:
+    (response,) = responses
+    if response.unclear:
+        raise ParameterError(f"{path}: function {response.name!r} has unit {response.unclear}")
+    if not response.unit or not response.denominator_unit:
         warnings.warn(
             f"{path}: does not state all units; what is missing is taken for {output_unit} per "
             f"{input_unit}",
@@ -377,13 +377,13 @@ def _read_uff(path: Path, input_unit: str, output_unit: str) -> TransferFunction
     coherences = [
         function.y.real
         for function in functions
-        if function.kind == COHERENCE and np.array_equal(function.x, found.x)
+        if function.kind == COHERENCE and np.array_equal(function.x, response.x)
     ]
     return TransferFunction(
-        found.x,
-        found.y.astype(np.complex128),
+        response.x,
+        response.y.astype(np.complex128),
         coherences[0].astype(np.float64) if len(coherences) == 1 else None,
-        found.denominator_unit or input_unit,
-        found.unit or output_unit,
+        response.denominator_unit or input_unit,
+        response.unit or output_unit,
         str(path),
     )

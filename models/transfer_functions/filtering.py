@@ -1,12 +1,11 @@
-"""Signals sent through something linear, by its impulse response or by its transfer function.
+"""Filtering of signals by impulse responses, and impulse responses of transfer functions.
 
-A table ends at its highest line, and a response cut off there rings before the impulse as well as
-after it. So for its impulse response the table is continued: what has no delay by its last value,
-as of a mass, what comes late by a fading pulse of that delay. What still comes before the impulse
-is put into its first two samples, such that low frequencies, of which a torque is full, are what
-they were. This is quick, takes what the table says between its lines, and is enough where output
-and table are compared with each other; `models.transfer_functions.measured` weighs measured lines
-by their coherence.
+A response that is cut off at its highest line rings before and after the impulse. So for the
+impulse response the table is continued: without a delay by its last value, as for a mass; with a
+delay by a fading pulse of that delay. The remaining part before the impulse is added to the first
+two samples such that low frequencies, which dominate a torque, do not change. This is fast and
+sufficient where output and table are compared with each other; `models.transfer_functions.measured`
+weights measured lines by their coherence.
 """
 
 from dataclasses import replace
@@ -18,7 +17,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 from models.transfer_functions.transfer_function import TransferFunction
 
 BLOCK = 2**18
-"""Samples convolved at a time, which bounds the memory for long signals."""
+"""Samples per block of a convolution, which bounds the memory for long signals."""
 
 
 def convolve(
@@ -26,7 +25,7 @@ def convolve(
     impulse_response: NDArray[np.float64],
     spectrum: NDArray[np.complex128] | None = None,
 ) -> NDArray[np.float64]:
-    """Causal convolution by overlap-add, in blocks, so that long signals need little memory.
+    """Convolve a signal causally by overlap-add in blocks, which bounds the memory.
 
     Parameters
     ----------
@@ -35,12 +34,12 @@ def convolve(
     impulse_response : ndarray, shape (m,)
         [unit of the output / unit of the signal]
     spectrum : ndarray, shape (`transform_size` // 2 + 1,), complex, optional
-        Its transform, if kept from a signal of the same length.
+        Its transform, if cached for a signal of the same length.
 
     Returns
     -------
     ndarray, shape (n,)
-        In the output's own [unit], as long as the signal; what rings on after its end is dropped.
+        In the output's [unit], as long as the signal.
 
     Examples
     --------
@@ -61,7 +60,7 @@ def convolve(
 
 
 def transform_size(signal: int, impulse_response: int) -> int:
-    """Length of the transforms by which `convolve` works, for these numbers of samples.
+    """Return the length of the transforms of `convolve` for these numbers of samples.
 
     Examples
     --------
@@ -73,29 +72,29 @@ def transform_size(signal: int, impulse_response: int) -> int:
 
 
 FINER = 8
-"""By how much lines are refined before straight lines join them [-]."""
+"""Refinement of the lines before linear interpolation [-]."""
 
 _LAST = (0.8, 0.98)
-"""Part of a table that tells how it goes on, as shares of its highest frequency."""
+"""Part of a table from which it is continued, as shares of its highest frequency."""
 
 _PROMPT = 3e-4
-"""What comes later than this is a delay [s]; sooner, a mass."""
+"""Shortest delay [s]; a shorter one counts as a mass."""
 
 _BEFORE = 5e-4
-"""What comes before the impulse by more than this is noise of the measurement [s]."""
+"""Time before the impulse beyond which a response is measurement noise [s]."""
 
 _FEWEST_LINES = 16
 _UNEVEN = 1e-3
 
 _RINGS, _SILENT, _EARLY = 0.6, 0.75, 0.05
-"""Up to where a measured impulse response counts, where it has faded, and how much of what comes
-before the impulse counts, as shares of one over the spacing of lines."""
+"""End of the full gate of a measured impulse response, end of its fade-out, and the gate before the
+impulse, as shares of one over the spacing of lines."""
 
 
 def impulse_response(transfer: TransferFunction, rate: float, n: int) -> NDArray[np.float64]:
     """Return the impulse response of a transfer function.
 
-    Below its first line the transfer function is taken to fall as the square of frequency.
+    Below its first line the transfer function falls as the square of frequency.
 
     Parameters
     ----------
@@ -129,10 +128,10 @@ def impulse_response(transfer: TransferFunction, rate: float, n: int) -> NDArray
 
 
 def fill_between_lines(transfer: TransferFunction) -> TransferFunction:
-    """Fill in a measured transfer function between its lines, for as long as it can ring.
+    """Refine a measured transfer function between its lines.
 
-    Straight lines would have it echo after one over their spacing, and so would errors of the
-    lines; so its impulse response is gated, and transformed again with `FINER` lines.
+    Linear interpolation and errors of the lines would cause echoes after one over the spacing; so
+    the impulse response is gated, and transformed again with `FINER` times as many lines.
 
     Parameters
     ----------
@@ -141,7 +140,7 @@ def fill_between_lines(transfer: TransferFunction) -> TransferFunction:
     Returns
     -------
     TransferFunction
-        From 0 Hz, without coherence; the one given where its lines are not equally spaced.
+        From 0 Hz, without coherence; unchanged if the lines are not equally spaced.
 
     Examples
     --------
@@ -172,7 +171,7 @@ def fill_between_lines(transfer: TransferFunction) -> TransferFunction:
 
 
 def share_before_cause(transfer: TransferFunction) -> float:
-    """Return the share of a transfer function, by its rms, that comes before its cause [-].
+    """Return the acausal share of a transfer function by rms [-].
 
     Examples
     --------
@@ -191,7 +190,7 @@ def share_before_cause(transfer: TransferFunction) -> float:
 def _continued(
     transfer: TransferFunction, frequencies: NDArray[np.float64]
 ) -> NDArray[np.complex128]:
-    """Response at frequencies that go beyond the table."""
+    """Return the response at frequencies that may lie beyond the table."""
     response, end = transfer.at(frequencies, falls_below=True), float(transfer.frequencies[-1])
     first, last = (share * end for share in _LAST)
     top = (frequencies > first) & (frequencies <= last)

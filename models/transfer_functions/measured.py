@@ -1,13 +1,13 @@
-"""Responses measured on the user's own rig, in place of those of modelled structure and plate.
+"""Measured responses of a rig, which replace those of the modelled structure and plate.
 
-What a rig file names with a support stands in for the response from the torque that the bushing
-puts into clamp and beams to the acceleration, to the sound, or both. What is not given stays
-modelled, as does all that the pulses of the anchors excite.
+The responses that a rig file names for a support replace the modelled ones from the torque on clamp
+and beams to the acceleration, to the sound, or both. Other responses, and those to the anchors'
+pulses, stay modelled.
 
-Transforming a measured spectrum back gives an output before its cause where the band ends
-abruptly. So it is continued beyond its band first, by `models.transfer_functions.filtering`: below
-it falls as the square of frequency, above it goes on as a delay or as a mass. Phase is kept as
-measured; nothing is taken to be minimum-phase, since a sound needs its delay.
+The inverse transform of a measured spectrum is acausal where the band ends abruptly. So the
+spectrum is first continued beyond its band by `models.transfer_functions.filtering`: below, it
+falls as the square of frequency; above, it continues as a delay or a mass. The measured phase is
+used; a minimum phase would lose the delay of the sound.
 """
 
 import math
@@ -40,15 +40,15 @@ from models.transfer_functions.transfer_function import (
 )
 
 BAND = 0.45
-"""Share of the sampling rate up to which lines are used, as modes are."""
+"""Share of the sampling rate up to which lines are used, as for modes."""
 
 LARGEST_BEFORE = 0.5
-"""Share of a response that may come before its cause; more is no noise but an error of sign."""
+"""Largest acausal share of a response; more indicates a wrong sign of the phase."""
 
 LOWEST, HIGHEST = 100.0, 5000.0
-"""Band that a measured response must span [Hz]: slips repeat above 100 Hz where they sound as a
-tone, the clamp on its beams resonates at 140 Hz and above, and a torque that breaks loose has
-nothing left to say at 5 kHz."""
+"""Band that a measured response must span [Hz]: slips that sound tonal repeat above 100 Hz, the
+clamp on its beams resonates from 140 Hz on, and the torque of a slip has almost nothing above 5
+kHz."""
 
 
 def _response(path: Path, key: str, where: str, unit: str) -> TransferFunction:
@@ -63,14 +63,14 @@ def _response(path: Path, key: str, where: str, unit: str) -> TransferFunction:
 @short_repr
 @dataclass(frozen=True, eq=False)
 class MeasuredResponse:
-    """What was measured with one support.
+    """Responses measured with one support.
 
     Parameters
     ----------
     support_stiffness : float
         [Nm/rad], or `models.condition.FIXED`.
     torque_to_acceleration, torque_to_pressure : TransferFunction, optional
-        [m/s2 and Pa per Nm]; None where it was not measured.
+        [m/s2 and Pa per Nm]; None if not measured.
 
     Examples
     --------
@@ -90,7 +90,7 @@ class MeasuredResponse:
 def measured_with(
     measured: Iterable[MeasuredResponse], support_stiffness: float
 ) -> MeasuredResponse | None:
-    """Return what was measured with a support; None where nothing was.
+    """Return the responses measured with a support, or None.
 
     Parameters
     ----------
@@ -113,26 +113,25 @@ def measured_with(
 def with_measured(
     modelled: ImpulseResponses, measured: tuple[MeasuredResponse, ...], support_stiffness: float
 ) -> ImpulseResponses:
-    """Put the measured responses of a support in place of the modelled ones.
+    """Replace the modelled responses of a support by the measured ones.
 
     Parameters
     ----------
     modelled : ImpulseResponses
     measured : tuple of MeasuredResponse
     support_stiffness : float
-        [Nm/rad] or `models.condition.FIXED`; where nothing was measured with it, `modelled` is
-        returned as it is.
+        [Nm/rad] or `models.condition.FIXED`; without responses for it, `modelled` is returned.
 
     Raises
     ------
     ParameterError
-        A response cannot be made causal.
+        A response is not causal.
 
     Warns
     -----
     UserWarning
-        A response that ends within the band that the model fills, with the band it has; or
-        nothing was measured with this support, but with others.
+        A response ends within the band of the model; or responses were measured with other supports
+        only.
 
     Examples
     --------
@@ -151,10 +150,10 @@ def with_measured(
             pressure = measured_impulse_response(transfer, rate, pressure.size)
         return replace(modelled, torque_to_acceleration=acceleration, torque_to_pressure=pressure)
     if measured:
-        known = ", ".join(_named(entry.support_stiffness) for entry in measured)
+        others = ", ".join(_named(entry.support_stiffness) for entry in measured)
         warnings.warn(
             f"no response was measured with the support {_named(support_stiffness)}, only with "
-            f"{known}; it is modelled",
+            f"{others}; it is modelled",
             stacklevel=2,
         )
     return modelled
@@ -164,12 +163,12 @@ def with_measured(
 def measured_impulse_response(
     transfer: TransferFunction, rate: float, n_samples: int
 ) -> NDArray[np.float64]:
-    """Impulse response of a measured response, nil before time zero.
+    """Return the causal impulse response of a measured transfer function.
 
     Parameters
     ----------
     transfer : TransferFunction
-        Lines outside its trusted band are left out.
+        Lines outside its usable band are left out.
     rate : float
         Sampling rate [Hz].
     n_samples : int
@@ -182,12 +181,12 @@ def measured_impulse_response(
     Raises
     ------
     ParameterError
-        More than half of the response comes before its cause.
+        More than half of the response is acausal.
 
     Warns
     -----
     UserWarning
-        The response ends below 16 kHz, up to which plates are modelled, and what the rate carries.
+        The response ends below 16 kHz, the end of the plate's model, and below 0.45 of the rate.
 
     Examples
     --------
@@ -225,7 +224,7 @@ def measured_impulse_response(
             "phase must be that of exp(+i omega t), and both signals must start at the same time"
         )
     response = impulse_response(trusted, rate, n_samples)
-    response.flags.writeable = False  # shared by all that ask for the same response
+    response.flags.writeable = False  # shared by the cache
     return response
 
 

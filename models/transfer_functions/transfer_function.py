@@ -1,8 +1,7 @@
-"""A transfer function: output per unit of input of something linear, line by line over frequency.
+"""Transfer function: output per unit of input of a linear system, as a table over frequency.
 
-Whether modelled, measured by hits or estimated from recordings, it is this one type; what a way of
-getting it leaves open, as how it goes on below its first line, is said where it is used. A measured
-one can be trusted as far as its coherence goes.
+Modelled functions, hammer measurements and estimates from recordings share this type. A measured
+one can be trusted where its coherence is high.
 """
 
 from __future__ import annotations
@@ -31,14 +30,14 @@ class TransferFunction:
     frequencies : ndarray, shape (n,)
         [Hz], rising, evenly spaced or not.
     response : ndarray, shape (n,), complex
-        Output per input [`output_unit` / `input_unit`], for signals that go as exp(+i omega t): a
-        delay turns the phase back.
+        Output per input [`output_unit` / `input_unit`] with the convention exp(+i omega t): a delay
+        has a negative phase.
     coherence : ndarray, shape (n,), optional
-        Between 0 and 1 [-]; None where it is not known.
+        Between 0 and 1 [-]; None if unknown.
     input_unit, output_unit : str
-        Such as ``"N m"`` and ``"Pa"``; empty where the response is a ratio [-].
+        Such as ``"N m"`` and ``"Pa"``; empty for a ratio [-].
     name : str
-        What messages call it, usually its file.
+        Name in messages, usually the file's.
 
     Examples
     --------
@@ -58,7 +57,7 @@ class TransferFunction:
         return isinstance(other, TransferFunction) and self._content == other._content
 
     def __hash__(self) -> int:
-        return hash(self._content)  # alike in another process, where a copy of the rig works
+        return hash(self._content)  # equal for copies in other processes
 
     @property
     def _content(self) -> tuple[str | bytes, ...]:
@@ -68,26 +67,26 @@ class TransferFunction:
 
     @property
     def spacing(self) -> float:
-        """Mean distance of the lines [Hz]."""
+        """Mean spacing of the lines [Hz]."""
         return float((self.frequencies[-1] - self.frequencies[0]) / (self.frequencies.size - 1))
 
     @property
     def unit(self) -> str:
-        """Of the response, as titles tell it; ``-`` where it is a ratio."""
+        """Unit of the response for titles; ``-`` for a ratio."""
         return f"{self.output_unit} per {self.input_unit}" if self.input_unit else "-"
 
     def at(
         self, frequencies: NDArray[np.float64], *, falls_below: bool = False
     ) -> NDArray[np.complex128]:
-        """Evaluate at other frequencies: straight lines between the table's, 0 above them.
+        """Evaluate at other frequencies, by linear interpolation; 0 above the last line.
 
         Parameters
         ----------
         frequencies : ndarray, shape (m,)
             [Hz]
         falls_below : bool
-            Whether it falls as the square of frequency below the first line, as acceleration and
-            sound of a structure that is held do; otherwise it stays what it is there.
+            Whether it falls as the square of frequency below the first line, like acceleration and
+            sound of a supported structure; otherwise it is constant there.
 
         Returns
         -------
@@ -102,15 +101,15 @@ class TransferFunction:
         """
         real = np.interp(frequencies, self.frequencies, self.response.real, right=0.0)
         imaginary = np.interp(frequencies, self.frequencies, self.response.imag, right=0.0)
-        found = real + 1j * imaginary
+        response = real + 1j * imaginary
         if falls_below:
             first = self.frequencies[0]
-            found = found * np.minimum(frequencies / max(first, 1e-9), 1.0) ** 2
-        return np.asarray(found)
+            response = response * np.minimum(frequencies / max(first, 1e-9), 1.0) ** 2
+        return np.asarray(response)
 
     @property
     def columns(self) -> dict[str, list[Any]]:
-        """Columns of its CSV file: frequency [Hz], real and imaginary part, coherence if known."""
+        """Columns of the CSV file: frequency [Hz], real and imaginary part, coherence if known."""
         columns = {
             "frequency_hz": self.frequencies,
             "real": self.response.real,
@@ -121,12 +120,12 @@ class TransferFunction:
         return {key: values.tolist() for key, values in columns.items()}
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the magnitude over frequency; lines of a coherence below a half are pale.
+        """Plot the magnitude over frequency; lines of a coherence below a half are pale.
 
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Where to draw; by default a new figure.
+            Axes to draw into; by default a new figure.
 
         Returns
         -------
@@ -158,12 +157,12 @@ class TransferFunction:
         return axes
 
     def to_pandas(self) -> DataFrame:
-        """Return one row per line as a data frame of pandas, in the columns of its CSV file.
+        """Return a pandas data frame with one row per line and the columns of the CSV file.
 
         Returns
         -------
         pandas.DataFrame
-            ``frequency_hz``, ``real``, ``imag``, and ``coherence`` where it is known.
+            ``frequency_hz``, ``real``, ``imag``, and ``coherence`` if known.
 
         Raises
         ------
@@ -185,18 +184,18 @@ class TransferFunction:
 
 
 LEAST_COHERENCE = 0.5
-"""Below it less than half of the output's power comes from the input [-]."""
+"""Coherence below which less than half of the output's power comes from the input [-]."""
 
 _SMOOTHING = 1.06
-"""Half width of the band over which the median of the coherence is taken: 1/6 octave in all."""
+"""Half width, as a ratio, of the band of 1/6 octave for the median of the coherence."""
 
 
 def trusted_band(transfer: TransferFunction) -> tuple[float, float]:
-    """Lowest and highest frequency between which the response can be used [Hz].
+    """Return the lowest and highest frequency of the usable part of a response [Hz].
 
-    Without coherence these are its ends, but for a line at 0 Hz, where sensors measure nothing.
-    With it, a line counts where the median coherence within 1/6 octave is at least a half;
-    single lines below it, such as at antiresonances, do no harm.
+    Without coherence these are its ends, except for a line at 0 Hz, where sensors measure nothing.
+    With coherence, a line is usable if the median coherence within 1/6 octave is at least a half;
+    single lines below, such as antiresonances, are allowed.
 
     Examples
     --------
@@ -219,9 +218,9 @@ def trusted_band(transfer: TransferFunction) -> tuple[float, float]:
 
 
 def bands_below(transfer: TransferFunction, least: float) -> list[tuple[float, float]]:
-    """Bands whose lines have a coherence below `least`, from first to last line [Hz].
+    """Return the bands whose lines have a coherence below `least`, first to last line [Hz].
 
-    Lines nearer to each other than 6 % are told as one band. The line at 0 Hz does not count.
+    Lines nearer to each other than 6 % form one band. The line at 0 Hz does not count.
 
     Examples
     --------
@@ -241,12 +240,12 @@ def bands_below(transfer: TransferFunction, least: float) -> list[tuple[float, f
 
 
 def check_band(transfer: TransferFunction, low: float, high: float) -> None:
-    """Refuse a response that does not span a band with usable lines.
+    """Raise if a response does not span a band with usable lines.
 
     Raises
     ------
     ParameterError
-        It starts above `low` or stops below `high` [Hz].
+        The response starts above `low` or stops below `high` [Hz].
 
     Examples
     --------

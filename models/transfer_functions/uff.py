@@ -1,12 +1,11 @@
-"""Functions in universal files (dataset 58), read and written through pyuff.
+"""Reading and writing of functions in universal files (dataset 58) by pyuff.
 
-Values are read in SI. The unit follows from the axis' label and, where it has none, from its
-specific data type in the units of the file (dataset 164). Statements that contradict each other
-are named and not chosen between.
+Values are read in SI. The unit follows from the axis' label or, without one, from its specific data
+type and the units of the file (dataset 164). Contradictory statements are reported, not resolved.
 
-The format keeps the step of an even axis with six digits: 1/51200 s reads back as 51199.87 Hz. A
-step is therefore taken to be that of the whole number of hertz, or the whole fraction of a hertz,
-which rounds to the digits stored, where there is one.
+The format stores the step of an even axis with six digits: 1/51200 s reads back as 51199.87 Hz. So
+a step is snapped to the integer rate, or integer fraction of a hertz, that rounds to the stored
+digits.
 """
 
 import math
@@ -34,11 +33,11 @@ _DATA_TYPES = {
     "N": 13,
     "N m": 13,
 }
-"""Specific data type by unit; others are 1, general."""
+"""Specific data type by unit; 1 (general) for others."""
 
 _TIME, _FREQUENCY = 17, 18
 _DIGITS = 0.51e-5  # half a unit of the sixth digit, relative to the first
-_ROTATION = 4  # of the reference's direction: about x
+_ROTATION = 4  # first rotational direction: about x
 
 _QUANTITIES = {
     8: ("displacement", "angle"),
@@ -50,7 +49,7 @@ _QUANTITIES = {
     _TIME: ("time", "time"),
     _FREQUENCY: ("frequency", "frequency"),
 }
-"""Quantity of a specific data type along a direction, and about one."""
+"""Quantity of a specific data type along and about a direction."""
 
 _LENGTH_AND_FORCE = {
     "displacement": (1, 0),
@@ -60,18 +59,18 @@ _LENGTH_AND_FORCE = {
     "torque": (1, 1),
     "pressure": (-2, 1),
 }
-"""Exponents of the units of the file in the unit of a quantity."""
+"""Exponents of the file's units of length and force in the unit of a quantity."""
 
 _LOST_SIGNS = "²µ°·"
-"""Signs in labels that a file may hold in another encoding than UTF-8."""
+"""Signs in labels that may be in another encoding than UTF-8."""
 
 _FILLER = 6
-"""Values that end the last line of a text may be more than the number announced."""
+"""Surplus values allowed at the end of the last line of a text."""
 
 
 @dataclass(frozen=True, eq=False)
 class UffFunction:
-    """One function of a universal file.
+    """Function of a universal file.
 
     Parameters
     ----------
@@ -82,11 +81,11 @@ class UffFunction:
     y : ndarray, shape (n,)
         Ordinate, real or complex [`unit`].
     unit, denominator_unit : str
-        Of the ordinate: in SI, else as the file labels it; empty where nothing states it.
+        Units of the ordinate: in SI, else the file's label; empty if not stated.
     name : str
         First ID line.
     unclear : str
-        Why the ordinate's unit is not settled where statements of the file contradict each other.
+        Contradiction in the file about the ordinate's unit; empty if there is none.
     """
 
     kind: int
@@ -99,13 +98,13 @@ class UffFunction:
 
 
 def read_uff_functions(path: Path, *kinds: int) -> list[UffFunction]:
-    """Read functions (dataset 58, text or binary) of a universal file.
+    """Read functions (dataset 58, text or binary) from a universal file.
 
     Parameters
     ----------
     path : Path
     *kinds : int
-        Function types to read, others are passed over.
+        Function types to read; others are skipped.
 
     Returns
     -------
@@ -115,8 +114,8 @@ def read_uff_functions(path: Path, *kinds: int) -> list[UffFunction]:
     Raises
     ------
     ParameterError
-        pyuff is not installed, the file is damaged or holds no function at all, or what is read
-        goes over something else than time, or for a spectrum frequency.
+        pyuff is not installed, the file is damaged or has no functions, or an abscissa is neither
+        time nor, for a spectrum, frequency.
     """
     pyuff = uff_library(path)
     with reading(path, "universal file", largest=LARGEST_TEXT):
@@ -137,15 +136,15 @@ def read_uff_functions(path: Path, *kinds: int) -> list[UffFunction]:
 
 
 def write_uff_functions(path: Path, functions: Iterable[UffFunction]) -> None:
-    """Write functions as datasets 58 in text, twelve digits a value.
+    """Write functions as datasets 58 in text, with twelve digits per value.
 
     The binary form is smaller, but the library announces half the bytes of a complex function,
-    which other readers go by.
+    which other readers rely on.
 
     Parameters
     ----------
     path : Path
-        A file that does not exist yet.
+        A new file.
     functions : iterable of UffFunction
 
     Raises
@@ -159,7 +158,7 @@ def write_uff_functions(path: Path, functions: Iterable[UffFunction]) -> None:
 
 
 def uff_library(path: Path) -> Any:
-    """Return pyuff, or refuse to begin what could not be read or written without it.
+    """Return the module pyuff.
 
     Raises
     ------
@@ -213,28 +212,28 @@ def _function(data: Mapping[str, Any], units: Mapping[str, float], path: Path) -
 
 
 def _unit(data: Mapping[str, Any], axis: str, units: Mapping[str, float]) -> tuple[str, float, str]:
-    """Return an axis' unit, a value of 1 in it, and what contradicts that.
+    """Return an axis' unit, its size, and any contradiction in the file.
 
-    The unit is in SI where it is known, else as it is labelled; empty where nothing states it.
+    The unit is in SI if known, else the label; empty if not stated.
     """
     label = _label(data[f"{axis}_axis_units_lab"])
     about = abs(int(data.get("ref_dir" if axis == "orddenom" else "rsp_dir") or 0)) >= _ROTATION
     typed = _QUANTITIES.get(int(data[f"{axis}_spec_data_type"]), ())
     spellings = (label.replace("\ufffd", sign) for sign in _LOST_SIGNS)
-    found = next(filter(None, map(quantity_of_unit, spellings)), None)
-    if found is None and (label or not typed):
+    labelled = next(filter(None, map(quantity_of_unit, spellings)), None)
+    if labelled is None and (label or not typed):
         return label, 1.0, ""
-    quantity, factor = found or (typed[about], math.nan)
+    quantity, factor = labelled or (typed[about], math.nan)
     if quantity not in SI_UNITS:
         return "", 1.0, ""
-    of_file = factor if found else 1.0
+    of_file = factor if labelled else 1.0
     if units and quantity in _LENGTH_AND_FORCE:
         length, force = _LENGTH_AND_FORCE[quantity]
         of_file = float(units["length"]) ** -length * float(units["force"]) ** -force
     unclear = ""
-    if found and typed and quantity not in typed:
+    if labelled and typed and quantity not in typed:
         unclear = f"{label!r}, but has the data type of {typed[about]}"
-    elif found and not math.isclose(of_file, factor, rel_tol=1e-3):
+    elif labelled and not math.isclose(of_file, factor, rel_tol=1e-3):
         unclear = (
             f"{label!r}, but by the units of the file (dataset 164) 1 is {of_file:g} "
             f"{SI_UNITS[quantity]}"
@@ -248,7 +247,7 @@ def _label(text: object) -> str:
 
 
 def _whole(step: float) -> float:
-    """Undo the rounding to six digits of a step that is, or divides, a whole number."""
+    """Return a step without the rounding to six digits, if its reciprocal is an integer."""
     if step <= 0.0 or not math.isfinite(step):
         return step
     slack = _DIGITS * 10.0 ** math.floor(math.log10(step))

@@ -77,7 +77,7 @@ class Design:
         notes = [f"bushing-noise simulate --rig {name} {self.options}"]
         return changed_rig_text(
             self.base.named_in(folder), self.changes, self.rig.effects, {}, notes,
-            friction=self.friction, heard=heard_table(self.base.controls, self.values),
+            friction=self.friction, condition=heard_table(self.base.controls, self.values),
         )  # fmt: skip
 
     @property

@@ -250,7 +250,7 @@ def _dependence(rig: Rig, seen: Sequence[Seen], material: str) -> TemperatureDep
     known = [value for value in found if value is not None]
     if rig.temperature is None or rig.material != material:
         return None
-    return rig.temperature.given_at(sum(known) / len(known)) if known else rig.temperature
+    return rig.temperature.at_reference(sum(known) / len(known)) if known else rig.temperature
 
 
 def _structure(beforehand: Beforehand) -> str:

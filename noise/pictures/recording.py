@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from features.kernels.levels import fast_level_pieces
 from features.kernels.orders import OrderMap, order_map, speed_of_angle
-from models.blocks import Read, RecordingBlocks, n_samples_of, reader_of
+from models.blocks import Read, RecordingBlocks, reader_of
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE, Recording
@@ -82,7 +82,7 @@ def plot_recording(
             reason = f"a sampling rate of {recording.rate:g} Hz shows no sound"
         raise ParameterError(f"{recording.name}: {reason}")
     speed, orders = recorded_speed(recording), recorded_orders(recording)
-    duration = n_samples_of(recording) / recording.rate
+    duration = recording.n_samples / recording.rate
     heights = [3.0, 1.8] if sound is not None else [2.2]
     heights += [1.7] * (speed is not None)
     n_in_time = len(heights)
@@ -94,7 +94,7 @@ def plot_recording(
         axes = [figure.add_subplot(grid[0])]
         axes += [figure.add_subplot(grid[n], sharex=axes[0]) for n in range(1, n_in_time)]
         if sound is None:
-            values = reader_of(recording, others[0])(0, n_samples_of(recording))
+            values = reader_of(recording, others[0])(0, recording.n_samples)
             _trace(axes[0], values, recording.rate, kinds[others[0]])
         else:
             _spectrogram(figure, axes[0], recording, sound)
@@ -168,7 +168,7 @@ def recorded_levels(
     91.0
     """
     read = reader_of(recording, recording.first("pressure") or 0)
-    return _levels(read, n_samples_of(recording), recording.rate, _reference(recording))
+    return _levels(read, recording.n_samples, recording.rate, _reference(recording))
 
 
 def recorded_speed(recording: Recording | RecordingBlocks) -> NDArray[np.float64] | None:
@@ -194,7 +194,7 @@ def recorded_speed(recording: Recording | RecordingBlocks) -> NDArray[np.float64
     if not recording.calibrated or (speed is None and angle is None):
         return None
     row = angle if speed is None else speed
-    values = reader_of(recording, row or 0)(0, n_samples_of(recording))
+    values = reader_of(recording, row or 0)(0, recording.n_samples)
     return values if speed is not None else speed_of_angle(values, recording.rate)
 
 
@@ -222,7 +222,7 @@ def recorded_orders(recording: Recording | RecordingBlocks) -> OrderMap | None:
         return None
     try:
         found = order_map(
-            reader_of(recording, row), n_samples_of(recording), recording.rate, speed,
+            reader_of(recording, row), recording.n_samples, recording.rate, speed,
             recording.rate,
             reference=_reference(recording),
         )  # fmt: skip
@@ -249,7 +249,7 @@ def _unit(recording: Recording | RecordingBlocks) -> str:
 def _spectrogram(
     figure: Figure, axes: Axes, recording: Recording | RecordingBlocks, row: int
 ) -> None:
-    n = n_samples_of(recording)
+    n = recording.n_samples
     duration, read = n / recording.rate, reader_of(recording, row)
     level = spectrogram(read, n, recording.rate, _reference(recording))[::-1]
     highest = 5.0 * math.ceil(float(level.max()) / 5.0)
@@ -284,7 +284,7 @@ def _level(axes: Axes, recording: Recording | RecordingBlocks) -> None:
     axes.plot(time, level, color=BLUE, linewidth=1.2)
     if level.size:
         # Where a meter at rest begins is nothing that was heard.
-        duration = n_samples_of(recording) / recording.rate
+        duration = recording.n_samples / recording.rate
         settled = level[time >= min(0.25, 0.5 * duration)]
         axes.set_ylim(*padded(float(settled.min()), float(level.max()), _LEAST_LEVELS))
         axes.set_title(f"L_AFmax {level.max():.1f} {_unit(recording)}", loc="right")

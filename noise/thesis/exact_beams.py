@@ -21,7 +21,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models.bench import Beams
-from models.structure.beams import bending_stiffness, mass_per_length
 
 
 class RootMotion(Enum):
@@ -97,7 +96,7 @@ def boundary_conditions(
     """
     beams, length = structure.beams, structure.length
     wave = wavenumber(structure, frequency, loss_factor) * length
-    stiffness = bending_stiffness(beams) * (1.0 + 1j * loss_factor)
+    stiffness = beams.bending_stiffness * (1.0 + 1j * loss_factor)
     omega2 = (2.0 * np.pi * frequency[:, None]) ** 2
     root = [waves_at(wave, 0.0, n) / length**n for n in range(4)]
     end = [waves_at(wave, 1.0, n) / length**n for n in range(4)]
@@ -179,8 +178,8 @@ def wavenumber(
     array([37.])
     """
     omega = 2.0 * np.pi * np.asarray(frequency, dtype=np.complex128)
-    stiffness = bending_stiffness(structure.beams) * (1.0 + 1j * loss_factor)
-    return (mass_per_length(structure.beams) * omega**2 / stiffness) ** 0.25
+    stiffness = structure.beams.bending_stiffness * (1.0 + 1j * loss_factor)
+    return (structure.beams.mass_per_length * omega**2 / stiffness) ** 0.25
 
 
 def wave_frequency(structure: ClampOnBeams, wave: ArrayLike) -> NDArray[np.float64]:
@@ -206,7 +205,7 @@ def wave_frequency(structure: ClampOnBeams, wave: ArrayLike) -> NDArray[np.float
     169.5
     """
     per_metre = np.asarray(wave, dtype=np.float64) / structure.length
-    speed = math.sqrt(bending_stiffness(structure.beams) / mass_per_length(structure.beams))
+    speed = math.sqrt(structure.beams.bending_stiffness / structure.beams.mass_per_length)
     return per_metre**2 * speed / (2.0 * np.pi)
 
 

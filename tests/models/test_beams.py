@@ -12,6 +12,7 @@ from scipy.special import mathieu_modsem1, mathieu_modsem2, mathieu_sem
 
 from models.bench import Beams, Microphone
 from models.errors import ParameterError
+from models.radiation.beam_sound import beams_pressure, strip_section
 from models.radiation.rayleigh import SOUND_SPEED
 from models.structure.beams import (
     ACCELERATION,
@@ -21,10 +22,7 @@ from models.structure.beams import (
     TORQUE,
     beam_length,
     beam_structure,
-    beams_pressure,
-    bending_stiffness,
     rigid_clamp_inertia,
-    strip_section,
     torsional_stiffness,
 )
 from noise.thesis.exact_beams import (
@@ -87,7 +85,7 @@ def turned_by_a_unit_torque(structure, frequency, loss_factor):
         np.einsum("fw,fw->f", waves_at(wave, at, n), waves)
         for at, n in ((beams.accelerometer, 0), (1.0, 2), (1.0, 3))
     )
-    stiffness = bending_stiffness(beams) * (1.0 + 1j * loss_factor)
+    stiffness = beams.bending_stiffness * (1.0 + 1j * loss_factor)
     acceleration = -((2.0 * np.pi * frequency) ** 2) * deflection
     return acceleration, stiffness / length**3 * shear, -stiffness / length**2 * moment
 

@@ -114,7 +114,7 @@ def test_warmth_shifts_rates_down_and_takes_damping_away(glass, reference, above
 def test_numbers_given_at_another_temperature_depend_as_before(glass, reference, between, last):
     rubber = TemperatureDependence(glass + reference, glass, friction_peak=1.8)
     between, last = glass + between, glass + last
-    again = rubber.given_at(between)
+    again = rubber.at_reference(between)
     for factor in ("stiffness_factor", "damping_factor"):
         ways = getattr(rubber, factor)(between) * getattr(again, factor)(last)
         assert ways == pytest.approx(getattr(rubber, factor)(last))

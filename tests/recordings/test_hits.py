@@ -98,5 +98,5 @@ def test_what_is_no_hit_in_si_is_refused(tmp_path, header, columns, message):
 
 def test_decimal_commas_between_commas_are_named(tmp_path):
     path = written(tmp_path / "hit.csv", "t,F,a\n", (TIME, FORCE, RESPONSE), comma=True)
-    with pytest.raises(RecordingError, match="commas part columns"):
+    with pytest.raises(RecordingError, match="commas separate columns"):
         read_hit(path)

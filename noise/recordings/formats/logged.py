@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from models.condition import CONDITION, Condition
 from models.errors import RecordingError, naming
 from models.recording import Channel
-from models.units import CHANNEL_UNITS, kind_of_unit, known_units, split_unit
+from models.units import CHANNEL_UNITS, kind_of_unit, split_unit
 from noise.recordings.formats import RawRecording, check_rate
 from noise.recordings.formats.time_axis import SAME_RATE, Axis, start_and_rate
 from noise.recordings.sidecar import Sidecar, read_condition, sidecar_of
@@ -190,7 +190,7 @@ def convert(
     if not rows:
         raise RecordingError(
             f"{path}: channel {_listed(reasons)}; expected samples over time in one of "
-            f"{known_units()}, or a sidecar that names the channels"
+            f"{', '.join(CHANNEL_UNITS.values())}, or a sidecar that names the channels"
         )
     notes = []
     if reasons:
