@@ -83,14 +83,18 @@ def _read(options: Namespace, tell: Steps) -> tuple[Case, Mapping[str, Effect], 
 
 def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
     """Say the answer in sentences, and what of its notes was not told before."""
-    from noise.diagnosis.text.sentences import answer, closed_sentence
-    from noise.diagnosis.text.words import finding_of
+    from noise.diagnosis.text.sentences import answer, fit_sentence, strength_sentence
 
     for sentence in answer(diagnosis):
         say(sentence)
-    finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
-    if finding is not None and finding.closed is not None:
-        say(closed_sentence(finding))
+    for finding in diagnosis.effects:
+        if finding.name in diagnosis.verdict:
+            if finding.name == diagnosis.verdict[0] and finding.closed is not None:
+                say(fit_sentence(finding))
+            if sentence := strength_sentence(finding):
+                say(sentence)
+    if not (diagnosis.bench or diagnosis.next_measurement.startswith("none")):
+        say(f"Measure next: {diagnosis.next_measurement}.")
     told |= {*diagnosis.bench, *diagnosis.faults}  # sentences of the answer
     for text in diagnosis.notes:
         if text not in told:
@@ -99,8 +103,8 @@ def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
         from noise.diagnosis.improved_file import improved_sentence
 
         say(
-            "improved.toml was fitted once more, in forms that a rig file can state and in floors "
-            f"of its own. {improved_sentence(diagnosis.improvement)}"
+            "improved.toml is a fit of its own, in forms that a rig file can state, compared with "
+            f"repeats of its own. {improved_sentence(diagnosis.improvement)}"
         )
         for call in _next(options, diagnosis.improvement):
             say(f"next: {call}")

@@ -139,7 +139,7 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
     measured: dict[str, Measured] = {}
     refused: dict[str, str] = {}
     shape = {"rate": options.rate, "gap": options.gap, "fade": options.fade}
-    for file in track(files, "measuring", unit="sound"):
+    for file in track(files, "measuring", unit="file"):
         try:
             of = measure(
                 _recordings(file, options.band),

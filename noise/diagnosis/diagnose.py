@@ -44,6 +44,7 @@ from noise.diagnosis.outcome import (
     HypothesisFinding,
     StageFinding,
 )
+from noise.diagnosis.text.verdict_sentences import AGREES
 from noise.diagnosis.text.words import joined
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage
@@ -66,7 +67,7 @@ def assumed_fit(rig: Rig, interferences: Sequence[float]) -> str:
     --------
     >>> assumed_fit(load_material_rig("fluorocarbon-thesis"), [0.279e-3])
     'no [[fit]] of its own in the rig file: the bushing is that shipped for fluorocarbon-thesis, \
-0.279 mm: 665 Nm/rad, breaks at 10.7, slides at 8 N m'
+0.279 mm: 665 Nm/rad, breaks at 10.7, slides at 8 N m; identify makes a rig file of recordings'
     """
     shipped = [name for name in material_names() if load_material_rig(name).fits == rig.fits]
     if not shipped:
@@ -79,10 +80,12 @@ def assumed_fit(rig: Rig, interferences: Sequence[float]) -> str:
         for fit in fits
     )
     listed = joined([spec.name for spec in rig.effects])
-    shipped_with = f", with {listed}, which cannot be found missing then" if listed else ""
+    shipped_with = (
+        f"; its effects are simulated and cannot be found missing ({listed})" if listed else ""
+    )
     return (
         f"no [[fit]] of its own in the rig file: the bushing is that shipped for {name}, {each}"
-        f"{shipped_with}"
+        f"{shipped_with}; identify makes a rig file of recordings"
     )
 
 
@@ -163,6 +166,9 @@ def _stated(
     if stage is not None and findings[stage].p_value >= _AS_REPEATS:
         stage = None  # it shows elsewhere
     place = locate(first.table, nulls, stage, first.flat)
+    agreement = _agreement(case, first.gap)
+    farthest = max(agreement, key=lambda one: one.gap)
+    fits = sorted({known_condition(one.condition).interference for one in case.recordings})
     return Diagnosis(
         verdict=verdict,
         equivalent=tuple(
@@ -179,7 +185,13 @@ def _stated(
         probabilities=probabilities,
         parameters={},
         next_measurement=next_measurement(
-            verdict, probabilities, _kinds(case), place.stage, differs=first.gap.p_value <= UNUSUAL
+            verdict,
+            probabilities,
+            _kinds(case),
+            place.stage,
+            differs=first.gap.p_value <= UNUSUAL,
+            farthest=farthest.recording if farthest.gap > AGREES else "",
+            own_fit=not assumed_fit(case.rig, fits),
         ),
         held_out=(),
         gap=first.gap.distance,
@@ -199,7 +211,7 @@ def _stated(
             HypothesisFinding(tuple(sorted(hypothesis)), p)
             for hypothesis, p in islice(judged.hypotheses.items(), _SHOWN)
         ),
-        agreement=_agreement(case, first.gap),
+        agreement=agreement,
         faults=faults,
     )
 

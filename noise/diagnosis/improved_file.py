@@ -28,7 +28,8 @@ def improved_sentence(improvement: Improvement) -> str:
     ...                     {"damping": 0.02}, (),
     ...                     ("run01.wav",), ("run02.wav",), 2.4, 1.1)
     >>> improved_sentence(found)
-    'With damping 3.0 % higher the gap falls from 2.4 to 1.1 floors on held-out recordings.'
+    'With damping 3.0 % higher the gap falls from 2.4 to 1.1 on held-out recordings; 1 is what
+      repeats differ by.'
     """
     parts = [cause_of(spec.name).name for spec in improvement.effects]
     parts += [
@@ -39,8 +40,9 @@ def improved_sentence(improvement: Improvement) -> str:
     unseen = set(improvement.held_out) - set(improvement.fitted_to)
     return (
         f"With {joined(parts)} the gap falls from {number(improvement.gap_before, '.2g')} to "
-        f"{number(improvement.gap_after, '.2g')} floors on "
-        f"{'held-out recordings' if unseen else 'the recording that it was fitted to'}."
+        f"{number(improvement.gap_after, '.2g')} on "
+        f"{'held-out recordings' if unseen else 'the recording that it was fitted to'}; 1 is what "
+        "repeats differ by."
     )
 
 
@@ -142,11 +144,11 @@ def _head(improvement: Improvement) -> list[str]:
         "recordings.",
         f"Fitted to {', '.join(improvement.fitted_to)}.",
         f"On {', '.join(improvement.held_out)}, which no fit has seen, the gap fell from "
-        f"{improvement.gap_before:.2g} to {improvement.gap_after:.2g} floors; 1 is what repeats "
-        "of one run differ by. Of several forms the one was taken that left least there."
+        f"{improvement.gap_before:.2g} to {improvement.gap_after:.2g}; 1 is what repeats of one "
+        "run differ by. Of several forms the one was taken that left least there."
         if set(improvement.held_out) - set(improvement.fitted_to)
         else f"The gap fell from {improvement.gap_before:.2g} to {improvement.gap_after:.2g} "
-        "floors on the recording that it was fitted to: nothing was held out.",
+        "on the recording that it was fitted to: nothing was held out.",
         "Under [tolerances] stands how well each number is known: a relative standard deviation, "
         "1.645 of which to either side make the 90 % interval. It is no scatter of built parts.",
         "Do not trust it at speeds, interferences or supports beyond those recorded, after the "

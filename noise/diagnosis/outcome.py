@@ -39,6 +39,9 @@ SHOWN_IN = {
 """Stages that an effect of each stage may show in: a shaft's motion hangs together with the
 contact, and an error of a sensor looks like one of the way to it."""
 
+_DRAWN = 10
+"""Causes that are drawn, the most probable; assumed."""
+
 ROLES = ("measured", "before", "after")
 """What is compared: the recording, the nominal model, and the fitted one."""
 
@@ -326,7 +329,7 @@ class Diagnosis:
         return None if self.improvement is None else self.improvement.rig
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw how probable each cause is.
+        """Draw how probable each cause is, those of the verdict in blue, the most probable on top.
 
         Parameters
         ----------
@@ -337,9 +340,26 @@ class Diagnosis:
         -------
         matplotlib.axes.Axes
         """
-        from noise.diagnosis.text.diagnosis_display import draw_causes
+        from models.drawing import BLUE, GREY, axes_or_new
+        from noise.diagnosis.text.verdict_sentences import headline
+        from noise.diagnosis.text.words import cause_of, percent
 
-        return draw_causes(self, ax)
+        causes = sorted(self.probabilities.items(), key=lambda item: -item[1])[:_DRAWN]
+        named = self.verdict or ("none",)
+        with axes_or_new(ax) as axes:
+            axes.barh(
+                [cause_of(name).name for name, _ in causes],
+                [100.0 * probability for _, probability in causes],
+                color=[BLUE if name in named else GREY for name, _ in causes],
+            )
+            for row, (_, probability) in enumerate(causes):
+                axes.text(100.0 * probability + 1.0, row, percent(probability), va="center")
+            axes.set_ylim(len(causes) - 0.5, -0.5)
+            axes.set_xlim(0.0, 112.0)
+            axes.set_xticks(range(0, 101, 20))
+            axes.set_xlabel("Probability of being at work [%]")
+            axes.set_title(headline(self), loc="left")
+        return axes
 
     def to_pandas(self) -> DataFrame:
         """Return one row an effect as a data frame of pandas, as ``diagnosis.json`` names it.
@@ -355,7 +375,6 @@ class Diagnosis:
             pandas is not installed.
         """
         from models.show import data_frame
-        from noise.diagnosis.outcome import as_json
 
         effects = as_json(self)["effects"]
         return data_frame([*effects[0]] if effects else ["name"], effects)

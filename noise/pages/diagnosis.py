@@ -24,8 +24,15 @@ from noise.diagnosis.outcome import (
     EffectFinding,
     as_json,
 )
-from noise.diagnosis.text.sentences import answer, closed_sentence, closed_words
-from noise.diagnosis.text.verdict_sentences import agreement_sentence, headline, is_named
+from noise.diagnosis.text.sentences import (
+    agreement_sentence,
+    answer,
+    closed_words,
+    fit_sentence,
+    strength_sentence,
+    strength_words,
+)
+from noise.diagnosis.text.verdict_sentences import headline, is_named, parameters_off
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
     STAGES,
@@ -33,7 +40,7 @@ from noise.diagnosis.text.words import (
     cause_of,
     evidence,
     finding_of,
-    floors,
+    gap_number,
     joined,
     number,
     p_number,
@@ -44,7 +51,6 @@ from noise.diagnosis.text.words import (
 from noise.pages import blocks as b
 from noise.pages.clips import Clip, Entry
 from noise.pages.page import page_html, write_page
-from sim.effects import EFFECTS
 
 
 def write_diagnosis(
@@ -106,7 +112,7 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
     answers = [sentence for sentence in answer(diagnosis) if sentence != agreement]
     chain = b.Section(
         "Where it lies" if judged else "Each stage of the chain",
-        [b.Other("chain", () if bench else stages_chain(diagnosis))],
+        [] if bench else [b.Other("chain", stages_chain(diagnosis)), b.Text(_GAP, "soft small")],
     )
     far = b.Section("How much the fit explains" if judged else "", waterfall(diagnosis))
     causes = b.Section("Which cause" if judged else "What else it could be", _likely(diagnosis))
@@ -144,6 +150,12 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
     )
 
 
+_GAP = (
+    "The gap is how far recordings and simulation differ: 1 is what repeats of one run differ by. "
+    "Shares are of what the gaps of all stages have beyond 1, squared."
+)
+
+
 def _improved(diagnosis: Diagnosis, commands: Sequence[str]) -> list[b.Block]:
     if not commands:
         return []
@@ -154,9 +166,10 @@ def _improved(diagnosis: Diagnosis, commands: Sequence[str]) -> list[b.Block]:
         *map(b.Pre, commands),
         b.Text(
             "Do not trust it at speeds, interferences or supports beyond those recorded. An effect "
-            "that closes the gap need not be its cause. It was fitted once more, in forms that a "
-            "rig file can state and in floors of its own, so its gap is not that above; pictures "
-            "and sounds below are of it. How well each number is known stands in the file.",
+            "that closes the gap need not be its cause. It is a fit of its own, in forms that a "
+            "rig file can state, compared with repeats of its own; so its gap is not that above. "
+            "Pictures and sounds below are of it. How well each number is known stands in the "
+            "file.",
             "soft small",
         ),
     ]
@@ -172,7 +185,7 @@ def stages_chain(diagnosis: Diagnosis) -> list[dict[str, object]]:
     >>> found = {"drive": StageFinding(1.04, 0.02, 0.4)}
     >>> chain = stages_chain(Diagnosis((), (), None, found, (), {}, {}, "", (), 1.0, 1.0, 0.6, 1.0))
     >>> [(stage["name"], stage["gap"]) for stage in chain][:2]
-    [('drive', 'gap 1.04 floors, 2 % of all'), ('friction', 'not determined')]
+    [('drive', 'gap 1.04, 2 % of all'), ('friction', 'not determined')]
     """
     chain, place = [], diagnosis.location
     named = diagnosis.verdict if is_named(diagnosis) else ()
@@ -182,7 +195,7 @@ def stages_chain(diagnosis: Diagnosis) -> list[dict[str, object]]:
         if found is not None and found.gap != 0.0:  # else nothing of it was recorded
             p_value = found.p_value
             if math.isfinite(found.gap):
-                gap = f"gap {floors(found.gap, '.2f')} floors, {percent(found.share)} of all"
+                gap = f"gap {gap_number(found.gap, '.2f')}, {percent(found.share)} of all"
         known = f"{p_number(p_value)}: {evidence(p_value)}" if math.isfinite(p_value) else ""
         causes = [cause_of(c).name for c in named if stage_of_effect(diagnosis, c) == name]
         guilty = begins(diagnosis) and place is not None and place.stage == name
@@ -221,7 +234,7 @@ def _is_verdict(diagnosis: Diagnosis, name: str) -> bool:
     return name in (diagnosis.verdict or ("none",)) and is_named(diagnosis)
 
 
-_CAUSE_COLUMNS = ("Cause", "Probability", "Explained", "Strength, 90 %")
+_CAUSE_COLUMNS = ("Cause", "Probability", "Explained", "Strength as fitted, 90 %")
 
 
 def _likely(diagnosis: Diagnosis) -> list[b.Block]:
@@ -235,9 +248,10 @@ def _likely(diagnosis: Diagnosis) -> list[b.Block]:
     return [
         b.Table(_CAUSE_COLUMNS, rows, style="causes"),
         b.Text(
-            "An effect's probability is that it is at work, alone or with others; the 90 % "
-            "interval of what closes is that of the effect, of which the forms tried may show a "
-            "part." + (rest if more else ""),
+            "An effect's probability is that it is at work, alone or with others. Explained is the "
+            "share of the gap beyond 1, with its 90 % interval. A strength is that of the form "
+            "that was fitted: another form may explain the same with another number."
+            + (rest if more else ""),
             "soft small",
         ),
     ]
@@ -251,12 +265,12 @@ def _cause_row(diagnosis: Diagnosis, name: str, chance: float) -> list[b.Cell | 
     if name in _BESIDE_EFFECTS:
         closed = ""
     elif finding is not None and finding.gap_before is not None:
-        closed, strength = closed_words(finding), _strength(finding)
+        closed, strength = closed_words(finding), strength_words(finding)
         own = finding.closed_by_effect
         gaps = (
-            f"gap {number(finding.gap_before)}, refitted {number(finding.gap_recalibrated)}, with "
-            f"the effect {number(finding.gap_after)}; it explains "
-            f"{percent(None if own is None else min(own, 1.0))} of what refitting leaves"
+            f"gap {number(finding.gap_before)}, with parameters refitted "
+            f"{number(finding.gap_recalibrated)}, with the effect {number(finding.gap_after)}; it "
+            f"explains {percent(None if own is None else min(own, 1.0))} of what refitting leaves"
         )
     return [
         b.Cell(arrow + cause.name, cause.clause),
@@ -264,18 +278,6 @@ def _cause_row(diagnosis: Diagnosis, name: str, chance: float) -> list[b.Cell | 
         b.Cell(closed, gaps),
         strength,
     ]
-
-
-def _strength(finding: EffectFinding) -> str:
-    if finding.strength is None:
-        return NOT_DETERMINED
-    low, high = (number(end, ".3g") for end in finding.strength)
-    if finding.name not in EFFECTS:
-        return f"{low} to {high}"
-    effect = EFFECTS[finding.name]
-    known = finding.parameters.get("form", effect.forms[0]) in effect.forms
-    unit = effect.parameters[effect.strength].unit if known else ""
-    return f"{parameter_name(effect.strength)} {low} to {high} {unit}".strip()
 
 
 _MOST_PLACES = 12
@@ -294,8 +296,9 @@ def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> list[list[b.
     ends = [abs(end - 1.0) for interval in intervals.values() for end in interval]
     reach = 1.1 * max([_LEAST_REACH, *ends])
     rows: list[list[b.Cell | str]] = []
+    differing = parameters_off(intervals)
     for name, (low, high) in intervals.items():
-        off = low > 1.0 or high < 1.0
+        off = name in differing
         left, width = 50.0 * (1.0 + (low - 1.0) / reach), 50.0 * (high - low) / reach
         bars = [b.Bar(left, width, "opened" if off else ""), b.Bar(50.0, 0.0, "mark")]
         words = "differs" if off else "agrees with the rig file"
@@ -316,14 +319,14 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
     ]  # fmt: skip
     held_out = ", ".join(diagnosis.held_out) or "none, since nothing was fitted"
     facts = [
-        ("Gap before any fit", f"{number(diagnosis.gap)} (floor {number(diagnosis.floor)}; "
+        ("Gap before any fit", f"{number(diagnosis.gap)} (repeats: {number(diagnosis.floor)}; "
          f"{p_number(diagnosis.p_value)})"),
         ("Held out", held_out),
         ("Time taken", f"{number(diagnosis.seconds, '.1f')} s"),
     ]  # fmt: skip
     tables: dict[str, tuple[Sequence[str], Sequence[Sequence[b.Cell | str]]]] = {
         "How far each recording is from the rig file": (
-            ["Recording", "Speed [rad/s]", "Interference [mm]", "Gap [floors]",
+            ["Recording", "Speed [rad/s]", "Interference [mm]", "Gap, all channels",
              *(kind.capitalize() for kind in KINDS)],
             [_agreement_row(one) for one in diagnosis.agreement],
         ),
@@ -331,7 +334,7 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
             ("Stage", "Channel", "Band or phase", "Conditions", "p-value, corrected for all looks"),
             places,
         ),
-        "Parameters, relative to the rig file, 90 % intervals": (
+        "Parameters as fitted, relative to the rig file, 90 % intervals": (
             ("Parameter", "Interval", "About 1.0"), parameter_rows(diagnosis.parameters),
         ),
         "Less probable causes": (
@@ -354,9 +357,9 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
 
 def _agreement_row(one: Agreement) -> list[str]:
     """Return how far a recording is off: name, speed, interference, whole gap, each channel's."""
-    channels = (floors(one.channels[k]) if k in one.channels else "not recorded" for k in KINDS)
+    channels = (gap_number(one.channels[k]) if k in one.channels else "not recorded" for k in KINDS)
     fit = f"{1e3 * one.interference:.3g}"
-    return [one.recording, f"{one.speed:g}", fit, floors(one.gap), *channels]
+    return [one.recording, f"{one.speed:g}", fit, gap_number(one.gap), *channels]
 
 
 def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
@@ -371,7 +374,7 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
     >>> table, *_ = waterfall(Diagnosis(("mains_hum",), (), None, {}, (hum,), {}, {}, "", (), 7.7,
     ...                                 1.0, 0.0, 1.0))
     >>> [(name, cell.text) for name, cell in table.rows][1:3]
-    [('refitted parameters', '−3.60, to 4.10'), ('with mains hum', '−2.80, to 1.30')]
+    [('parameters refitted', '4.10 (3.60 less)'), ('with mains hum', '1.30 (2.80 less)')]
     """
     verdict = diagnosis.verdict
     if not verdict:
@@ -384,14 +387,13 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
         before = before if fitted.gap_before is None else fitted.gap_before
         floor = floor if fitted.gap_floor is None else fitted.gap_floor
         if fitted.gap_recalibrated is not None:
-            steps["refitted parameters"] = fitted.gap_recalibrated
+            steps["parameters refitted"] = fitted.gap_recalibrated
         if fitted.gap_after is not None and verdict != ("parameters",):
             steps[_effect_label(diagnosis, fitted)] = fitted.gap_after
-            words = closed_sentence(fitted)
+            words = fit_sentence(fitted)
             if verdict == ("unknown",):
-                tried = joined([cause_of(name).name for name in (fitted.name, *fitted.fitted_with)])
-                best = f"The best fit that was tried, with {tried}, "
-                words = words.replace("The fit ", best, 1)
+                names = joined([cause_of(name).name for name in (fitted.name, *fitted.fitted_with)])
+                words = fit_sentence(fitted, f"The best fit that was tried, with {names},")
     if not (math.isfinite(before) and math.isfinite(floor)):
         return [b.Text(f"How large the gap is was {NOT_DETERMINED}.")]
     top = 1.04 * max(floor, before, *steps.values())
@@ -402,30 +404,33 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
 
     rows, gap = [("nominal model", cell(0.0, before, "", f"{before:.2f}"))], before
     for label, after in steps.items():
-        change = f"{after - gap:+.2f}".replace("-", "\N{MINUS SIGN}")
-        kind = "cause" if after <= gap else "opened"
-        rows.append(
-            (label, cell(min(gap, after), max(gap, after), kind, f"{change}, to {after:.2f}"))
-        )
+        kind, way = ("cause", "less") if after <= gap else ("opened", "more")
+        change = f"{after:.2f} ({abs(after - gap):.2f} {way})"
+        rows.append((label, cell(min(gap, after), max(gap, after), kind, change)))
         gap = after
     if steps:
         rows.append(("what is left", cell(0.0, gap, "", f"{gap:.2f}")))
     if before <= floor:
-        words = words or "The gap is no larger than the floor; there is nothing to explain."
+        words = words or "The gap is no larger than that of repeats; there is nothing to explain."
     elif steps and not words:
         share = percent(min(closed_fraction(before, gap, floor), 1.0))
-        words = f"Refitted parameters explain {share} of the deviation."
+        words = f"Refitted parameters explain {share} of the deviation beyond that of repeats."
     elif before - floor < CLOSABLE:
-        words = words or "On these recordings the gap is hardly larger than the floor."
+        words = words or "On these recordings the gap is hardly larger than that of repeats."
     names = diagnosis.held_out
     of, unseen = "all recordings", "recordings that no fit has seen"
     if names:
         of = f"{len(names)} {unseen}" if len(names) > 6 else f"{unseen}: {', '.join(names)}"
     return [
-        b.Table(("Model", f"Gap; the line is the floor, {floor:.2f}"), rows, style="waterfall"),
+        b.Table(
+            ("Model", f"Gap; the line is that of repeats, {floor:.2f}"), rows, style="waterfall"
+        ),
         b.Text(words or "How much of the gap can be closed was not determined."),
+        *(b.Text(strength_sentence(one)) for one in diagnosis.effects if one.name in verdict),
         b.Text(
-            f"The gap here is that of {of}; 1 is what repeats of a run differ by.", "soft small"
+            f"The gap here is that of {of}. The nominal model is the rig file as it is; then its "
+            "stiffness, torques, damping and inertia are refitted; then the effect is added.",
+            "soft small",
         ),
     ]
 

@@ -212,9 +212,9 @@ def _spectra(runs: dict[str, Recording], kind: str) -> Panel:
 
 _OVER = {
     "sliding_speed": ("Friction torque while it slips", "Sliding speed [rad/s]", 1.0),
-    "time_stuck": ("Friction torque as a slip begins", "Time stuck before [ms]", 1e3),
-    "time": ("Friction torque as a slip begins", "Time [s]", 1.0),
-    "angle": ("Friction torque as a slip begins", "Angle turned [rad]", 1.0),
+    "time_stuck": ("Slip begins: torque by time stuck", "Time stuck before [ms]", 1e3),
+    "time": ("Slip begins: torque over the recording", "Time [s]", 1.0),
+    "angle": ("Slip begins: torque by angle turned", "Angle turned [rad]", 1.0),
 }
 """Title, what is across, and its scale."""
 

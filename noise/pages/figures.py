@@ -36,7 +36,7 @@ COLUMNS = 500
 """Steps across a panel that the eye can tell apart."""
 
 _SIZE = (5.2, 2.5)  # [inch]
-_AXES = (0.19, 0.215, 0.785, 0.665)
+_AXES = (0.19, 0.215, 0.765, 0.665)
 _TICKS = (20.0, 50.0, 100.0, 200.0, 500.0, 1e3, 2e3, 5e3, 10e3)  # [Hz]
 
 

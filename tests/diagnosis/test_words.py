@@ -11,14 +11,16 @@ from hypothesis import given, strategies as st
 from models.errors import ParameterError
 from noise.diagnosis.outcome import Agreement, Location, Remainder, StageFinding
 from noise.diagnosis.text.sentences import (
+    agreement_sentence,
     answer,
-    closed_sentence,
+    fit_sentence,
     location_sentence,
+    strength_sentence,
 )
 from noise.diagnosis.text.verdict_sentences import (
     AGREES,
-    agreement_sentence,
     headline,
+    parameters_off,
     verdict_sentence,
 )
 from noise.diagnosis.text.words import (
@@ -44,7 +46,7 @@ def test_no_gap_is_said_to_need_no_explanation():
     assert headline(none()) == "No gap"
     assert verdict_sentence(none()) == (
         "Recordings and simulation differ no more than repeats do: there is nothing to explain "
-        "(gap 0.92, floor 1, p = 0.61)."
+        "(0.92 times as much as repeats, p = 0.61)."
     )
     assert location_sentence(none()) == ""
 
@@ -88,51 +90,78 @@ def test_what_the_table_of_stages_contradicts_is_no_headline():
 
 def test_a_place_where_repeats_differ_as_much_is_no_beginning():
     slight = replace(one_effect(), location=replace(one_effect().location, p_value=0.6))
-    assert location_sentence(slight).startswith("It shows most in the friction")
-    assert "; though there alone repeats differ as much (p = 0.60)." in location_sentence(slight)
+    slight = replace(slight, stages=dict.fromkeys(slight.stages, SLIGHT))
+    sentence = location_sentence(slight)
+    assert sentence.startswith("The gap shows most in the friction")
+    assert sentence.endswith("; though there alone repeats often differ as much.")
 
 
 def test_a_gap_does_not_begin_where_the_named_effect_does_not_act():
     elsewhere = replace(one_effect(), location=replace(one_effect().location, stage="structure"))
-    said = location_sentence(elsewhere)
-    assert said.startswith("It shows in the structure, as what acts in the friction can, in the ch")
-    assert "begins" not in said
+    sentence = location_sentence(elsewhere)
+    start = "As what acts in the friction can, the gap shows in the structure (15 % of the gap, p"
+    assert sentence.startswith(start)
+    assert "begins" not in sentence
 
 
-def test_a_surer_stage_than_that_of_the_named_effect_is_said():
-    drive = Location("drive", ("angle",), (0.0, 1800.0), "all", "all", 0.35)
-    stages = one_effect().stages | {"drive": SLIGHT}
-    compliant = replace(
-        one_effect(), verdict=("shaft_compliance",), location=drive, stages=stages, effects=()
+BLOW = replace(
+    one_effect(),
+    verdict=("slip_pulse",),
+    location=Location("structure", ("acceleration",), (2.8e3, 1e4), "all", "all", 0.06),
+    stages=dict.fromkeys(one_effect().stages, SLIGHT)
+    | {"structure": StageFinding(3.5, 0.03, 0.06), "radiation": StageFinding(13.4, 0.78, 0.02)},
+    differences=(Location("radiation", ("pressure",), (2.8e3, 4e3), "all", "all", 0.02),),
+    effects=(replace(one_effect().effects[0], name="slip_pulse", stage="structure"),),
+)
+"""Differs surely in another stage than its effect acts in, as that of the README."""
+
+
+def test_the_stage_that_surely_differs_comes_first_with_its_own_channel_and_figures():
+    assert location_sentence(BLOW) == (
+        "The gap shows in the radiation (78 % of the gap, p = 0.020): in the pressure, 2.8 kHz to "
+        "4 kHz. The fit explains that as well. Slip pulse acts in the structure (3 % of the gap, "
+        "p = 0.060): in the acceleration, 2.8 kHz to 10 kHz; there alone repeats differ as much "
+        "now and then."
     )
-    assert "What differs surely is the friction" in location_sentence(compliant)
-    assert "What differs surely" not in location_sentence(one_effect())
 
 
-def test_a_surer_stage_in_which_nothing_acts_that_is_named_is_said():
-    place = Location("structure", ("acceleration",), (4e3, 1e4), "all", "all", 0.09)
-    stages = dict.fromkeys(one_effect().stages, SLIGHT) | {"radiation": StageFinding(9, 0.8, 0.03)}
-    blow = replace(one_effect(), verdict=("slip_pulse",), location=place, stages=stages, effects=())
-    said = "What differs surely is the radiation (p = 0.030), in which nothing acts that is named"
-    assert said in location_sentence(blow)
+def test_a_stage_with_more_of_the_gap_is_said_beside_a_sure_one():
+    sure = replace(BLOW, location=replace(BLOW.location, p_value=0.004))
+    said = location_sentence(sure)
+    assert said.startswith("The gap begins in the structure (3 % of the gap, p = 0.060): in the")
+    assert "Most of it shows in the radiation (78 % of the gap, p = 0.020)" in said
 
 
-def test_a_fit_that_leaves_nothing_explains_the_other_stages_too():
-    """No sentence says that something else is missing where nothing is left."""
-    place = Location("structure", ("acceleration",), (4e3, 1e4), "all", "all", 0.09)
-    stages = dict.fromkeys(one_effect().stages, SLIGHT) | {"radiation": StageFinding(9, 0.8, 0.03)}
-    (finding, *_) = one_effect().effects
-    blow = replace(
-        one_effect(),
-        verdict=("slip_pulse",),
-        location=place,
-        stages=stages,
-        effects=(replace(finding, name="slip_pulse", stage="structure", closed=0.99),),
-        remainder=None,
+@pytest.mark.parametrize(
+    ("changed", "meaning"),
+    [
+        ({"effects": (), "held_out": ()}, "Only a fit tells whether slip pulse explains that"),
+        ({"remainder": Remainder(3.0, ("pressure",), (1e3, 4e3))}, "The fit leaves a gap, so"),
+        ({"verdict": ("shaft_compliance",), "effects": (), "stages": one_effect().stages,
+          "location": Location("drive", ("angle",), (0.0, 1800.0), "all", "all", 0.35)},
+         "as it can where something acts in the drive. Shaft compliance acts in the drive"),
+    ],
+)  # fmt: skip
+def test_what_a_difference_in_another_stage_means_depends_on_the_fit(changed, meaning):
+    sentence = location_sentence(replace(BLOW, **changed))
+    assert meaning in sentence
+    assert ("missing" in sentence) == ("remainder" in changed)
+
+
+def test_a_strength_is_said_to_be_of_the_form_that_was_fitted():
+    fitted = replace(
+        BLOW.effects[0], parameters={"form": "exponential", "amplitude": 104.7}, strength=(68, 161)
     )
-    said = location_sentence(blow)
-    assert said.endswith("the radiation (p = 0.030), which the fit explains as well.")
-    assert "missing" not in said
+    assert strength_sentence(fitted) == (
+        "Slip pulse as fitted: amplitude 68 to 161 N (form exponential), a 90 % interval for this "
+        "form alone. Another form of the effect may need another number."
+    )
+
+
+def test_one_of_five_intervals_that_just_misses_one_is_no_difference():
+    agreeing = {f"agreeing_{i}": (0.94, 1.06) for i in range(4)}
+    assert parameters_off(agreeing | {"elastomer_inertia": (0.871, 0.998)}) == {}
+    assert list(parameters_off(agreeing | {"damping": (1.12, 1.16)})) == ["damping"]
 
 
 def test_a_quick_answer_says_that_nothing_was_fitted():
@@ -165,7 +194,8 @@ def far(name, speed, gap, interference=0.279e-3, **channels):
 def test_it_is_said_where_the_rig_file_does_not_describe_the_rig(found, words):
     sentence = agreement_sentence(replace(one_effect(), agreement=found))
     assert words in sentence
-    assert sentence.endswith("in the torque (all recordings together: 7.9 floors, p = 0.0004).")
+    assert ", most in the torque (" in sentence
+    assert sentence.endswith("All recordings together deviate 7.9 times as much (p = 0.0004).")
 
 
 @given(st.lists(st.floats(0.3, 300.0), min_size=1, max_size=6))
@@ -181,7 +211,8 @@ def test_a_rig_file_describes_the_rig_only_where_every_recording_is_near(gaps):
 @given(st.lists(st.floats(0.3, 4.0), min_size=1, max_size=6))
 def test_where_nothing_is_to_explain_the_rig_file_describes_the_rig(gaps):
     found = tuple(far(f"run{i}", 1.0 + i, gap) for i, gap in enumerate(gaps))
-    sentence = agreement_sentence(replace(none(), agreement=found))
+    diagnosis = replace(none(), agreement=found)
+    sentence = agreement_sentence(diagnosis)
     assert sentence.startswith("The rig file describes the rig")
     assert "not describe" not in sentence
     assert ("is chance" in sentence) == (max(gaps) > AGREES)
@@ -189,23 +220,24 @@ def test_where_nothing_is_to_explain_the_rig_file_describes_the_rig(gaps):
 
 def test_the_place_says_channel_band_phase_and_condition():
     assert location_sentence(one_effect()) == (
-        "The gap begins in the friction, in the channel torque, below 1.8 kHz, while the contact "
-        "sticks, where speed ≥ 2.5 rad/s; repeats would hardly ever differ as much (p = 0.0004)."
+        "The gap begins in the friction (71 % of the gap, p = 0.0004): in the torque, below "
+        "1.8 kHz, while the contact sticks, where speed ≥ 2.5 rad/s; repeats would hardly ever "
+        "differ as much."
     )
 
 
 @pytest.mark.parametrize(
     ("figures", "words"),
     [
-        ({"closed": -0.4}, "The fit explains nothing of the deviation: held-out"),
-        ({"closed": None}, "How much the fit explains is not known: held-out"),
-        ({"closed": 0.6, "closed_by_effect": -0.1, "closed_low": 0.2, "closed_high": 1.4},
-         "and nothing of what refitted parameters leave unexplained."),
+        ({"closed": -0.4}, "The fit explains nothing of the deviation beyond that of repeats."),
+        ({"closed": None}, "How much the fit explains is not known. Held-out"),
+        ({"closed": 0.6, "closed_low": 0.2, "closed_high": 1.4}, "(90 % interval 20 % to 100 %)"),
     ],
 )  # fmt: skip
 def test_a_fit_that_closes_nothing_is_said_to(figures, words):
     found = replace(one_effect().effects[0], gap_before=3.0, gap_after=3.4, **figures)
-    assert words in closed_sentence(found)
+    assert words in fit_sentence(found)
+    assert fit_sentence(found).endswith("times as much as repeats without it, 3.40 times with it.")
 
 
 @given(st.floats(0.0, 1.0))

@@ -114,7 +114,7 @@ def test_the_verdict_leads_the_causes_and_none_is_lost():
 
 
 def test_a_parameter_is_off_only_where_its_interval_excludes_one():
-    rows = parameter_rows({"a": (0.9, 1.1), "b": (1.01, 1.1), "c": (0.8, 0.99)})
+    rows = parameter_rows({"a": (0.9, 1.1), "b": (1.02, 1.1), "c": (0.8, 0.97)})
     assert [cell.text == "differs" for _, _, cell in rows] == [False, True, True]
     for _, _, cell in rows:
         assert 0.0 <= cell.bars[0].left <= 100.0 - cell.bars[0].width

@@ -13,8 +13,8 @@ import pytest
 from noise.app.jury import VOTES, Jury, in_words, random_pairs, scale
 from noise.base.labels import NAMED, PERSISTS
 from noise.diagnosis.gap.distance import closed_fraction
-from noise.diagnosis.outcome import Agreement, EffectFinding, StageFinding
-from noise.diagnosis.text.sentences import answer, closed_sentence
+from noise.diagnosis.outcome import SURE, Agreement, EffectFinding, Location, StageFinding
+from noise.diagnosis.text.sentences import answer, fit_sentence, strength_sentence
 from noise.diagnosis.text.verdict_sentences import far_ones
 from noise.diagnosis.text.words import finding_of
 from noise.identification.outcome import Identification, LawScore, Number
@@ -27,6 +27,9 @@ from tests.helpers.made_diagnoses import KINDS, PARAMETERS, PLACE, STAGES
 
 OUTCOMES = 40
 """Drawn of each kind."""
+
+CHANNELS = ("angle", "torque", "acceleration", "pressure", "torque")
+"""Of the stages, in their order."""
 
 TAGS = re.compile(r"<[^>]*>")
 
@@ -44,6 +47,10 @@ class Page:
         self.facts = [
             html.unescape(TAGS.sub(" ", one))
             for one in re.findall(r"<(?:dd|li)\b.*?</(?:dd|li)>", text, re.DOTALL)
+        ]
+        self.chain = [
+            " ".join(html.unescape(TAGS.sub(" ", one)).split())
+            for one in re.findall(r"<li.*?</li>", text.partition('class="chain')[2], re.DOTALL)
         ]
         tables = re.compile(r"<table.*?</table>|<ol class=\"chain.*?</ol>", re.DOTALL)
         self.beside = html.unescape(TAGS.sub(" ", " ".join(tables.findall(text) + self.facts)))
@@ -64,9 +71,14 @@ def drawn_diagnosis(kind, rng):
         for i, gap in enumerate(gaps)
     )  # fmt: skip
     stages = {
-        name: StageFinding(float(rng.lognormal(0.5, 0.7)), 0.2, float(10.0 ** -rng.uniform(0, 4)))
-        for name in STAGES
+        name: StageFinding(float(rng.lognormal(0.5, 0.7)), share, float(10.0 ** -rng.uniform(0, 4)))
+        for name, share in zip(STAGES, rng.dirichlet(np.full(5, 0.7)).tolist(), strict=True)
     }
+    differences = tuple(
+        Location(name, (channel,), (1e3 * (1 + i), 2e3 * (1 + i)), "all", "all", stage.p_value)
+        for i, ((name, stage), channel) in enumerate(zip(stages.items(), CHANNELS, strict=True))
+        if stage.p_value <= SURE
+    )
     sure = replace(PLACE, stage=str(rng.choice(list(STAGES))))
     sure = replace(sure, p_value=stages[sure.stage].p_value)
     floor = 1.0
@@ -87,6 +99,7 @@ def drawn_diagnosis(kind, rng):
         made, agreement=found, stages=stages, location=sure if made.location else None,
         effects=tuple(effects), probabilities=chances, parameters=parameters,
         gap=before, floor=floor, p_value=float(10.0 ** -rng.uniform(0, 4)),
+        differences=differences,
     )  # fmt: skip
 
 
@@ -104,9 +117,11 @@ def fitted(one: EffectFinding, before, recalibrated, floor, rng):
 
 def printed(diagnosis):
     """Sentences that the command prints."""
-    said = [*answer(diagnosis)]
+    sentences = [*answer(diagnosis)]
     finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
-    return [*said, closed_sentence(finding)] if finding is not None else said
+    if finding is not None:
+        sentences += [fit_sentence(finding), strength_sentence(finding)]
+    return sentences
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -118,6 +133,36 @@ def test_numbers_of_a_diagnosis_stand_in_its_tables(kind, tmp_path):
         gaps = [float(page.row(one.recording)[3]) for one in diagnosis.agreement]
         for sentence in (*page.words, *printed(diagnosis)):
             check(sentence, page, diagnosis, gaps)
+            check_rows(sentence, page, diagnosis)
+
+
+def check_rows(sentence, page, diagnosis):
+    """Stage, channel and figures of a sentence are those of one row."""
+    for stage, share, p_value in re.findall(
+        r"in the (\w+) \(([<>]? ?\d+ %) of the gap, (p [=<] [\d.e-]*\d)\)", sentence
+    ):
+        of_stage = next(one for one in page.chain if one.split()[0] == stage)
+        assert f"{share} of all" in of_stage, sentence
+        assert p_value in of_stage, sentence
+    for stage, channel in re.findall(r"shows in the (\w+) \([^)]*\): in the (\w+)", sentence):
+        if diagnosis.location is not None and stage != diagnosis.location.stage:
+            assert channel == CHANNELS[list(STAGES).index(stage)], sentence
+    if found := re.search(r"most in the (\w+) \(([\d.]+)(?: to ([\d.]+))? times\)", sentence):
+        heads = [one.strip() for one in page.row("Recording")]
+        column = heads.index(found[1].capitalize())
+        rows = [page.row(one.recording) for one in far_ones(diagnosis)]
+        if named := re.search(r"(run\d) deviates ([\d.]+) times", sentence):
+            rows = [page.row(named[1])]
+            assert float(rows[0][3]) == float(named[2]), sentence
+        reach = [float(row[column]) for row in rows]
+        ends = (float(found[2]), float(found[3] or found[2]))
+        assert ends == (min(reach), max(reach)), sentence
+        of_channels = [float(one) for row in rows for one in row[4:] if "not" not in one]
+        assert max(reach) == max(of_channels), sentence
+    if diagnosis.verdict and (found := re.search(r"together deviate ([\d.]+) times", sentence)):
+        whole = next(one for one in page.facts if "Gap before any fit" in one)
+        gap = float(re.search(r"[\d.]+", whole)[0])
+        assert float(found[1]) == pytest.approx(gap, abs=0.06), sentence
 
 
 def check(sentence, page, diagnosis, gaps):
@@ -141,17 +186,18 @@ def check(sentence, page, diagnosis, gaps):
             cell = next(row[1] for row in page.rows if row[0].strip() == name.replace("_", " "))
             table = [float(end) for end in cell.split(" to ")]
             assert stated == pytest.approx(table, abs=0.006), sentence
-    if found := re.search(r"deviates? (?:up to )?([\d.]+)(?: to ([\d.]+))? times as", sentence):
+    reach = r"deviates? (?:up to )?([\d.]+)(?: to ([\d.]+))? times as much as repeat measurements"
+    if found := re.search(reach, sentence):
         least, most = float(found[1]), float(found[2] or found[1])
         assert most == pytest.approx(max(gaps), abs=0.06), sentence
         if "up to" not in sentence:
             assert least == pytest.approx(min(gaps), abs=0.06), sentence
     if found := re.search(r"the rig at (\d+) of (\d+) recordings", sentence):
         assert (int(found[1]), int(found[2])) == (len(gaps) - len(far_ones(diagnosis)), len(gaps))
-    for gap in re.findall(r"([\d.]+) floors", sentence):
+    for gap in re.findall(r"([\d.]+) times (?:as much|with it)", sentence):
         numbers = [float(one) for one in re.findall(r"\d+\.\d+|\d+", beside)]
         assert min(abs(float(gap) - one) for one in numbers) < 0.06, sentence
-    fit = re.search(r"(?:fit.*?|parameters) explains? (\d+) % of the deviation", sentence)
+    fit = re.search(r"(?:fit.*?|parameters) explains? (\d+) % of the deviation beyond", sentence)
     if fit and (bars := [row for row in page.rows if row[0].strip() == "what is left"]):
         before, after = float(page.row("nominal model")[1]), float(bars[0][1])
         closable = before - 1.0  # nothing where it is a floor as rounded

@@ -383,6 +383,8 @@ def next_measurement(
     stage: str = "friction",
     *,
     differs: bool = False,
+    farthest: str = "",
+    own_fit: bool = True,
 ) -> str:
     """Say what would make the answer surer.
 
@@ -397,6 +399,10 @@ def next_measurement(
         That differs most.
     differs : bool
         Whether the gap is larger than that of repeats.
+    farthest : str
+        Recording that deviates most, if by more than repeats do.
+    own_fit : bool
+        Whether the rig file states the bushing that was recorded, rather than a shipped one.
 
     Examples
     --------
@@ -406,7 +412,14 @@ def next_measurement(
     if not verdict:
         if differs:
             return "each condition once more: what its two recordings share is no chance"
+        if farthest:
+            return f"the condition of {farthest} once more, to see whether its deviation is chance"
         return "none: repeats of one condition differ as much as recording and simulation do"
+    if verdict == ("parameters",) and not own_fit:
+        return (
+            "nothing yet: the rig file has no [[fit]] of its own. Let bushing-noise identify make "
+            "a rig file of these recordings, and diagnose them with that one"
+        )
     for kind, what in _MISSING.items():
         if kind not in kinds:
             return f"record {what} beside what there is"
@@ -419,4 +432,4 @@ def next_measurement(
         return _WHERE_UNKNOWN[stage]
     if probabilities[ranked[0]] < 0.9:
         return "two more speeds, one below and one above those recorded, each twice"
-    return "one condition outside those recorded, to confirm that the fitted effect predicts it"
+    return "one condition outside those recorded, to confirm that the effect predicts it"

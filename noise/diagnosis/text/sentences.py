@@ -1,33 +1,33 @@
 """A diagnosis in sentences: what the command prints and the report begins with.
 
-Only what the data hold is said. A figure that was not determined is left out of a sentence, never
-replaced by a cautious phrase that reads like a finding.
+A sentence takes stage, channel and figure from one row of a table. A figure that was not determined
+is left out of a sentence, never replaced by a cautious phrase that reads like a finding.
 """
 
 from __future__ import annotations
 
+import math
 import re
+from collections.abc import Iterable, Sequence
 
-from noise.diagnosis.outcome import SHOWN_IN, SURE, Diagnosis, EffectFinding
-from noise.diagnosis.text.verdict_sentences import (
-    agreement_sentence,
-    far_ones,
-    remainder_sentence,
-    verdict_sentence,
-)
+from noise.diagnosis.outcome import SHOWN_IN, SURE, Agreement, Diagnosis, EffectFinding, Location
+from noise.diagnosis.text.verdict_sentences import AGREES, far_ones, verdict_sentence
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
     PHASES,
     begins,
     cause_of,
     evidence,
-    floors,
     frequency,
+    gap_number,
     joined,
+    number,
     p_number,
+    parameter_name,
     percent,
     stages_acting,
 )
+from sim.effects import EFFECTS
 
 _COLUMNS = {
     "speed_rad_s": ("speed", "rad/s"),
@@ -36,9 +36,13 @@ _COLUMNS = {
     "temperature_C": ("temperature", "degree C"),
 }
 
-
 _NOTHING = 0.005
 """Share up to which a fit closes nothing [-]: it would be rounded to 0 %."""
+
+_MOST_NAMED = 4
+"""Recordings that are named in a sentence; assumed."""
+
+_AS_REPEATS = "times as much as repeat measurements do"
 
 
 def answer(diagnosis: Diagnosis) -> list[str]:
@@ -53,79 +57,261 @@ def answer(diagnosis: Diagnosis) -> list[str]:
     --------
     >>> from noise.diagnosis.outcome import Diagnosis
     >>> answer(Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0))
-    ['Recordings and simulation differ no more than repeats do: there is nothing to explain (gap
-      0.9, floor 1, p = 0.60).']
+    ['Recordings and simulation differ no more than repeats do: there is nothing to explain (0.90
+      times as much as repeats, p = 0.60).']
     """
-    found = [f"{text[0].upper()}{text[1:]}." for text in (*diagnosis.bench, *diagnosis.faults)]
+    first = [f"{text[0].upper()}{text[1:]}." for text in (*diagnosis.bench, *diagnosis.faults)]
     if diagnosis.bench:
-        return [*found, "No cause is looked for before that is put right."]
+        return [*first, "No cause is looked for before that is put right."]
     sentences = [
-        *found,
+        *first,
         agreement_sentence(diagnosis),
         verdict_sentence(diagnosis),
         location_sentence(diagnosis),
         remainder_sentence(diagnosis),
-        *equivalence_sentences(diagnosis),
+        *(
+            f"These channels cannot tell {cause_of(one).name} from {cause_of(other).name}."
+            for one, other in diagnosis.equivalent
+        ),
         _unfitted(diagnosis),
     ]
     return [*filter(None, sentences)]
 
 
+def agreement_sentence(diagnosis: Diagnosis) -> str:
+    """Say whether the rig file describes the rig, at which conditions and in which channels not.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+
+    Returns
+    -------
+    str
+        Empty where that was not determined.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from noise.diagnosis.outcome import Agreement
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
+    >>> slow = Agreement("run01.wav", 1.0, 2.79e-4, 1.1, {"torque": 0.9, "pressure": 1.3})
+    >>> fast = Agreement("run02.wav", 4.0, 2.79e-4, 6.1, {"torque": 8.0, "pressure": 1.2})
+    >>> agreement_sentence(replace(nothing, agreement=(slow,)))
+    'The rig file describes the rig: the recording deviates 1.1 times as much as repeat measurements
+      do.'
+    >>> agreement_sentence(replace(nothing, verdict=("unknown",), agreement=(slow, fast)))
+    'The rig file describes the rig at 1 of 2 recordings, not above 1 rad/s: there it deviates
+      up to 6.1 times as much as repeat measurements do, most in the torque (8.0 times). All
+      recordings together deviate 0.9 times as much (p = 0.60).'
+    """
+    rows = diagnosis.agreement
+    if not rows:
+        return ""
+    far, n = far_ones(diagnosis), len(rows)
+    reach = _reach(one.gap for one in rows)
+    deviate = f"{'the recording deviates' if n == 1 else f'its {n} recordings deviate'} {reach}"
+    most = _channel_that_deviates_most(far)
+    if not diagnosis.verdict and far:  # what one recording does may be chance, and together it is
+        roughly = " only roughly" if len(far) == n else ""
+        worst = max(far, key=lambda one: one.gap)
+        at_most = _channel_that_deviates_most([worst])
+        return (
+            f"The rig file describes the rig{roughly}: {deviate} {_AS_REPEATS}. {worst.recording} "
+            f"deviates {gap_number(worst.gap)} times as much{at_most}; another recording of its "
+            "condition shows whether that is chance."
+        )
+    together = ""
+    if diagnosis.verdict and diagnosis.p_value <= 1.0:
+        together = (
+            f" All recordings together deviate {gap_number(diagnosis.gap)} times as much "
+            f"({p_number(diagnosis.p_value)})."
+        )
+    if not far:
+        closer = " but for a difference that shows only on a closer look"
+        start = f"The rig file describes the rig{closer if diagnosis.verdict else ''}"
+        return f"{start}: {deviate} {_AS_REPEATS}.{together}"
+    if len(far) == n:
+        start = "The rig file does not describe the rig"
+        return f"{start}: {deviate} {_AS_REPEATS}{most}.{together}"
+    return (
+        f"The rig file describes the rig at {n - len(far)} of {n} recordings, not {_where(rows)}: "
+        f"there it deviates up to {gap_number(max(one.gap for one in far))} {_AS_REPEATS}{most}."
+        f"{together}"
+    )
+
+
+def _reach(gaps: Iterable[float]) -> str:
+    known = [*gaps]
+    least, most = gap_number(min(known)), gap_number(max(known))
+    return most if least == most else f"{least} to {most}"
+
+
+def _channel_that_deviates_most(rows: Sequence[Agreement]) -> str:
+    """Say in which channel recordings deviate most, and how much there."""
+    most: dict[str, float] = {}
+    for row in rows:
+        for name, gap in row.channels.items():
+            most[name] = max(gap, most.get(name, 0.0))
+    if not most:
+        return ""
+    name = max(most, key=lambda name: most[name])
+    reach = _reach(row.channels[name] for row in rows if name in row.channels)
+    return f", most in the {name} ({reach} times)"
+
+
+def _where(rows: Sequence[Agreement]) -> str:
+    """Conditions that part the recordings which deviate from the others, or their names."""
+    for key, scale, unit in (("speed", 1.0, "rad/s"), ("interference", 1e3, "mm")):
+        far, near = (
+            [abs(scale * getattr(one, key)) for one in rows if (one.gap > AGREES) == away]
+            for away in (True, False)
+        )
+        if min(far) > max(near):
+            return f"above {max(near):.3g} {unit}"
+        if max(far) < min(near):
+            return f"below {min(near):.3g} {unit}"
+    names = [one.recording for one in rows if one.gap > AGREES]
+    if len(names) > _MOST_NAMED:
+        return f"at {len(names)} others"
+    return f"at {joined(names)}"
+
+
 def location_sentence(diagnosis: Diagnosis) -> str:
-    """Return where the simulation goes wrong first; empty where there is no gap."""
-    place = diagnosis.location
+    """Return where the simulation goes wrong; empty where there is no gap.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+
+    Returns
+    -------
+    str
+        First the stage that differs for sure, then the one that a named effect acts in.
+    """
+    place, acting = diagnosis.location, stages_acting(diagnosis)
     if place is None:
         return ""
+    row, likeness = _row_words(diagnosis, place.stage), evidence(place.p_value)
+    where = _place_words(diagnosis, place)
+    other = _other_stage(diagnosis, place)
+    beside = _other_words(diagnosis, place, other) if other else []
+    if place.p_value <= SURE:
+        start = "The gap begins in the"
+        if not begins(diagnosis):
+            start = f"As what acts in the {joined(acting)} can, the gap shows in the"
+        first = f"{start} {place.stage} ({row}): {where}; {likeness}."
+        return " ".join([first, *beside])
+    if other and place.stage in acting:
+        names = joined([cause_of(name).name for name in diagnosis.verdict])
+        acts = f"{names} acts" if len(diagnosis.verdict) == 1 else f"of {names} one acts"
+        last = f"{acts} in the {place.stage} ({row}): {where}; there alone {likeness}."
+        return " ".join([*beside, f"{last[0].upper()}{last[1:]}"])
+    most = f"The gap shows most in the {place.stage} ({row})"
+    return f"{most}: {where}; though there alone {likeness}."
+
+
+def _other_stage(diagnosis: Diagnosis, place: Location) -> str:
+    """Return another stage that surely differs, that with most of the gap; empty without one."""
+    sure = place.p_value <= SURE
+    own = diagnosis.stages.get(place.stage)
+    least = own.share if sure and own is not None else -1.0
+    shares = {
+        name: stage.share
+        for name, stage in diagnosis.stages.items()
+        if name != place.stage and stage.p_value <= SURE and stage.share > least
+    }
+    return max(shares, key=lambda name: shares[name], default="")
+
+
+def _other_words(diagnosis: Diagnosis, place: Location, other: str) -> list[str]:
+    """Say of a stage that differs more than that of the named effects what that may mean."""
+    row = _row_words(diagnosis, other)
+    sure = place.p_value <= SURE
+    first = f"{'Most of it' if sure else 'The gap'} shows in the {other} ({row})"
+    if spot := next((one for one in diagnosis.differences if one.stage == other), None):
+        first += f": {_channels_and_band(spot)}"
+    acting = stages_acting(diagnosis)
+    if not acting or other in acting:
+        return [f"{first}."]
+    if other in SHOWN_IN.get(place.stage, ()):
+        return [f"{first}, as it can where something acts in the {place.stage}."]
+    names = joined([cause_of(name).name for name in diagnosis.verdict])
+    fitted = {one.name for one in diagnosis.effects if one.closed is not None}
+    if diagnosis.remainder is not None:
+        meaning = "The fit leaves a gap, so something else may be missing there."
+    elif fitted >= set(diagnosis.verdict):
+        meaning = "The fit explains that as well."
+    else:
+        meaning = f"Only a fit tells whether {names} explains that as well."
+    return [f"{first}.", meaning]
+
+
+def _row_words(diagnosis: Diagnosis, stage: str) -> str:
+    """Return share of the gap and p-value of a stage, as its table has them."""
+    found = diagnosis.stages.get(stage)
+    if found is None:
+        return p_number(diagnosis.location.p_value if diagnosis.location else math.nan)
+    return f"{percent(found.share)} of the gap, {p_number(found.p_value)}"
+
+
+def _channels_and_band(place: Location) -> str:
     low, high = place.band
-    sure = not place.p_value > SURE
-    start = "The gap begins" if begins(diagnosis) else "It shows" if sure else "It shows most"
-    parts = [f"{start} in the {place.stage}"]
-    if sure and not begins(diagnosis):
-        parts[0] += f", as what acts in the {joined(stages_acting(diagnosis))} can"
-    if place.channels:
-        parts.append(f"in the channel{'s'[: len(place.channels) > 1]} {joined(place.channels)}")
-    parts.append(
-        f"below {frequency(high)}" if low <= 0 else f"{frequency(low)} to {frequency(high)}"
-    )
+    band = f"below {frequency(high)}" if low <= 0 else f"{frequency(low)} to {frequency(high)}"
+    return ", ".join([*([f"in the {joined(place.channels)}"] if place.channels else []), band])
+
+
+def _place_words(diagnosis: Diagnosis, place: Location) -> str:
+    parts = [_channels_and_band(place)]
     if place.phase != "all":
         parts.append(PHASES.get(place.phase, f"in the phase {place.phase}"))
     if place.conditions != "all":
         parts.append(f"where {_conditions(place.conditions)}")
     elif len(far_ones(diagnosis)) == len(diagnosis.agreement):  # else it shows at some of them
         parts.append("in all conditions")
-    though = "" if sure else "though there alone "
-    said = f"{', '.join(parts)}; {though}{evidence(place.p_value)} ({p_number(place.p_value)})."
-    return f"{said} {_surer(diagnosis)}".strip()
+    return ", ".join(parts)
 
 
-def _explained(diagnosis: Diagnosis) -> bool:
-    """Whether fits of what is named leave no more than repeats differ by."""
-    fitted = {one.name for one in diagnosis.effects if one.closed is not None}
-    return diagnosis.remainder is None and bool(fitted) and fitted >= set(diagnosis.verdict)
+def _conditions(limits: str) -> str:
+    """Replace names of columns by words, with the unit behind the number."""
+    for column, (name, unit) in _COLUMNS.items():
+        limits = re.sub(rf"\b{column} *([<>=]+) *([\w.+-]+)", rf"{name} \1 \2 {unit}", limits)
+    return limits.replace(">=", "\N{GREATER-THAN OR EQUAL TO}").replace(
+        "<=", "\N{LESS-THAN OR EQUAL TO}"
+    )
 
 
-def _surer(diagnosis: Diagnosis) -> str:
-    """Say which stage differs surely where that of the named effects does not."""
-    place, acting = diagnosis.location, stages_acting(diagnosis)
-    if place is None or place.stage not in acting or place.p_value <= SURE:
+def remainder_sentence(diagnosis: Diagnosis) -> str:
+    """Say what the fit of a verdict leaves; empty where that is no more than repeats differ by.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from noise.diagnosis.outcome import Remainder
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
+    >>> left = Remainder(3.04, ("torque",), (100.0, 450.0))
+    >>> remainder_sentence(replace(nothing, verdict=("partial_slip",), remainder=left))
+    'With it held-out recordings still deviate 3.0 times as much as repeats do, most in the torque
+      from 100 Hz to 450 Hz. It acts in another way than was tried, or something else is missing as
+      well.'
+    """
+    left = diagnosis.remainder
+    if left is None or diagnosis.verdict == ("unknown",):
         return ""
-    others = {
-        stage: found.p_value
-        for stage, found in diagnosis.stages.items()
-        if stage != place.stage and found.p_value <= SURE
-    }
-    if not others:
-        return ""
-    shown = SHOWN_IN.get(place.stage, ())
-    surest = min(others, key=lambda stage: (stage not in shown, others[stage]))
-    said = f"What differs surely is the {surest} ({p_number(others[surest])})"
-    if surest in shown:
-        return f"{said}, as it can where something acts in the {place.stage}."
-    if surest in acting:
-        return f"{said}."
-    if _explained(diagnosis):
-        return f"{said}, which the fit explains as well."
-    return f"{said}, in which nothing acts that is named: something else may be missing there too."
+    where = f"most in the {joined(left.channels)}"
+    if len(left.channels) == 1:
+        where += f" from {frequency(left.band[0])} to {frequency(left.band[1])}"
+    them, meaning = "them", "They act in another way than was tried, or something else"
+    if diagnosis.verdict == ("parameters",):
+        them, meaning = "refitted parameters", "Something else"
+    elif len(diagnosis.verdict) == 1:
+        them, meaning = "it", "It acts in another way than was tried, or something else"
+    return (
+        f"With {them} held-out recordings still deviate {gap_number(left.gap)} times as much as "
+        f"repeats do, {where}. {meaning} is missing as well."
+    )
 
 
 def closed_words(finding: EffectFinding | None, of: str = "", interval: str = "") -> str:
@@ -157,59 +343,89 @@ def closed_words(finding: EffectFinding | None, of: str = "", interval: str = ""
     return f"{words} ({interval}{low} to {high})" if low != high else words
 
 
-def closed_sentence(finding: EffectFinding) -> str:
+def fit_sentence(finding: EffectFinding, fit: str = "The fit") -> str:
     """Return how far a fit with an effect closes the gap; empty where that is not determined.
+
+    Parameters
+    ----------
+    finding : EffectFinding
+    fit : str
+        What the fit is called.
 
     Examples
     --------
     >>> from noise.diagnosis.outcome import EffectFinding
-    >>> closed_sentence(EffectFinding("mains_hum", "measurement", 0.9, closed=0.96, closed_low=0.91,
-    ...                               closed_high=0.99))
-    'The fit explains 96 % of the deviation (90 % interval 91 % to 99 %).'
-    >>> closed_sentence(EffectFinding("mains_hum", "measurement", 0.9, gap_before=1.9,
-    ...                               gap_after=2.3, closed=-0.4))
-    'The fit explains nothing of the deviation: held-out recordings deviate by 1.9 floors without
-      it, by 2.3 with it.'
+    >>> fit_sentence(EffectFinding("mains_hum", "measurement", 0.9, gap_before=4.9, gap_after=1.1,
+    ...                            closed=0.96, closed_low=0.91, closed_high=0.99))
+    'The fit explains 96 % of the deviation beyond that of repeats (90 % interval 91 % to 99 %).
+      Held-out recordings deviate 4.90 times as much as repeats without it, 1.10 times with it.'
+    >>> fit_sentence(EffectFinding("mains_hum", "measurement", 0.9, gap_before=1.9, gap_after=2.3,
+    ...                            closed=-0.4))
+    'The fit explains nothing of the deviation beyond that of repeats. Held-out recordings deviate
+      1.90 times as much as repeats without it, 2.30 times with it.'
     """
-    before, after = floors(finding.gap_before), floors(finding.gap_after)
-    if finding.closed is None:
-        if finding.gap_before is None or finding.gap_after is None:
-            return ""
-        return (
-            "How much the fit explains is not known: held-out recordings hardly deviate without it "
-            f"({before} floors; {after} with it)."
+    sentences = []
+    if finding.closed is not None:
+        words = closed_words(finding, " of the deviation beyond that of repeats", "90 % interval ")
+        sentences.append(f"{fit} explains {words}.")
+    if finding.gap_before is not None and finding.gap_after is not None:
+        if finding.closed is None:
+            sentences.append(f"How much {fit[0].lower()}{fit[1:]} explains is not known.")
+        before, after = gap_number(finding.gap_before, ".2f"), gap_number(finding.gap_after, ".2f")
+        hardly = "hardly " if finding.closed is None else ""
+        sentences.append(
+            f"Held-out recordings {hardly}deviate {before} times as much as repeats without it, "
+            f"{after} times with it."
         )
-    words = closed_words(finding, " of the deviation", "90 % interval ")
-    if finding.closed <= _NOTHING:
-        if finding.gap_before is not None and finding.gap_after is not None:
-            words += (
-                f": held-out recordings deviate by {before} floors without it, by {after} with it"
-            )
-    elif finding.closed_by_effect is not None:
-        share = finding.closed_by_effect
-        left = percent(min(share, 1.0)) if share > _NOTHING else "nothing"
-        words += f", and {left} of what refitted parameters leave unexplained"
-    return f"The fit explains {words}."
+    return " ".join(sentences)
 
 
-def equivalence_sentences(diagnosis: Diagnosis) -> list[str]:
-    """Return one sentence for each pair of effects that the channels cannot tell apart."""
-    return [
-        f"These channels cannot tell {cause_of(one).name} from {cause_of(other).name}."
-        for one, other in diagnosis.equivalent
-    ]
+def strength_words(finding: EffectFinding) -> str:
+    """Return the interval of an effect's strength, with its unit and the form that was fitted.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import EffectFinding
+    >>> strength_words(EffectFinding("slip_pulse", "structure", 0.9, {"form": "exponential"},
+    ...                              (68.01, 161.1)))
+    'amplitude 68 to 161 N (form exponential)'
+    """
+    if finding.strength is None:
+        return NOT_DETERMINED
+    low, high = (number(end, ".3g") for end in finding.strength)
+    if finding.name not in EFFECTS:
+        return f"{low} to {high}"
+    effect = EFFECTS[finding.name]
+    form = finding.parameters.get("form", effect.forms[0])
+    unit = effect.parameters[effect.strength].unit if form in effect.forms else ""
+    words = f"{parameter_name(effect.strength)} {low} to {high} {unit}".strip()
+    return f"{words} (form {parameter_name(str(form))})" if len(effect.forms) > 1 else words
+
+
+def strength_sentence(finding: EffectFinding) -> str:
+    """Return how strong an effect is as fitted; empty where that is not determined.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import EffectFinding
+    >>> strength_sentence(EffectFinding("slip_pulse", "structure", 0.9, {"form": "exponential"},
+    ...                                 (68.01, 161.1)))
+    'Slip pulse as fitted: amplitude 68 to 161 N (form exponential), a 90 % interval for this form
+      alone. Another form of the effect may need another number.'
+    """
+    if finding.strength is None:
+        return ""
+    name = cause_of(finding.name).name
+    return (
+        f"{name[0].upper()}{name[1:]} as fitted: {strength_words(finding)}, a 90 % interval for "
+        "this form alone. Another form of the effect may need another number."
+    )
 
 
 def _unfitted(diagnosis: Diagnosis) -> str:
     if not diagnosis.verdict or diagnosis.held_out:
         return ""
-    return "Nothing has been fitted, so it is not known whether an effect explains the deviation."
-
-
-def _conditions(limits: str) -> str:
-    """Replace names of columns by words, with the unit behind the number."""
-    for column, (name, unit) in _COLUMNS.items():
-        limits = re.sub(rf"\b{column} *([<>=]+) *([\w.+-]+)", rf"{name} \1 \2 {unit}", limits)
-    return limits.replace(">=", "\N{GREATER-THAN OR EQUAL TO}").replace(
-        "<=", "\N{LESS-THAN OR EQUAL TO}"
+    return (
+        "Nothing has been fitted, so it is not known how much of the deviation this explains. "
+        "A diagnosis without --quick fits it."
     )

@@ -114,7 +114,7 @@ _EVIDENCE = (
     (0.01, "repeats would very seldom differ as much"),
     (0.05, "repeats would seldom differ as much"),
     (0.2, "repeats differ as much now and then"),
-    (math.inf, "repeats differ as much"),
+    (math.inf, "repeats often differ as much"),
 )
 
 
@@ -155,7 +155,7 @@ def evidence(p_value: float) -> str:
     --------
     >>> evidence(0.0004), evidence(0.07), evidence(0.4)
     ('repeats would hardly ever differ as much', 'repeats differ as much now and then', 'repeats
-      differ as much')
+      often differ as much')
     """
     if not math.isfinite(p_value):
         return NOT_DETERMINED
@@ -207,12 +207,12 @@ def number(value: float | None, form: str = ".2f") -> str:
     return format(value, form).replace("-", "\N{MINUS SIGN}")
 
 
-def floors(gap: float | None, form: str = ".1f") -> str:
-    """Return a gap in floors [-] as it is printed; one that is beyond all telling says so.
+def gap_number(gap: float | None, form: str = ".1f") -> str:
+    """Return a gap, in what repeats of one run differ by [-], as it is printed.
 
     Examples
     --------
-    >>> floors(1.23), floors(100.0), floors(None)
+    >>> gap_number(1.23), gap_number(100.0), gap_number(None)
     ('1.2', 'more than 100', 'not determined')
     """
     if gap is not None and gap >= LARGEST_GAP:
