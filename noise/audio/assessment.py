@@ -107,8 +107,8 @@ class Assessment:
         levels = self.levels if self.calibrated else self.in_file(full_scale)
         unit, re = ("dB", " re 20 uPa") if self.calibrated else ("dBFS", "")
         lines = [
-            f"{levels.level:.1f} {unit}, {levels.level_a:.1f} {unit}(A), L_AFmax "
-            f"{levels.level_af_max:.1f} {unit}{re}"
+            f"{levels.level_a:.1f} {unit}(A), L_AFmax {levels.level_af_max:.1f} {unit}, "
+            f"{levels.level:.1f} {unit} unweighted{re}"
         ]
         if self.quality is not None:
             named = {_QUALITY_COLUMNS[name]: of for name, of in asdict(self.quality).items()}

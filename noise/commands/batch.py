@@ -173,7 +173,7 @@ def _note_uncalibrated(outcomes: Iterable[JobResult]) -> None:
     if number:
         note(
             f"{counted(number, 'recording')} without calibration: levels in dBFS only "
-            "(--full-scale gives one)"
+            "(--calibrator or --full-scale gives one)"
         )
 
 

@@ -137,12 +137,14 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
     from noise.base.tables import write_table
 
     measured: dict[str, Measured] = {}
+    names: dict[str, list[str]] = {}
     refused: dict[str, str] = {}
     shape = {"rate": options.rate, "gap": options.gap, "fade": options.fade}
     for file in track(files, "measuring", unit="file"):
         try:
+            made = _recordings(file, options.band)
             of = measure(
-                _recordings(file, options.band),
+                made,
                 **shape,
                 quality=options.sound_quality,
                 match=options.match_loudness,
@@ -154,6 +156,7 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
             refuse(refused[file.name], file.name)
             continue
         measured[file.name] = of
+        names[file.name] = [_noise_name(one) for one in made]
         for words in dict.fromkeys(filter(None, map(_filter_words, of.parts))):
             say(f"{file.name}: {words}")
     scales = full_scales(
@@ -185,15 +188,29 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
         worth = f"full scale is {scale.value:.4g} Pa; " * of.calibrated
         say(f"{name}: {worth}in the file {summary}")
         several = len(of.parts) > 1
-        for part in of.parts:
+        for part, noise in zip(of.parts, names[name], strict=True):
             lead = f"{name}: {part.about.name}" if several else name
-            for line in part.assessment.words(scale.value):
+            levels, *quality = part.assessment.words(scale.value)
+            for line in (f"{noise}{levels}", *quality):
                 say(f"{lead}: {line}")
         report(target, target.with_suffix(".json"))
     if folder is not None:
         write_table(folder / "levels.csv", ("file", *COLUMNS, "filter", "note", "error"), rows)
         report(folder / "levels.csv")
     return 1 if refused else 0
+
+
+def _noise_name(recording: Recording) -> str:
+    """Return the label of a sound and its frequency, such as ``squawk, 255 Hz, ``."""
+    from noise.classifier import load_classifier
+    from noise.labels.segments import file_label, label_recording
+
+    try:
+        found = file_label(label_recording(recording, load_classifier()))
+    except BushingNoiseError:  # too short or sampled too slowly to be labelled
+        return ""
+    pitch = "" if found.frequency is None else f"{found.frequency:.0f} Hz, "
+    return f"{found.label}, {pitch}"
 
 
 def _filter_words(part: Part) -> str | None:
@@ -208,7 +225,7 @@ def _notes(measured: Mapping[str, Measured]) -> None:
         more = f" and {counted(len(unknown) - 1, 'other')}" if len(unknown) > 1 else ""
         note(
             f"{unknown[0]}{more}: not calibrated, so how loud it was is not known; levels are in "
-            "dBFS only (--full-scale gives a calibration)"
+            "dBFS only (--calibrator or --full-scale gives a calibration)"
         )
     for of in measured.values():
         for line in of.untold:

@@ -27,6 +27,8 @@ def assumes_material(row: Mapping[str, object]) -> bool:
 def naming_row(rows: Sequence[Mapping[str, object]]) -> Mapping[str, object] | None:
     """Return the longest row that is not ``none``, by which a file is named.
 
+    Of rows of the same length, as of two tracks, it is the one by a person, else the surest.
+
     Examples
     --------
     >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
@@ -35,7 +37,7 @@ def naming_row(rows: Sequence[Mapping[str, object]]) -> Mapping[str, object] | N
     """
     labelled = [row for row in rows if row.get("label") is not None]
     loud = [row for row in labelled if row["label"] != "none"]
-    return max(loud or labelled, key=_length, default=None)
+    return max(loud or labelled, key=_priority, default=None)
 
 
 def labels_in(rows: Sequence[Mapping[str, object]]) -> tuple[str, ...]:
@@ -117,6 +119,15 @@ def _result_words(row: Mapping[str, object]) -> Iterator[str]:
         yield f"p {probability:.2f}" + (f" ({name} {p:.2f})" if less else "")
     if row.get("channel", "all") != "all":
         yield f"track {row['channel']}"
+
+
+def _priority(row: Mapping[str, object]) -> tuple[float, bool, float]:
+    probability = row.get(f"p_{row['label']}")
+    return (
+        _length(row),
+        row.get("label_source") == "human",
+        probability if isinstance(probability, float) else 0.0,
+    )
 
 
 def _length(row: Mapping[str, object]) -> float:

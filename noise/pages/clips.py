@@ -142,15 +142,21 @@ def label_counts(entries: Iterable[Entry]) -> list[tuple[str, int]]:
 
 
 def labels_sentence(entries: Sequence[Entry]) -> str:
-    """Say how many entries have which label in them.
+    """Say how many segments of entries have which label.
 
     Examples
     --------
     >>> labels_sentence([Entry("a"), Entry("b", ({"label": "creak"},))])
-    '2 recordings: 1 creak, 1 without a label'
+    '2 recordings with 1 segment: 1 creak; 1 recording without a label'
     """
-    words = [f"{number} {label or 'without a label'}" for label, number in label_counts(entries)]
-    return f"{counted(len(entries), 'recording')}: {', '.join(words)}"
+    counts = Counter(part.label for entry in entries for part in entry.parts)
+    number = counted(len(entries), "recording")
+    words = f"{number} with {counted(counts.total(), 'segment')}: " if counts else f"{number}: "
+    words += ", ".join(f"{counts[label]} {label}" for label in LABELS if counts[label])
+    bare = sum(not entry.parts for entry in entries)
+    if bare and counts:
+        return f"{words}; {counted(bare, 'recording')} without a label"
+    return f"{words}no labels" if bare else words
 
 
 def number_or(value: object, missing: float) -> float:
