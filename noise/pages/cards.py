@@ -114,22 +114,15 @@ _RANGE_OVER_TIME = 60.0
 _STEP, _MARGIN = 20.0, 5.0
 """Between ticks, and of ticks from the ends of the axis [dB]."""
 
-_AT_END = 0.6
-"""Where the words begin, as a share of the time [-]."""
-
 _COLUMNS, _WIDTH, _HEIGHT = 120, 600, 100
 
 
 class LevelDisplay(NamedTuple):
-    """Level over time: its line in a box of 600 by 100, ticks in per cent from below, and words.
-
-    The largest level stands where the line leaves room at its end: `above` it or below.
-    """
+    """Level over time: its line in a box of 600 by 100, ticks in per cent from below, its maximum."""
 
     line: str
     ticks: Ticks
     most: str
-    above: bool
 
 
 def _level_displays(
@@ -157,9 +150,8 @@ def _level_displays(
     for key, (share, level) in curves.items():
         y = _HEIGHT * np.clip((top - level) / _RANGE_OVER_TIME, 0.0, 1.0)
         line = " ".join(f"{a:.0f},{b:.1f}" for a, b in zip(_WIDTH * share, y, strict=True))
-        is_low = level[share > _AT_END].min(initial=top) < top - 0.5 * _RANGE_OVER_TIME
         most = f"{_plain(float(level.max()), '.1f')} {unit}"
-        displays[key] = LevelDisplay(line, ticks, most, bool(is_low))
+        displays[key] = LevelDisplay(line, ticks, most)
     return displays
 
 

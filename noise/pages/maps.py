@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 import numpy as np
@@ -205,7 +205,11 @@ def _looked_up(
 
 
 _MARGIN = 0.12  # of an axis, beyond its outermost spots
-_MOST_TICKS = 7
+_MOST_TICKS, _FEWER_TICKS, _SHORT = 7, 4, 4
+"""Numbers on an axis; fewer where one has more characters than the last."""
+
+_NEAR = 0.11
+"""Distance of spots at which they touch [-]."""
 
 
 @dataclass(frozen=True)
@@ -311,10 +315,10 @@ def axis_of(values: Iterable[float], *, edges: bool) -> Axis:
     if high - low <= 1e-9 * max(abs(high), 1e-9):
         room = 0.25 * abs(high) or 1.0
     low, high = low - room, high + room
-    ticks = tuple(
-        (round((tick - low) / (high - low), 4), f"{tick:.6g}")
-        for tick in round_ticks(low, high, _MOST_TICKS)
-    )
+    marks = round_ticks(low, high, _MOST_TICKS)
+    if max(len(f"{mark:.6g}") for mark in marks) > _SHORT:
+        marks = round_ticks(low, high, _FEWER_TICKS)
+    ticks = tuple((round((mark - low) / (high - low), 4), f"{mark:.6g}") for mark in marks)
     return Axis(low, high, ticks)
 
 
@@ -350,7 +354,9 @@ def recorded_maps(
         across = axis_of([_middle(place.speed) for place in known], edges=False)
         up = axis_of([_middle(place.interference) for place in known], edges=False)
         spots = tuple(_spot(place, across, up, titles, playable) for place in here)
-        maps.append(ConditionMap(title, across, up, (), spots))
+        apart = _moved_apart(spots)
+        note = "" if apart == spots else _MOVED
+        maps.append(ConditionMap(title, across, up, (), apart, note))
     return maps, len(everything - placed)
 
 
@@ -363,6 +369,19 @@ def _spot(
     words = f"{speed:.3g} rad/s, {fit:.3g} mm: {place.label}; {names}"
     x, y = round(across.share(speed), 4), round(up.share(fit), 4)
     return Spot(x, y, place.label, words, tuple(sounds))
+
+
+_MOVED = "Spots that would overlap are moved apart in speed; each names its own condition."
+
+
+def _moved_apart(spots: Sequence[Spot]) -> tuple[Spot, ...]:
+    """Move spots that would overlap along the speed, if the map has room for it."""
+    apart: list[Spot] = []
+    for spot in sorted(spots, key=lambda one: one.x):
+        beside = max((one.x for one in apart if abs(one.y - spot.y) < _NEAR), default=-1.0)
+        apart.append(replace(spot, x=round(max(spot.x, beside + _NEAR), 4)))
+    moved = {(one.x, one.y) for one in apart} - {(one.x, one.y) for one in spots}
+    return tuple(apart if moved and apart[-1].x <= 1.0 else spots)
 
 
 def _title(place: Place) -> str:

@@ -37,7 +37,7 @@ _LEAST_LEVELS = 20.0
 _RUN_UP = 1.25
 """Ratio of largest and smallest speed from which on orders are told apart from frequencies [-]."""
 
-_NAMED = 0.06
+_NAMED = 0.08
 """A segment as long as this share of the axis has room for its label [-]."""
 
 

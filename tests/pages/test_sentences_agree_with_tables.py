@@ -5,13 +5,14 @@ from __future__ import annotations
 import html
 import re
 from dataclasses import replace
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from noise.app.jury import VOTES, Jury, in_words, random_pairs, scale
-from noise.base.labels import NAMED, PERSISTS
+from noise.base.labels import LABELS, MAP_LABELS, NAMED, PERSISTS
 from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.outcome import SURE, Agreement, EffectFinding, Location, StageFinding
 from noise.diagnosis.text.sentences import answer, fit_sentence, strength_sentence
@@ -19,8 +20,12 @@ from noise.diagnosis.text.verdict_sentences import far_ones
 from noise.diagnosis.text.words import finding_of
 from noise.identification.outcome import Identification, LawScore, Number
 from noise.labels.summary import result_lines
+from noise.pages.cards import draw_entries
+from noise.pages.clips import Entry, label_counts, labels_sentence
+from noise.pages.comparison import compare_designs
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.identification import write_identification
+from noise.pages.screen_sounds import ScreenMap, ScreenPoint
 from noise.screening.grid import Grid
 from noise.screening.words import use_words
 from tests.helpers.made_diagnoses import KINDS, PARAMETERS, PLACE, STAGES
@@ -306,3 +311,92 @@ def test_the_words_of_a_jury_are_those_of_its_table():
         if found := re.search(r"Its lead over ([\w, ]+) is not clear", words):
             assert found[1].split(", ") == close
         assert ("clearly ahead" in words) == (not close), words
+
+
+DRAWS = 500
+
+
+def drawn_entry(number, rng):
+    """An entry of a review with segments in a row, on one track or two."""
+    rows = []
+    for channel in ("all",) if rng.random() < 0.7 else ("1", "2"):
+        edges = np.cumsum([0.0, *rng.uniform(0.2, 3.0, rng.integers(0, 4))])
+        rows += [
+            {"file": f"run{number}", "channel": channel, "start_s": float(start),
+             "end_s": float(end), "label": str(rng.choice(LABELS)), "level_dba": 60.0}
+            for start, end in pairwise(edges)
+        ]  # fmt: skip
+    return Entry(f"run{number}", tuple(rows), duration=12.0, calibrated=False)
+
+
+def test_the_summary_of_a_review_is_what_its_cards_show():
+    for seed in range(DRAWS):
+        rng = np.random.default_rng(seed)
+        entries = {f"s{n}": drawn_entry(n, rng) for n in range(int(rng.integers(1, 7)))}
+        words = labels_sentence(list(entries.values()))
+        displays, _ = draw_entries(entries, {})
+        bands = [
+            band.label for one in displays.values() for _, track in one.tracks for band in track
+        ]
+        bare = sum(not one.tracks for one in displays.values())
+        assert int(re.match(r"(\d+) recording", words)[1]) == len(displays), words
+        if bands:
+            assert int(re.search(r"with (\d+) segment", words)[1]) == len(bands), words
+        for label in LABELS:
+            stated = re.search(rf"(\d+) {label}\b", words)
+            assert int(stated[1] if stated else 0) == bands.count(label), words
+        stated = re.search(r"(\d+) recordings? without a label", words)
+        assert int(stated[1] if stated else 0) == bare * bool(bands), words
+        for label, number in label_counts(entries.values()):
+            cards = [one.labels for one in displays.values()]
+            assert number == sum(label in labels if label else not labels for labels in cards)
+
+
+def drawn_screen(rng):
+    """Maps of one to three designs over one grid, with points of any label and origin."""
+    speeds = np.sort(rng.choice(np.arange(1.0, 14.0), rng.integers(1, 6), replace=False))
+    fits = np.sort(rng.choice([0.229, 0.279, 0.33, 0.381], rng.integers(1, 4), replace=False))
+    maps = []
+    for design in ("old", "new", "softer")[: int(rng.integers(1, 4))]:
+        points = [
+            ScreenPoint(
+                float(speed), float(fit), label := str(rng.choice(MAP_LABELS)), "",
+                None if label == "none" else float(rng.uniform(40.0, 95.0)), None,
+                str(rng.choice(["simulated", "refined", "unchanged"])), None,
+                str(rng.choice(["", "damping held", "faster than fitted"])),
+            )
+            for fit in fits for speed in speeds
+        ]  # fmt: skip
+        maps.append(ScreenMap(design, "dry", "", 23.0, 2214.0, tuple(points)))
+    return maps
+
+
+WORDS_OF_HOW = {
+    "simulated": "simulated", "refined": "interpolated",
+    "unchanged": "as at another temperature or fit",
+}  # fmt: skip
+
+
+def test_the_notes_of_a_comparison_are_what_its_maps_show():
+    for seed in range(DRAWS):
+        maps = drawn_screen(np.random.default_rng(seed))
+        compared, _ = compare_designs(maps, ["no rig"] * len(maps), number=0, seed=0)
+        (place,) = compared.places
+        assert int(re.match(r"(\d+) point", place.note)[1]) == len(maps[0].points), place.note
+        for how, words in WORDS_OF_HOW.items():
+            stated = re.search(rf"(\d+) {words}", place.note)
+            number = sum(point.how == how for one in maps for point in one.points)
+            assert int(stated[1] if stated else 0) == number, place.note
+        for one, drawn, cells in zip(
+            maps, place.maps[: len(maps)], place.cells["designs"].values(), strict=True
+        ):
+            labels = [MAP_LABELS[number] for number in cells["label"]]
+            assert labels == [point.label for point in one.points]
+            for note in ("damping held", "faster than fitted"):
+                stated = re.search(rf"{note}: (\w+) points", drawn.note, re.IGNORECASE)
+                number = sum(note in point.note for point in one.points)
+                words = "all" if number == len(one.points) else str(number)
+                assert (stated[1] if stated else "0") == words, drawn.note
+            for label, points in (("none", drawn.areas), ("none", drawn.levels)):
+                quiet = {point.label == label for point in one.points}
+                assert any(area.label == label for area in points) == (True in quiet)

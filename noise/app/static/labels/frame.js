@@ -51,7 +51,7 @@ export function build(element) {
     levels: made("p", { className: "facts levels" }), dialog: helpDialog(),
   };
   for (const [at, label] of LABELS.entries()) {
-    const one = made("button", { type: "button", className: `label ${label}`, title: `${at + 1}`, data: { label } }, made("i"), label);
+    const one = made("button", { type: "button", className: `label ${label}`, title: `Key ${at + 1}`, data: { label } }, made("i"), label);
     parts.labels.append(one);
   }
   parts.saved.setAttribute("role", "status");
@@ -74,9 +74,9 @@ export function build(element) {
       group("View", parts.out, parts.in, parts.left, parts.right, parts.whole, parts.fit, parts.harmonic),
       group("Correcting", parts.split, parts.join, parts.undo, parts.redo, parts.agree, parts.help)),
     parts.lanes,
-    made("p", { className: "shortcuts", textContent: `Drag: select · 1–5: ${LABELS.join(", ")} · C: confirm all · Ctrl+Z: undo · Space: play · ?: keys` }),
+    made("div", { className: "labelling" }, parts.labels, made("p", { className: "shortcuts", textContent: "Drag: select · 1–5: label · C: confirm all · Ctrl+Z: undo · Space: play · ?: keys" })),
     made("div", { className: "under" }, parts.readout, parts.levelRead, parts.legend),
-    made("section", { className: "below", ariaLabel: "Segment" }, parts.chosen, parts.levels, parts.labels, parts.source, parts.conditions, parts.shares),
+    made("section", { className: "below", ariaLabel: "Segment" }, parts.chosen, parts.levels, parts.source, parts.conditions, parts.shares),
     parts.gains,
     made("div", { className: "tools" }, parts.channel.label, parts.others),
     parts.dialog);

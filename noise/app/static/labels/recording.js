@@ -114,7 +114,6 @@ export class RecordingPage {
     if (this.corrections.tracks.includes(`${at + 1}`)) this.corrections.show(`${at + 1}`);
     this.player.put("a", this.#slot());
     await Promise.all([...[this.spectrogram, this.outline, this.levels].map((lane) => lane.load(this.id, name)), this.#stack()]);
-    this.spectrogram.refine();
     this.#stretch();
   }
 

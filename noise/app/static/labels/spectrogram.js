@@ -26,6 +26,7 @@ export class Spectrogram {
     this.whole = this.#picture(found);
     this.top = found.top;
     this.draw();
+    this.refine(); // the view may have had no size before
     this.plot.dataset.drawn = id;
   }
 
