@@ -118,7 +118,7 @@ _COLUMNS, _WIDTH, _HEIGHT = 120, 600, 100
 
 
 class LevelDisplay(NamedTuple):
-    """Level over time: its line in a box of 600 by 100, ticks in per cent from below, its maximum."""
+    """Line in a box of 600 by 100, ticks in per cent from below, and maximum of a level."""
 
     line: str
     ticks: Ticks

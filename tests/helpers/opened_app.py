@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import multiprocessing
+import signal
 import subprocess
 import sys
 import urllib.error
@@ -104,4 +105,6 @@ def _processes():
 def _served(paths, save, told):
     from noise.app.server import serve
 
+    # Another test may have started the server of these processes with interrupts blocked.
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     serve(open_paths(paths, save=save), 0, told.send)

@@ -8,14 +8,13 @@ from noise.pages.maps import axis_of, recorded_maps
 
 
 def recorded_at(speeds):
+    alike = {"material": "fluorocarbon", "interference_mm": 0.279, "support_stiffness_Nm_rad": 2e3}
+    alike |= {"channel": "all", "start_s": 0.0, "end_s": 1.0, "speed_rad_s_source": "logged"}
+    alike |= {f"{name}_source": "logged" for name in alike if name not in ("channel", "start_s")}
     rows = [
-        {"file": f"s{n}", "label": ("squawk", "squeal")[n % 2], "material": "fluorocarbon",
-         "start_s": 0.0, "end_s": 1.0, "material_source": "logged", "channel": "all"}
-        | {f"{name}{end}": value for name, value in (
-            ("speed_rad_s", speed), ("interference_mm", 0.279), ("support_stiffness_Nm_rad", 2214.0))
-           for end, value in (("", value), ("_source", "logged"))}
+        alike | {"file": f"s{n}", "label": ("squawk", "squeal")[n % 2], "speed_rad_s": speed}
         for n, speed in enumerate(speeds)
-    ]  # fmt: skip
+    ]
     titles = {row["file"]: row["file"] for row in rows}
     (made,), _ = recorded_maps(rows, titles, titles)
     return made
