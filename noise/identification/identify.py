@@ -120,6 +120,7 @@ def identify_rig(
         notes=(
             *remarks(rig),
             *_notes(model.candidate, scores, held_out),
+            *_moved_inertias(beforehand, rig),
             *static_notes(static),
         ),
         refused=measurements.refused,
@@ -207,8 +208,8 @@ def _notes(
     notes = [
         "intervals are of the rig, about which single recordings scatter by 2 to 3 %, and hold if "
         "its law of friction is much like the one that was chosen",
-        "torques named critical_torque and kinetic_torque are those seen in the recordings; the "
-        "rig file has those that the law means, law_critical_torque and law_kinetic_torque",
+        "critical_torque and kinetic_torque are levels of these recordings; the rig file has the "
+        "torques of the law that fits best, law_critical_torque and law_kinetic_torque",
     ]
     if not held_out:
         notes.append(
@@ -233,6 +234,19 @@ def _notes(
             "diagnose finds which effect is missing"
         )
     return tuple(notes)
+
+
+def _moved_inertias(beforehand: Beforehand, rig: Rig) -> list[str]:
+    """Say of inertias that were stated that the fit has moved them, and how far."""
+    if not beforehand.inertias_stated:
+        return []
+    pairs = [(beforehand.rig.elastomer_inertia, rig.elastomer_inertia, "elastomer_inertia_kgm2"),
+             (beforehand.rig.clamp_inertia, rig.clamp_inertia, "clamp_inertia_kgm2")]  # fmt: skip
+    moved = [f"{name} from {old:.4g} to {new:.4g}" for old, new, name in pairs]
+    return [
+        "stated inertias count as known to 2 %, so the recordings may move them: "
+        f"{' and '.join(moved)}"
+    ]
 
 
 _RIVALS = 1.2
@@ -263,7 +277,7 @@ def _sentence(one: Seen) -> str:
     if not levels.slips:  # nothing winds the elastomer up, so nothing tells how stiff it is
         return f"{one.measured.name}: mean torque {levels.mean:.3g} Nm, no slips"
     return (
-        f"{one.measured.name}: k_E {fit.bushing.elastomer_stiffness:.4g} Nm/rad, "
+        f"{one.measured.name}: elastomer {fit.bushing.elastomer_stiffness:.4g} Nm/rad, "
         f"damping {fit.damping:.3g} Nm s/rad, breaks at {levels.critical:.3g} and slides at "
         f"{levels.kinetic:.3g} Nm, {levels.slips} slips"
     )

@@ -28,7 +28,7 @@ _SHOWN = 0.03
 
 
 def recording_panels(one: Seen) -> tuple[Panel, ...]:
-    """Draw what one recording said: the rise in stick, and what the law predicts.
+    """Draw what one recording shows: the rise in stick, and what the law predicts.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def recording_panels(one: Seen) -> tuple[Panel, ...]:
 
 
 def _rise(one: Seen) -> Panel:
-    """Torque over the shaft's angle, with the rise by the effective stiffness."""
+    """Draw the torque over the shaft's angle, with the rise by elastomer and support in series."""
     spectrum, fit = one.fit.spectrum, one.fit
     begin = round(cycle_window(spectrum.torque, spectrum.rate, _SHOWN)[0] * spectrum.rate)
     end = begin + round(_SHOWN * spectrum.rate)
@@ -62,7 +62,7 @@ def _rise(one: Seen) -> Panel:
             Line(1e3 * angle, torque, GREY, "slips"),
             Line(1e3 * angle, np.where(stuck, torque, np.nan), BLUE, "sticks", 2.0),
             Line(1e3 * angle[inside], rise[inside], VERMILION,
-                 f"rise by k_EFF = {stiffness:.4g} Nm/rad", style="--"),
+                 f"rise by {stiffness:.4g} Nm/rad", style="--"),
         ],
         f"Torque over angle: rises by {stiffness:.4g} Nm/rad while the contact sticks.",
         legend="upper left", room=(0.0, 0.55),
@@ -70,7 +70,7 @@ def _rise(one: Seen) -> Panel:
 
 
 def _prediction(forecast: Forecast) -> Panel:
-    """Torque of an excerpt, and what the law predicts of it from its first sample on."""
+    """Draw the torque of an excerpt, and what the law predicts of it from its first sample on."""
     time = 1e3 * np.arange(forecast.recorded.size) / forecast.rate
     missed = float(np.std(forecast.foretold - forecast.recorded) / np.std(forecast.recorded))
     return lines_panel(
@@ -102,7 +102,7 @@ def static_panels(test: StaticTest) -> tuple[Panel, ...]:
 
 def _slope(test: StaticTest) -> Panel:
     slope = f"{test.effective_stiffness:.4g} Nm/rad"
-    told = (
+    branches = (
         "loading and unloading are one line"
         if test.elastic
         else f"loading and unloading part by {100.0 * test.parting:.1f} % of the angle"
@@ -115,9 +115,9 @@ def _slope(test: StaticTest) -> Panel:
             Line(1e3 * test.angle, test.torque, GREY, "", style="", marker="."),
             Line(1e3 * test.fitted_angle, test.torque, BLUE, "regression", 1.0),
             Line(1e3 * (middle + ends / test.effective_stiffness), ends, VERMILION,
-                 f"k_EFF = {slope}", style="--"),
+                 f"rise by {slope}", style="--"),
         ],
-        f"Torque over angle: {slope} (+-{100 * test.error:.1f} %), {told}.",
+        f"Torque over angle: {slope} (+-{100 * test.error:.1f} %), {branches}.",
         legend="upper left",
     )  # fmt: skip
 
@@ -138,64 +138,75 @@ def _decay(ring: RingDown) -> Panel:
     )  # fmt: skip
 
 
-_WORDS = {candidate.name: candidate.words for candidate in CANDIDATES}
+_CANDIDATES = {candidate.name: candidate for candidate in CANDIDATES}
+
+_MEANINGS = {
+    "critical_torque": "median over these recordings of the highest torque of each cycle",
+    "kinetic_torque": "mean over these recordings while the contact slides fast",
+    "law_critical_torque": "of the law that fits best: critical_torque_Nm of the rig file",
+    "law_kinetic_torque": "of the law that fits best: kinetic_torque_Nm of the rig file",
+    "elastomer_damping_share": "share of the damping that acts in the elastomer, not in the beams",
+}
+"""Of numbers that their name does not explain."""
 
 
-def write_identification(folder: Path, found: Identification) -> None:
+def write_identification(folder: Path, result: Identification) -> None:
     """Write ``rig.toml``, ``identification.json`` and ``report.html``, all whole or none.
 
     Parameters
     ----------
     folder : Path
         Made where it is not there; older files of these names are replaced.
-    found : Identification
+    result : Identification
 
     Raises
     ------
     ParameterError
         A file cannot be written.
     """
-    data = json.dumps(as_json(found), indent=2, ensure_ascii=False, allow_nan=False)
-    html = _html(found)
+    data = json.dumps(as_json(result), indent=2, ensure_ascii=False, allow_nan=False)
+    html = _html(result)
     with atomic(folder / "rig.toml") as rig, atomic(folder / "identification.json") as path:
-        rig.write_text(found.rig_toml, encoding="utf-8")
+        rig.write_text(result.rig_toml, encoding="utf-8")
         # Names of files may hold what no UTF-8 can.
         path.write_bytes(f"{data}\n".encode("utf-8", "backslashreplace"))
         write_page(folder / "report.html", html)
 
 
-def _html(found: Identification) -> str:
-    slipping = [one for one in found.seen if one.levels.slips]
-    answer, *further = _answer(found)
-    most = max([one.missed for one in found.laws], default=0.0) or 1.0
+def _html(result: Identification) -> str:
+    slipping = [one for one in result.seen if one.levels.slips]
+    answer, *further = _answer(result)
+    most = max([one.missed for one in result.laws], default=0.0) or 1.0
     laws: list[list[b.Cell | str]] = [
         [
-            one.law.replace("_", " "), _WORDS[one.law],
+            one.law.replace("_", " "), _CANDIDATES[one.law].words,
             b.Cell(
                 f"{100.0 * one.missed:.1f}",
-                bars=[b.Bar(0.0, 100.0 * one.missed / most, "cause" * (one.law == found.law))],
+                bars=[b.Bar(0.0, 100.0 * one.missed / most, "cause" * (one.law == result.law))],
             ),
-            f"{100.0 * one.held_out:.1f}", f"{100.0 * one.trained:.1f}",
+            f"{100.0 * one.held_out:.1f}", f"{100.0 * one.trained:.1f}", _in_rig_file(one.law),
         ]
-        for one in found.laws
+        for one in result.laws
     ]  # fmt: skip
     choice = (
-        f"Held out: {', '.join(found.held_out) or 'none'}. Missed is the share of the oscillation "
+        f"Held out: {', '.join(result.held_out) or 'none'}. Missed is the share of the oscillation "
         "that a law, begun where a recording shows a slip, does not predict over the next cycle. "
-        f"The simplest law is taken that misses at most {100.0 * (found.margin - 1.0):.0f} % more "
+        f"The simplest law is taken that misses at most {100.0 * (result.margin - 1.0):.0f} % more "
         "than the best for each number that it has less."
     )
-    numbers = list(map(_row, found.numbers))
+    numbers = list(map(_row, result.numbers))
     lists = {
-        "Assumed": found.assumed,
-        "Not found": found.not_found,
-        "To know": found.notes,
-        "Left out": [f"{name}: {reason}" for name, reason in found.refused],
+        "Assumed": result.assumed,
+        "Not determined": result.not_found,
+        "To know": result.notes,
+        "Left out": [f"{name}: {reason}" for name, reason in result.refused],
     }
-    columns = ("Law", "Meaning", "Missed [%]", "Held out [%]", "Fitted to [%]")
+    columns = (
+        "Law", "Meaning", "Missed [%]", "Held out [%]", "Fitted to [%]", "In the rig file"
+    )  # fmt: skip
     return page_html(
         "diagnosis",
-        _title(found),
+        _title(result),
         [b.Text(answer, "verdict"), *(b.Text(sentence, "where") for sentence in further)],
         [
             b.Section(
@@ -210,7 +221,7 @@ def _html(found: Identification) -> str:
                         [b.Panels(static_panels(one))],
                         ", ".join(Condition(None, one.interference, one.support_stiffness).words),
                     )
-                    for one in found.static
+                    for one in result.static
                 ],
             ),
             b.Section(
@@ -221,48 +232,67 @@ def _html(found: Identification) -> str:
                 ],
             ),
             b.Section(
-                "What each recording said",
+                "What each recording shows",
                 [
-                    b.Group(one.measured.name, [b.Panels(recording_panels(one))], _condition(one))
-                    for one in slipping
+                    b.Text(_RISE if slipping else "", "soft"),
+                    *(
+                        b.Group(
+                            one.measured.name, [b.Panels(recording_panels(one))], _condition(one)
+                        )
+                        for one in slipping
+                    ),
                 ],
             ),
             b.Section(
-                "Assumed, and not found",
+                "Assumed, and not determined",
                 [b.Group(heading, [b.Items(items)]) for heading, items in lists.items()],
             ),
-            b.Section("The rig file", [b.Pre(found.rig_toml)]),
+            b.Section("The rig file", [b.Pre(result.rig_toml)]),
         ],
-        footer=f"Identified in {found.seconds:.0f} s.",
-        tab=f"Identification: {_title(found)}",
+        footer=f"Identified in {result.seconds:.0f} s.",
+        tab=f"Identification: {_title(result)}",
     )
 
 
-def _title(found: Identification) -> str:
-    counts = {"recordings": len(found.seen), "static tests": len(found.static)}
+_RISE = (
+    "While the contact sticks, the torque swings about the dashed line: it rises by the stiffness "
+    "of elastomer and support in series, times the angle. The line begins at the lowest torque."
+)
+
+
+def _in_rig_file(law: str) -> str:
+    """Return what the rig file calls a law that was tried."""
+    candidate = _CANDIDATES[law]
+    effect = f", with the effect {candidate.effect}" if candidate.effect else ""
+    return f'law = "{candidate.law}"{effect}'
+
+
+def _title(result: Identification) -> str:
+    counts = {"recordings": len(result.seen), "static tests": len(result.static)}
     sources = [f"{n} {what}" for what, n in counts.items() if n]
     return f"The rig, identified from {' and '.join(sources) or 'what was known'}"
 
 
-def _answer(found: Identification) -> list[str]:
+def _answer(result: Identification) -> list[str]:
     stiffness = [
         f"At {1e3 * (one.interference or 0.0):g} mm the elastomer has "
         f"{one.value:.4g} Nm/rad ({one.low:.4g} to {one.high:.4g})."
-        for one in found.numbers
+        for one in result.numbers
         if one.name == "elastomer_stiffness"
     ]
-    if not found.laws:
-        return [f"Law of friction as it was known: {found.law.replace('_', ' ')}.", *stiffness]
-    chosen = next(score for score in found.laws if score.law == found.law)
+    if not result.laws:
+        return [f"Law of friction as it was known: {result.law.replace('_', ' ')}.", *stiffness]
+    chosen = next(score for score in result.laws if score.law == result.law)
     return [
-        f"Law of friction: {found.law.replace('_', ' ')} ({_WORDS[found.law]}); within a cycle it "
-        f"leaves {100.0 * chosen.missed:.1f} % of the oscillation unexplained, and "
+        f"Law of friction: {result.law.replace('_', ' ')} ({_CANDIDATES[result.law].words}; "
+        f"{_in_rig_file(result.law)} in the rig file). Within a cycle it leaves "
+        f"{100.0 * chosen.missed:.1f} % of the oscillation unexplained, and "
         f"{100.0 * chosen.held_out:.1f} % of that of recordings that its fit has not seen.",
         *stiffness,
     ]
 
 
-def _row(one: Number) -> list[str]:
+def _row(one: Number) -> list[b.Cell | str]:
     at = []
     if one.interference is not None:
         at.append(f"{1e3 * one.interference:g} mm")
@@ -270,7 +300,8 @@ def _row(one: Number) -> list[str]:
         fixed = one.support_stiffness == float("inf")
         at.append("clamp fixed" if fixed else f"{one.support_stiffness:g} Nm/rad")
     return [
-        one.name.replace("_", " "), ", ".join(at), f"{one.value:.4g} {one.unit}".rstrip(),
+        b.Cell(one.name.replace("_", " "), _MEANINGS.get(one.name, "")), ", ".join(at),
+        f"{one.value:.4g} {one.unit}".rstrip(),
         f"{one.low:.4g} to {one.high:.4g}", str(one.n_recordings or "all"),
     ]  # fmt: skip
 

@@ -221,12 +221,13 @@ def test_numbers_of_an_identification_stand_in_its_tables(tmp_path):
             for law in ("constant", "stribeck", "bristle")
         )
         value = float(rng.uniform(300.0, 900.0))
-        stiffness = Number(
-            "elastomer_stiffness", "Nm/rad", value, 0.95 * value, 1.04 * value, 3, 0.279e-3
+        stiffness, *torques = (
+            Number(name, "Nm/rad", value, 0.95 * value, 1.04 * value, 3, 0.279e-3)
+            for name in ("elastomer_stiffness", "critical_torque", "law_critical_torque")
         )
         chosen = str(rng.choice([one.law for one in laws]))
         found = Identification(
-            'base = "fluorocarbon"\n', (stiffness,), laws, chosen, (), margin=1.05
+            'base = "fluorocarbon"\n', (stiffness, *torques), laws, chosen, (), margin=1.05
         )
         write_identification(tmp_path, found)
         page = Page(tmp_path / "report.html")
@@ -236,6 +237,9 @@ def test_numbers_of_an_identification_stand_in_its_tables(tmp_path):
         assert f"and {law[3].strip()} % of that of recordings" in sentence
         (sentence,) = (one for one in page.words if "the elastomer has" in one)
         assert f"{value:.4g} Nm/rad" in sentence
+        assert sum("critical_torque_Nm of the rig file" in " ".join(row) for row in page.rows) == 1
+        in_file = {"constant": "coulomb", "stribeck": "coulomb", "bristle": "stribeck_lorentzian"}
+        assert f'law = "{in_file[chosen]}"' in law[5]
         cells = " ".join(page.row("elastomer stiffness"))
         for figure in re.findall(r"\d+\.\d+|\d{2,}", sentence.partition("mm")[2]):
             assert figure in cells, sentence
