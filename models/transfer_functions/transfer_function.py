@@ -7,6 +7,8 @@ one can be trusted where its coherence is high.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -59,11 +61,12 @@ class TransferFunction:
     def __hash__(self) -> int:
         return hash(self._content)  # equal for copies in other processes
 
-    @property
+    @cached_property
     def _content(self) -> tuple[str | bytes, ...]:
-        coherence = b"" if self.coherence is None else self.coherence.tobytes()
-        arrays = (self.frequencies.tobytes(), self.response.tobytes(), coherence)
-        return *arrays, self.input_unit, self.output_unit, self.name
+        """Digest of the arrays and the texts; caches compare them many times in a run."""
+        arrays = (self.frequencies, self.response, self.coherence)
+        digests = (b"" if one is None else blake2b(one.tobytes()).digest() for one in arrays)
+        return *digests, self.input_unit, self.output_unit, self.name
 
     @property
     def spacing(self) -> float:
