@@ -19,8 +19,8 @@ sys.dont_write_bytecode = False
 
 # On a server the same examples every time; at a desk new ones in each run. No example has a time
 # limit: how long one takes says how busy the machine is.
-settings.register_profile("server", derandomize=True, deadline=None, max_examples=50)
-settings.register_profile("desk", deadline=None, max_examples=50)
+settings.register_profile("server", derandomize=True, deadline=None, max_examples=30)
+settings.register_profile("desk", deadline=None, max_examples=30)
 settings.load_profile("server" if os.environ.get("CI") else "desk")
 
 

@@ -3,7 +3,6 @@
 import os
 import pty
 import re
-import subprocess
 import sys
 from argparse import Namespace
 from pathlib import Path
@@ -222,11 +221,11 @@ def test_a_recording_is_told_in_one_line(rows, line):
     assert list(result_lines(rows)) == [line]
 
 
-def test_a_terminal_gets_lines_in_place_of_the_table(runs):
-    call = [sys.executable, "-m", "noise", "label", "runs/a.wav"]
+def test_a_terminal_gets_lines_in_place_of_the_table(runs, monkeypatch, capsys):
     ours, theirs = pty.openpty()
-    done = subprocess.run(call, stdout=theirs, stderr=subprocess.PIPE, text=True, check=True)
-    os.close(theirs)
-    assert os.read(ours, 65536).decode().startswith("a.wav  ")
-    os.close(ours)
-    assert "takes the whole table" in done.stderr
+    with os.fdopen(ours, "rb"), os.fdopen(theirs, "w") as terminal:
+        monkeypatch.setattr(sys, "stdout", terminal)
+        assert main(["label", "runs/a.wav"]) == 0
+        terminal.flush()
+        assert os.read(ours, 65536).decode().startswith("a.wav  ")
+    assert "takes the whole table" in capsys.readouterr().err

@@ -121,10 +121,10 @@ def held(journal, process):
 
 
 RUNS = ["runs", "--out", "t.csv"]
-KEEPING = {  # call, what its journal is of, exit code
-    "label": (["label", *RUNS], "t.csv", 1),
+KEEPING = {  # call, what its journal is of, exit code, results after which it is killed
+    "label": (["label", *RUNS], "t.csv", 1, (4,)),
     "screen": (["screen", "fluorocarbon", "PDMS", "--simulations", "200", "--no-tolerances",
-                "--sounds", "1", "--out", "screen"], "screen/map.csv", 0),
+                "--sounds", "1", "--out", "screen"], "screen/map.csv", 0, (1, 4)),
 }  # fmt: skip
 
 
@@ -133,14 +133,14 @@ KEEPING = {  # call, what its journal is of, exit code
     [pytest.param(name, marks=[pytest.mark.slow] * (name != "label")) for name in KEEPING],
 )
 def test_what_was_done_before_a_kill_is_not_done_again(command, tmp_path, monkeypatch):
-    call, target, code = KEEPING[command]
+    call, target, code, numbers = KEEPING[command]
     undisturbed, killed = tmp_path / "undisturbed", tmp_path / "killed"
     make_recordings(undisturbed / "runs", 12, 2, 0.2)
     shutil.copytree(undisturbed / "runs", killed / "runs")
     monkeypatch.chdir(undisturbed)
     assert main(call) == code
     journal, kept = killed / journal_path(Path(target)), None
-    for number in (1, 4):
+    for number in numbers:
         process = start(call, killed)
         wait_for(process, journal, number)
         kept = held(journal, process)

@@ -14,7 +14,8 @@ from noise.screening.parts import robustness
 from noise.screening.standing import SHARED
 from tests.helpers.quick_screens import no_advice
 
-QUICK = ["--speed", "1,5,9", "--support-stiffness", "2214"]
+QUICK = ["--speed", "1,5,9", "--support-stiffness", "2214", "--sounds", "1"]
+MUTE = ["--sounds", "0"]
 BAD = """\
 [design]
 colour = "red"
@@ -67,7 +68,7 @@ def test_maps_margins_ranking_and_pictures_are_written(tmp_path, capsys):
 
 
 def test_a_swing_has_frequencies_in_its_map(tmp_path):
-    given = ["--oscillate", "15,1..2/2", "--support-stiffness", "fixed"]
+    given = ["--oscillate", "15,1..2/2", "--support-stiffness", "fixed", "--sounds", "0"]
     assert main(["screen", "PDMS", *given, "--out", str(tmp_path)]) == 0
     points = rows(tmp_path / "map.csv")
     assert {row["motion"] for row in points} == {"swinging"}
@@ -114,7 +115,7 @@ def test_a_design_with_tolerances_tells_what_its_parts_do(tmp_path, capsys, few)
     given = tmp_path / "given.toml"
     given.write_text(STATED, encoding="utf-8")
     out = tmp_path / "out"
-    assert main(["screen", str(given), "PDMS", "--speed", "7,9", "--out", str(out)]) == 0
+    assert main(["screen", str(given), "PDMS", "--speed", "7,9", "--out", str(out), *MUTE]) == 0
     told = {row["design"]: row for row in rows(out / "designs.csv")}
     assert told["PDMS"]["tolerances"] == told["PDMS"]["p_noisy_part"] == ""
     mine = told["mine"]
@@ -134,7 +135,7 @@ def test_tolerances_can_be_assumed_or_left_out(tmp_path, few):
     assert main(["screen", str(given), *QUICK, "--no-tolerances", "--out", str(tmp_path)]) == 0
     assert rows(tmp_path / "designs.csv")[0]["p_noisy_part"] == ""
     one = ["PDMS", "--speed", "1,9", "--interference", "0.279", "--support-stiffness", "2214"]
-    assert main(["screen", *one, "--tolerances", "--out", str(tmp_path)]) == 0
+    assert main(["screen", *one, "--tolerances", "--out", str(tmp_path), *MUTE]) == 0
     assert rows(tmp_path / "designs.csv")[0]["tolerances"] == "assumed"
     scattering = {row["parameter"] for row in rows(tmp_path / "sensitivities.csv")}
     assert scattering >= {"damping", "kinetic_torque"}

@@ -30,7 +30,7 @@ def rounded(low, high):
     return st.floats(low, high).map(lambda value: float(f"{value:.4g}"))
 
 
-def axis(values, most=4):
+def axis(values, most=2):
     return st.lists(values, max_size=most, unique=True).map(lambda some: tuple(sorted(some)))
 
 
