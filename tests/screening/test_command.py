@@ -154,33 +154,6 @@ def test_what_fails_is_told_and_loses_nothing_else(tmp_path, capsys, monkeypatch
     assert last["error"] == "advice: no fit"
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        (["teflon"], "neither a file nor a material"),
-        (["nowhere.toml"], "nowhere.toml"),
-        (["PDMS", "--speed", "fast"], "--speed is 'fast'"),
-        (["PDMS", "--speed", "0,1"], "values must be above 0"),
-        (["PDMS", "--speed", "9..1"], "a range rises"),
-        (["PDMS", "--interference", "0.1..20"], "--interference"),
-        (["PDMS", "--support-stiffness", "soft"], "--support-stiffness is 'soft'"),
-        (["PDMS", "--temperature", "-300"], "at least -273.15"),
-        (["PDMS", "--environment", "mud"], "'mud' is unknown"),
-        (["PDMS", "--oscillate", "15"], "expected degrees and Hz"),
-        (["PDMS", "--simulations", "0"], "--simulations is '0'"),
-        (["PDMS", "--workers", "none"], "--workers is 'none'"),
-        (["PDMS", "--workers", "2", "--scheduler", "x"], "not allowed with"),
-        (["PDMS", "--out", __file__], "is a file"),
-    ],
-)
-def test_what_cannot_be_used_is_one_line_and_two(given, message, capsys):
-    assert main(["screen", *given]) == 2
-    told = capsys.readouterr()
-    assert message in told.err
-    assert told.out == ""
-    assert sum("error" in line for line in told.err.splitlines()) == 1
-
-
 def test_loudness_without_its_extra_is_refused_before_the_work(monkeypatch, capsys):
     monkeypatch.setitem(__import__("sys").modules, "mosqito", None)
     assert main(["screen", "PDMS", *QUICK, "--loudness"]) == 2
