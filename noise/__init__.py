@@ -26,11 +26,11 @@ Identify: `identify`, `Identification`.
 
 Review: `review`, `Review`, `write_report`, `ReportEntry`.
 
-What goes wrong: `BushingNoiseError`, `ParameterError`, `RecordingError`.
+Errors: `BushingNoiseError`, `ParameterError`, `RecordingError`.
 
-Results print themselves in a line or two; tables have a ``to_pandas``, and what says something as a
-picture has a ``plot`` that returns the axes of matplotlib. Names are loaded when they are first
-used, so that ``import noise`` itself is quick.
+Results have a short ``repr``; tables have a method ``to_pandas``, and results with a picture a
+method ``plot`` that returns matplotlib axes. Names are imported on first use, so that
+``import noise`` is fast.
 """
 
 from __future__ import annotations
@@ -75,21 +75,22 @@ _EXPORTS = {
     "sim.shaft": ("ConstantSpeed", "LoggedSpeed", "Oscillation", "SpeedRamp"),
     "sim.analysis.sweep": ("Sweep", "sweep"),
 }
-"""What a notebook finds here, by the module it lives in."""
+"""Public names by module."""
 
-_HOME = {name: module for module, names in _EXPORTS.items() for name in names}
+_MODULE_OF = {name: module for module, names in _EXPORTS.items() for name in names}
 
-__all__ = sorted(_HOME)
+__all__ = sorted(_MODULE_OF)
 
 
 def __getattr__(name: str) -> Any:
+    """Import a public name on first use."""
     if name == "__version__":
         from importlib.metadata import version
 
         return version("bushing-noise")
-    if name not in _HOME:
+    if name not in _MODULE_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(_HOME[name]), name)
+    value = getattr(import_module(_MODULE_OF[name]), name)
     globals()[name] = value
     return value
 
@@ -99,8 +100,8 @@ def __dir__() -> list[str]:
 
 
 def _refuse_hidden_packages() -> None:
-    """Say so where a file of the user's own has the name of one of our packages."""
-    ours = Path(__file__).resolve().parent.parent
+    """Raise an error if a user's file hides one of the packages."""
+    root = Path(__file__).resolve().parent.parent
     for name in ("models", "sim", "features"):
         spec = find_spec(name)
         if spec is None:
@@ -109,15 +110,15 @@ def _refuse_hidden_packages() -> None:
                 name=name,
             )
         places = [spec.origin] if spec.origin else list(spec.submodule_search_locations or ())
-        found = Path(places[0]).resolve()
-        if ours / name not in (found, found.parent):
+        path = Path(places[0]).resolve()
+        if root / name not in (path, path.parent):
             raise ImportError(
-                f"{found} hides the package {name!r} of bushing-noise; rename it, or work in a "
+                f"{path} hides the package {name!r} of bushing-noise; rename it, or work in a "
                 f"folder without it",
                 name=name,
-                path=str(found),
+                path=str(path),
             )
 
 
 _refuse_hidden_packages()
-import_module("models")  # names the folder for compiled code, before anything is compiled
+import_module("models")  # sets the cache folder of compiled code before anything is compiled

@@ -1,4 +1,4 @@
-"""``python -m noise`` is the command ``bushing-noise``."""
+"""Entry point of ``bushing-noise`` and ``python -m noise``."""
 
 from __future__ import annotations
 
@@ -6,14 +6,12 @@ import os
 import signal
 import sys
 
-__all__ = ["run"]
-
 
 def run() -> None:
-    """Run the command line, and end the process with its exit code.
+    """Run the command line and exit with its code.
 
-    An interrupt ends the process at once while the program is loaded and after it has run; in
-    between the command keeps what is done.
+    During import and after the run an interrupt ends the process at once; during the run the
+    command handles it.
     """
     signal.signal(signal.SIGINT, _end)
     from noise.cli import main
@@ -21,7 +19,7 @@ def run() -> None:
     try:
         signal.signal(signal.SIGINT, signal.default_int_handler)
         code = main()
-    except KeyboardInterrupt:  # a second one, while the first was dealt with
+    except KeyboardInterrupt:  # a second one, while the first is handled
         code = 130  # 128 + SIGINT
     finally:
         signal.signal(signal.SIGINT, _end)
@@ -29,7 +27,7 @@ def run() -> None:
 
 
 def _end(*_: object) -> None:
-    """End a command that has nothing to lose."""
+    """Exit at once after an interrupt."""
     os.write(2, b"bushing-noise: interrupted\n")
     os._exit(130)  # 128 + SIGINT
 

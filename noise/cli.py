@@ -1,12 +1,11 @@
-"""The command line of ``bushing-noise``: it finds the command, runs it, and reports errors.
+"""Command line of ``bushing-noise``: parses the arguments, runs a command and reports errors.
 
-Every command ends with an exit code and, where something went wrong, one line on standard error,
-never with a traceback: 0 all done; 1 done, but inputs were refused; 2 the call cannot be used; 3
-the program itself could not go on, for a defect, a full disk or too little memory. A program that
-is interrupted (130) or whose reader goes away (141) ends as the shell has it. A defect is shown
-with its traceback by ``python -X dev -m noise``.
+Exit codes: 0 success; 1 done, but inputs were refused; 2 invalid call; 3 the program could not go
+on, because of a defect, a full disk or too little memory; 130 interrupted; 141 the reader of the
+output has gone. Errors are reported in one line on standard error; ``python -X dev -m noise`` shows
+the traceback of a defect.
 
-Only the command that is called is imported, so that help is there at once.
+Only the module of the command is imported, so that help is fast.
 """
 
 from __future__ import annotations
@@ -28,8 +27,6 @@ from noise.commands.options import COMMON, add_options, help_of, option_names
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-__all__ = ["main"]
-
 _NAME = "bushing-noise"
 _REFUSED = 1
 _USAGE_ERROR = 2
@@ -37,12 +34,12 @@ _CANNOT_GO_ON = 3
 _INTERRUPTED = 130  # 128 + SIGINT
 _CLOSED_PIPE = 141  # 128 + SIGPIPE
 
-_OF_THE_MACHINE = {
+_MACHINE_ERRORS = {
     getattr(errno, name)
     for name in ("ENOSPC", "EDQUOT", "EFBIG", "EMFILE", "ENFILE", "ENOMEM")
     if hasattr(errno, name)
 }
-"""Numbers of errors that no other call would avoid: no room, no memory, too many files open."""
+"""Error numbers of a full disk, too little memory or too many open files."""
 
 _NEGATIVE = re.compile(r"-(\.?\d|inf|nan)", re.IGNORECASE)
 
@@ -53,7 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     argv : sequence of str, optional
-        Arguments without the name of the program; by default those of the process.
+        Arguments without the name of the program (default: those of the process).
 
     Returns
     -------
@@ -68,7 +65,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):  # names of files that the terminal cannot show
+        if hasattr(stream, "reconfigure"):  # file names may not fit the encoding of the terminal
             stream.reconfigure(errors="backslashreplace")
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning
@@ -80,16 +77,16 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _report_errors(arguments: list[str]) -> int:
-    """Run the command; say in one line what goes wrong."""
+    """Run the command and report errors in one line."""
     try:
         code = _run(arguments)
         if sys.stdout is not None:
             sys.stdout.flush()
         return code
     except BushingNoiseError as error:
-        if _is_of_the_machine(error):
+        if _is_machine_error(error):
             return _failed(str(error), _CANNOT_GO_ON)
-        if isinstance(error, RecordingError):  # the only input that there was
+        if isinstance(error, RecordingError):  # the only input was refused
             say(f"{_NAME}: refused: {error}", error=True)
             return _REFUSED
         return _failed(str(error))
@@ -104,7 +101,8 @@ def _report_errors(arguments: list[str]) -> int:
     except OSError as error:
         discard(sys.stdout)
         message = f"{error.filename or 'output'}: {error.strerror or error}"
-        return _failed(message, _USAGE_ERROR if _is_of_the_path(error) else _CANNOT_GO_ON)
+        usage = error.filename is not None and error.errno not in _MACHINE_ERRORS
+        return _failed(message, _USAGE_ERROR if usage else _CANNOT_GO_ON)
     except Exception as error:
         if sys.flags.dev_mode:
             raise
@@ -114,37 +112,34 @@ def _report_errors(arguments: list[str]) -> int:
         return _failed(message, _CANNOT_GO_ON)
 
 
-def _is_of_the_machine(error: BaseException | None) -> bool:
-    """Whether an error was raised because of a full disk or the like."""
+def _is_machine_error(error: BaseException | None) -> bool:
+    """Whether an error has a cause in `_MACHINE_ERRORS`."""
     while error is not None:
-        if isinstance(error, OSError) and error.errno in _OF_THE_MACHINE:
+        if isinstance(error, OSError) and error.errno in _MACHINE_ERRORS:
             return True
         error = error.__cause__ or error.__context__
     return False
 
 
-def _is_of_the_path(error: OSError) -> bool:
-    return error.filename is not None and error.errno not in _OF_THE_MACHINE
-
-
 def _run(arguments: list[str]) -> int:
+    """Parse the arguments and run the command; return the exit code."""
     parser = _parser(arguments)
     if not arguments:
         parser.print_help(sys.stderr)
         return _USAGE_ERROR
     command = arguments[0]
     if not command.startswith("-") and command not in COMMANDS:
-        meant = _meant(command, COMMANDS)
-        return _failed(f"there is no command {command!r}{meant} (see {_NAME} --help)")
+        advice = _did_you_mean(command, COMMANDS)
+        return _failed(f"there is no command {command!r}{advice} (see {_NAME} --help)")
     try:
         options, unknown = parser.parse_known_args(_with_negative_values(arguments))
     except SystemExit as stop:  # 0 after help, 2 after an error
         return stop.code if isinstance(stop.code, int) else 0
     if unknown:
-        options_there = f"see {_NAME} {options.command} --help"
         known = ["--help", *option_names([*load_command(options.command).OPTIONS, *COMMON])]
-        meant = _meant(unknown[0].partition("=")[0], known)
-        return _failed(f"unrecognized: {' '.join(unknown)}{meant} ({options_there})")
+        advice = _did_you_mean(unknown[0].partition("=")[0], known)
+        see = f"see {_NAME} {options.command} --help"
+        return _failed(f"unrecognized: {' '.join(unknown)}{advice} ({see})")
     set_verbosity(quiet=options.quiet, verbose=options.verbose)
     try:
         return load_command(options.command).run(options)
@@ -152,32 +147,35 @@ def _run(arguments: list[str]) -> int:
         set_verbosity()
 
 
-def _meant(word: str, known: Iterable[str]) -> str:
-    from models.schema import did_you_mean  # whose imports the help does without
+def _did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return a hint to a similar word; imports its library only after an error."""
+    from models.schema import did_you_mean
 
     return did_you_mean(word, known)
 
 
 def _failed(message: str, code: int = _USAGE_ERROR) -> int:
+    """Print an error and return the exit code."""
     say(f"{_NAME}: error: {message}", error=True)
     return code
 
 
 class _Parser(argparse.ArgumentParser):
+    """Parser that reports an invalid call in one line."""
+
     def error(self, message: str) -> NoReturn:
-        """Tell an error of the call in one line."""
-        _failed(f"{_plain(message)} (see {self.prog} --help)")
+        """Print an error and exit."""
+        # "argument --speed: is 'x', expected ..." becomes "--speed is 'x', expected ...".
+        plain = re.sub(r"^argument ([^:]+): is ", r"\1 is ", message)
+        _failed(f"{plain} (see {self.prog} --help)")
         raise SystemExit(_USAGE_ERROR)
 
 
-def _plain(message: str) -> str:
-    """Let a value's message follow its option: ``--speed is 'x', expected ...``."""
-    return re.sub(r"^argument ([^:]+): is ", r"\1 is ", message)
-
-
 class _Version(argparse.Action):
+    """Action of ``--version``, which looks the version up only when called."""
+
     def __call__(self, *_: object) -> None:
-        """Print the installed version."""
+        """Print the installed version and exit."""
         from importlib.metadata import PackageNotFoundError, version
 
         try:
@@ -189,7 +187,7 @@ class _Version(argparse.Action):
 
 
 def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
-    """All commands by name and line; options only of those that the arguments mention."""
+    """Return a parser of all commands, with options only for those among the arguments."""
     parser = _Parser(
         prog=_NAME,
         description="Simulate, hear, label and explain the creak, squawk and squeal of a rubber "
@@ -213,19 +211,20 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _with_negative_values(arguments: Sequence[str]) -> list[str]:
-    """Tie negative values to their options: ``--speed -5..5`` becomes ``--speed=-5..5``.
+    """Join negative values with their options: ``--speed -5..5`` becomes ``--speed=-5..5``.
 
-    Left alone, the parser takes all but plain negative numbers for options.
+    argparse would take such a value for an option, unless it is a plain number.
     """
-    tied: list[str] = []
+    joined: list[str] = []
     for argument in arguments:
-        option = tied[-1] if tied else ""
+        option = joined[-1] if joined else ""
         if option.startswith("--") and "=" not in option and _NEGATIVE.match(argument):
-            tied[-1] = f"{option}={argument}"
+            joined[-1] = f"{option}={argument}"
         else:
-            tied.append(argument)
-    return tied
+            joined.append(argument)
+    return joined
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
+    """Print a Python warning as a note."""
     note(str(message))

@@ -1,8 +1,8 @@
-"""Demonstration: the rig's three noises and a silent rubber, from physics to a page in one call.
+"""Demonstration of the whole chain: simulated creak, squawk, squeal and silence, and a report.
 
-The conditions are those of the thesis's Figures 5.21, 5.22 and 5.24, and PDMS for comparison.
-Hammer hits on the modelled clamp and beams come along, to try the way from hits to a rig file on:
-the bushing is out, and the hammer strikes the clamp `ARM` from its axis.
+The conditions are those of Figures 5.21, 5.22 and 5.24 of the thesis, and PDMS for comparison.
+Simulated hammer hits on the modelled clamp and beams, without the bushing and at a distance `ARM`
+from the axis, are examples for ``bushing-noise frf``.
 """
 
 from __future__ import annotations
@@ -40,17 +40,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Case:
-    """One condition of the demonstration.
+    """Condition of the demonstration.
 
     Parameters
     ----------
     name : str
-        Label that it has.
+        Expected label.
     material : str
     speed, interference, support_stiffness : float
         [rad/s], [m], [Nm/rad]
     source : str
-        Where in the thesis it stands.
+        Place in the thesis.
     """
 
     name: str
@@ -69,22 +69,22 @@ CASES = (
 )
 
 _SECONDS = 2.0
-"""Of each recording [s]."""
+"""Length of each recording [s]."""
 
 _RATE = 48_000
-"""Of the sounds for listening [Hz]."""
+"""Sampling rate of the audible sounds [Hz]."""
 
 
 def run_demo(out: Path, *, seed: int = 0) -> list[dict[str, object]]:
-    """Simulate, render, label and show the four cases.
+    """Simulate, render and label the four cases and write a report.
 
     Parameters
     ----------
     out : Path
-        Folder; gets ``recordings/``, ``audio/``, ``hits/``, ``features.csv``, ``labels.csv``
+        Output folder for ``recordings/``, ``audio/``, ``hits/``, ``features.csv``, ``labels.csv``
         and ``report.html``.
     seed : int
-        Of the sensors' noise.
+        Seed of the sensor noise.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def run_demo(out: Path, *, seed: int = 0) -> list[dict[str, object]]:
     feature_rows, rows, entries = [], [], []
     for case in track(CASES, "label"):
         file = f"{case.name}.wav"
-        # What was written is what is looked at, as it would be with a measured recording.
+        # Read back, so that a simulated recording is treated like a measured one.
         recording = read_recording(out / "recordings" / file)
         segments = label_recording(recording, classifier)
         feature_rows.append({"file": file, **recording_features(recording), "error": None})
@@ -139,6 +139,7 @@ def run_demo(out: Path, *, seed: int = 0) -> list[dict[str, object]]:
 
 
 def _entry(case: Case, recording: Recording, segments: list[Segment], audio: Path) -> ReportEntry:
+    """Write the audible sound of a case and return its entry in the report."""
     sound = audible(recording, _RATE)
     full_scale = max(QUIETEST_FULL_SCALE, common_full_scale([sound]))
     write_audio(audio, sound, _RATE, full_scale=full_scale, recording=recording)
@@ -151,28 +152,28 @@ def _entry(case: Case, recording: Recording, segments: list[Segment], audio: Pat
 
 
 ARM = 0.05
-"""Lever of the hammer [m]."""
+"""Lever arm of the hammer [m]."""
 
 N_HITS = 5
 
 _HIT_SUPPORT = 2214.0  # Nm/rad
 _HIT_RATE = 25_600  # Hz
-_HIT_SECONDS = 0.8  # the response has died away by then
-_BLOW_START = 0.01  # of the blow [s]
-_BLOW = 0.25e-3  # its length, with a hard tip [s]
+_HIT_SECONDS = 0.8  # the response has decayed by then
+_PULSE_START = 0.01  # s
+_PULSE_LENGTH = 0.25e-3  # s, with a hard tip
 _FORCE = (40.0, 90.0)  # N
 _FORCE_NOISE, _ACCELERATION_NOISE = 0.02, 0.02  # rms, N and m/s2
 
 
 def write_hits(folder: Path, rng: np.random.Generator) -> None:
-    """Write `N_HITS` hits as NPY files of time [s], force [N] and acceleration [m/s2].
+    """Write `N_HITS` hammer hits as NPY files of time [s], force [N] and acceleration [m/s2].
 
     Parameters
     ----------
     folder : Path
-        Made if it is missing.
+        Output folder, made if necessary.
     rng : numpy.random.Generator
-        Of how hard the hammer strikes, and of the sensors' noise.
+        Generator for peak forces and sensor noise.
 
     Raises
     ------
@@ -190,10 +191,10 @@ def write_hits(folder: Path, rng: np.random.Generator) -> None:
     """
     paths = impulse_responses(load_material_rig("fluorocarbon"), 0.279e-3, _HIT_SUPPORT, _HIT_RATE)
     time = np.arange(round(_HIT_SECONDS * _HIT_RATE)) / _HIT_RATE
-    during = (time >= _BLOW_START) & (time < _BLOW_START + _BLOW)
-    blow = np.where(during, np.sin(np.pi * (time - _BLOW_START) / _BLOW), 0.0)
+    during = (time >= _PULSE_START) & (time < _PULSE_START + _PULSE_LENGTH)
+    pulse = np.where(during, np.sin(np.pi * (time - _PULSE_START) / _PULSE_LENGTH), 0.0)
     for number in range(1, N_HITS + 1):
-        force = rng.uniform(*_FORCE) * blow
+        force = rng.uniform(*_FORCE) * pulse
         acceleration = convolve(ARM * force, paths.torque_to_acceleration)
         force = force + _FORCE_NOISE * rng.standard_normal(time.size)
         acceleration = acceleration + _ACCELERATION_NOISE * rng.standard_normal(time.size)

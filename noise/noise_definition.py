@@ -1,23 +1,22 @@
-"""Labels by physics: the definition of the noises of a simulated run, which the classifier learns.
+"""Definition of the noises by physics: the labels of simulated runs, which the classifier learns.
 
-The thesis names the noises by what makes them (5.2.3, 6.2), and so does this page, the one place
-where they are defined. It looks at the motion and at the sound free of noise, room and microphone,
-none of which the classifier sees; lines are found as `features.kernels.lines` does.
+The thesis defines the noises by their mechanism (5.2.3, 6.2). The label follows from the motion and
+the sound without background noise, room and microphone, which the classifier does not have. Lines
+are those of `features.kernels.lines`.
 
-- *none*: the torque settles to steady sliding, but for changes too slow to be heard; or the sound
-  drowns in a quiet room's.
-- *creak*: slips strike the plate, and the sound that those blows make through it is no more than
-  10 dB below all the rest, A-weighted. Stick-slip too weak to excite the plate is no creak.
-- *squeal*: the torque oscillates at one predominant frequency; lines more than 18 dB below it do
-  not count (the third harmonic of a triangle lies 19 dB below the first, and Figure 5.1(c) is one).
-- *squawk*: it oscillates at several discrete frequencies, or sticks and slips without a period, as
-  natural rubber's chatter does, "much like squawk".
-- *creak*, too: friction that is random without stick, as on a transfer film; its sound "resembled
-  the creaking, except that it was not as loud" (6.2).
+- *none*: the torque settles to steady sliding, apart from inaudibly slow changes, or the sound is
+  quieter than a quiet room.
+- *creak*: slips excite the plate, and the A-weighted level of the sound of these pulses is at most
+  10 dB below the remaining sound. Stick-slip too weak to excite the plate is no creak.
+- *squeal*: the torque oscillates at one predominant frequency. Lines more than 18 dB below it do
+  not count (the third harmonic of a triangle wave, as in Figure 5.1(c), is 19 dB below the first).
+- *squawk*: the torque oscillates at several discrete frequencies, or sticks and slips without a
+  period like the chatter of natural rubber, "much like squawk".
+- *creak* as well: random friction without stick, as on a transfer film, whose sound "resembled the
+  creaking, except that it was not as loud" (6.2).
 
-Every bound in here is a number where nature has none. A run whose name changes when one of them is
-moved by 2 dB, or a share by a fifth, is `ambiguous`: two listeners would differ, and neither
-learning nor a score should depend on which of them is asked.
+All bounds are conventions. If the label of a run changes when a bound moves by 2 dB, or a ratio by
+20 %, the run is ambiguous: listeners would disagree, so it is not used for training or scores.
 """
 
 from __future__ import annotations
@@ -42,52 +41,46 @@ if TYPE_CHECKING:
     from sim.motion import Motion
     from sim.run import Run
 
-__all__ = [
-    "LEAST_LEVEL", "NoiseCriteria", "is_ambiguous", "label_by_physics", "noise_criteria",
-    "run_criteria",
-]  # fmt: skip
-
 LEAST_LEVEL = 35.0
-"""Sound below it is not heard in a quiet room [dB(A) re 20 uPa]."""
+"""Lowest audible level in a quiet room [dB(A) re 20 uPa]."""
 
 _LEAST_STICK = 0.02
-"""Of the time that the contact sticks, for a torque without lines to chatter. That is the solver's
-stick, which tells contact from none; whether the torque shows stick-slip is another thing
-(`sim.analysis.regime`), on which no noise depends."""
+"""Smallest fraction of time in stick for chatter, if the torque has no lines [-]. This is stick of
+the contact in the solver, not stick-slip of the torque (`sim.analysis.regime`)."""
 
 _CREAK_MARGIN = 10.0
-"""How far the blows' sound may lie below all the rest [dB(A)]."""
+"""Largest level of the remaining sound re the pulses for a creak [dB(A)]."""
 
 _LEAST_SHARE = 0.5
-"""Of the torque's power from 20 Hz to 5 kHz in one line, for it to be predominant."""
+"""Smallest fraction of the torque's power from 20 Hz to 5 kHz in a predominant line [-]."""
 
 _LINE_RANGE = 18.0
-"""Lines weaker than the strongest by more than this do not count [dB]."""
+"""Largest level difference of a line that counts to the strongest one [dB]."""
 
 _DECIBELS, _SHARE = 2.0, 0.2
-"""How far a bound is moved to see whether a label depends on it."""
+"""Changes of the bounds for the test of ambiguity [dB], [-]."""
 
 
 @dataclass(frozen=True)
 class NoiseCriteria:
-    """What a run's label follows from, each over its bound.
+    """Criteria of the label of a run, each relative to its bound.
 
     Parameters
     ----------
     level : float
-        Of the sound, re the least level that is heard [dB].
+        Level of the sound re the lowest audible level [dB].
     blows : float
-        Level of the blows' sound re all the rest, re the least of a creak [dB].
+        Level of the pulses re the remaining sound, re the bound of a creak [dB].
     swing : float
-        Standard deviation of the torque over its mean, re the least of an oscillation [-].
+        Standard deviation of the torque over its mean, over the bound of an oscillation [-].
     audible : float
-        The same of its part from 20 Hz to 5 kHz [-].
+        The same for the torque from 20 Hz to 5 kHz [-].
     stick : float
-        Share of the time that the contact sticks, re the least of chatter [-].
+        Fraction of time in stick, over the bound of chatter [-].
     second : float
-        Level of the second line of the torque re the first, re the least that counts [dB].
+        Level of the second line of the torque re the first, re the bound [dB].
     share : float
-        Of that part's power in the strongest line, re the least of a predominant one [-].
+        Fraction of the power from 20 Hz to 5 kHz in the strongest line, over the bound [-].
     """
 
     level: float
@@ -100,7 +93,7 @@ class NoiseCriteria:
 
     @property
     def label(self) -> str:
-        """The noise."""
+        """Label of the noise."""
         if self.swing <= 1.0 or self.level < 0.0:
             return "none"
         if self.blows >= 0.0:
@@ -127,7 +120,7 @@ class NoiseCriteria:
 
 
 def run_criteria(run: Run) -> NoiseCriteria:
-    """Measure what the label of a run at constant speed follows from.
+    """Return the criteria of a run at constant speed.
 
     Parameters
     ----------
@@ -136,7 +129,7 @@ def run_criteria(run: Run) -> NoiseCriteria:
     Returns
     -------
     NoiseCriteria
-        Of the motion's second half, and of all the sound.
+        Criteria from the second half of the motion and the whole sound.
 
     Examples
     --------
@@ -152,14 +145,14 @@ def run_criteria(run: Run) -> NoiseCriteria:
 def noise_criteria(
     motion: Motion, pressure: NDArray[np.float64], pulse_pressure: NDArray[np.float64]
 ) -> NoiseCriteria:
-    """Measure what the label follows from, of a motion that has settled and of its sound.
+    """Return the criteria of a settled motion and its sound.
 
     Parameters
     ----------
     motion : Motion
-        At constant speed, or so nearly that its lines stay lines.
+        Motion at constant or nearly constant speed.
     pressure, pulse_pressure : ndarray, shape (n,)
-        At the motion's rate [Pa]: the sound, and the part of it that slip pulses make.
+        Sound, and the part of it from slip pulses, at the sampling rate of the motion [Pa].
 
     Returns
     -------
@@ -189,7 +182,7 @@ def noise_criteria(
 
 
 def label_by_physics(run: Run) -> str:
-    """Return the noise of a run at constant speed: creak, squawk, squeal or none.
+    """Return the label of a run at constant speed: creak, squawk, squeal or none.
 
     Examples
     --------
@@ -204,8 +197,8 @@ def label_by_physics(run: Run) -> str:
     return run_criteria(run).label
 
 
-def is_ambiguous(found: NoiseCriteria) -> bool:
-    """Whether the label changes where one of the bounds is moved by 2 dB or a fifth.
+def is_ambiguous(criteria: NoiseCriteria) -> bool:
+    """Whether the label changes when one of the bounds moves by 2 dB or 20 %.
 
     Examples
     --------
@@ -213,7 +206,7 @@ def is_ambiguous(found: NoiseCriteria) -> bool:
     >>> clear.label, is_ambiguous(clear), is_ambiguous(replace(clear, second=-1.0))
     ('squeal', False, True)
     """
-    return any(other.label != found.label for other in found.with_moved_bounds())
+    return any(other.label != criteria.label for other in criteria.with_moved_bounds())
 
 
 def _second(lines: Lines) -> float:
@@ -224,6 +217,7 @@ def _second(lines: Lines) -> float:
 
 
 def _level(pressure: NDArray[np.float64], rate: float) -> float:
+    """Return the A-weighted level of a sound [dB(A) re 20 uPa]."""
     if not np.any(pressure):
         return -math.inf
     spectrum = autospectrum(pressure, rate)

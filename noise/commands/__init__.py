@@ -1,9 +1,8 @@
-"""The commands of ``bushing-noise``, one file each.
+"""Commands of ``bushing-noise``, one module each.
 
-A command is a module with its ``OPTIONS`` and ``run(options) -> int``, which does the work and
-returns the exit code; its description and the texts of its options are in ``help.toml``. What a
-module imports at its top is what ``--help`` costs: the libraries that compute are imported in
-``run``. A new command is a file, its texts and one line here.
+The module of a command has ``OPTIONS`` and ``run(options) -> int``, which returns the exit code.
+Its description and the texts of its options are in ``help.toml``. Slow libraries are imported in
+``run``, so that ``--help`` is fast. A new command needs a module, its texts and one line here.
 """
 
 from __future__ import annotations
@@ -21,17 +20,17 @@ __all__ = ["COMMANDS", "Command", "load_command"]
 
 
 class Command(Protocol):
-    """What the module of a command offers."""
+    """Interface of the module of a command."""
 
     OPTIONS: Sequence[Row]
 
     def run(self, options: Namespace) -> int:
-        """Do the work; return 0 where all is done, 1 where inputs were refused.
+        """Run the command; return 0, or 1 if inputs were refused.
 
         Raises
         ------
         BushingNoiseError
-            Options contradict each other, or nothing can be done with what they name.
+            Options contradict each other, or no input can be used.
         """
         ...
 
@@ -54,7 +53,7 @@ COMMANDS = {
     "materials": "the materials that are shipped, with their numbers",
     "thesis": "the published numbers beside what the program computes",
 }
-"""Name -> what it does in one line, in the order of the help."""
+"""Commands and their one-line descriptions, in the order of the help."""
 
 
 def load_command(name: str) -> Command:

@@ -1,7 +1,7 @@
-"""Many recordings into one table: a bad file is a row that says so, and nothing done is lost.
+"""Batch processing of recordings into one table, shared by ``features`` and ``label``.
 
-With ``--out`` a journal beside the table keeps what is done, so that the same call again goes on
-where the last one ended, however it ended; without, there is nowhere to keep it.
+A file that cannot be read becomes a row with an error. With ``--out`` a journal beside the table
+stores the results, so that an interrupted call can be resumed by repeating it.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ BATCH = (
 
 
 def check_batch(options: Namespace) -> None:
-    """Refuse what could not be done, before anything is read."""
+    """Refuse unusable options of a batch before the work."""
     check_table_path(options.out)
     if options.out is not None:
         check_target(options.out)
@@ -56,120 +56,110 @@ def run_batch(
     options: Namespace,
     work: Work,
     jobs: Sequence[Job],
-    also: Callable[[Rows], Sequence[Path]] = lambda _: (),
-    keep: Callable[[Path | None, BatchRows], Rows] = lambda _, rows: rows,
-    lines: Callable[[Rows], Iterable[str]] | None = None,
+    merge: Callable[[Path | None, BatchRows], Rows] = lambda _, rows: rows,
+    export: Callable[[Rows], Sequence[Path]] = lambda _: (),
+    summary: Callable[[Rows], Iterable[str]] | None = None,
 ) -> int:
-    """Go through the recordings, write the table, return the exit code.
+    """Process recordings, write the table and return the exit code.
 
-    On an interrupt, or when told to end, the table holds the recordings done until then.
+    After an interrupt the table holds the recordings processed so far.
 
     Parameters
     ----------
     options : Namespace
-        Of `add_batch`.
+        Options of `BATCH`.
     work : Work
     jobs : sequence of Job
-    also : callable
-        Writes further files from the rows of the table, and returns their paths.
-    keep : callable
-        From the table's path and its new rows to those that are written: what must stay of the
-        table that is there.
-    lines : callable
-        From the rows of the table to a line a recording for standard output, unless that is the
-        table; a terminal gets them in place of a table.
+    merge : callable
+        ``merge(out, rows)`` returns the rows to write: the new ones, merged with rows of the
+        existing table that must stay.
+    export : callable
+        ``export(rows)`` writes further files and returns their paths.
+    summary : callable
+        ``summary(rows)`` returns a line per recording for standard output; a terminal gets these
+        lines in place of the table.
 
     Raises
     ------
     ParameterError
-        The table cannot be written, or the cluster not be used.
+        The table cannot be written, or the cluster cannot be used.
     """
     from noise.batch.journal import open_journal
     from noise.batch.work import BatchRows
 
     out = options.out
-    # Nobody reads a table of forty columns on a terminal; whoever wants it pipes or names it.
-    to_read = out is None and lines is not None and sys.stdout is not None and sys.stdout.isatty()
+    # A table of forty columns is not readable on a terminal.
+    on_terminal = out is None and sys.stdout is not None and sys.stdout.isatty()
+    show_summary = summary is not None and on_terminal
     check_table_path(out, work.columns)
     work.prepare()
-    outcomes: dict[int, JobResult] = {}
-    stopped = 0
+    results: dict[int, JobResult] = {}
+    exit_code = 0
     with open_journal(out, work, fresh=options.fresh) as journal:
         try:
-            for job, done in _progress(options, work, jobs, journal):
-                if done.error is not None:
-                    refuse(done.error, job.path)
-                    outcomes[job.index] = done
-                else:  # rows are in the journal, of which there may be many
-                    outcomes[job.index] = done._replace(rows=[])
+            for job, result in _results(options, work, jobs, journal):
+                if result.error is not None:
+                    refuse(result.error, job.path)
+                    results[job.index] = result
+                else:  # the rows are in the journal and may be too many for memory
+                    results[job.index] = result._replace(rows=[])
         except KeyboardInterrupt:
-            stopped = _INTERRUPTED
-        _note_uncalibrated(outcomes.values())
-        refused = {index: done for index, done in outcomes.items() if done.error is not None}
-        there = [job for job in jobs if job.index in outcomes]
-        made = BatchRows(work.columns, journal, there, refused)
-        rows, written = _write(options, work, made, also, keep, table=not to_read)
+            exit_code = _INTERRUPTED
+        _note_uncalibrated(results.values())
+        refused = {index: result for index, result in results.items() if result.error is not None}
+        completed = [job for job in jobs if job.index in results]
+        new_rows = BatchRows(work.columns, journal, completed, refused)
+        # The lock covers reading the existing table and writing the new one.
+        with nullcontext() if out is None else locked(out):
+            rows = merge(out, new_rows)
+            if not show_summary:
+                extra = () if rows is new_rows else (name for row in rows for name in row)
+                write_table(out, tuple(dict.fromkeys((*work.columns, *extra))), rows)
+        written = [*([] if out is None else [out]), *export(rows)]
         journal.mark_written()
-    read = f"{len(outcomes)} of " * bool(stopped) + counted(len(jobs), "recording")
-    say(f"{'interrupted: ' * bool(stopped)}{read}, {len(refused)} refused")
-    if lines is not None and out is not None:
-        report(*lines(rows))
-    if lines is not None and to_read:
-        print(*lines(rows), sep="\n")
+    interrupted = exit_code == _INTERRUPTED
+    number = f"{len(results)} of " * interrupted + counted(len(jobs), "recording")
+    say(f"{'interrupted: ' * interrupted}{number}, {len(refused)} refused")
+    if summary is not None and out is not None:
+        report(*summary(rows))
+    if summary is not None and show_summary:
+        print(*summary(rows), sep="\n")
         say("--out labels.csv, or a pipe, takes the whole table")
     if out is not None:
         report(*written)
     else:  # standard output is the table
         for path in written:
             say(str(path))
-    return stopped or int(bool(refused))
+    return exit_code or int(bool(refused))
 
 
-def _progress(
+def _results(
     options: Namespace, work: Work, jobs: Sequence[Job], journal: Journal
 ) -> Iterator[tuple[Job, JobResult]]:
-    """First what earlier calls did, then the rest as it is done."""
+    """Yield the results of earlier calls, then those of the remaining recordings."""
     from noise.batch.work import perform_all
 
-    left = []
+    remaining = []
     for job in jobs:
-        if (done := journal.find(job)) is None:
-            left.append(job)
+        if (result := journal.find(job)) is None:
+            remaining.append(job)
         else:
-            yield job, done
-    if len(left) < len(jobs):
-        say(f"{len(jobs) - len(left)} of {counted(len(jobs), 'recording')} are done already")
-    if not left:
+            yield job, result
+    if len(remaining) < len(jobs):
+        number = len(jobs) - len(remaining)
+        say(f"{number} of {counted(len(jobs), 'recording')} are done already")
+    if not remaining:
         return
-    advancing = perform_all(
-        work, left, journal, workers=options.workers, scheduler=options.scheduler
+    results = perform_all(
+        work, remaining, journal, workers=options.workers, scheduler=options.scheduler
     )
-    with closing(advancing):
-        yield from track(advancing, work.doing, total=len(left))
+    with closing(results):
+        yield from track(results, work.doing, total=len(remaining))
 
 
-def _write(
-    options: Namespace,
-    work: Work,
-    made: BatchRows,
-    also: Callable[[Rows], Sequence[Path]],
-    keep: Callable[[Path | None, BatchRows], Rows],
-    *,
-    table: bool,
-) -> tuple[Rows, list[Path]]:
-    columns, out = work.columns, options.out
-    # Nobody may change the table between the look at what stays of it and the writing.
-    with nullcontext() if out is None else locked(out):
-        rows = keep(out, made)
-        if table:
-            kept = () if rows is made else (name for row in rows for name in row)
-            columns = tuple(dict.fromkeys((*columns, *kept)))
-            write_table(out, columns, rows)
-    return rows, [*([] if out is None else [out]), *also(rows)]
-
-
-def _note_uncalibrated(outcomes: Iterable[JobResult]) -> None:
-    number = sum(not done.calibrated for done in outcomes)
+def _note_uncalibrated(results: Iterable[JobResult]) -> None:
+    """Print a note if recordings are not calibrated."""
+    number = sum(not result.calibrated for result in results)
     if number:
         note(
             f"{counted(number, 'recording')} without calibration: levels in dBFS only "
@@ -178,20 +168,20 @@ def _note_uncalibrated(outcomes: Iterable[JobResult]) -> None:
 
 
 _LONGEST = 600.0
-"""Of a picture [s]; a longer recording is drawn as far as that."""
+"""Longest picture [s]; longer recordings are drawn up to this time."""
 
 
 PLOT = Option("--plot FOLDER|PICTURE", Path)
 
 
 def check_plots(target: Path | None, jobs: Sequence[Job]) -> None:
-    """Refuse pictures that cannot be written, before the work; none are asked for without a target.
+    """Refuse pictures that cannot be written, before the work.
 
     Raises
     ------
     ParameterError
-        There are several recordings for one picture, or two of one name, or the place cannot be
-        written to.
+        There are several recordings for one picture or two with the same name, or the target
+        cannot be written.
     """
     if target is None:
         return
@@ -210,17 +200,17 @@ def draw_recordings(
     *,
     full_scale: PascalPerFullScale | None = None,
 ) -> list[Path]:
-    """Draw recordings, with their labels where there are any; return the pictures.
+    """Draw recordings with their labels and return the paths of the pictures.
 
     Parameters
     ----------
     target : Path or None
-        As of `check_plots`.
+        Folder, or picture of a single recording; None draws nothing.
     jobs : sequence of Job
     rows : sequence of mapping
-        Of the label table.
+        Rows of the label table.
     full_scale : float or tuple of float, optional
-        As for `noise.recordings.read_recording`.
+        See `noise.recordings.read_recording`.
     """
     if target is None:
         return []
@@ -236,9 +226,9 @@ def draw_recordings(
             continue
         try:
             with open_blocks(job.path, full_scale=full_scale) as blocks:
-                shown = blocks.part(0, round(_LONGEST * blocks.rate))
-                of_it = [row for row in rows if row.get("file") == job.name]
-                write_picture(paths[job.name], plot_recording(shown, of_it))
+                start = blocks.part(0, round(_LONGEST * blocks.rate))
+                own_rows = [row for row in rows if row.get("file") == job.name]
+                write_picture(paths[job.name], plot_recording(start, own_rows))
         except BushingNoiseError as error:
             note(f"{job.name} is not drawn: {error}")
             continue

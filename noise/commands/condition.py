@@ -1,7 +1,7 @@
-"""Operating condition of a command: its options, and the arguments of the simulation from them.
+"""Options of an operating condition, and the arguments of the simulation from them.
 
-An option that is not given is None: whether it was given matters where two sources of the same
-value meet, such as ``--rig`` and ``--material``.
+Options that are not given are None, because defaults may come from elsewhere, as for ``--material``
+from ``--rig``.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _FIT, _SUPPORT, _TEMPERATURE = (
 
 
 def speed(text: str) -> float | tuple[float, float] | Path:
-    """Read a speed [rad/s], the two ends of a ramp, or the path of a log."""
+    """Parse a speed [rad/s], the two ends of a ramp, or the path of a log."""
     start, dots, end = text.partition("..")
     if dots and number_or_none(start) is not None and number_or_none(end) is not None:
         return number()(start), number()(end)
@@ -64,7 +64,7 @@ def speed(text: str) -> float | tuple[float, float] | Path:
 
 
 def swing(text: str) -> tuple[float, float]:
-    """Read amplitude [degree] and frequency [Hz] of an oscillation."""
+    """Parse amplitude [degree] and frequency [Hz] of an oscillation."""
     try:
         degrees, frequency = (number(above=0.0)(part) for part in text.split(","))
     except (ArgumentTypeError, ValueError):
@@ -75,6 +75,7 @@ def swing(text: str) -> tuple[float, float]:
 
 
 def _support_stiffness(text: str) -> float:
+    """Parse a support stiffness [Nm/rad] or ``fixed``."""
     if text.strip().lower() == "fixed":
         return FIXED
     try:
@@ -86,6 +87,7 @@ def _support_stiffness(text: str) -> float:
 
 
 def _effect(text: str) -> LawSpec:
+    """Parse an effect with its parameters."""
     try:
         return parse_spec(text)
     except ParameterError:
@@ -113,15 +115,15 @@ CONDITION = Group(
 
 
 def given_options(options: Namespace) -> dict[str, Any]:
-    """Return the options of a condition that were given, by attribute."""
-    found = {row.attribute: getattr(options, row.attribute) for row in CONDITION.rows}
+    """Return the options of a condition that the call states, by attribute."""
+    values = {row.attribute: getattr(options, row.attribute) for row in CONDITION.rows}
     return {
-        name: value for name, value in found.items() if value is not None and value is not False
+        name: value for name, value in values.items() if value is not None and value is not False
     }
 
 
 def is_long(arguments: Mapping[str, Any]) -> bool:
-    """Whether a run is better written in blocks than held in memory."""
+    """Whether to simulate and write a run in blocks."""
     from sim.blocks import whole_run_effects
     from sim.effects.effect import activated
     from sim.plan import LONGEST_RUN
@@ -132,33 +134,36 @@ def is_long(arguments: Mapping[str, Any]) -> bool:
 
 
 _LONG = 60.0
-"""Longer runs are written in blocks, unless an effect needs them whole [s]."""
+"""Length above which a run is written in blocks, unless an effect needs the whole run [s]."""
 
 
 def run_arguments(
     options: Namespace, rate: float, *, rig: Rig | None = None
 ) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """Arguments of `sim.run.simulate` for the run that the options of a condition describe.
-
-    What the user should know of it is returned beside them.
+    """Return the arguments of `sim.run.simulate` for a condition, and notes for the user.
 
     Parameters
     ----------
     options : argparse.Namespace
-        With the attributes of `CONDITION` and ``seed``.
+        Options of `CONDITION` and ``seed``.
     rate : float
         Sampling rate of the recording [Hz].
     rig : Rig, optional
-        That of ``--rig`` where it has been read already.
+        Rig of ``--rig`` if it has been read already.
+
+    Returns
+    -------
+    arguments : dict
+    notes : tuple of str
 
     Raises
     ------
     ParameterError
-        Options are missing, exclude each other, or name what there is not.
+        Options are missing, exclude each other, or name something unknown.
     """
     if (options.speed is None) == (options.oscillate is None):
-        asked = "is needed" if options.speed is None else "can be given, not both"
-        raise ParameterError(f"exactly one of --speed and --oscillate {asked}")
+        problem = "is needed" if options.speed is None else "can be given, not both"
+        raise ParameterError(f"exactly one of --speed and --oscillate {problem}")
     seconds = _or(options.seconds, DEFAULT_SECONDS)
     if round(seconds * rate) < _LEAST_SAMPLES:
         raise ParameterError(
@@ -198,72 +203,75 @@ def run_arguments(
 def with_notes(
     run: Run, notes: tuple[str, ...], arguments: Mapping[str, Any], name: str = ""
 ) -> Recording:
-    """Return the recording of a run with its notes: what slips or clips in it is known only now.
+    """Return the recording of a run with all notes, including those on clipping and slip.
 
     Parameters
     ----------
     run : Run
     notes : tuple of str
-        Of `run_arguments`.
+        Notes of `run_arguments`.
     arguments : mapping
-        That it was made with.
+        Arguments of the simulation.
     name : str
-        What one run of several is called.
+        Name of the run, if there are several.
     """
     from sim.analysis.regime import never_slips
 
     rig: Rig = arguments["rig"]
-    through = arguments["acquisition"].over(rig.sensors).sensors
-    found = clipping_remarks(run.recording, through)
+    sensors = arguments["acquisition"].over(rig.sensors).sensors
+    late_notes = clipping_remarks(run.recording, sensors)
     if never_slips(run.motion):
-        found.append(NEVER_SLIPS)
-    for text in found:
+        late_notes.append(NEVER_SLIPS)
+    for text in late_notes:
         note(f"{name}: {text}" if name else text)
-    return replace(run.recording, notes=(*notes, *found))
+    return replace(run.recording, notes=(*notes, *late_notes))
 
 
 def _remarks(options: Namespace, arguments: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the notes on a rig and a condition."""
     rig, top = arguments["rig"], arguments["shaft"].top_speed(arguments["seconds"])
     low, high = (1e3 * limit for limit in rig.interference_range)
     interference_mm = 1e3 * arguments["interference"]
-    found: list[str | None] = []
+    remarks: list[str | None] = []
     if options.speed is not None and top > _FAST:
-        found.append(
+        remarks.append(
             f"--speed is in rad/s: {top:.3g} rad/s are {top * 30.0 / math.pi:.4g} rpm; if you mean "
             f"{top:.3g} rpm, give --speed {top * math.pi / 30.0:.3g}"
         )
     if not low * (1.0 - 1e-9) <= interference_mm <= high * (1.0 + 1e-9):
         nearest = low if interference_mm < low else high
-        found.append(
+        remarks.append(
             f"--interference {interference_mm:g} mm lies outside the fits given for "
             f"{rig.material} ({low:g} to {high:g} mm); those of {nearest:g} mm are used "
             f"(contact pressure by Lame, which is linear, would be "
             f"{interference_mm / nearest:.3g} times theirs)"
         )
-    found += use_remarks(
+    remarks += use_remarks(
         rig,
         speed=[top],
         **{
             name: [arguments[name]] for name in ("interference", "support_stiffness", "temperature")
         },
     )
-    found += effect_remarks(rig, arguments["library"])
-    found.append(temperature_remark(rig, options.temperature))
-    return tuple(text for text in found if text)
+    remarks += effect_remarks(rig, arguments["library"])
+    remarks.append(temperature_remark(rig, options.temperature))
+    return tuple(text for text in remarks if text)
 
 
 _FAST = 30.0
-"""Above which a speed may be meant as rpm [rad/s]."""
+"""Speed above which the user may mean rpm [rad/s]."""
 
 _LEAST_SAMPLES = 16
-"""What `noise.recordings` takes for a recording."""
+"""Smallest number of samples of a recording: `noise.recordings.files.MIN_SAMPLES`."""
 
 
-def _or(given: _T | None, default: _T) -> _T:
-    return default if given is None else given
+def _or(value: _T | None, default: _T) -> _T:
+    """Return a value, or the default for None."""
+    return default if value is None else value
 
 
-def _rig(options: Namespace, library: Mapping[str, Effect], read: Rig | None) -> Rig:
+def _rig(options: Namespace, library: Mapping[str, Effect], rig: Rig | None) -> Rig:
+    """Return the rig of the options with their effects and changes."""
     from models.rig_file import load_material_rig, load_rig
 
     if options.rig is None:
@@ -271,11 +279,11 @@ def _rig(options: Namespace, library: Mapping[str, Effect], read: Rig | None) ->
             rig = load_material_rig(_or(options.material, DEFAULT_MATERIAL))
     else:
         with naming("--rig: "):
-            rig = read or load_rig(options.rig)
-        named = options.material
-        if named is not None and named.strip().lower() != rig.material.lower():
+            rig = rig or load_rig(options.rig)
+        material = options.material
+        if material is not None and material.strip().lower() != rig.material.lower():
             raise ParameterError(
-                f"--material {named} contradicts --rig {options.rig}, whose material is "
+                f"--material {material} contradicts --rig {options.rig}, whose material is "
                 f"{rig.material}; leave --material out, or change the file"
             )
     rig = replace(rig, effects=_effects(rig.effects, options.effect or (), library))
@@ -283,29 +291,30 @@ def _rig(options: Namespace, library: Mapping[str, Effect], read: Rig | None) ->
 
 
 def _effects(
-    of_the_rig: tuple[LawSpec, ...],
-    given: list[LawSpec] | tuple[()],
+    rig_effects: tuple[LawSpec, ...],
+    options: list[LawSpec] | tuple[()],
     library: Mapping[str, Effect],
 ) -> tuple[LawSpec, ...]:
+    """Return the effects of the rig, replaced and extended by those of ``--effect``."""
     from sim.effects.effect import activated
 
-    names = [spec.name for spec in given]
+    names = [spec.name for spec in options]
     for name in names:
         if names.count(name) > 1:
             raise ParameterError(f"--effect {name} is given twice; give all its keys at once")
-    for spec in given:
+    for spec in options:
         with naming("--effect: "):
             activated((spec,), library)
-    return tuple({spec.name: spec for spec in (*of_the_rig, *given)}.values())
+    return tuple({spec.name: spec for spec in (*rig_effects, *options)}.values())
 
 
 def shaft_motion(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:
-    """Return how the shaft turns, and that in words.
+    """Return the motion of the shaft and its description.
 
     Parameters
     ----------
     options : argparse.Namespace
-        With ``speed`` and ``oscillate``, of which one is given.
+        Options ``speed`` and ``oscillate``, one of which is set.
     seconds : float
         Length of the run [s].
     """
@@ -324,6 +333,7 @@ def shaft_motion(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:
 
 
 def _logged_speed(path: Path, seconds: float) -> LoggedSpeed:
+    """Read a log of the speed."""
     from models.foreign_table import read_table
     from sim.shaft import LoggedSpeed
 
@@ -336,7 +346,7 @@ def _logged_speed(path: Path, seconds: float) -> LoggedSpeed:
     if time[0] > 0.0 or time[-1] < seconds:
         note(
             f"--speed {path} covers {time[0]:g} to {time[-1]:g} s, the run 0 to {seconds:g} s; "
-            "where the log says nothing its nearest speed is held"
+            "outside of the log its nearest speed is held"
         )
     elif time[-1] > seconds:
         note(f"--speed {path} lasts {time[-1]:g} s, the run takes its first {seconds:g} s")
@@ -344,17 +354,17 @@ def _logged_speed(path: Path, seconds: float) -> LoggedSpeed:
 
 
 def _log_columns(table: ForeignTable) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Time [s] and speed [rad/s] by their headings; the first two columns where there are none."""
+    """Return time [s] and speed [rad/s]: by their headings, or the first two columns."""
     from models.units import quantity_of_unit
 
     if not any(table.names):
         return table.values[:, 0], table.values[:, 1]
-    found: dict[str, NDArray[np.float64]] = {}
+    columns: dict[str, NDArray[np.float64]] = {}
     for name, unit, column in zip(table.names, table.units, table.values.T, strict=True):
         quantity, factor = quantity_of_unit(unit) or (name.lower(), 1.0)
-        found.setdefault("speed" if quantity == "speed_rad_s" else quantity, factor * column)
-    if not {"time", "speed"} <= set(found):
+        columns.setdefault("speed" if quantity == "speed_rad_s" else quantity, factor * column)
+    if not {"time", "speed"} <= set(columns):
         raise ParameterError(
             f"has the columns {', '.join(table.names)}, expected time_s and speed_rad_s"
         )
-    return found["time"], found["speed"]
+    return columns["time"], columns["speed"]

@@ -1,4 +1,4 @@
-"""``bushing-noise demo``: the whole chain, once."""
+"""``bushing-noise demo``: run the whole chain on four simulated conditions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Run the demonstration."""
+    """Run the demonstration and open its report."""
     check_folder(options.out)
     say(f"writing the demonstration into {options.out}")
     from noise.demo import run_demo
@@ -38,7 +38,7 @@ def run(options: Namespace) -> int:
 
 
 def has_display() -> bool:
-    """Whether somebody sits before a screen: a terminal, and a display where it needs one."""
+    """Whether the program runs on a terminal with a display."""
     if not (sys.stdout is not None and sys.stdout.isatty()):
         return False
     needs = sys.platform not in ("win32", "darwin")

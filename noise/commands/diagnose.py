@@ -1,4 +1,4 @@
-"""``bushing-noise diagnose``: recordings against the simulator, and which effect is missing."""
+"""``bushing-noise diagnose``: compare recordings with the simulator and name the missing effect."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 _QUICK_STEPS, _STEPS = 5, 12
-"""That a diagnosis takes, without fits and with those of some five hypotheses."""
+"""Steps of a diagnosis without fits, and with those of about five hypotheses."""
 
 
 OPTIONS = (
@@ -32,18 +32,18 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Diagnose and write."""
+    """Diagnose, write the results and print the answer."""
     if options.out is not None:
         check_folder(options.out, file="report.html")
-    with steps("diagnosing", _QUICK_STEPS if options.quick else _STEPS) as tell:
-        case, library, told = _read(options, tell)
+    with steps("diagnosing", _QUICK_STEPS if options.quick else _STEPS) as progress:
+        case, library, printed = _read(options, progress)
         from noise.diagnosis.diagnose import diagnose_case
 
         diagnosis = diagnose_case(
-            case, quick=options.quick, library=library, seed=options.seed or 0, progress=tell
+            case, quick=options.quick, library=library, seed=options.seed or 0, progress=progress
         )
         if options.out is not None:
-            tell("writing the report")
+            progress("writing the report")
             written = _write(options, diagnosis)
     if options.out is None:
         import json
@@ -53,13 +53,13 @@ def run(options: Namespace) -> int:
         print(json.dumps(as_json(diagnosis), indent=2))
     else:
         report(*written)
-    _tell(options, diagnosis, told)
+    _print_answer(options, diagnosis, printed)
     return 1 if case.refused else 0
 
 
-def _read(options: Namespace, tell: Steps) -> tuple[Case, Mapping[str, Effect], set[str]]:
-    """Read rig file, effects and recordings; return what was told of them, too."""
-    tell("preparing")
+def _read(options: Namespace, progress: Steps) -> tuple[Case, Mapping[str, Effect], set[str]]:
+    """Read rig file, effects and recordings; return them with the printed notes."""
+    progress("preparing")
     from models.rig_file import load_rig
     from noise.base.user_effects import effect_library
     from noise.diagnosis.improved_file import check_base
@@ -68,7 +68,7 @@ def _read(options: Namespace, tell: Steps) -> tuple[Case, Mapping[str, Effect], 
     if options.out is not None:
         check_base(options.rig, options.out)
     library = effect_library(options.effects)
-    from noise.diagnosis.case import read_case  # takes seconds, and what is refused is by now
+    from noise.diagnosis.case import read_case  # slow import, after the options were checked
     from noise.diagnosis.diagnose import case_remarks
 
     case = read_case(options.data, rig)
@@ -81,8 +81,8 @@ def _read(options: Namespace, tell: Steps) -> tuple[Case, Mapping[str, Effect], 
     return case, library, {*remarks, *left_out}
 
 
-def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
-    """Say the answer in sentences, and what of its notes was not told before."""
+def _print_answer(options: Namespace, diagnosis: Diagnosis, printed: set[str]) -> None:
+    """Print the answer, and its notes that have not been printed."""
     from noise.diagnosis.text.sentences import answer, fit_sentence, strength_sentence
 
     for sentence in answer(diagnosis):
@@ -95,9 +95,9 @@ def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
                 say(sentence)
     if not (diagnosis.bench or diagnosis.next_measurement.startswith("none")):
         say(f"Measure next: {diagnosis.next_measurement}.")
-    told |= {*diagnosis.bench, *diagnosis.faults}  # sentences of the answer
+    printed |= {*diagnosis.bench, *diagnosis.faults}  # sentences of the answer
     for text in diagnosis.notes:
-        if text not in told:
+        if text not in printed:
             note(text)
     if options.out is not None and diagnosis.improvement is not None:
         from noise.diagnosis.improved_file import improved_sentence
@@ -111,21 +111,24 @@ def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
 
 
 def _write(options: Namespace, diagnosis: Diagnosis) -> list[Path]:
+    """Write report, JSON and the improved rig file; return their paths."""
     from models.rig_file import base_name, material_of
     from noise.diagnosis.improved_file import NAME, improved_text
     from noise.pages.diagnosis import write_diagnosis
 
-    improved, found = None, diagnosis.improvement
-    if found is not None:
+    improved, improvement = None, diagnosis.improvement
+    commands: list[str] = []
+    if improvement is not None:
         base = material_of(options.rig) or base_name(options.rig, options.out)
-        improved = improved_text(found, base, dict(options.change or ()))
-    commands = [] if found is None else _next(options, found)
+        improved = improved_text(improvement, base, dict(options.change or ()))
+        commands = _next(options, improvement)
     write_diagnosis(options.out, diagnosis, improved, commands)
     names = ("report.html", "diagnosis.json", *([NAME] if improved is not None else []))
     return [options.out / name for name in names]
 
 
 def _next(options: Namespace, improvement: Improvement) -> list[str]:
+    """Return the commands to run next."""
     from noise.diagnosis.improved_file import NAME, improved_commands
 
     return improved_commands(improvement, options.out / NAME, options.data, options.effects)

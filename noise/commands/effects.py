@@ -1,4 +1,4 @@
-"""``bushing-noise effects``: the effects that a rig file can list, with their parameters."""
+"""``bushing-noise effects``: list the effects with their parameters."""
 
 from __future__ import annotations
 
@@ -23,16 +23,17 @@ def run(options: Namespace) -> int:
     from sim.effects import EFFECTS
     from sim.effects.effect import Stage, effect_named
 
-    along = list(Stage).index
+    stages = list(Stage)
     effects = sorted(
         (effect_named(name, EFFECTS) for name in options.names or EFFECTS),
-        key=lambda one: along(one.stage),
+        key=lambda one: stages.index(one.stage),
     )
-    print("\n\n".join(_described(one) for one in effects))
+    print("\n\n".join(map(_description, effects)))
     return 0
 
 
-def _described(effect: Effect) -> str:
+def _description(effect: Effect) -> str:
+    """Return a description of an effect, in several lines."""
     about = (import_module(f"sim.effects.{effect.name}").__doc__ or "").partition("\n")[0]
     lines = [f"{effect.name} ({effect.stage})", f"  {about}"]
     if len(effect.forms) > 1:

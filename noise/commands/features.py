@@ -1,4 +1,4 @@
-"""``bushing-noise features``: recordings into a table of features, of all of each or by windows."""
+"""``bushing-noise features``: recordings into a table of features per recording or window."""
 
 from __future__ import annotations
 
@@ -37,20 +37,20 @@ def run(options: Namespace) -> int:
     check_plots(options.plot, jobs)
     return run_batch(
         options, work, jobs,
-        also=lambda _: draw_recordings(options.plot, jobs, full_scale=work.full_scale),
+        export=lambda _: draw_recordings(options.plot, jobs, full_scale=work.full_scale),
     )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Featuring:
-    """A `noise.batch.Work`: the features of a recording, or of each of its windows.
+    """`noise.batch.work.Work` that computes the features of a recording or of its windows.
 
     Parameters
     ----------
     full_scale : float or tuple of float, optional
-        Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+        Sound pressure of a full-scale sample [Pa], for sound files that do not state it.
     windows : bool
-        Whether windows are described as the classifier is given them, not recordings.
+        Whether to compute the classifier's features of windows.
     """
 
     full_scale: PascalPerFullScale | None = None
@@ -60,7 +60,7 @@ class Featuring:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """File, of windows also channel and time as in a label table; features; a refusal."""
+        """File, for windows also channel and time, then the features and the error."""
         if self.windows:
             from noise.labels.windows import FEATURE_NAMES
 
@@ -70,11 +70,11 @@ class Featuring:
         return ("file", *recording_feature_names(), "error")
 
     def prepare(self) -> None:
-        """Load the libraries."""
+        """Import the libraries."""
         import noise.recordings  # noqa: F401
 
     def identity(self) -> dict[str, object]:
-        """Return the options that decide the rows, beside the columns."""
+        """Return the options on which the rows depend."""
         return {"full_scale": self.full_scale}
 
     def rows(self, path: Path, name: str) -> tuple[Iterable[dict[str, object]], bool]:
@@ -92,8 +92,8 @@ class Featuring:
             if (pieces := piece_count(blocks.n_samples)) > 1:
                 length = blocks.n_samples / pieces / blocks.rate
                 note(
-                    f"{name}: its features are those of {pieces} pieces of {length:.3g} s, put "
-                    "together by their power"
+                    f"{name}: its features are computed in {pieces} pieces of {length:.3g} s and "
+                    "averaged by power"
                 )
             return [{"file": name, **recording_features(blocks)}], blocks.calibrated
 
@@ -101,7 +101,7 @@ class Featuring:
 def _windows(
     path: Path, name: str, recording: RecordingBlocks, opened: ExitStack
 ) -> Iterator[dict[str, object]]:
-    """Yield the rows of the windows of a recording, which is closed after the last one."""
+    """Yield the rows of the windows of a recording, and close it afterwards."""
     from features.windows.table import HOP, LENGTH
     from models.errors import ParameterError
     from noise.labels.windows import FEATURE_NAMES, WindowPages, has_window_channel, tracks

@@ -1,4 +1,4 @@
-"""``bushing-noise frf``: hammer hits into a response function and its modes."""
+"""``bushing-noise frf``: hammer hits into a frequency response function and its modes."""
 
 from __future__ import annotations
 
@@ -26,10 +26,11 @@ if TYPE_CHECKING:
 
 _DEFAULT_COHERENCE = 0.8
 _MOST_BANDS = 8
-_LEFT = 0.02  # of a response at the end of a hit, from which on a peak is that much too low
+_TRUNCATION = 0.02  # remaining response at the end of a hit, relative; peaks are that much too low
 
 
 def _channel(text: str) -> str:
+    """Parse the name of a channel."""
     from models.recording import Channel
 
     try:
@@ -53,7 +54,7 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Read the hits, estimate, fit, write."""
+    """Estimate the response function, fit modes and write both."""
     _check(options)
     hits, unit, refused = _read(options)
     say(f"{counted(len(hits), 'hit')} averaged, {refused} refused")
@@ -66,16 +67,16 @@ def run(options: Namespace) -> int:
     )
 
     rate = 0.0
-    left = remaining_response(hits)
+    remaining = remaining_response(hits)
     if options.window:
         hits, rate = windowed_hits(hits)
         note(
             f"force and exponential window: the response function decays by {rate:.4g} 1/s faster "
             "than the structure; this is taken off the damping of modes"
         )
-    elif left > _LEFT:
+    elif remaining > _TRUNCATION:
         note(
-            f"{100 * left:.3g} % of a response has not died away at its end (or is noise). "
+            f"{100 * remaining:.3g} % of a response has not died away at its end (or is noise). "
             "Peaks are then too low and damping is wrong: record for longer, or use --window"
         )
     transfer = estimate_transfer_function(
@@ -85,7 +86,7 @@ def run(options: Namespace) -> int:
         output_unit=unit,
         name=f"response of {counted(len(hits), 'hit')}",
     )
-    _tell_coherence(transfer, options.coherence)
+    _note_coherence(transfer, options.coherence)
     modes = None
     if options.modes is not None:
         from features.modal.modal_fit import fit_modes
@@ -105,6 +106,7 @@ def run(options: Namespace) -> int:
 
 
 def _check(options: Namespace) -> None:
+    """Refuse outputs that cannot be written, before the work."""
     from models.transfer_functions.files import check_transfer_function_path
 
     if options.out is not None:
@@ -118,12 +120,12 @@ def _check(options: Namespace) -> None:
 
 
 def _read(options: Namespace) -> tuple[list[Hit], str, int]:
-    """Usable hits, cut to the same length, the unit of the response, and how many were refused."""
+    """Return hits of equal length, the unit of the response, and the number of refused hits."""
     from features.modal.hammer import check_hit
     from noise.recordings.hits import find_hits, read_hit
 
     hits: list[Hit] = []
-    of_all, refused = "", 0
+    first_unit, refused = "", 0
     for path in track(find_hits(options.hits), "reading", unit="hit"):
         try:
             hit, unit = read_hit(path, response=options.response, arm=options.arm)
@@ -132,25 +134,26 @@ def _read(options: Namespace) -> tuple[list[Hit], str, int]:
                 raise RecordingError(
                     f"{path}: is sampled at {hit.rate:g} Hz, {hits[0].name} at {hits[0].rate:g} Hz"
                 )
-            if hits and unit != of_all:
+            if hits and unit != first_unit:
                 raise RecordingError(
-                    f"{path}: its response is in {unit}, that of {hits[0].name} in {of_all}"
+                    f"{path}: its response is in {unit}, that of {hits[0].name} in {first_unit}"
                 )
         except RecordingError as error:
             refuse(error)
             refused += 1
         else:
-            of_all = unit
+            first_unit = unit
             hits.append(hit)
     lengths = {hit.force.size for hit in hits}
     if len(lengths) > 1:
         n = min(lengths)
         note(f"hits of different lengths are cut to the shortest, {n} samples")
         hits = [replace(hit, force=hit.force[:n], response=hit.response[:n]) for hit in hits]
-    return hits, of_all, refused
+    return hits, first_unit, refused
 
 
-def _tell_coherence(transfer: TransferFunction, least: float) -> None:
+def _note_coherence(transfer: TransferFunction, least: float) -> None:
+    """Print the bands in which the coherence is too low."""
     if transfer.coherence is None:
         note("a single hit has no coherence; hit at least three times to see what can be trusted")
         return
@@ -161,13 +164,13 @@ def _tell_coherence(transfer: TransferFunction, least: float) -> None:
         say(f"coherence is {least:g} or more throughout")
         return
     widest = sorted(sorted(bands, key=lambda band: band[0] - band[1])[:_MOST_BANDS])
-    told = ", ".join(f"{low:.5g}-{high:.5g}" for low, high in widest)
+    listed = ", ".join(f"{low:.5g}-{high:.5g}" for low, high in widest)
     more = ", and narrower ones" * (len(bands) > len(widest))
-    note(f"coherence below {least:g}, not to be trusted: {told} Hz{more}")
+    note(f"coherence below {least:g}, not to be trusted: {listed} Hz{more}")
 
 
 def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) -> None:
-    """All outputs, whole or not at all."""
+    """Write all outputs together, or none."""
     from models.transfer_functions.files import write_transfer_function, write_transfer_function_csv
 
     with ExitStack() as outputs:
@@ -187,22 +190,22 @@ def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) 
 
 
 def _trusted(modes: Modes, transfer: TransferFunction, hits: list[Hit], least: float) -> Modes:
-    """Leave out modes where coherence or force say that the response is not to be trusted."""
+    """Return the modes at which coherence and force are sufficient."""
     from features.modal.hammer import force_nulls
 
-    coherent = ~(_coherence(modes, transfer) < least)  # none is known of a single hit
+    coherent = ~(_coherence(modes, transfer) < least)  # the coherence of a single hit is NaN
     excited = ~force_nulls(hits, modes.frequency, modes.damping_ratio * modes.frequency)
-    for kept, reason in (
+    for trusted, reason in (
         (coherent, f"the coherence is below {least:g}"),
         (excited | ~coherent, "the force has next to nothing"),
     ):
-        if left_out := int((~kept).sum()):
+        if left_out := int((~trusted).sum()):
             note(f"{counted(left_out, 'mode')} left out, where {reason}")
     return modes.only(coherent & excited)
 
 
 def _coherence(modes: Modes, transfer: TransferFunction) -> NDArray[np.float64]:
-    """Median coherence of each mode within its half-power band, of three lines at least."""
+    """Return the median coherence in the half-power band of each mode, over three lines or more."""
     import numpy as np
 
     f, coherence = transfer.frequencies, transfer.coherence
@@ -218,6 +221,7 @@ def _coherence(modes: Modes, transfer: TransferFunction) -> NDArray[np.float64]:
 
 
 def _mode_table(modes: Modes, transfer: TransferFunction) -> dict[str, NDArray[Any]]:
+    """Return the columns of the table of modes."""
     import numpy as np
 
     (residues,) = modes.residues

@@ -1,4 +1,4 @@
-"""``bushing-noise identify``: recordings of a rig -> its rig file."""
+"""``bushing-noise identify``: recordings of a rig into its rig file."""
 
 from __future__ import annotations
 
@@ -23,31 +23,31 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Identify and write."""
+    """Identify the rig and write the results."""
     if options.out is not None:
         check_folder(options.out, file="report.html")
-    with steps("identifying", 1) as tell:
-        found, refused = _identified(options, tell)
-        if found is not None and options.out is not None:
+    with steps("identifying", 1) as progress:
+        identification, refused = _identification(options, progress)
+        if identification is not None and options.out is not None:
             from noise.pages.identification import write_identification
 
-            tell("writing the report")
-            write_identification(options.out, found)
-    if found is None:
+            progress("writing the report")
+            write_identification(options.out, identification)
+    if identification is None:
         return 1
-    for text in found.notes:
+    for text in identification.notes:
         note(text)
     if options.out is None:
-        print(found.rig_toml, end="")
+        print(identification.rig_toml, end="")
     else:
         for name in ("report.html", "rig.toml", "identification.json"):
             report(options.out / name)
     return 1 if refused else 0
 
 
-def _identified(options: Namespace, tell: Steps) -> tuple[Identification | None, bool]:
-    """Return what was found, None where there is nothing, and whether recordings were refused."""
-    tell("preparing")
+def _identification(options: Namespace, progress: Steps) -> tuple[Identification | None, bool]:
+    """Identify the rig, if possible; return also whether recordings were refused."""
+    progress("preparing")
     from noise.identification.identify import NothingSlipsError, identify_rig
     from noise.identification.law_model import CANDIDATES
     from noise.identification.measured import known_beforehand, read_measurements
@@ -60,10 +60,10 @@ def _identified(options: Namespace, tell: Steps) -> tuple[Identification | None,
     if not (measurements.used or measurements.static):
         say("no recording that a rig can be identified from; nothing is written")
         return None, True
-    tell.expect(len(measurements.used) + 2 * len(CANDIDATES) + 2)
+    progress.expect(len(measurements.used) + 2 * len(CANDIDATES) + 2)
     try:
-        found = identify_rig(measurements, beforehand, progress=tell)
+        identification = identify_rig(measurements, beforehand, progress=progress)
     except NothingSlipsError as error:
         say(f"{', '.join(one.name for one in measurements.used)}: {error}; nothing is written")
         return None, True
-    return found, bool(measurements.refused)
+    return identification, bool(measurements.refused)

@@ -1,7 +1,6 @@
-"""``bushing-noise label``: recordings into a table of labelled segments, and what follows from it.
+"""``bushing-noise label``: recordings into a table of labelled segments, a map and label tracks.
 
-A label table in place of recordings is taken as it is, for a map or label tracks without labelling
-again.
+Label tables in place of recordings are joined, for a map or label tracks without new labelling.
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Label and write the table."""
+    """Label the recordings and write the table."""
     check_batch(options)
     _check_exports(options)
     if all(path.suffix.lower() in TABLE_ENDINGS for path in options.paths):
@@ -59,7 +58,7 @@ def run(options: Namespace) -> int:
     if options.out is not None:
         sign_corrections(options.out, [job.name for job in jobs])
 
-    def keep(out: Path | None, rows: BatchRows) -> list[dict[str, object]]:
+    def merge(out: Path | None, rows: BatchRows) -> list[dict[str, object]]:
         return with_corrections(out, list(rows))
 
     def export(rows: Iterable[dict[str, object]]) -> list[Path]:
@@ -70,7 +69,7 @@ def run(options: Namespace) -> int:
         return [*_export(options, rows), *drawn]
 
     models = (options.classifier, options.inference)
-    if options.scheduler is not None:  # other machines have other working folders
+    if options.scheduler is not None:  # the workers have other working folders
         models = tuple(path and path.absolute() for path in models)
     work = Labelling(
         *models,
@@ -80,28 +79,28 @@ def run(options: Namespace) -> int:
         loudness=options.loudness,
     )
     _note_false_names(work)
-    return run_batch(options, work, jobs, also=export, keep=keep, lines=result_lines)
+    return run_batch(options, work, jobs, merge, export, result_lines)
 
 
 def _note_false_names(work: Labelling) -> None:
-    """Say how many false names the surroundings and another sensitivity than 1 bring."""
+    """Print the rate of false names for given surroundings or a sensitivity other than 1."""
     if work.sensitivity == 1.0 and work.surroundings is None:
         return
-    counted = work.false_names()
-    nearest = min(counted, key=lambda s: abs(math.log(float(s) / work.sensitivity)), default=None)
+    counts = work.false_names()
+    nearest = min(counts, key=lambda s: abs(math.log(float(s) / work.sensitivity)), default=None)
     if nearest is None:
         note("the classifier's card does not say how many false names to expect")
         return
-    there = counted[nearest]
+    rate = counts[nearest]
     note(
         f"at a sensitivity of {float(nearest):g} real sounds that are no noise and may be heard "
-        f"there got {there['an_hour']:.0f} false names an hour ({there['low']:.0f} to "
-        f"{there['high']:.0f} at 95 %: {there['names']} in {there['hours']:g} h)"
+        f"there got {rate['an_hour']:.0f} false names an hour ({rate['low']:.0f} to "
+        f"{rate['high']:.0f} at 95 %: {rate['names']} in {rate['hours']:g} h)"
     )
 
 
 def _note_assumed(rows: list[dict[str, object]]) -> None:
-    """Say what inferred conditions rely on where no material was logged."""
+    """Print the assumption behind inferred conditions without a logged material."""
     from noise.labels.summary import ASSUMED, assumes_material
 
     number = len({row["file"] for row in rows if assumes_material(row)})
@@ -113,7 +112,7 @@ def _note_assumed(rows: list[dict[str, object]]) -> None:
 
 
 def _note_speeds(rows: list[dict[str, object]]) -> None:
-    """Name the recordings whose channel tells another speed than was logged."""
+    """Name the recordings in which the measured speed contradicts the logged one."""
     from noise.labels.rows import OF_CHANNEL
 
     names = {str(row["file"]): str(row["note"]) for row in rows if OF_CHANNEL in str(row["note"])}
@@ -126,7 +125,7 @@ def _note_speeds(rows: list[dict[str, object]]) -> None:
 
 
 def _check_exports(options: Namespace) -> None:
-    """Refuse what could not be written."""
+    """Refuse exports that cannot be written."""
     if options.map is not None:
         from noise.pictures.figure import check_picture_path
 
@@ -144,7 +143,7 @@ def _check_exports(options: Namespace) -> None:
 
 
 def _from_tables(options: Namespace) -> int:
-    """Join label tables, and write what was asked for."""
+    """Join label tables and write the exports."""
     from noise.labels.corrections import with_corrections
     from noise.labels.table import COLUMNS, own_columns, read_label_table
 
@@ -166,7 +165,7 @@ def _from_tables(options: Namespace) -> int:
 
 
 def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
-    """Write map and label tracks as asked; return their paths."""
+    """Write map and label tracks; return their paths."""
     written: list[Path] = []
     if options.audacity is not None:
         from noise.labels.tracks import write_label_tracks

@@ -1,4 +1,4 @@
-"""``bushing-noise materials``: the materials that are shipped, with their numbers."""
+"""``bushing-noise materials``: list the shipped materials with their parameters."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def run(options: Namespace) -> int:
 
 
 def material_text(name: str) -> str:
-    """Describe a material in lines of text.
+    """Return a description of a material, in several lines.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def material_text(name: str) -> str:
 
 
 def fit_text(fit: Fit) -> str:
-    """Describe an interference fit in a line.
+    """Return a description of an interference fit, in one line.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""``bushing-noise new-rig``: a commented rig file to start from."""
+"""``bushing-noise new-rig``: write a commented rig file to start from."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def run(options: Namespace) -> int:
 
 
 def new_rig_text(material: str) -> str:
-    """Return a commented rig file on a material.
+    """Return a commented rig file based on a material.
 
     Raises
     ------

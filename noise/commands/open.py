@@ -20,7 +20,7 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Serve until somebody asks it to stop."""
+    """Serve the app until the user stops it."""
     from noise.app.opened import open_paths
     from noise.app.server import serve
 

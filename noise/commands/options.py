@@ -1,8 +1,7 @@
-"""Options: the rows of a command's table, the values that they take, and those that many share.
+"""Declarations of command-line options, parsers of their values, and shared options.
 
-A command states its options as rows, `add_options` makes a parser of them; what the help says of
-each is in ``help.toml``. A text that cannot be used is refused while the call is read, by a message
-that names the option.
+A command declares its options as rows, from which `add_options` makes a parser; their help texts
+are in ``help.toml``. Invalid values are refused with a message that names the option.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def number_or_none(text: str) -> float | None:
-    """Read a number, which may be infinite [-]; None where the text is none.
+    """Parse a number, which may be infinite; return None for other text.
 
     Examples
     --------
@@ -44,17 +43,17 @@ def number_or_none(text: str) -> float | None:
 def number(
     above: float = -math.inf, *, least: float = -math.inf, most: float = math.inf
 ) -> Callable[[str], float]:
-    """Return a parser of finite numbers larger than `above`, from `least` up to `most`.
+    """Return a parser of finite numbers in a range.
 
     Parameters
     ----------
     above, least, most : float
-        In the unit of the option, such as [mm].
+        Exclusive lower, inclusive lower and inclusive upper bound [unit of the option].
 
     Returns
     -------
     callable
-        Of the text of an option; raises ArgumentTypeError where it is no such number.
+        Function of the text of an option; it raises ArgumentTypeError for other text.
 
     Examples
     --------
@@ -75,11 +74,11 @@ def number(
 _LONGEST_NUMBER = 18  # digits
 
 MOST_WORKERS = 1024
-"""Processes or threads that a command starts at most: beyond it systems refuse to start more."""
+"""Largest number of processes or threads of a command; systems refuse to start many more."""
 
 
 def whole_number(least: int, *, most: int | None = None, more: str = "") -> Callable[[str], int]:
-    """Return a parser of whole numbers from `least` on; `more` ends what it says it expected.
+    """Return a parser of whole numbers in a range; `more` is appended to its error message.
 
     Examples
     --------
@@ -99,7 +98,7 @@ def whole_number(least: int, *, most: int | None = None, more: str = "") -> Call
 
 
 def one_of(*values: str | int) -> Callable[[str], str | int]:
-    """Return a parser of one of several values, of words in either case.
+    """Return a parser of one of several values, regardless of case.
 
     Examples
     --------
@@ -119,7 +118,7 @@ def one_of(*values: str | int) -> Callable[[str], str | int]:
 
 
 def band(text: str) -> tuple[float, float]:
-    """Read a band of frequencies [Hz].
+    """Parse a frequency band [Hz].
 
     Examples
     --------
@@ -134,14 +133,14 @@ def band(text: str) -> tuple[float, float]:
 
 
 def path(text: str) -> Path:
-    """Read a path, which is not empty."""
+    """Parse a path that is not empty."""
     if not text:
         raise ArgumentTypeError("is '', expected a path ('.' is the current folder)")
     return Path(text)
 
 
 def change(text: str) -> tuple[str, str | float]:
-    """Read a change of the rig: a name, and a number in the unit of its key or a text."""
+    """Parse a change of the rig: a name, and a number in the unit of its key or a text."""
     name, equals, amount = (part.strip() for part in text.partition("="))
     if not (name and equals and amount):
         raise ArgumentTypeError(f"is {text!r}, expected NAME=AMOUNT, such as damping=x2")
@@ -151,21 +150,20 @@ def change(text: str) -> tuple[str, str | float]:
 
 @dataclass(frozen=True)
 class Option:
-    """One row of a table of options.
+    """Declaration of an option.
 
     Parameters
     ----------
     name : str
-        As the help shows it: ``--gap S`` takes a value, ``--ab`` is a switch, ``paths PATH`` is
-        given by its place.
+        Name and metavariable: ``--gap S`` takes a value, ``--ab`` is a switch, ``paths PATH`` is
+        positional.
     kind : callable
-        From the text of the value to the value; raises ArgumentTypeError where it cannot be used.
+        Parser of the value; it raises ArgumentTypeError for invalid text.
     default : object
-        Of an option that is not given.
     count : str, optional
-        How many values it takes: ``*``, ``+`` or ``?``.
+        Number of values: ``*``, ``+`` or ``?``.
     repeated : bool
-        Whether it may be given several times, which makes a list.
+        Whether the option may be repeated, which gives a list.
     required : bool
 
     Examples
@@ -183,22 +181,22 @@ class Option:
 
     @property
     def attribute(self) -> str:
-        """Its name in what the parser returns."""
+        """Name of the attribute in the parsed options."""
         return self.name.partition(" ")[0].removeprefix("--").replace("-", "_")
 
 
 class OneOf(tuple[Option, ...]):
-    """Rows of which a call may have one."""
+    """Options that exclude each other."""
 
     __slots__ = ()
 
     def __new__(cls, *rows: Option) -> OneOf:
-        """Take the rows."""
+        """Create the group from its options."""
         return super().__new__(cls, rows)
 
 
 class Group(NamedTuple):
-    """Rows under a title of their own."""
+    """Options under their own title."""
 
     title: str
     text: str
@@ -209,7 +207,7 @@ Row = Option | OneOf | Group
 
 
 class Help(NamedTuple):
-    """What the help of a command says: what it does, examples, and each option by its name."""
+    """Help texts of a command: description, examples, and options by name."""
 
     description: str
     epilog: str
@@ -217,7 +215,7 @@ class Help(NamedTuple):
 
 
 def help_of(command: str) -> Help:
-    """Read what the help of a command says.
+    """Read the help texts of a command.
 
     Examples
     --------
@@ -237,11 +235,11 @@ def help_of(command: str) -> Help:
 
 
 def _filled(text: str) -> str:
-    """Return a text with the lists that it names in braces."""
-    for place, (module, name) in _LISTS.items():
-        if place in text:
-            found = getattr(import_module(module), name)
-            text = text.replace(place, ", ".join(found() if callable(found) else found))
+    """Replace the placeholders of lists in a text."""
+    for placeholder, (module, name) in _LISTS.items():
+        if placeholder in text:
+            names = getattr(import_module(module), name)
+            text = text.replace(placeholder, ", ".join(names() if callable(names) else names))
     return text
 
 
@@ -255,15 +253,15 @@ _LISTS = {
 def add_options(
     parser: argparse._ActionsContainer, rows: Iterable[Row], texts: Mapping[str, str] | None = None
 ) -> None:
-    """Add the rows of a table to a parser.
+    """Add options to a parser.
 
     Parameters
     ----------
     parser : argparse.ArgumentParser
-        Or a group of one.
+        Parser, or a group of one.
     rows : iterable of Option, OneOf or Group
     texts : mapping of str to str, optional
-        For the help, by the name of the option.
+        Help texts by the name of the option.
 
     Examples
     --------
@@ -282,7 +280,7 @@ def add_options(
 
 
 def option_names(rows: Iterable[Row]) -> Iterator[str]:
-    """Names of the rows of a table, as they are given in a call.
+    """Yield the names of options.
 
     Examples
     --------
@@ -297,6 +295,7 @@ def option_names(rows: Iterable[Row]) -> Iterator[str]:
 
 
 def _add(parser: argparse._ActionsContainer, row: Option, texts: Mapping[str, str]) -> None:
+    """Add one option to a parser."""
     name, _, metavar = row.name.partition(" ")
     text = texts.get(name, "").replace("%", "%%") + " (required)" * row.required
     if not metavar:
@@ -319,7 +318,7 @@ def _add(parser: argparse._ActionsContainer, row: Option, texts: Mapping[str, st
 
 
 SEED = Option("--seed N", whole_number(0), 0)
-"""``--seed``, which all commands take."""
+"""``--seed`` of all commands."""
 
 COMMON = (
     OneOf(
@@ -330,7 +329,7 @@ COMMON = (
 """Options of all commands."""
 
 CHANGE = Option("--change NAME=AMOUNT", change, repeated=True)
-"""``--change``, of every command that takes a rig."""
+"""``--change`` of all commands that take a rig."""
 
 CALIBRATION = (
     OneOf(
@@ -339,16 +338,17 @@ CALIBRATION = (
     ),
     Option("--level DB", number(least=40.0, most=170.0)),
 )
-"""Calibration of plain sound files, of which `full_scale_of` makes a number."""
+"""Calibration of plain sound files; see `full_scale_of`."""
 
 
 def full_scale_of(options: argparse.Namespace) -> PascalPerFullScale | None:
-    """Return what the options of `CALIBRATION` make a full-scale sample worth [Pa].
+    """Return the pressure of a full-scale sample [Pa] from the options of `CALIBRATION`.
 
     Raises
     ------
     BushingNoiseError
-        The calibrator's recording cannot be used, or one option is given without the other.
+        The recording of the calibrator cannot be used, or ``--level`` or ``--calibrator`` is
+        missing.
     """
     stated: float | None = options.full_scale
     if stated is not None and _LEAST_LEVEL <= stated <= _MOST_LEVEL:
@@ -377,11 +377,11 @@ def full_scale_of(options: argparse.Namespace) -> PascalPerFullScale | None:
 
 
 _LEAST_LEVEL, _MOST_LEVEL = 60.0, 170.0
-"""Of sound levels that are taken for pascals by mistake [dB]."""
+"""Range of values that are probably levels in place of pascals [dB]."""
 
 
 def changed(rig: Rig, changes: Sequence[tuple[str, str | float]] | None) -> Rig:
-    """Return the rig with what ``--change`` says.
+    """Return the rig with the changes of ``--change``.
 
     Raises
     ------
@@ -396,7 +396,7 @@ def changed(rig: Rig, changes: Sequence[tuple[str, str | float]] | None) -> Rig:
 
 
 def change_table(changes: Sequence[tuple[str, str | float]]) -> dict[str, str | float]:
-    """Return what ``--change`` says as the table of ``[change]``.
+    """Return the changes of ``--change`` as a table like ``[change]`` in a rig file.
 
     Raises
     ------
@@ -410,12 +410,12 @@ def change_table(changes: Sequence[tuple[str, str | float]]) -> dict[str, str | 
 
 
 def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None:
-    """Refuse a folder of results that cannot be made, or `file` not in it, before the work.
+    """Refuse an output folder that cannot be made, or in which `file` cannot be written.
 
     Raises
     ------
     ParameterError
-        It is a file or a link to nothing, or cannot be written to.
+        The folder is a file or a broken link, or is not writable.
     """
     if folder.exists() and not folder.is_dir():
         raise ParameterError(f"{option} {folder}: is a file; name a folder")
@@ -425,6 +425,6 @@ def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None
 
 
 def refuse(error: object, name: str | Path = "") -> None:
-    """Say that an input is refused, and why; `name` stands before what does not name it."""
+    """Print the refusal of an input; `name` is added to messages without it."""
     named = f"{name}: " if Path(name).name not in str(error) else ""
     say(f"bushing-noise: refused: {named}{error}", error=True)

@@ -30,10 +30,11 @@ if TYPE_CHECKING:
     from noise.commands.render_sources import Source
 
 
-_LOWEST, _NARROWEST = 1.0, 1.01  # Hz, and upper over lower end of a band: filters of it hold
+_LOWEST, _NARROWEST = 1.0, 1.01  # lower end [Hz], and upper over lower end, for stable filters
 
 
 def _band(text: str) -> tuple[float, float]:
+    """Parse the frequency band [Hz] of a filter."""
     low, high = band(text)
     if low < _LOWEST or high < low * _NARROWEST:
         raise ArgumentTypeError(
@@ -64,7 +65,7 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Write the sounds."""
+    """Render the sounds."""
     from noise.commands.render_sources import sources_of
 
     if options.sound_quality:
@@ -79,12 +80,12 @@ def run(options: Namespace) -> int:
     folder = _folder(options, sources)
     check_target(options.out)
     files = _files(options, sources, folder)
-    _keep_inputs(options.out, sources, files)
-    return _rendered(options, files, folder)
+    _check_overwrite(options.out, sources, files)
+    return _render(options, files, folder)
 
 
 class _File(NamedTuple):
-    """One file to be: what it is called, and what is heard in it."""
+    """Output file with its name and its sound sources."""
 
     name: str
     target: Path
@@ -92,28 +93,30 @@ class _File(NamedTuple):
 
 
 def _recordings(file: _File, band: tuple[float, float] | None) -> list[Recording]:
+    """Read or simulate the recordings of a file, filtered to a band [Hz]."""
     from noise.audio.sound import heard
 
-    made = [source.make(source.name) for source in file.sources]
-    return made if band is None else [heard(one, band) for one in made]
+    recordings = [source.make(source.name) for source in file.sources]
+    return recordings if band is None else [heard(one, band) for one in recordings]
 
 
 def _folder(options: Namespace, sources: list[Source]) -> Path | None:
-    """Where a set goes; None where there is one file."""
-    named: Path = options.out
+    """Return the output folder of a set; None for a single file."""
+    out: Path = options.out
     several = len(sources) > 1 or any(Path(text).is_dir() for text in options.inputs)
-    if options.ab or not (several or named.is_dir()):
+    if options.ab or not (several or out.is_dir()):
         return None
-    if named.suffix.lower() == ".wav":
+    if out.suffix.lower() == ".wav":
         raise ParameterError(
-            f"--out {named}: {counted(len(sources), 'sound')} are no single file; name a folder, "
+            f"--out {out}: {counted(len(sources), 'sound')} are no single file; name a folder, "
             "or put them into one with --ab"
         )
-    check_folder(named)
-    return named
+    check_folder(out)
+    return out
 
 
 def _files(options: Namespace, sources: list[Source], folder: Path | None) -> list[_File]:
+    """Return the output files with their sources."""
     from noise.audio.audio_file import audio_path
 
     if folder is not None:
@@ -122,29 +125,30 @@ def _files(options: Namespace, sources: list[Source], folder: Path | None) -> li
     return [_File(target.stem if options.ab else sources[0].name, target, sources)]
 
 
-def _keep_inputs(out: Path, sources: list[Source], written: list[_File]) -> None:
-    """Refuse to write over a recording or its sidecar."""
-    read = [source.path for source in sources if source.path is not None]
-    stems = {path.resolve().with_suffix("") for path in read}
-    for _, target, _ in written:
-        same = target.exists() and any(map(target.samefile, read))
+def _check_overwrite(out: Path, sources: list[Source], files: list[_File]) -> None:
+    """Refuse to overwrite an input or its sidecar."""
+    inputs = [source.path for source in sources if source.path is not None]
+    stems = {path.resolve().with_suffix("") for path in inputs}
+    for _, target, _ in files:
+        same = target.exists() and any(map(target.samefile, inputs))
         if same or target.resolve().with_suffix("") in stems:
             raise ParameterError(f"--out {out} would overwrite the recording or its sidecar")
 
 
-def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> int:
+def _render(options: Namespace, files: list[_File], folder: Path | None) -> int:
+    """Measure all sounds, write them at their gains, and return the exit code."""
     from noise.audio.render import COLUMNS, full_scales, measure, render
     from noise.base.tables import write_table
 
     measured: dict[str, Measured] = {}
-    names: dict[str, list[str]] = {}
+    noise_names: dict[str, list[str]] = {}
     refused: dict[str, str] = {}
     shape = {"rate": options.rate, "gap": options.gap, "fade": options.fade}
     for file in track(files, "measuring", unit="file"):
         try:
-            made = _recordings(file, options.band)
-            of = measure(
-                made,
+            recordings = _recordings(file, options.band)
+            sound = measure(
+                recordings,
                 **shape,
                 quality=options.sound_quality,
                 match=options.match_loudness,
@@ -155,10 +159,10 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
             refused[file.name] = str(error) or "needs more memory than there is"
             refuse(refused[file.name], file.name)
             continue
-        measured[file.name] = of
-        names[file.name] = [_noise_name(one) for one in made]
-        for words in dict.fromkeys(filter(None, map(_filter_words, of.parts))):
-            say(f"{file.name}: {words}")
+        measured[file.name] = sound
+        noise_names[file.name] = [_noise_name(one) for one in recordings]
+        for text in dict.fromkeys(filter(None, map(_filter_note, sound.parts))):
+            say(f"{file.name}: {text}")
     scales = full_scales(
         measured, pascal=options.pascal_per_full_scale, matched=options.match_loudness
     )
@@ -169,11 +173,11 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
         if name not in measured:
             rows.append({"file": target.name, "error": refused[name]})
             continue
-        of, scale = measured[name], scales[name]
+        sound, scale = measured[name], scales[name]
         written, summary = render(
             target,
             _recordings(files[index], options.band),
-            of,
+            sound,
             scale,
             **shape,
             bits=options.bits,
@@ -182,17 +186,17 @@ def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> in
         )
         file_name = target.name if folder is None else target.relative_to(folder).as_posix()
         rows += [
-            {"file": file_name, **row, "filter": _filter_words(part), "note": faint.get(name)}
-            for row, part in zip(written, of.parts, strict=True)
+            {"file": file_name, **row, "filter": _filter_note(part), "note": faint.get(name)}
+            for row, part in zip(written, sound.parts, strict=True)
         ]
-        worth = f"full scale is {scale.value:.4g} Pa; " * of.calibrated
-        say(f"{name}: {worth}in the file {summary}")
-        several = len(of.parts) > 1
-        for part, noise in zip(of.parts, names[name], strict=True):
-            lead = f"{name}: {part.about.name}" if several else name
+        calibration = f"full scale is {scale.value:.4g} Pa; " * sound.calibrated
+        say(f"{name}: {calibration}in the file {summary}")
+        several = len(sound.parts) > 1
+        for part, noise_name in zip(sound.parts, noise_names[name], strict=True):
+            label = f"{name}: {part.about.name}" if several else name
             levels, *quality = part.assessment.words(scale.value)
-            for line in (f"{noise}{levels}", *quality):
-                say(f"{lead}: {line}")
+            for line in (f"{noise_name}{levels}", *quality):
+                say(f"{label}: {line}")
         report(target, target.with_suffix(".json"))
     if folder is not None:
         write_table(folder / "levels.csv", ("file", *COLUMNS, "filter", "note", "error"), rows)
@@ -206,20 +210,21 @@ def _noise_name(recording: Recording) -> str:
     from noise.labels.segments import file_label, label_recording
 
     try:
-        found = file_label(label_recording(recording, load_classifier()))
+        segment = file_label(label_recording(recording, load_classifier()))
     except BushingNoiseError:  # too short or sampled too slowly to be labelled
         return ""
-    pitch = "" if found.frequency is None else f"{found.frequency:.0f} Hz, "
-    return f"{found.label}, {pitch}"
+    pitch = "" if segment.frequency is None else f"{segment.frequency:.0f} Hz, "
+    return f"{segment.label}, {pitch}"
 
 
-def _filter_words(part: Part) -> str | None:
+def _filter_note(part: Part) -> str | None:
+    """Return the note on the filter of a part."""
     last = part.about.notes[-1] if part.about.notes else ""
     return last.removeprefix("filtered: ") if last.startswith("filtered: ") else None
 
 
 def _notes(measured: Mapping[str, Measured]) -> None:
-    """Say what the user should know of."""
+    """Print notes on missing calibrations and on the assessments."""
     unknown = [of.name for of in measured.values() if not of.calibrated]
     if unknown:
         more = f" and {counted(len(unknown) - 1, 'other')}" if len(unknown) > 1 else ""
@@ -233,23 +238,24 @@ def _notes(measured: Mapping[str, Measured]) -> None:
 
 
 _LEAST_AUDIBLE = -48.0
-"""A-weighted level in a file of what just stands out [dBFS(A)]: speech at -23 LUFS played as loud
-as a talker at 1 m (60 dB(A), ISO 9921), over the background of a quiet office, 35 dB(A)."""
+"""Level in the file of a barely audible sound [dBFS(A)]: speech at -23 LUFS is played like a talker
+at 1 m (60 dB(A), ISO 9921), with the background noise of a quiet office, 35 dB(A)."""
 
-_MOST_NAMED = 4
+_MAX_NAMES = 4
+"""Number of sounds that a note names."""
 
 
 def _note_faint(
     measured: Mapping[str, Measured], scales: Mapping[str, FullScale]
 ) -> dict[str, str]:
-    """Say which sounds are nearly inaudible in their files."""
+    """Print and return notes on sounds that are nearly inaudible in their files."""
     faint: dict[str, str] = {}
-    for name, of in measured.items():
+    for name, sound in measured.items():
         value = scales[name].value
-        in_file = max(part.assessment.in_file(value).level_af_max for part in of.parts)
+        in_file = max(part.assessment.in_file(value).level_af_max for part in sound.parts)
         if math.isfinite(in_file) and in_file < _LEAST_AUDIBLE:
-            in_air = max(part.assessment.levels.level_af_max for part in of.parts)
-            at = f"{in_air:.1f} dB(A) at the microphone, " * of.calibrated
+            in_air = max(part.assessment.levels.level_af_max for part in sound.parts)
+            at = f"{in_air:.1f} dB(A) at the microphone, " * sound.calibrated
             faint[name] = f"{name} ({at}{in_file:.1f} dBFS(A) in the file)"
     if not faint:
         return {}
@@ -258,6 +264,6 @@ def _note_faint(
     lead = (
         f"nearly inaudible (below {_LEAST_AUDIBLE:g} dBFS(A)) where the volume suits speech{room}"
     )
-    more = f" and {len(faint) - _MOST_NAMED} more" * (len(faint) > _MOST_NAMED)
-    note(f"{lead}: {', '.join([*faint.values()][:_MOST_NAMED])}{more}")
+    more = f" and {len(faint) - _MAX_NAMES} more" * (len(faint) > _MAX_NAMES)
+    note(f"{lead}: {', '.join([*faint.values()][:_MAX_NAMES])}{more}")
     return {name: f"{lead}: {words}" for name, words in faint.items()}

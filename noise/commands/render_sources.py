@@ -1,8 +1,8 @@
-"""Inputs of ``render``: recordings, folders of them, rig files, conditions in quotes.
+"""Sound sources of ``render``: recordings, folders, rig files, and conditions in quotes.
 
-A rig file and a condition are simulated; they take what they do not say themselves from the
-options of the call, so that two designs meet the same condition, with the same random numbers.
-Whatever cannot be used is refused before anything is simulated.
+Rig files and conditions are simulated. They take missing options from the call, so that two designs
+are compared at the same condition with the same random numbers. Invalid inputs are refused before
+the first simulation.
 """
 
 from __future__ import annotations
@@ -25,24 +25,24 @@ from noise.commands.options import add_options, full_scale_of
 if TYPE_CHECKING:
     from noise.recordings.meaning import PascalPerFullScale
 
-_ALONE = {"speed": "oscillate", "oscillate": "speed"}
-"""Options of which one takes the other's place."""
+_ALTERNATIVES = {"speed": "oscillate", "oscillate": "speed"}
+"""Options that replace each other."""
 
 
 @dataclass(frozen=True)
 class Source:
-    """One sound to be heard.
+    """Sound source.
 
     Parameters
     ----------
     name : str
-        Of a recording its path without the ending, below the folder named.
+        Name of the sound; for a recording its relative path without suffix.
     make : callable
-        Reads or simulates its pressure channel, given the name.
+        ``make(name)`` reads or simulates the pressure channel.
     path : Path, optional
-        Of a recording.
+        Path of a recording.
     notes : tuple of str
-        What the user should know before it is simulated.
+        Notes to print before the simulation.
     """
 
     name: str
@@ -52,19 +52,19 @@ class Source:
 
 
 def sources_of(options: Namespace) -> list[Source]:
-    """Return what a call of ``render`` is to make audible.
+    """Return the sound sources of a ``render`` call.
 
     Raises
     ------
     ParameterError
         An input does not exist or does not go with the options.
     """
-    given = ["--" + name.replace("_", "-") for name in given_options(options)]
+    condition = ["--" + name.replace("_", "-") for name in given_options(options)]
     simulated = [
         text for text in options.inputs if _is_condition(text) or text.lower().endswith(".toml")
     ]
     recorded = [text for text in options.inputs if text not in simulated]
-    if not options.inputs and not given:
+    if not options.inputs and not condition:
         raise ParameterError(
             "render needs a recording, or a condition such as --speed 5 to simulate"
         )
@@ -73,9 +73,9 @@ def sources_of(options: Namespace) -> list[Source]:
         raise ParameterError(f"{option} is the calibration of a recording; none is given")
     if "" in options.inputs:
         raise ParameterError("one INPUT is empty; give a recording, a folder, or a condition")
-    if recorded and given and not simulated:
+    if recorded and condition and not simulated:
         raise ParameterError(
-            f"{given[0]} describes a run to simulate, but {recorded[0]} is already recorded; "
+            f"{condition[0]} describes a run to simulate, but {recorded[0]} is already recorded; "
             "give one or the other"
         )
     full_scale = full_scale_of(options)
@@ -87,38 +87,41 @@ def sources_of(options: Namespace) -> list[Source]:
             sources += _recorded(Path(text), full_scale)
     if not options.inputs:
         sources.append(_source(options.out.name.removesuffix(".wav"), options))
-    named = _with_names_of_their_own(sources)
-    _tell_notes([source for source in named if source.path is None])
+    named = _with_unique_names(sources)
+    _print_notes([source for source in named if source.path is None])
     return named
 
 
-def _tell_notes(sources: Sequence[Source]) -> None:
-    """Note each thing once: what holds of all runs as such, the rest with the names of its runs."""
-    found: dict[str, list[str]] = {}
+def _print_notes(sources: Sequence[Source]) -> None:
+    """Print each note once; notes that do not apply to all runs name their runs."""
+    names_by_note: dict[str, list[str]] = {}
     for source in sources:
         for text in source.notes:
-            found.setdefault(text, []).append(source.name)
-    for text, names in found.items():
+            names_by_note.setdefault(text, []).append(source.name)
+    for text, names in names_by_note.items():
         note(text if len(names) == len(sources) else f"{', '.join(names)}: {text}")
 
 
 def _is_condition(text: str) -> bool:
+    """Whether an input is a condition in quotes."""
     return text.lstrip().startswith("-")
 
 
 def _recorded(path: Path, full_scale: PascalPerFullScale | None) -> list[Source]:
+    """Return the sources of a recording or a folder."""
     from noise.recordings import find_recordings
 
-    found = find_recordings(path)
-    if not found:
+    recordings = find_recordings(path)
+    if not recordings:
         raise ParameterError(f"{path}: there are no recordings in it")
     return [
         Source(str(Path(name).with_suffix("")), partial(_read, file, full_scale), file)
-        for file, name in found
+        for file, name in recordings
     ]
 
 
 def _read(path: Path, full_scale: PascalPerFullScale | None, _: str) -> Recording:
+    """Read the pressure of a recording."""
     from noise.audio.sound import heard
     from noise.recordings.files import open_blocks
 
@@ -127,6 +130,7 @@ def _read(path: Path, full_scale: PascalPerFullScale | None, _: str) -> Recordin
 
 
 def _simulated(text: str, options: Namespace) -> Source:
+    """Return the source of a rig file or a condition."""
     if not _is_condition(text):
         if options.rig is not None:
             raise ParameterError(f"--rig {options.rig} and {text} are both rig files; give one")
@@ -143,16 +147,18 @@ def _simulated(text: str, options: Namespace) -> Source:
 
 
 def _over(options: Namespace, values: Mapping[str, Any]) -> Namespace:
+    """Return the options of a condition, with some values replaced."""
     names = [row.attribute for row in CONDITION.rows]
     merged = {name: getattr(options, name) for name in (*names, "seed", "rate")}
     for name in values:
-        if name in _ALONE:
-            merged[_ALONE[name]] = None
+        if name in _ALTERNATIVES:
+            merged[_ALTERNATIVES[name]] = None
     return Namespace(**(merged | dict(values)))
 
 
 def _source(name: str, options: Namespace) -> Source:
-    # At the rate of the sound: the rig's own rate would cut the creak off at 15 kHz.
+    """Return the source of a simulated run."""
+    # At the rate of the sound: the rate of the rig would cut a creak off at 15 kHz.
     arguments, notes = run_arguments(options, options.rate)
 
     @cache
@@ -166,7 +172,8 @@ def _source(name: str, options: Namespace) -> Source:
     return Source(name, simulated, notes=notes)
 
 
-def _with_names_of_their_own(sources: list[Source]) -> list[Source]:
+def _with_unique_names(sources: list[Source]) -> list[Source]:
+    """Return the sources with numbers added to duplicate names."""
     taken: set[str] = set()
     named: list[Source] = []
     for source in sources:
@@ -179,12 +186,12 @@ def _with_names_of_their_own(sources: list[Source]) -> list[Source]:
 
 
 class _ConditionParser(ArgumentParser):
-    """Reads the options of a condition in quotes."""
+    """Parser of a condition in quotes."""
 
     def __init__(self, text: str) -> None:
         super().__init__(prog="condition", add_help=False, allow_abbrev=False)
         self._text = text
 
     def error(self, message: str) -> NoReturn:
-        """Refuse it in one line."""
+        """Raise an error of parsing as ParameterError."""
         raise ParameterError(f"condition {self._text!r}: {message.removeprefix('argument ')}")

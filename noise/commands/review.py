@@ -32,12 +32,12 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Write the page."""
+    """Write the review page."""
     from noise.pages.review import page_path, review
 
     target = page_path(options.out)
     check_target(target)
-    made = review(
+    page = review(
         options.paths,
         options.out,
         title=options.title,
@@ -49,14 +49,14 @@ def run(options: Namespace) -> int:
         classify=not options.no_labelling,
         seed=options.seed,
     )
-    for refusal in made.refused:
+    for refusal in page.refused:
         refuse(f"{refusal.name}: {refusal.reason}")
-    if made.shortened is not None:
+    if page.shortened is not None:
         note(
-            f"sounds are cut to {made.shortened:.3g} s to keep to {options.megabytes:g} MB; "
+            f"sounds are cut to {page.shortened:.3g} s to keep to {options.megabytes:g} MB; "
             "--megabytes allows more"
         )
-    size = made.path.stat().st_size / 1e6
-    say(f"{counted(made.sounds, 'sound')}, {size:.1f} MB")
-    report(made.path)
-    return 1 if made.refused else 0
+    size = page.path.stat().st_size / 1e6
+    say(f"{counted(page.sounds, 'sound')}, {size:.1f} MB")
+    report(page.path)
+    return 1 if page.refused else 0

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 
 def _simulations(text: str) -> float:
+    """Parse the number of simulations; ``all`` is infinite."""
     if text.strip().lower() == "all":
         return math.inf
     return whole_number(1, more=", or all")(text)
@@ -70,46 +71,47 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Screen; print the ranking, write tables and pictures."""
+    """Screen the designs, print the ranking and write tables and pictures."""
     if options.out is not None:
         check_folder(options.out, file="map.csv")
     from noise.batch.journal import call_identity, temporary_journal
     from noise.screening.design import load_designs
     from noise.screening.environments import environment
 
-    given = _given(options)
+    use = _use(options)
     environments = [name for name in options.environment.split(",") if name.strip()]
     for name in environments:
         environment(name)
-    load_designs(options.designs, _change(options))  # refused before everything is imported
-    of_each = 2 if options.no_tolerances else 4  # map, advice, parts, sensitivities
-    n_steps = 1 + of_each * len(options.designs) * len(environments)
+    load_designs(options.designs, _change(options))  # refuses bad designs before slow imports
+    per_map = 2 if options.no_tolerances else 4  # map, advice, parts, sensitivities
+    n_steps = 1 + per_map * len(options.designs) * len(environments)
     table = None if options.out is None else options.out / "map.csv"
-    with temporary_journal(table, call_identity("screening")) as kept:
-        with steps("screening", n_steps) as tell:
-            found = _screened(options, given, environments, tell, kept)
+    with temporary_journal(table, call_identity("screening")) as journal:
+        with steps("screening", n_steps) as progress:
+            screening = _screening(options, use, environments, progress, journal)
         from noise.screening.words import summary_lines
 
-        for name, reason in (*found.refused, *found.failed):
+        for name, reason in (*screening.refused, *screening.failed):
             say(f"{name}: {reason}")
         if options.out is None:
-            print(*summary_lines(found), sep="\n")
+            print(*summary_lines(screening), sep="\n")
         else:
-            report(*summary_lines(found))
-            with steps("writing", 2) as tell:
-                written = _write(options, found, tell)
+            report(*summary_lines(screening))
+            with steps("writing", 2) as progress:
+                written = _write(options, screening, progress)
             report(*written)
-    return 1 if found.refused or found.failed else 0
+    return 1 if screening.refused or screening.failed else 0
 
 
-def _screened(
+def _screening(
     options: Namespace,
-    given: Use,
+    use: Use,
     environments: list[str],
-    tell: Steps,
-    kept: Journal | None,
+    progress: Steps,
+    journal: Journal | None,
 ) -> Screening:
-    tell("preparing")
+    """Screen the designs."""
+    progress("preparing")
     import numpy as np
 
     from noise.screening.screen import DEFAULT_SIMULATIONS, screen
@@ -117,7 +119,7 @@ def _screened(
     simulations = options.simulations or DEFAULT_SIMULATIONS
     return screen(
         options.designs,
-        given,
+        use,
         environments=environments,
         loudness=options.loudness,
         tolerances=True if options.tolerances else False if options.no_tolerances else None,
@@ -126,16 +128,18 @@ def _screened(
         simulations=None if math.isinf(simulations) else int(simulations),
         workers=options.workers,
         scheduler=options.scheduler,
-        progress=tell,
-        kept=kept,
+        progress=progress,
+        kept=journal,
     )
 
 
 def _change(options: Namespace) -> Callable[[Rig], Rig] | None:
+    """Return the change of the rigs by ``--change``."""
     return (lambda rig: changed(rig, options.change)) if options.change else None
 
 
-def _given(options: Namespace) -> Use:
+def _use(options: Namespace) -> Use:
+    """Return the conditions that the options state."""
     from noise.screening import axis_values as axes
     from noise.screening.design import Use
 
@@ -153,6 +157,7 @@ def _given(options: Namespace) -> Use:
 
 
 def _swinging(text: str) -> Swinging:
+    """Parse amplitude [degree] and frequencies [Hz] of an oscillation."""
     from noise.screening.axis_values import FREQUENCY, axis_values
     from noise.screening.design import Swinging
 
@@ -165,7 +170,8 @@ def _swinging(text: str) -> Swinging:
     return Swinging(math.radians(amplitude), axis_values(frequency, "--oscillate", FREQUENCY))
 
 
-def _write(options: Namespace, found: Screening, tell: Steps) -> list[Path]:
+def _write(options: Namespace, screening: Screening, progress: Steps) -> list[Path]:
+    """Write tables, designs, pictures and the report; return their paths."""
     from noise.base.tables import write_table
     from noise.pages.screening import write_screening
     from noise.pictures.figure import write_picture
@@ -175,23 +181,23 @@ def _write(options: Namespace, found: Screening, tell: Steps) -> list[Path]:
 
     folder = options.out
     written: list[Path] = []
-    tell("drawing the maps")
-    for name, (columns, rows) in screening_tables(found).items():
+    progress("drawing the maps")
+    for name, (columns, rows) in screening_tables(screening).items():
         write_table(folder / name, columns, rows)
         written.append(folder / name)
-    for name, path in found.files:
+    for name, path in screening.files:
         try:
             written.append(copy_design_file(name, path, folder / "designs"))
         except ParameterError as error:
             say(str(error))
-    single = len(found.maps) == 1
-    for index, mapped in enumerate(found.maps, start=1):
+    single = len(screening.maps) == 1
+    for index, mapped in enumerate(screening.maps, start=1):
         path = folder / ("map.png" if single else f"map-{index}.png")
         write_picture(path, plot_screen(mapped))
         written.append(path)
-    tell("making the sounds of the report")
+    progress("making the sounds of the report")
     write_screening(
-        folder / "report.html", found, sounds=options.sounds, megabytes=options.megabytes,
+        folder / "report.html", screening, sounds=options.sounds, megabytes=options.megabytes,
         seed=options.seed or 0, workers=options.workers,
     )  # fmt: skip
     return [*written, folder / "report.html"]

@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 
 _DEFAULT_RATE = 30000
-_MOST_AT_ONCE = 60.0
-"""Longest run that is drawn, or of which the sound power is told [s]."""
+_LONGEST_IN_MEMORY = 60.0
+"""Longest run for a picture or the sound power [s]."""
 
-_LEAST_OF_POWER = 0.25
-"""Shortest run of which the sound power is told: `sim.analysis.sound_power` [s]."""
+_SHORTEST_FOR_POWER = 0.25
+"""Shortest run for `sim.analysis.sound_power` [s]."""
 
 
 OPTIONS = (
@@ -45,14 +45,14 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Simulate; write the recording and the picture, or print the summary."""
+    """Simulate; write recording, picture and sound power, or print the summary."""
     _check(options)
     if options.rig is not None:
         from models.suspension import suspension_file
 
-        held = suspension_file(options.rig)
-        if held is not None:
-            return _run_suspension(options, held)
+        suspension = suspension_file(options.rig)
+        if suspension is not None:
+            return _run_suspension(options, suspension)
     arguments, notes = run_arguments(options, options.rate)
     for text in notes:
         note(text)
@@ -60,18 +60,18 @@ def run(options: Namespace) -> int:
         from noise.base.remarks import NEVER_SLIPS
         from sim.blocks import simulate_blocks
 
-        made = simulate_blocks(**arguments)
-        written = write_run(options.out, made, notes)
-        if made.watch.never_slips:
+        block_run = simulate_blocks(**arguments)
+        wav = write_run(options.out, block_run, notes)
+        if block_run.watch.never_slips:
             note(NEVER_SLIPS)
-        _print_names(written)
+        report(wav, wav.with_suffix(".json"))
         return 0
     from sim.run import simulate
 
     simulated = simulate(**arguments)
     recording = with_notes(simulated, notes, arguments)
     if options.plot is options.sound_power is None or options.out is not None:
-        _write_or_tell(options.out, recording)
+        _write_or_print(options.out, recording)
     if options.plot is not None:
         from noise.pictures.figure import write_picture
         from noise.pictures.run import plot_run
@@ -85,9 +85,9 @@ def run(options: Namespace) -> int:
 
 
 def _run_suspension(options: Namespace, path: Path) -> int:
-    """Simulate a car's bar in two bushings."""
-    for option, asked in (("--plot", options.plot), ("--sound-power", options.sound_power)):
-        if asked is not None:
+    """Simulate a car's stabilizer bar in two bushings."""
+    for option, value in (("--plot", options.plot), ("--sound-power", options.sound_power)):
+        if value is not None:
             raise ParameterError(f"{option} is of the rig; --rig {options.rig} is a suspension")
     from models.suspension import load_suspension
 
@@ -98,36 +98,37 @@ def _run_suspension(options: Namespace, path: Path) -> int:
     from sim.suspension import run_suspension
 
     car = replace(car, rig=arguments.pop("rig"))
-    made = run_suspension(car, **arguments)
-    through = arguments["acquisition"].over(car.rig.sensors).sensors
-    notes += (*made.remarks, *clipping_remarks(made.recording, through))
+    suspension_run = run_suspension(car, **arguments)
+    sensors = arguments["acquisition"].over(car.rig.sensors).sensors
+    notes += (*suspension_run.remarks, *clipping_remarks(suspension_run.recording, sensors))
     for text in notes:
         note(text)
-    _write_or_tell(options.out, replace(made.recording, notes=notes))
+    _write_or_print(options.out, replace(suspension_run.recording, notes=notes))
     return 0
 
 
-def _write_or_tell(path: Path | None, recording: Recording) -> None:
+def _write_or_print(path: Path | None, recording: Recording) -> None:
     """Write a recording, or without a path print its summary."""
     if path is None:
         print(json.dumps(_summary(recording)))
         return
     from noise.recordings import write_recording
 
-    _print_names(write_recording(path, recording))
+    wav = write_recording(path, recording)
+    report(wav, wav.with_suffix(".json"))
 
 
 def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...] = ()) -> Path:
-    """Compute a run and write it, block by block, into a WAV file with its sidecar.
+    """Compute a run in blocks and write it into a WAV file with its sidecar.
 
     Parameters
     ----------
     path : path-like
-        ``run07`` and ``run07.wav`` are the same; parent folders are made.
+        ``run07`` and ``run07.wav`` are equivalent; parent folders are made.
     run : BlockRun
-        Of `sim.blocks.simulate_blocks`; a WAV file holds 4 GiB, 2.4 h at 30 kHz.
+        Result of `sim.blocks.simulate_blocks`; a WAV file holds 4 GiB, 2.4 h at 30 kHz.
     notes : tuple of str
-        For the sidecar, which also says so where nothing ever slips.
+        Notes for the sidecar; one is added if the contact never slips.
 
     Returns
     -------
@@ -170,16 +171,16 @@ def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...
 
 
 def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any]) -> None:
-    """Write the table, and tell its last row."""
+    """Write the table of the sound power and print its sum."""
     from noise.audio.assessment import POWER_COLUMNS, sound_power_rows
     from sim.analysis.sound_power import motion_sound_power
 
     if arguments["rig"].measured:
         note("the sound power is that of the modelled plate; measured responses are not in it")
     say("computing the sound power")
-    given = ("interference", "support_stiffness", "library")
+    names = ("interference", "support_stiffness", "library")
     power = motion_sound_power(
-        arguments["rig"], simulated.motion, **{name: arguments[name] for name in given}
+        arguments["rig"], simulated.motion, **{name: arguments[name] for name in names}
     )
     rows = sound_power_rows(power)
     write_table(path, POWER_COLUMNS, rows)
@@ -188,8 +189,8 @@ def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any])
     say(silent if total is None else f"sound power {total:.1f} dB(A) re 1 pW in a baffle")
 
 
-def _check_own(out: Path) -> None:
-    """Refuse to replace a recording that this program did not write: its sidecar tells."""
+def _check_overwrite(out: Path) -> None:
+    """Refuse to replace a recording that this program did not write, judged by the sidecar."""
     wav = out if out.suffix.lower() == ".wav" else out.with_name(f"{out.name}.wav")
     if not wav.exists():
         return
@@ -205,11 +206,11 @@ def _check_own(out: Path) -> None:
 
 
 def _check(options: Namespace) -> None:
-    """Refuse what cannot be written, before the run."""
+    """Refuse outputs that cannot be written, before the run."""
     if options.out is not None:
         check_target(options.out)
         if not options.force:
-            _check_own(options.out)
+            _check_overwrite(options.out)
     if options.plot is not None:
         from noise.pictures.figure import check_picture_path
 
@@ -221,23 +222,20 @@ def _check(options: Namespace) -> None:
         if path is None:
             continue
         check_target(path, option)
-        if seconds > _MOST_AT_ONCE:
+        if seconds > _LONGEST_IN_MEMORY:
             raise ParameterError(
                 f"{option} takes the whole run in memory, for which --seconds {seconds:g} is too "
-                f"long; give {_MOST_AT_ONCE:g} or less"
+                f"long; give {_LONGEST_IN_MEMORY:g} or less"
             )
-    if options.sound_power is not None and seconds < _LEAST_OF_POWER:
+    if options.sound_power is not None and seconds < _SHORTEST_FOR_POWER:
         raise ParameterError(
             f"--sound-power: --seconds {seconds:g} is too short for the band at 50 Hz; "
-            f"give {_LEAST_OF_POWER:g} or more"
+            f"give {_SHORTEST_FOR_POWER:g} or more"
         )
 
 
-def _print_names(path: Path) -> None:
-    report(path, path.with_suffix(".json"))
-
-
 def _summary(recording: Recording) -> dict[str, object]:
+    """Return conditions, torque and sound level of a recording for JSON."""
     import numpy as np
 
     from models.recording import REFERENCE_PRESSURE
@@ -261,4 +259,5 @@ def _summary(recording: Recording) -> dict[str, object]:
 
 
 def _short(value: float) -> float:
+    """Round a number to six digits."""
     return float(f"{value:.6g}")

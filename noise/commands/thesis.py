@@ -1,4 +1,4 @@
-"""``bushing-noise thesis``: the published numbers beside what the program computes."""
+"""``bushing-noise thesis``: published numbers compared with computed ones."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Compute and write the table, or draw the figures, or both."""
+    """Write the table, draw the figures, or both."""
     if options.plots is not None:
         check_folder(options.plots, "--plots", file="figure-5.3.png")
     if options.out is not None or options.plots is None:
@@ -33,7 +33,7 @@ def run(options: Namespace) -> int:
 
 
 def _write_table(out: Path | None) -> None:
-    """Compute, write, and tell how many rows hold."""
+    """Compute and write the table, and print a summary of its verdicts."""
     is_page = out is not None and out.suffix.lower() == _PAGE_ENDING
     if out is not None:
         if is_page and out.is_dir():
@@ -64,6 +64,7 @@ def _write_table(out: Path | None) -> None:
 
 
 def _draw(folder: Path) -> None:
+    """Draw the figures."""
     say("preparing")
     from noise.pictures.figure import write_picture
     from noise.pictures.thesis import N_PICTURES, thesis_pictures

@@ -1,4 +1,4 @@
-"""``bushing-noise train``: the classifier again, from simulation and the user's own recordings."""
+"""``bushing-noise train``: train the classifier on simulations and the user's own recordings."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     _Sample = TypeVar("_Sample")
 
 
-_PART_TO_SCORE = 5
-"""With --samples N, one for so many of them is drawn to score."""
+_TEST_RATIO = 5
+"""Training samples per test sample with --samples N."""
 
-_TOLD = ("n", "accuracy", "macro_f1", "expected_calibration_error", "strangers_named")
-"""Scores that are told."""
+_SCORES = ("n", "accuracy", "macro_f1", "expected_calibration_error", "strangers_named")
+"""Scores of the card that are printed."""
 
 
 OPTIONS = (
@@ -38,7 +38,7 @@ OPTIONS = (
 
 
 def run(options: Namespace) -> int:
-    """Train, save, and tell the score."""
+    """Train and save the classifier, and print its scores."""
     for path, option, what in (
         (options.out, "--out", "a classifier"),
         (options.inference, "--inference", "a model"),
@@ -52,17 +52,17 @@ def run(options: Namespace) -> int:
             f"--inference {options.inference}: is what --out names for the classifier; give one of "
             "them another name"
         )
-    with steps("training", 3 if options.inference is None else 5) as tell:
-        tell("preparing")
-        added, refused = _own(options.add or ())
-        tell("simulating what to learn from")
-        classifier = _trained(options, added, tell)
+    with steps("training", 3 if options.inference is None else 5) as progress:
+        progress("preparing")
+        added, refused = _own_samples(options.add or ())
+        progress("simulating training samples of the classifier")
+        classifier = _trained(options, added, progress)
         classifier.save(options.out)
         if options.inference is not None:
             from noise.training.inference.fit import train_inference
 
-            tell("simulating what to infer from")
-            model = train_inference(seed=options.seed, progress=partial(_inferring, tell))
+            progress("simulating training samples of the model for conditions")
+            model = train_inference(seed=options.seed, progress=partial(_inferring, progress))
             model.save(options.inference)
     say(f"trained: {_scores(classifier.card)}")
     if added:
@@ -73,22 +73,23 @@ def run(options: Namespace) -> int:
     return int(refused)
 
 
-def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Classifier:
+def _trained(options: Namespace, added: Sequence[OwnSample], progress: Steps) -> Classifier:
+    """Return the trained classifier."""
     from noise.training.classifier.fit import N_TEST, N_TRAINING, train
 
     n = options.samples
     return train(
         seed=options.seed,
         n_training=n or N_TRAINING,
-        n_test=max(1, n // _PART_TO_SCORE) if n else N_TEST,
+        n_test=max(1, n // _TEST_RATIO) if n else N_TEST,
         added=added,
         progress=_simulating,
-        growing=partial(_growing, tell),
+        growing=partial(_growing, progress),
     )
 
 
-def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
-    """Return the user's own samples, and whether something was refused, which is then named."""
+def _own_samples(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
+    """Return the samples of the user's recordings, and whether files were refused."""
     if not folders:
         return [], False
     from noise.training.classifier.own_recordings import read_labelled
@@ -102,8 +103,8 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
     refusals: list[str] = []
     for folder in dict.fromkeys(folder.resolve() for folder in folders):
         windows, unread = read_labelled(folder)
-        found, unlearned = own_samples(track(windows, "analysing", unit="window"))
-        samples += found
+        new_samples, unlearned = own_samples(track(windows, "analysing", unit="window"))
+        samples += new_samples
         refusals += [*unread, *unlearned]
     for line in refusals:
         refuse(line)
@@ -116,47 +117,52 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
 
 
 def _simulating(samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
+    """Show the progress of simulations."""
     return track(samples, "simulating", total=total, unit="training sample")
 
 
-def _inferring(tell: Steps, samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
+def _inferring(progress: Steps, samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
+    """Show the progress of the training of the model for conditions."""
     yield from _simulating(samples, total)
-    tell("growing trees that infer conditions")
+    progress("growing trees of the model for conditions")
 
 
-def _growing(tell: Steps, fits: Iterable[int], total: int) -> Iterable[int]:
-    tell("growing trees, and scoring them by what they have not seen")
+def _growing(progress: Steps, fits: Iterable[int], total: int) -> Iterable[int]:
+    """Show the progress of the growing of trees."""
+    progress("growing trees, and scoring them on unseen samples")
     yield from track(fits, "growing trees", total=total, unit="fit")
 
 
 def _scores(card: Mapping[str, object]) -> str:
+    """Return the scores of a classifier as text."""
     parts = []
     for name in ("pressure", "three_channels"):
-        found = card.get(name)
-        if isinstance(found, dict):
+        scores = card.get(name)
+        if isinstance(scores, dict):
             numbers = ", ".join(
-                f"{key.replace('_', ' ')} {found[key]:g}" for key in _TOLD if key in found
+                f"{key.replace('_', ' ')} {scores[key]:g}" for key in _SCORES if key in scores
             )
             parts.append(f"{name.replace('_', ' ')}: {numbers}")
     return "; ".join(parts) or "no score"
 
 
 def _own_scores(card: object) -> str:
+    """Return the scores on the user's own recordings as text."""
     if not isinstance(card, dict):
         return "none"
-    told = [
+    parts = [
         f"{counted(card['files'], 'file')}, each scored by trees grown without it (in brackets: by "
         "trees grown without any of them)"
     ]
-    for label, found in card["labels"].items():
-        if not found["windows"]:
-            told.append(f"{label} said {counted(found['false_names'], 'time')} of something else")
+    for label, scores in card["labels"].items():
+        false_names = f"named {counted(scores['false_names'], 'time')} in something else"
+        if not scores["windows"]:
+            parts.append(f"{label} {false_names}")
             continue
-        few = "" if found["enough"] else ", too few files to tell"
-        told.append(
-            f"{label}: {counted(found['windows'], 'window')} of {counted(found['files'], 'file')}, "
-            f"found {found['recall']:.0%} ({found['recall_before']:.0%}), "
-            f"said {counted(found['false_names'], 'time')} of something else "
-            f"({found['false_names_before']}){few}"
+        few = "" if scores["enough"] else ", too few files for a score"
+        windows, files = counted(scores["windows"], "window"), counted(scores["files"], "file")
+        parts.append(
+            f"{label}: {windows} of {files}, recall {scores['recall']:.0%} "
+            f"({scores['recall_before']:.0%}), {false_names} ({scores['false_names_before']}){few}"
         )
-    return "; ".join(told)
+    return "; ".join(parts)
