@@ -145,7 +145,7 @@ def perform(work: Work, path: Path, name: str) -> JobResult:
 def refusal(work: Work, name: str, message: str) -> JobResult:
     """Return the result of a refused recording."""
     row = {"file": name, "error": readable(message)}
-    cells = [row.get(column) for column in work.columns]
+    cells: list[Cell] = [row.get(column) for column in work.columns]
     return JobResult([cells], calibrated=True, error=message)
 
 
