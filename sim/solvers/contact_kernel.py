@@ -48,6 +48,9 @@ _SECANTS = 4
 _GRAZE = 2e-3
 """Distance to an event below which a step is examined for one, over its scale."""
 
+_STALLED, _INSTANT = 10_000, 1e-9
+"""Steps within an instant [s] from which on a graze is passed over."""
+
 _KINK = 1e-7
 """Change of the drive's inertia torque at which a step ends, over the kinetic torque."""
 
@@ -162,6 +165,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
     sample, i0 = 0, 0
     friction, e, holding, critical, caught, shaft = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     far_start, far, far_early, far_late = carried[at.FAR], 0.0, 0.0, 0.0
+    t_before, n_before = t1, n_steps
     if t1 <= _TIME_TOLERANCE:  # the drive may have a kink here
         fresh = True
     while True:
@@ -267,7 +271,7 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
                         x, least = vertex(NODES[2], far_early, NODES[3], far_late, 1.0, far)
                 if x > 0.99 or least > _GRAZE * (t_crit if mode == 0 else speed_scale):
                     break
-                if h * x < _LEAST_STEP:  # it begins there: nothing ends, and time has to go on
+                if n_steps - n_before > _STALLED:  # it begins there: time has to go on
                     break
                 h *= x
                 continue
@@ -296,6 +300,8 @@ def run_contact(bushing, hooks, drive, limits, carried, rows, out, direction_out
             return
         # Accept the step.
         t1 = t0 + h
+        if t1 > t_before + _INSTANT:
+            t_before, n_before = t1, n_steps
         for j in range(d):
             end[j] = u[j]
         if h == aim:
