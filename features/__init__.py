@@ -1,12 +1,12 @@
-"""From a signal to the numbers that an NVH engineer reads.
+"""Features of friction noise: spectra, bands, lines, harmonics, slips and sound quality.
 
-Spectra, bands, lines, harmonics and slip events each have a function and a frozen result of their
-own; `feature_vector` and `recording_features` gather what tells one noise from another.
+Each has a function and a frozen result; `feature_vector` and `recording_features` combine the
+features that distinguish noises.
 """
 
 import lazy_loader
 
-import models  # noqa: F401  # which names the folder for compiled code
+import models  # noqa: F401  # sets the folder for compiled code
 
-# What is exported stands once, in the stub beside this file; it is loaded when it is first used.
+# Exports are listed once, in the stub beside this file, and loaded at first use.
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

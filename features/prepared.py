@@ -1,9 +1,9 @@
-"""A signal made ready: what several features need is computed once, when first asked for.
+"""Prepared signal: intermediate results that several features share, computed at first use.
 
-Sound and acceleration are described from 150 Hz up to 7 kHz, at a rate of 16 kHz whatever they were
-recorded at; what lies above has bands of its own, which are empty where the recording does not
-reach them. A torque is described from 5 Hz. Everything but levels is computed of the signal divided
-by its rms value, so that no constant in here can depend on the gain.
+Sound and acceleration are described from 150 Hz to 7 kHz, at a rate of 16 kHz whatever the
+recording's; higher frequencies have bands of their own, which are missing where the rate does not
+reach them. A torque is described from 5 Hz. Everything except levels is computed from the signal
+divided by its rms value, so no constant depends on the gain.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from features.kernels.conditioning import (
     usable_limit,
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
+from features.kernels.level_meter import a_weighted_level
 from features.kernels.levels import (
     LEAST_SHARE_DB,
     NOMINAL_THIRD_OCTAVES,
     REFERENCES,
     THESIS_BANDS,
     THIRD_OCTAVE_RESOLUTION,
-    a_weighted_level,
     band_power,
     relative_db,
     third_octave_levels,
@@ -55,27 +55,27 @@ from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, we
 from models.show import short_repr
 
 ACOUSTIC_KINDS = ("pressure", "acceleration")
-"""Kinds of channel that are described as noise."""
+"""Kinds of channel with acoustic features."""
 
 TOP_BANDS = ((7_000.0, 13_000.0), (13_000.0, 19_000.0))
-"""Bands above the common limit [Hz]: reached by rates from 29.8 kHz and from 43.5 kHz on."""
+"""Bands above the common limit [Hz], which rates from 29.8 kHz and from 43.5 kHz on reach."""
 
 _BAND_EDGES = (150, 500, 1000, 2000, 5000, 7000)
-"""Edges of the bands in which shares are told [Hz]."""
+"""Edges of the bands of relative levels [Hz]."""
 
 _LEAST_IN_BAND = 1e-5
-"""Power of the band described, relative to the whole, below which it holds leakage only."""
+"""Relative power of the described band below which it contains leakage only."""
 
 
 class TopBand(NamedTuple):
-    """A band above the common limit; NaN where the rate does not reach it.
+    """Level and kurtosis of a band above the common limit; NaN if the rate does not reach it.
 
     Parameters
     ----------
     level : float
-        Re the band that is described [dB].
+        Level re the described band [dB].
     kurtosis : float
-        [-]; NaN also where the band holds nothing.
+        [-]; NaN also for an empty band.
     """
 
     level: float
@@ -85,25 +85,25 @@ class TopBand(NamedTuple):
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """One channel and what has been computed of it so far. Made by `prepare`.
+    """Channel with lazily computed intermediate results, from `prepare`.
 
     Parameters
     ----------
     samples : ndarray, shape (n_samples,)
-        In the channel's own [unit].
+        In the channel's [unit].
     rate : float
         Sampling rate [Hz].
     kind : str
-        Of channel: pressure, acceleration or torque.
+        Kind of channel: pressure, acceleration or torque.
     calibrated : bool
         Whether the samples are in physical units.
     mean : float
         [unit]
     rms : float
-        About the mean [unit]; 0 for a signal that is constant but for rounding.
+        Rms value about the mean [unit]; 0 for a signal that is constant to rounding.
     stick_rate : float
-        How fast the torque rises in true stick [N m/s]: k_EFF times the shaft's speed (thesis,
-        (5.1)); NaN where that is not known.
+        Rate at which the torque rises in true stick [N m/s]: k_EFF times the shaft's speed (thesis,
+        (5.1)); NaN if unknown.
     """
 
     samples: NDArray[np.float64]
@@ -116,54 +116,54 @@ class Prepared:
 
     @property
     def low(self) -> float:
-        """Lower limit of the band that is described [Hz]."""
+        """Lower limit of the described band [Hz]."""
         return ACOUSTIC_FROM if self.kind in ACOUSTIC_KINDS else LOWEST
 
     @property
     def limit(self) -> float:
-        """Upper limit of the band that is described [Hz]: 7 kHz, or what the rate allows."""
+        """Upper limit of the described band [Hz]: 7 kHz, or less if the rate is low."""
         return min(WORKING_LIMIT, usable_limit(self.rate))
 
     @cached_property
     def silent(self) -> bool:
-        """Whether the band that is described holds nothing but leakage and rounding."""
+        """Whether the described band contains only leakage and rounding."""
         return self.rms == 0.0 or self.low >= self.limit or self.in_band_share < _LEAST_IN_BAND
 
     @cached_property
     def transform(self) -> Transform:
-        """Of the signal about its mean, divided by its rms value."""
+        """Fourier transform of the signal about its mean, divided by its rms value."""
         return forward((self.samples - self.mean) / self.rms, self.rate)
 
     @cached_property
     def below(self) -> tuple[NDArray[np.float64], float]:
-        """All below the limit, at the working rate, and that rate [Hz]; shape (n,)."""
+        """Signal below the limit at the working rate, shape (n,), and that rate [Hz]."""
         return band_signal(self.transform, 0.0, self.limit)
 
     @cached_property
     def in_band(self) -> tuple[NDArray[np.float64], float]:
-        """Part within the band described, at the working rate, and that rate [Hz]; shape (n,)."""
+        """Signal in the described band at the working rate, shape (n,), and that rate [Hz]."""
         return band_signal(self.transform, self.low, self.limit)
 
     @cached_property
     def in_band_power(self) -> float:
-        """Mean square of that part, over that of the signal [-]."""
+        """Mean square in the described band over that of the signal [-]."""
         return float(np.mean(self.in_band[0] ** 2))
 
     @cached_property
     def kurtosis(self) -> float:
-        """Kurtosis of that part [-]."""
+        """Kurtosis in the described band [-]."""
         x, _ = self.in_band
         return float(np.mean(np.square(np.square(x / x.std()))))
 
     @cached_property
     def in_band_share(self) -> float:
-        """Share of the power below the limit that lies within the band that is described."""
+        """Share of the power below the limit that lies within the described band [-]."""
         whole = float(np.mean(self.below[0] ** 2))
         return self.in_band_power / whole if whole > 0.0 else 0.0
 
     @cached_property
     def spectrum(self) -> Spectrum:
-        """Of the part within the band that is described."""
+        """Spectrum of the described band."""
         x, rate = self.in_band
         return welch(x, rate, line_resolution(x.size / rate))
 
@@ -196,13 +196,13 @@ class Prepared:
 
     @cached_property
     def short_time(self) -> dict[str, float]:
-        """Tones and levels of its short segments, and how they change from one to the next."""
+        """Tones and levels of short segments, and their changes."""
         x, rate = self.in_band
         return short_time(x, rate, low=self.low, high=self.limit)
 
     @cached_property
     def analytic(self) -> tuple[NDArray[np.complex128], float]:
-        """Analytic signal of the band that is described, and its rate [Hz]."""
+        """Analytic signal of the described band, and its rate [Hz]."""
         return band_analytic(self.transform, self.low, self.limit)
 
     @cached_property
@@ -220,19 +220,19 @@ class Prepared:
 
     @cached_property
     def slips(self) -> TorqueSlips:
-        """Slips of a torque, in its own unit."""
+        """Slips of a torque, in its unit."""
         return torque_slips(self.samples, self.rate)
 
     @cached_property
     def third_octave_levels(self) -> dict[str, float]:
-        """Levels in one-third octaves [dB], by nominal mid-band frequency; at least -80 re all."""
+        """One-third octave levels [dB] by mid-band frequency; at least -80 dB re the whole."""
         if self.rms == 0.0:
             return dict.fromkeys(NOMINAL_THIRD_OCTAVES, math.nan)
         spectrum = welch(self.samples, self.rate, THIRD_OCTAVE_RESOLUTION)
         levels = third_octave_levels(spectrum, reference=1.0)
         least = 20.0 * math.log10(self.rms) + LEAST_SHARE_DB
         unit = 20.0 * math.log10(REFERENCES[self.kind])
-        # A band that is not measured stays so.
+        # A band that is not measured stays NaN.
         return {
             name: level if math.isnan(level) else max(level, least) - unit
             for name, level in levels.items()
@@ -240,10 +240,10 @@ class Prepared:
 
     @cached_property
     def band_levels(self) -> dict[str, float]:
-        """Levels of bands [dB re the band described], by their limits in Hz.
+        """Levels of bands [dB re the described band], by their limits in Hz.
 
-        The thesis's own bands, which hold hum or reach beyond that band, are of the spectrum of all
-        that the rate holds. NaN where the rate does not reach one.
+        The thesis's bands, which contain hum or extend beyond the described band, are taken from
+        the whole spectrum. NaN if the rate does not reach a band.
         """
         levels = {
             f"{low}_{high}": self._share_db(self.spectrum, low, high)
@@ -265,20 +265,20 @@ class Prepared:
 
     @property
     def level(self) -> float:
-        """Level about the mean [dB]; NaN where nothing varies."""
+        """Level about the mean [dB]; NaN for a constant signal."""
         reference = REFERENCES[self.kind]
         return 20.0 * math.log10(self.rms / reference) if self.rms > 0.0 else math.nan
 
     @property
     def level_a(self) -> float:
-        """A-weighted level [dB]; NaN likewise."""
+        """A-weighted level [dB]; NaN for a constant signal."""
         if self.rms == 0.0:
             return math.nan
         return a_weighted_level(self.samples, self.rate, reference=REFERENCES[self.kind])
 
     @property
     def hum_share(self) -> float:
-        """Share of the power below the limit that lies below the band described [-]."""
+        """Share of the power below the limit that lies below the described band [-]."""
         described = self.rms > 0.0 and self.low < self.limit
         return 1.0 - min(1.0, self.in_band_share) if described else math.nan
 
@@ -294,12 +294,12 @@ class Prepared:
 
     @property
     def relative_oscillation(self) -> float:
-        """Rms value about the mean over the mean's magnitude [-]."""
+        """Rms value about the mean over the magnitude of the mean [-]."""
         return self.rms / abs(self.mean) if self.mean != 0.0 else math.nan
 
     @property
     def high_band(self) -> float:
-        """Level of what a torque has little of, above 2 kHz (thesis, 5.2.3) [dB]."""
+        """Level above 2 kHz, where a torque has little (thesis, 5.2.3) [dB]."""
         if usable_limit(self.rate) <= THESIS_BANDS[1][0]:
             return math.nan
         return self._share_db(self.spectrum, THESIS_BANDS[1][0], self.limit)
@@ -311,7 +311,7 @@ class Prepared:
 
     @cached_property
     def top_bands(self) -> tuple[TopBand, ...]:
-        """Of `TOP_BANDS`."""
+        """Level and kurtosis of `TOP_BANDS`."""
         return tuple(self._top_band(low, high) for low, high in TOP_BANDS)
 
     def _top_band(self, low: float, high: float) -> TopBand:
@@ -332,22 +332,22 @@ def prepare(
     stick_rate: float = math.nan,
     first: int = 0,
 ) -> Prepared:
-    """Check a signal and make it ready for features.
+    """Check a signal and prepare it for features.
 
     Parameters
     ----------
     signal : array_like, shape (n_samples,)
-        One channel, in its unit or, not calibrated, in fractions of full scale.
+        One channel, in its unit or, if not calibrated, in fractions of full scale.
     rate : float
         Sampling rate [Hz].
     kind : str
-        Of channel.
+        Kind of channel.
     calibrated : bool
         Whether the samples are in physical units.
     stick_rate : float
-        Of a torque [N m/s].
+        Rate of a torque in true stick [N m/s].
     first : int
-        Number of the first sample in its recording, for messages [-].
+        Index of the first sample in its recording, for messages.
 
     Returns
     -------
@@ -356,7 +356,7 @@ def prepare(
     Raises
     ------
     ParameterError
-        A signal that can't be analysed.
+        The signal cannot be analysed.
 
     Examples
     --------

@@ -1,11 +1,11 @@
-"""Features of a channel or a recording: the values of the entries of `features.table`.
+"""Features of a channel or a recording, as listed in `features.table`.
 
-A recording of 2^21 samples or more (44 s at 48 kHz) is described in equal pieces of at most 2^19,
-each by the same functions, and its features are those of the pieces put together.
+A recording of 2^21 samples or more (44 s at 48 kHz) is analysed in equal pieces of at most 2^19,
+whose features are combined.
 
-A contact that sticks takes the shaft's whole motion into the springs, so that the torque rises at
-k_EFF times the speed (thesis, 5.1); one that slides rises slower. With the clamp bolted down a
-simulated contact that sticks reaches the rate within 1 %, on beams within some 10 % at 1 rad/s.
+A sticking contact transfers the whole motion of the shaft to the springs, so the torque rises at
+k_EFF times the speed (thesis, 5.1); in sliding it rises slower. With the clamp bolted down a
+simulated sticking contact reaches this rate within 1 %, on beams within some 10 % at 1 rad/s.
 """
 
 from __future__ import annotations
@@ -28,8 +28,7 @@ from models.rig import Rig, effective_stiffness
 from models.rig_file import load_material_rig
 
 LONG, PIECE = 1 << 21, 1 << 19
-"""Samples of a channel from which on it is described in pieces, and the most in a piece: 44 s and
-11 s at 48 kHz."""
+"""Samples from which a channel is analysed in pieces (44 s at 48 kHz), and the largest piece."""
 
 
 def feature_vector(
@@ -40,31 +39,31 @@ def feature_vector(
     calibrated: bool = True,
     stick_rate: float = math.nan,
 ) -> dict[str, float]:
-    """All features of one channel.
+    """Return all features of one channel.
 
     Parameters
     ----------
     signal : array_like, shape (n_samples,)
-        In the channel's unit or, not calibrated, in fractions of full scale. 20 ms and more; what
-        needs longer to be told is NaN.
+        In the channel's unit or, if not calibrated, in fractions of full scale; 20 ms or more.
+        Features that need a longer signal are NaN.
     rate : float
-        Sampling rate [Hz]. Values of acoustic features do not depend on it from 16 kHz on, but
-        those of the top bands are NaN where it does not reach them.
+        Sampling rate [Hz]. From 16 kHz on acoustic features do not depend on it, except that top
+        bands beyond it are NaN.
     kind : {"pressure", "acceleration", "torque"}
     calibrated : bool
         Whether the samples are in physical units; levels are NaN otherwise.
     stick_rate : float
-        How fast a torque rises in true stick [N m/s], if known: k_EFF times the shaft's speed.
+        Rate of a torque in true stick [N m/s], if known: k_EFF times the shaft's speed.
 
     Returns
     -------
     dict of str to float
-        By name, as `feature_names` has them. NaN where a feature is undefined.
+        By the names of `feature_names`. NaN for an undefined feature.
 
     Raises
     ------
     ParameterError
-        A signal that can't be analysed, or a kind without features.
+        The signal cannot be analysed, or its kind has no features.
 
     Examples
     --------
@@ -80,7 +79,7 @@ def feature_vector(
 
 
 def piece_count(n_samples: int) -> int:
-    """Pieces in which a channel of so many samples is described.
+    """Return the number of pieces in which a channel is analysed.
 
     Examples
     --------
@@ -93,55 +92,55 @@ def piece_count(n_samples: int) -> int:
 def recording_features(
     recording: Recording | RecordingBlocks,
 ) -> dict[str, float]:
-    """Features of the first channel of each kind in a recording.
+    """Return the features of the first channel of each kind in a recording.
 
     Parameters
     ----------
     recording : Recording or RecordingBlocks
-        In memory, or one of which parts can be had, as `noise.recordings` opens. From
-        2^21 samples on it is described in pieces.
+        Recording in memory, or read in parts as `noise.recordings` opens it. From 2^21 samples on
+        it is analysed in pieces.
 
     Returns
     -------
     dict of str to float
-        By name with the kind as prefix, as `recording_feature_names` has them. NaN for kinds that
+        By the names of `recording_feature_names`, which have the kind as prefix. NaN for kinds that
         the recording does not have.
 
     Raises
     ------
     ParameterError
-        A channel that can't be analysed; the message names it.
+        A channel cannot be analysed; the message names it.
 
     Examples
     --------
     >>> import numpy as np
     >>> from models.recording import Channel, Recording
     >>> hiss = np.random.default_rng(1).normal(size=(1, 4800))
-    >>> found = recording_features(Recording(hiss, 48e3, (Channel("pressure"),)))
-    >>> found["pressure_line_count"], found["torque_slip_rate"]
+    >>> features = recording_features(Recording(hiss, 48e3, (Channel("pressure"),)))
+    >>> features["pressure_line_count"], features["torque_slip_rate"]
     (0.0, nan)
     """
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
     for kind in KINDS:
-        wanted = {f"{kind}_{feature.name}": feature for feature in features_of(kind)}
+        by_name = {f"{kind}_{feature.name}": feature for feature in features_of(kind)}
         row = recording.first(kind)
         if row is None:
-            found |= dict.fromkeys(wanted, math.nan)
+            values |= dict.fromkeys(by_name, math.nan)
             continue
         try:
             stick_rate = stick_rate_of(recording) if kind == "torque" else math.nan
-            values = _in_pieces(
-                reader_of(recording, row), recording.n_samples, [*wanted.values()],
+            of_channel = _in_pieces(
+                reader_of(recording, row), recording.n_samples, [*by_name.values()],
                 rate=recording.rate, kind=kind, calibrated=recording.calibrated,
                 stick_rate=stick_rate,
             )  # fmt: skip
-            found |= zip(wanted, values, strict=True)
+            values |= zip(by_name, of_channel, strict=True)
         except ParameterError as error:
             channel = recording.channels[row].name
             raise ParameterError(
                 f"recording {recording.name!r}, channel {channel!r}: {error}"
             ) from error
-    return found
+    return values
 
 
 def _in_pieces(
@@ -154,7 +153,7 @@ def _in_pieces(
     calibrated: bool,
     stick_rate: float,
 ) -> list[float]:
-    """Features of a channel, of a long one put together from those of its pieces."""
+    """Return the features of a channel; those of a long one combine its pieces."""
     edges = np.linspace(0, n_samples, piece_count(n_samples) + 1).astype(int).tolist()
     values, power, moments = [], [], []
     for first, last in itertools.pairwise(edges):
@@ -172,59 +171,59 @@ def _in_pieces(
     )  # fmt: skip
     weights = np.array(power) if any(power) else np.ones(len(power))
     return [
-        feature(whole) if feature.pooled is None else _together(feature.pooled, column, weights)
+        feature(whole) if feature.pooled is None else _pooled(feature.pooled, column, weights)
         for feature, column in zip(features, np.array(values).T, strict=True)
     ]
 
 
-def _together(
+def _pooled(
     pooled: Callable[[NDArray[np.float64], NDArray[np.float64]], float],
     values: NDArray[np.float64],
     power: NDArray[np.float64],
 ) -> float:
-    """One value of those of all pieces; where a piece has none, it does not count."""
-    known = ~np.isnan(values)
-    if not known.any():
+    """Combine the values of all pieces; a piece without a value does not count."""
+    defined = ~np.isnan(values)
+    if not defined.any():
         return math.nan
     if pooled is pooled_levels:
-        known[:] = True
-    elif power[known].any():
-        return pooled(values[known], power[known])
-    return pooled(values[known], np.ones(int(known.sum())))
+        defined[:] = True
+    elif power[defined].any():
+        return pooled(values[defined], power[defined])
+    return pooled(values[defined], np.ones(int(defined.sum())))
 
 
 _ANGLE_BLOCK = 0.02
-"""Length over which the angle is averaged before its slope is taken [s]."""
+"""Length of the blocks of angle whose means give the speed [s]."""
 
 _LEAST_ANGLE_BLOCKS = 3
 
 _MOST_SPEEDS = 1 << 21
-"""Samples of a speed of which the median is taken; of more, every so many-th."""
+"""Most samples for the median of a speed; longer ones are thinned."""
 
 _AT_ONCE = 1 << 16
-"""Samples looked at together."""
+"""Samples read at a time."""
 
 
 def stick_rate_of(recording: Recording | RecordingBlocks) -> float:
-    """Product of k_EFF and the shaft's speed (thesis, (5.1)).
+    """Return the rate of the torque in true stick, k_EFF times the shaft's speed (thesis, (5.1)).
 
     Parameters
     ----------
     recording : Recording or RecordingBlocks
-        Its condition tells interference, support and material, whose shipped rig has the
+        Its condition states interference, support and material, whose shipped rig has the
         elastomer's stiffness.
 
     Returns
     -------
     float
-        [N m/s], without sign; NaN where speed, interference, support or material is not known.
+        Magnitude [N m/s]; NaN if speed, interference, support or material is unknown.
 
     Examples
     --------
     >>> from models.condition import Condition
     >>> from models.recording import Channel, Recording
-    >>> known = Condition(5.0, 0.279e-3, 2214.0, "fluorocarbon-thesis")
-    >>> run = Recording(np.zeros((1, 480)), 48e3, (Channel("torque"),), known)
+    >>> condition = Condition(5.0, 0.279e-3, 2214.0, "fluorocarbon-thesis")
+    >>> run = Recording(np.zeros((1, 480)), 48e3, (Channel("torque"),), condition)
     >>> round(stick_rate_of(run))
     2557
     """
@@ -239,7 +238,11 @@ def stick_rate_of(recording: Recording | RecordingBlocks) -> float:
 
 
 def _speed(recording: Recording | RecordingBlocks) -> float | None:
-    """Magnitude of the shaft's speed: median of its channels, or as it was set."""
+    """Return the magnitude of the shaft's speed: median of its channels, else the condition's.
+
+    Labels average the speed over a segment, identification and diagnosis need its course: they
+    compute it from the same channels in other ways, whose bits the shipped models learned.
+    """
     speed, angle = recording.first("speed"), recording.first("angle")
     n = recording.n_samples
     if recording.calibrated and speed is not None:
@@ -251,7 +254,7 @@ def _speed(recording: Recording | RecordingBlocks) -> float | None:
     if recording.calibrated and angle is not None:
         n_blocks = n // block
         if n_blocks >= _LEAST_ANGLE_BLOCKS:
-            # Means of blocks first: the difference of single samples would be that of their noise.
+            # Means of blocks first, since differences of single samples are dominated by noise.
             read = reader_of(recording, angle)
             means = np.concatenate(
                 [
@@ -266,7 +269,7 @@ def _speed(recording: Recording | RecordingBlocks) -> float | None:
 
 @lru_cache(maxsize=16)
 def _shipped(material: str | None) -> Rig | None:
-    """Return the shipped rig with a material; nothing where the program does not know it."""
+    """Return the shipped rig with a material, or None for an unknown one."""
     try:
         return None if material is None else load_material_rig(material)
     except ParameterError:

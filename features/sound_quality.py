@@ -1,13 +1,12 @@
-"""Sound quality: loudness, sharpness, roughness, tones that stand out.
+"""Sound quality: loudness, sharpness, roughness and prominent tones.
 
-The standards' procedures are long and their tables longer, so they are left to the library that
-the field keeps for them, MoSQITo (Apache-2.0), an optional extra. It is loaded when it is first
-asked for, which takes a second. What it takes without a word is refused here: sounds too short for
-its filters and windows, and rates other than the 48 kHz that its tables hold for. Silence has a
-loudness of zero and neither sharpness nor tone.
+The standards' procedures are those of MoSQITo (Apache-2.0), an optional extra that is imported at
+first use, which takes a second. Inputs that it accepts silently are refused here: sounds too short
+for its filters and windows, and rates other than 48 kHz. Silence has a loudness of zero and neither
+sharpness nor tone.
 
 Sound arrives from the front, in a free field. Roughness is that of Daniel and Weber, the mean of
-its windows of 200 ms. Tones are sought in each second by itself, so that a run-up keeps its tone.
+its windows of 200 ms. Tones are determined second by second, so that a run-up does not smear them.
 """
 
 from __future__ import annotations
@@ -26,21 +25,21 @@ from features.kernels.conditioning import checked_signal
 from models.errors import ParameterError, not_installed
 
 SOUND_QUALITY_RATE = 48000
-"""The sampling rate that the procedures' tables hold for [Hz]."""
+"""Sampling rate of the procedures' tables [Hz]."""
 
 SHORTEST = 0.5
-"""Shortest sound whose quality can be told [s]."""
+"""Shortest sound with a sound quality [s]."""
 
 _OVER_N5 = 95.0
 """Percentile that is exceeded in 5 % of the time [%]."""
 
 _BLOCK = 1.0
-"""In which tones are sought [s]."""
+"""Length of the blocks in which tones are determined [s]."""
 
 
 @dataclass(frozen=True)
 class SoundQuality:
-    """What the ear makes of a sound.
+    """Psychoacoustic measures of a sound.
 
     Parameters
     ----------
@@ -49,7 +48,7 @@ class SoundQuality:
     loudness_n5, loudness_n10 : float
         ISO 532-1, method for time-varying sounds: exceeded in 5 and 10 % of the time [sone].
     sharpness : float
-        DIN 45692 [acum]; NaN for what is not heard.
+        DIN 45692 [acum]; NaN for an inaudible sound.
     roughness : float
         Daniel and Weber (1997) [asper].
     tone_to_noise : float
@@ -57,7 +56,7 @@ class SoundQuality:
     prominence : float
         Largest prominence ratio of a prominent tone, ECMA-418-1 [dB]; NaN without such a tone.
     tone_frequency : float
-        Of the tone with the largest prominence ratio [Hz]; NaN without such a tone.
+        Frequency of the tone with the largest prominence ratio [Hz]; NaN without such a tone.
     """
 
     loudness: float
@@ -71,7 +70,7 @@ class SoundQuality:
 
 
 def check_available() -> None:
-    """Refuse to go on without the extra, before work is done that needs it.
+    """Raise if the extra is not installed.
 
     Raises
     ------
@@ -88,7 +87,7 @@ def check_available() -> None:
 
 
 def sound_quality_of(pressure: ArrayLike, rate: float) -> SoundQuality:
-    """Psychoacoustic measures of a sound.
+    """Compute the psychoacoustic measures of a sound.
 
     Parameters
     ----------
@@ -104,7 +103,7 @@ def sound_quality_of(pressure: ArrayLike, rate: float) -> SoundQuality:
     Raises
     ------
     ParameterError
-        The extra is not installed, the sound is too short or has another rate, or can't be
+        The extra is not installed, or the sound is too short, has another rate, or cannot be
         analysed.
 
     Notes
@@ -124,7 +123,7 @@ def sound_quality_of(pressure: ArrayLike, rate: float) -> SoundQuality:
     x = x - x.mean()
     fs = SOUND_QUALITY_RATE
     with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")  # silence divides by zero; it is NaN, and said to be
+        warnings.simplefilter("ignore")  # silence divides by zero; its result is NaN
         loudness = float(library.loudness_zwst(x, fs)[0])
         over_time = np.asarray(library.loudness_zwtv(x, fs)[0])
         sharpness = float(library.sharpness_din_st(x, fs)) if loudness > 0.0 else math.nan
@@ -138,9 +137,9 @@ def sound_quality_of(pressure: ArrayLike, rate: float) -> SoundQuality:
 
 
 def loudness_n5(pressure: ArrayLike, rate: float) -> float:
-    """Loudness that is exceeded in 5 % of the time, ISO 532-1 for time-varying sounds.
+    """Return the loudness exceeded in 5 % of the time, ISO 532-1 for time-varying sounds.
 
-    `sound_quality_of` takes six times as long.
+    It takes a sixth of the time of `sound_quality_of`.
 
     Parameters
     ----------
@@ -157,7 +156,7 @@ def loudness_n5(pressure: ArrayLike, rate: float) -> float:
     Raises
     ------
     ParameterError
-        A sound or a rate that the procedures do not take, or MoSQITo is not installed.
+        The procedures do not support the sound or its rate, or MoSQITo is not installed.
 
     Examples
     --------
@@ -174,13 +173,13 @@ def loudness_n5(pressure: ArrayLike, rate: float) -> float:
 
 
 def _long_enough(pressure: ArrayLike, rate: float) -> NDArray[np.float64]:
-    """Return a sound that the procedures take."""
+    """Check that the procedures support a sound, and return it as an array."""
     x = checked_signal(pressure, rate)
     if rate != SOUND_QUALITY_RATE:
-        raise ParameterError(f"sound quality is told at 48000 Hz; resample from {rate:g} Hz first")
+        raise ParameterError(f"sound quality needs 48000 Hz; resample from {rate:g} Hz first")
     if x.size < SHORTEST * rate:
         raise ParameterError(
-            f"sound of {x.size / rate:.3g} s is too short for its quality to be told; give "
+            f"sound of {x.size / rate:.3g} s is too short for sound quality; give "
             f"{SHORTEST:g} s or more"
         )
     return x
@@ -189,7 +188,7 @@ def _long_enough(pressure: ArrayLike, rate: float) -> NDArray[np.float64]:
 def _strongest_tone(
     ratios: Callable[[NDArray[np.float64], int], tuple[Any, Any, Any, Any]], x: NDArray[np.float64]
 ) -> tuple[float, float]:
-    """Largest ratio of a prominent tone in any block, and its frequency."""
+    """Return the largest ratio of a prominent tone in any block, and its frequency."""
     n_blocks = max(1, int(x.size / (_BLOCK * SOUND_QUALITY_RATE)))
     best = (math.nan, math.nan)
     for block in np.array_split(x, n_blocks):

@@ -1,18 +1,17 @@
-"""Features of a signal, a recording or a half-second window: one table of all, `features.csv`.
+"""Table of all features of signals, recordings and half-second windows, from `features.csv`.
 
-A further feature is a row there: name, unit, definition and source, the kinds of channel or
-``window``, and where its value stands in what has been computed, as a path such as
-``harmonics/count``. The value of a silent signal may be a number, or what stands there all the
-same (``value``); without either it is undefined. Creak is broadband, squawk has several discrete
-frequencies, squeal one that predominates, and a creak is impulsive at each slip (thesis, 5.2.3);
-the rows follow these words. Of sound and acceleration all but levels refer to the part from 150 Hz
-to 7 kHz, of a torque to its oscillation about the mean from 5 Hz to 7 kHz, so that neither the gain
-nor a drifting offset matters. A band is missing where the rate does not reach it, or where the
-signal is too short for four bins in it.
+A new feature is a row there: name, unit, definition and source, the kinds of channel or ``window``,
+and the path to its value in the prepared signal, such as ``harmonics/count``. The value for a
+silent signal may be a number, or the one at the path (``value``); otherwise it is undefined. Creak
+is broadband, squawk has several discrete frequencies, squeal one predominant frequency, and a creak
+is impulsive at each slip (thesis, 5.2.3); the rows follow these definitions. For sound and
+acceleration all features except levels refer to the band from 150 Hz to 7 kHz, for a torque to its
+oscillation about the mean from 5 Hz to 7 kHz, so neither gain nor a drifting offset matters. A band
+is missing if the rate does not reach it, or if the signal is too short for four bins in it.
 
-The features of windows are what the classifier is given. They are computed for hours of sound at
-once (`features.windows`), A-weighted, in single precision and from other segments; so what has the
-same name there is the same idea but another number, and neither can stand in for the other.
+The features of windows are the input of the classifier. They are computed for hours of sound at
+once (`features.windows`), A-weighted, in single precision and from other segments; a feature of the
+same name there is the same quantity but another number, and neither can replace the other.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ KINDS = (*ACOUSTIC_KINDS, "torque")
 
 
 def _mean_by_power(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:
-    """Mean weighted by power."""
+    """Return the mean weighted by power."""
     return float(np.average(values, weights=power))
 
 
@@ -46,17 +45,17 @@ def _mean_over_time(values: NDArray[np.float64], power: NDArray[np.float64]) -> 
 
 
 def pooled_levels(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:  # noqa: ARG001
-    """Level of the mean power [dB], of levels of shape (n,); an empty piece counts as silent."""
+    """Return the level of the mean power [dB] of levels, shape (n,); NaN counts as silence."""
     return 10.0 * math.log10(float(np.mean(np.nan_to_num(10.0 ** (0.1 * values)))))
 
 
 def _level_of_part(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:
-    """Level of a part of the power relative to all of it, of such levels."""
+    """Return the level of a part of the power relative to the whole, from such levels."""
     return 10.0 * math.log10(_mean_by_power(10.0 ** (0.1 * values), power))
 
 
 def _peak(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:
-    """Peak relative to the rms value [dB], of such levels."""
+    """Return the peak relative to the rms value [dB], from such levels."""
     return float(np.max(values + 10.0 * np.log10(power / power.mean())))
 
 
@@ -70,7 +69,7 @@ def _kurtosis(values: NDArray[np.float64], power: NDArray[np.float64]) -> float:
 
 
 Pooling = Callable[[NDArray[np.float64], NDArray[np.float64]], float]
-"""Puts the values of pieces together, given their power."""
+"""Function of the values of pieces and their power that combines them."""
 
 _POOLING: dict[str, Pooling | None] = {
     "": _mean_by_power,
@@ -83,39 +82,39 @@ _POOLING: dict[str, Pooling | None] = {
     "kurtosis": _kurtosis,
     "whole": None,
 }
-"""By the name in the column ``pooled``."""
+"""Pooling functions by name in the column ``pooled``."""
 
 
 @short_repr
 @dataclass(frozen=True)
 class Feature:
-    """One number that describes a signal: a row of the table.
+    """Feature of a signal: a row of the table.
 
     Parameters
     ----------
     name : str
     unit : str
-        "1" for pure numbers.
+        "1" for dimensionless numbers.
     definition : str
-        In one line.
+        Definition in one line.
     source : str
-        Where the definition comes from.
+        Source of the definition.
     value : str
-        Path to it: attributes, keys and places, divided by "/", of a `Prepared` signal, or of the
-        parts of windows (`features.windows.table`).
+        Path to the value: attributes, keys and indices, separated by "/", of a `Prepared` signal,
+        or of the parts of windows (`features.windows.table`).
     silent : float, optional
-        Value for a signal without content [unit]; None where `value` knows itself.
+        Value for a signal without content [unit]; None if the path has it.
     calibrated : bool
         Whether it needs a calibrated signal; all others do not depend on the gain.
     kinds : tuple of str
-        Kinds of channel it applies to; ``window`` for windows of sound or acceleration.
+        Kinds of channel; ``window`` for windows of sound or acceleration.
     tolerance : tuple of 2 floats
-        How closely values agree that come from the same sound at different sampling rates, 16 to
-        192 kHz: within this share, or within this much [unit], whichever is more. It holds for
-        what the rates have in common, so for `level` and `level_a` where nothing lies above 7 kHz.
+        Agreement of values of the same sound at sampling rates from 16 to 192 kHz: within this
+        share, or within this much [unit], whichever is more. It refers to the common band, so for
+        `level` and `level_a` to sounds without content above 7 kHz.
     pooled : callable, optional
-        Puts the values of a long recording's pieces together, given their power within the band
-        described; by default their mean by power. None where mean and rms value make the feature.
+        Function that combines the values of a long recording's pieces, given their power in the
+        described band; by default the mean by power. None for features of mean and rms value.
 
     Examples
     --------
@@ -137,7 +136,7 @@ class Feature:
     pooled: Pooling | None = _mean_by_power
 
     def __call__(self, signal: Prepared) -> float:
-        """Value for a signal; NaN where it is undefined."""
+        """Return the value for a signal; NaN if undefined."""
         if self.calibrated and not signal.calibrated:
             return math.nan
         if self.silent is not None and signal.silent:
@@ -145,7 +144,7 @@ class Feature:
         return float(self.of(signal))
 
     def of(self, described: Any) -> Any:
-        """Return the value in what has been computed; NaN where a part of that is missing."""
+        """Return the value at the feature's path; NaN if a part of it is None."""
         for step in self.value.split("/"):
             if isinstance(described, Mapping):
                 described = described[step]
@@ -158,12 +157,12 @@ class Feature:
         return described
 
     def hertz(self, octaves: float) -> float:
-        """Frequency of a value that counts in octaves.
+        """Convert a value in octaves to a frequency.
 
         Parameters
         ----------
         octaves : float
-            In the unit of the feature, such as ``"octave re 100 Hz"`` [octave].
+            Value in the unit of the feature, such as ``"octave re 100 Hz"`` [octave].
 
         Returns
         -------
@@ -199,14 +198,14 @@ with Path(__file__).with_name("features.csv").open(encoding="utf-8", newline="")
     _ROWS = tuple(map(_row, csv.DictReader(_file)))
 
 FEATURES = tuple(feature for feature in _ROWS if feature.kinds != ("window",))
-"""Features of signals, in the order of the feature vector; those of a torque last."""
+"""Features of signals, in the order of the feature vector; those of a torque come last."""
 
 WINDOW_FEATURES = tuple(feature for feature in _ROWS if feature.kinds == ("window",))
-"""Of a window of sound or acceleration, in the order of the classifier's features."""
+"""Features of windows of sound or acceleration, in the order of the classifier's inputs."""
 
 
 def features_of(kind: str) -> tuple[Feature, ...]:
-    """Entries of the features of a kind of channel, in the order of the feature vector.
+    """Return the features of a kind of channel, in the order of the feature vector.
 
     Parameters
     ----------
@@ -219,7 +218,7 @@ def features_of(kind: str) -> tuple[Feature, ...]:
     Raises
     ------
     ParameterError
-        A kind that has no features.
+        The kind has no features.
 
     Examples
     --------
@@ -232,7 +231,7 @@ def features_of(kind: str) -> tuple[Feature, ...]:
 
 
 def feature_names(kind: str) -> tuple[str, ...]:
-    """Names of the features of a kind of channel, in the order of the feature vector.
+    """Return the names of the features of a kind of channel, in the order of the vector.
 
     Parameters
     ----------
@@ -245,7 +244,7 @@ def feature_names(kind: str) -> tuple[str, ...]:
     Raises
     ------
     ParameterError
-        A kind that has no features.
+        The kind has no features.
 
     Examples
     --------
@@ -256,7 +255,7 @@ def feature_names(kind: str) -> tuple[str, ...]:
 
 
 def recording_feature_names() -> tuple[str, ...]:
-    """Names in the order of `recording_features`.
+    """Return the names of all features of a recording, in the order of `recording_features`.
 
     Returns
     -------

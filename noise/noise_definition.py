@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.levels import overall_level
+from features.kernels.level_meter import overall_level
 from features.kernels.lines import Lines, find_lines
 from features.kernels.spectra import autospectrum
 from models.recording import REFERENCE_PRESSURE

@@ -1,1 +1,1 @@
-"""The calculations that features rest on: spectra, bands, lines, harmonics, slips, levels."""
+"""Computations behind the features: spectra, bands, lines, harmonics, slips, levels."""

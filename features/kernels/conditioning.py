@@ -1,14 +1,13 @@
-"""Bands of a signal at rates of their own, cut from one transform of the whole signal.
+"""Bands of a signal at their own rates, from one Fourier transform of the whole signal.
 
-Recordings come at 16 to 96 kHz, and a number that describes a noise must not depend on which.
-So all that describes the shape of a noise in frequency or time is computed from its part below
-`WORKING_LIMIT`, brought to `WORKING_RATE` first; what lies above has features of its own. One
-Fourier transform of the whole signal gives every band by masking bins and transforming back to a
-length just long enough for it, which is resampling and filtering in one. A block cut from a longer
-recording does not end where it began: it is faded in and out over 20 ms before the transform, so
-that the cut makes no click, and what was faded is cut off from every band. Continuing the block
-beyond its ends instead was tried: mirrored, a tone gets a kink, and turned about the last sample,
-noise gets a step; either is louder than what a quiet band holds.
+Recordings have rates from 16 to 96 kHz, and features of a noise must not depend on them. So the
+features of its shape in frequency or time are computed from the part below `WORKING_LIMIT`,
+resampled to `WORKING_RATE`; higher frequencies have features of their own. Masking bins of one
+transform and transforming back to a sufficient length filters and resamples at once. A block cut
+from a longer recording does not end where it began: it is faded in and out over 20 ms before the
+transform, so that the cut does not click, and the fades are removed from every band. Reflections at
+the ends are no alternative: a mirrored tone gets a kink, and noise reflected about its last sample
+gets a step; both are louder than a quiet band.
 """
 
 from __future__ import annotations
@@ -23,22 +22,22 @@ from scipy import fft
 from models.errors import ParameterError
 
 WORKING_RATE = 16_000.0
-"""Sampling rate [Hz] at which features that must not depend on the recording's are computed."""
+"""Sampling rate of features that must not depend on the recording's rate [Hz]."""
 
 ACOUSTIC_FROM = 150.0
-"""Frequency [Hz] from which sound and acceleration are described: below lie hum and rumble."""
+"""Lower limit of the features of sound and acceleration [Hz], above hum and rumble."""
 
 WORKING_LIMIT = 7_000.0
-"""Frequency [Hz] up to which they see the signal: what a rate of 16 kHz holds with a clean edge."""
+"""Upper limit of the features [Hz], which a rate of 16 kHz covers with a clean edge."""
 
 USABLE_SHARE = WORKING_LIMIT / WORKING_RATE
-"""Share of a sampling rate up to which its content is taken at face value."""
+"""Share of a sampling rate up to which its content is usable."""
 
 NOTHING = 1e-9
-"""A signal that varies less than this, relative to its mean, is constant but for rounding."""
+"""Relative variation about the mean below which a signal is constant to rounding."""
 
 _FADE = 0.02
-"""Length of the fades that are cut off again [s]: of a hum, 60 dB less is left above 150 Hz ..."""
+"""Length of the fades, which are cut off again [s]; a hum leaks 60 dB less above 150 Hz ..."""
 
 _FADE_SHARE = 0.1
 """... but at most this share of the signal each."""
@@ -47,7 +46,7 @@ _EDGE = 0.2
 """Width of the flank below a band, as a share of the band's lower limit."""
 
 MIN_SAMPLES = 16
-"""Fewer samples than this cannot be analysed."""
+"""Fewest samples of a signal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +56,9 @@ class Transform:
     Parameters
     ----------
     bins : ndarray of complex, shape (length // 2 + 1,)
-        As `scipy.fft.rfft` scales them.
+        Scaled as by `scipy.fft.rfft`.
     length : int
-        Samples transformed, zeros at the end included.
+        Length of the transform, including zeros at the end.
     lead : int
         Samples of the fade at the start.
     n_samples : int
@@ -76,7 +75,7 @@ class Transform:
 
 
 def usable_limit(rate: float) -> float:
-    """Highest frequency to which a sampling rate is taken at face value.
+    """Return the highest usable frequency of a sampling rate.
 
     Parameters
     ----------
@@ -97,7 +96,7 @@ def usable_limit(rate: float) -> float:
 
 
 def checked_signal(signal: ArrayLike, rate: float, first: int = 0) -> NDArray[np.float64]:
-    """Return the signal as an array of floats, refused if it can't be analysed.
+    """Return a signal as an array of floats, or raise if it cannot be analysed.
 
     Parameters
     ----------
@@ -106,18 +105,18 @@ def checked_signal(signal: ArrayLike, rate: float, first: int = 0) -> NDArray[np
     rate : float
         Sampling rate [Hz].
     first : int
-        Number of the first sample in its recording, for messages [-].
+        Index of the first sample in its recording, for messages.
 
     Returns
     -------
     ndarray, shape (n_samples,)
-        In the signal's own [unit].
+        In the signal's [unit].
 
     Raises
     ------
     ParameterError
-        Not one-dimensional, shorter than 16 samples, a sample that is no finite number, or a rate
-        that is not positive.
+        The signal is not one-dimensional, shorter than 16 samples or not finite, or the rate is not
+        positive.
 
     Examples
     --------
@@ -143,7 +142,7 @@ def checked_signal(signal: ArrayLike, rate: float, first: int = 0) -> NDArray[np
 
 
 def forward(signal: NDArray[np.float64], rate: float) -> Transform:
-    """Transform a signal faded in and out over 20 ms, or a tenth of its length each.
+    """Return the transform of a signal faded in and out over 20 ms, or a tenth of its length.
 
     Parameters
     ----------
@@ -174,12 +173,12 @@ def forward(signal: NDArray[np.float64], rate: float) -> Transform:
 
 
 def edge_fade(n_samples: int, rate: float) -> NDArray[np.float64]:
-    """Gain that a signal is faded in with; out by the same, backwards.
+    """Return the gain of the fade-in of a signal; its fade-out is the reverse.
 
     Parameters
     ----------
     n_samples : int
-        Of the signal.
+        Samples of the signal.
     rate : float
         Sampling rate [Hz].
 
@@ -198,22 +197,21 @@ def edge_fade(n_samples: int, rate: float) -> NDArray[np.float64]:
 
 
 def band_signal(transform: Transform, low: float, high: float) -> tuple[NDArray[np.float64], float]:
-    """Part of a signal between two frequencies, at the lowest rate that holds it cleanly.
+    """Return a band of a signal at the lowest rate that contains it cleanly.
 
     Parameters
     ----------
     transform : Transform
     low, high : float
-        Limits of the band [Hz]; `low` 0 keeps everything below `high`. The flanks outside them are
+        Limits of the band [Hz]; with `low` 0 everything below `high`. The flanks outside them are
         raised cosines, 20 % wide below and 14 % above.
 
     Returns
     -------
     samples : ndarray, shape (n,)
-        In the signal's own [unit].
+        In the signal's [unit].
     rate : float
-        [Hz]; `high` divided by `USABLE_SHARE` to within the rounding of whole samples, at most the
-        rate of the signal.
+        [Hz]; `high` over `USABLE_SHARE`, rounded to whole samples, at most the rate of the signal.
 
     Examples
     --------
@@ -236,7 +234,7 @@ def band_signal(transform: Transform, low: float, high: float) -> tuple[NDArray[
 def band_analytic(
     transform: Transform, low: float, high: float
 ) -> tuple[NDArray[np.complex128], float]:
-    """Analytic signal of a band, shifted to zero frequency: its magnitude is the band's envelope.
+    """Return the analytic signal of a band at zero frequency; its magnitude is the envelope.
 
     Parameters
     ----------
@@ -271,7 +269,7 @@ def band_analytic(
 def _mask(
     transform: Transform, low: float, high: float, n_bins: int
 ) -> tuple[int, NDArray[np.float64]]:
-    """First bin of a band with its flanks, and its gain from there on."""
+    """Return the first bin of a band with its flanks, and its gain from there on."""
     spacing = transform.rate / transform.length
     above = min(high * 0.5 / USABLE_SHARE, 0.5 * transform.rate)
     first = math.ceil((1.0 - _EDGE) * low / spacing)
@@ -289,6 +287,6 @@ def _mask(
 
 
 def _interior(transform: Transform, ratio: float) -> slice:
-    """Where the signal itself lies among the samples transformed back."""
+    """Return the slice of the signal without fades among the samples of a band."""
     start = round(transform.lead * ratio)
     return slice(start, start + max(1, round(transform.n_samples * ratio)))

@@ -1,14 +1,14 @@
-"""Harmonic structure of a vibration: its period, its fundamental, the power in its harmonics.
+"""Harmonic structure of a vibration: period, fundamental and power in the harmonics.
 
-A friction vibration may repeat five times a second or seven thousand times, and the line at its
+A friction vibration may repeat five to seven thousand times per second, and the line at its
 fundamental may be the weakest of all: in stick-slip with feedback from the beams the third or
-fourth harmonic of the slip frequency leads (thesis, 5.2.1). So the period is that of the
-autocorrelation, of the signal whitened by half (in decibels) in one-third octaves, so that one
-strong resonance does not hide it, and divided by the energy it is taken over, so that a burst is
-not mistaken for an aperiodic signal. Of the maxima nearly as high as the highest the one at the
-shortest lag is the period. The discrete lines that lie on its harmonics then refine it. Harmonicity
-counts the power above the local noise floor, so that noise which happens to fall on a dense grid of
-harmonics counts for nothing.
+fourth harmonic of the slip frequency is the strongest (thesis, 5.2.1). So the period is that of the
+autocorrelation of the signal. The signal is whitened by half (in decibels) in one-third octaves, so
+that one strong resonance does not hide the period, and the autocorrelation is divided by the energy
+of its overlap, so that a burst does not seem aperiodic. Among the maxima nearly as high as the
+highest, the one at the shortest lag is the period. Discrete lines on its harmonics then refine it.
+Harmonicity counts the power above the local noise floor, so noise on a dense grid of harmonics does
+not count.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ from models.errors import ParameterError
 from models.show import short_repr
 
 _NEARLY = 0.9
-"""A maximum this high relative to the highest is the period if its lag is shorter."""
+"""Height over the highest maximum from which a maximum at a shorter lag is the period."""
 
 _PERIODS = 2.0
-"""Periods that a signal must hold."""
+"""Fewest periods in a signal."""
 
 _WHITENING = 0.5
 """Share of the level differences between one-third octaves that whitening removes."""
@@ -55,24 +55,24 @@ _WHITENING = 0.5
 _SIXTH_OCTAVE = 2.0 ** (1.0 / 6.0) - 1.0
 
 _LEAST_REACH = 20.0
-"""Half the width over which whitening averages where one-third octaves are narrower [Hz]."""
+"""Least half width of the whitening's average, where one-third octaves are narrower [Hz]."""
 
 _OVERSAMPLING = 2
-"""Values of an autocorrelation a lag."""
+"""Values of an autocorrelation per lag."""
 
 _TRACK_OVERSAMPLING = 4
 
 
 class Period(NamedTuple):
-    """Repetition of a signal.
+    """Period of a signal.
 
     Parameters
     ----------
     frequency : float
-        Repetitions in a second [Hz]; NaN if there are none.
+        Repetition rate [Hz]; NaN if there is none.
     strength : float
-        Normalised autocorrelation at the period [-]: 1 where every period is like the one before, 0
-        where there is none.
+        Normalised autocorrelation at the period [-]: 1 if all periods are equal, 0 if there is
+        none.
     """
 
     frequency: float
@@ -85,7 +85,7 @@ _NONE = Period(math.nan, 0.0)
 def strongest_period(
     x: NDArray[np.float64], rate: float, *, lowest: float, highest: float, whiten: bool = True
 ) -> Period:
-    """Period of a whole signal.
+    """Find the period of a signal.
 
     Parameters
     ----------
@@ -94,9 +94,9 @@ def strongest_period(
     rate : float
         Sampling rate [Hz].
     lowest, highest : float
-        Limits of the search [Hz]. The signal must hold two periods, which may raise `lowest`.
+        Limits of the search [Hz]. The signal must contain two periods, which may raise `lowest`.
     whiten : bool
-        Whether to whiten, as an envelope need not be.
+        Whether to whiten the signal; not needed for an envelope.
 
     Returns
     -------
@@ -153,12 +153,12 @@ def strongest_period(
 def track_periods(
     power: NDArray[np.float64], spacing: float, *, lowest: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Period of each of many short segments, from their power spectra.
+    """Find the period of each of many short segments from their power spectra.
 
     Parameters
     ----------
     power : ndarray, shape (n_segments, n_bins)
-        In any [unit^2], of Hann-windowed segments, from 0 Hz; bins that shall not count are 0.
+        In any [unit^2], of Hann-windowed segments, from 0 Hz; bins to ignore are 0.
     spacing : float
         Distance between the bins [Hz].
     lowest : float
@@ -167,7 +167,7 @@ def track_periods(
     Returns
     -------
     frequency : ndarray, shape (n_segments,)
-        [Hz]; NaN where a segment has no period.
+        [Hz]; NaN for a segment without a period.
     strength : ndarray, shape (n_segments,)
         Autocorrelation at the period over that of the window [-] (P. Boersma, Proc. Inst. Phonetic
         Sci. 17 (1993) 97-110).
@@ -198,18 +198,18 @@ def track_periods(
     heights = np.where(beyond & rising, middle, 0.0)
     top = heights.max(axis=1)
     best = np.argmax(heights >= _NEARLY * np.maximum(top, 1e-9)[:, np.newaxis], axis=1) + 1
-    found = top > 0.0
+    periodic = top > 0.0
     rows = np.arange(power.shape[0])
     left, centre, right = (normalised[rows, best + shift] for shift in (-1, 0, 1))
-    curvature = np.where(found, left - 2.0 * centre + right, -1.0)
+    curvature = np.where(periodic, left - 2.0 * centre + right, -1.0)
     curvature = np.minimum(curvature, -np.finfo(float).tiny)
-    lag = best + np.where(found, np.clip(0.5 * (left - right) / curvature, -0.5, 0.5), 0.0)
-    frequency = np.where(found, rate / lag, np.nan)
-    return frequency, np.where(found, np.minimum(centre, 1.0), 0.0)
+    lag = best + np.where(periodic, np.clip(0.5 * (left - right) / curvature, -0.5, 0.5), 0.0)
+    frequency = np.where(periodic, rate / lag, np.nan)
+    return frequency, np.where(periodic, np.minimum(centre, 1.0), 0.0)
 
 
 def _whitening_gain(power: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
-    """Gain that brings neighbouring one-third octaves nearer to each other; 0 Hz is removed."""
+    """Return the gain that whitens a spectrum by half in one-third octaves, and removes 0 Hz."""
     below = np.append(0.0, np.cumsum(power))
     index = np.arange(power.size)
     reach = np.maximum(index * _SIXTH_OCTAVE, _LEAST_REACH / spacing)
@@ -223,7 +223,7 @@ def _whitening_gain(power: NDArray[np.float64], spacing: float) -> NDArray[np.fl
 
 
 def _maxima(values: NDArray[np.float64], first: int) -> NDArray[np.intp]:
-    """Find the indices of local maxima from `first` on, the ends excluded."""
+    """Return the indices of local maxima from `first` on, without the ends."""
     first = max(first, 1)
     middle = values[first:-1]
     rising = (middle > values[first - 1 : -2]) & (middle >= values[first + 1 :])
@@ -231,22 +231,22 @@ def _maxima(values: NDArray[np.float64], first: int) -> NDArray[np.intp]:
 
 
 LOWEST = 5.0
-"""Lowest fundamental that is sought [Hz]."""
+"""Lowest fundamental [Hz]."""
 
 HIGHEST = 8_000.0
-"""Highest fundamental that is sought [Hz]."""
+"""Highest fundamental [Hz]."""
 
 WEAKEST_PERIOD = 0.3
-"""Autocorrelation below which a signal counts as having no fundamental."""
+"""Autocorrelation below which a signal has no fundamental."""
 
 _BINS_A_HARMONIC = 12.0
-"""Bins that should lie between harmonics, five of which a line covers."""
+"""Least spacing of harmonics in bins; a line covers five."""
 
 _RATIO_RANGE_DB = 30.0
-"""What leaks from lines into their surroundings lies this far below them, or further [dB]."""
+"""Least distance of leakage below its line [dB]."""
 
 _APART = 4.0
-"""Bins between two lines that are told apart."""
+"""Least spacing of resolved harmonics in bins."""
 
 _MOST = 0.5
 
@@ -259,22 +259,22 @@ class Harmonics:
     Parameters
     ----------
     fundamental : float
-        [Hz]; NaN where the signal has no period.
+        [Hz]; NaN for a signal without a period.
     strength : float
         Normalised autocorrelation at the period, 0 to 1 [-].
     amplitudes : ndarray, shape (n_harmonics,)
         Peak amplitude of each harmonic up to the upper limit, the fundamental first [unit]; empty
         without a fundamental.
     harmonicity : float
-        Share of the power within the harmonics above the noise floor, 0 to 1.
+        Share of the power in the harmonics above the noise floor, 0 to 1.
     count : int
         Harmonics within 30 dB of the strongest one and 10 dB above the local noise floor.
     peaks : Lines
         All discrete lines, harmonic or not.
     inharmonicity : float
-        Distance of a line from the nearest harmonic over half the fundamental, mean of all lines by
-        power: 0 where all are harmonics, 0.5 where they lie anywhere, 1 midway between harmonics.
-        NaN without a fundamental or lines, or where harmonics are too close to be told apart.
+        Distance of a line from the nearest harmonic over half the fundamental, averaged over all
+        lines by power: 0 if all are harmonics, 0.5 for random lines, 1 midway between harmonics.
+        NaN without a fundamental or lines, or if harmonics are not resolved.
     """
 
     fundamental: float
@@ -287,9 +287,9 @@ class Harmonics:
 
     @property
     def harmonic_to_noise(self) -> float:
-        """Power in the harmonics relative to all other power [dB], held within +-30 dB.
+        """Power in the harmonics relative to all other power [dB], limited to +-30 dB.
 
-        NaN without a fundamental, which white noise hides where a sawtooth is less than 3 dB above.
+        NaN without a fundamental; white noise masks that of a sawtooth less than 3 dB stronger.
         """
         if math.isnan(self.fundamental):
             return math.nan
@@ -311,21 +311,21 @@ def analyse_harmonics(signal: ArrayLike, rate: float) -> Harmonics:
     Returns
     -------
     Harmonics
-        The fundamental lies between 5 Hz, or what two periods in the signal leave, and 8 kHz, or
-        0.4375 times the rate.
+        The fundamental lies between 5 Hz, or two periods per signal, and 8 kHz, or 0.4375 times the
+        rate.
 
     Raises
     ------
     ParameterError
-        A signal that can't be analysed, also by its rate.
+        The signal or its rate cannot be analysed.
 
     Examples
     --------
     >>> import numpy as np
     >>> t = np.arange(16000) / 16e3
     >>> sawtooth = (155.0 * t) % 1.0
-    >>> found = analyse_harmonics(sawtooth, 16e3)
-    >>> round(found.fundamental, 1), found.count > 20, round(found.harmonicity, 2)
+    >>> harmonics = analyse_harmonics(sawtooth, 16e3)
+    >>> round(harmonics.fundamental, 1), harmonics.count > 20, round(harmonics.harmonicity, 2)
     (155.0, True, 0.99)
     """
     x = checked_signal(signal, rate)
@@ -352,18 +352,18 @@ def harmonics_of(
     lowest: float,
     highest: float,
 ) -> Harmonics:
-    """`analyse_harmonics` of a signal whose spectrum and lines are at hand.
+    """Find the harmonics of a signal from its spectrum and lines, like `analyse_harmonics`.
 
     Parameters
     ----------
     x : ndarray, shape (n_samples,)
         Mean removed [unit].
     spectrum : Spectrum
-        Of `x`.
+        Spectrum of `x`.
     floor : ndarray, shape (n_bins,)
-        `noise_floor` of it [unit^2/Hz].
+        `noise_floor` of the spectrum [unit^2/Hz].
     lines : Lines
-        Of it; the band they were sought in is what shares refer to.
+        Lines of the spectrum; shares refer to their band.
     lowest, highest : float
         Limits of the fundamental [Hz].
 
@@ -377,8 +377,8 @@ def harmonics_of(
     >>> x = np.sin(2 * np.pi * 500 * np.arange(8000) / 16e3)
     >>> spectrum = welch(x, 16e3, 4.0)
     >>> lines = find_lines(spectrum, low=5.0, high=7e3)
-    >>> found = harmonics_of(x, spectrum, noise_floor(spectrum), lines, lowest=5.0, highest=7e3)
-    >>> round(found.fundamental, 1), found.count
+    >>> tone = harmonics_of(x, spectrum, noise_floor(spectrum), lines, lowest=5.0, highest=7e3)
+    >>> round(tone.fundamental, 1), tone.count
     (500.0, 1)
     """
     rate = spectrum.rate
@@ -403,39 +403,19 @@ def harmonics_of(
     count = int(np.count_nonzero(standing & (power > 0.0) & (power >= least)))
     harmonicity = min(1.0, max(0.0, float(excess.sum()) / lines.total))
     amplitudes = np.sqrt(2.0 * power)
-    told_apart = fundamental >= _APART * spectrum.spacing
-    inharmonicity = inharmonicity_of(fundamental, refined) if told_apart else math.nan
+    resolved = fundamental >= _APART * spectrum.spacing
+    inharmonicity = _inharmonicity(fundamental, refined) if resolved else math.nan
     return Harmonics(
         fundamental, period.strength, amplitudes, harmonicity, count, lines, inharmonicity
     )
 
 
-def inharmonicity_of(fundamental: float, lines: Lines) -> float:
-    """Distance of lines from the harmonics of a fundamental; see `Harmonics`.
+def _inharmonicity(fundamental: float, lines: Lines) -> float:
+    """Return the inharmonicity of lines; see `Harmonics`.
 
-    Parameters
-    ----------
-    fundamental : float
-        [Hz]
-    lines : Lines
-
-    Returns
-    -------
-    float
-        0 to 1 [-]; NaN without lines.
-
-    Notes
-    -----
     G. Peeters, A large set of audio features for sound description, CUIDADO report, IRCAM (2004).
-    The B of a stiff string, f_n = n f_0 sqrt(1 + B n^2), would be no number for friction: where its
-    lines are no harmonics they do not stretch evenly, they stand at the structure's modes.
-
-    Examples
-    --------
-    >>> at = np.array([100.0, 200.0, 310.0])
-    >>> equal = np.ones(3)
-    >>> round(inharmonicity_of(100.0, Lines(at, equal, equal, 3.0)), 3)
-    0.067
+    The B of a stiff string, f_n = n f_0 sqrt(1 + B n^2), does not apply to friction, whose
+    inharmonic lines are not stretched evenly but lie at the structure's modes.
     """
     order = lines.frequency / fundamental
     off = np.abs(order - np.maximum(np.rint(order), 1.0))
@@ -444,10 +424,10 @@ def inharmonicity_of(fundamental: float, lines: Lines) -> float:
 
 
 def _refined(period: Period, lines: Lines) -> float:
-    """Least-squares fundamental of the lines that lie on harmonics, weighted by amplitude.
+    """Return the least-squares fundamental of the lines on harmonics, weighted by amplitude.
 
-    Lines that all are multiples of a higher frequency have that one as their fundamental, if they
-    are most of the signal: the autocorrelation is coarse where a period is few samples.
+    If all of them are multiples of a higher frequency and have most of the power, that frequency is
+    the fundamental: the autocorrelation is coarse where a period has few samples.
     """
     fundamental = period.frequency
     for highest_number in (4, 16, 64):

@@ -1,34 +1,21 @@
-# mypy: allow-untyped-decorators
-"""Levels: in bands, A-weighted, over time, and what a sound level meter shows.
+"""Levels in bands: one-third octaves and arbitrary bands of a spectrum.
 
-Bands are integrals of the autospectrum over exact edges, a bin counting by the part of it that
-lies inside: exact for stationary sound, and for a transient its mean over the block. A band that a
-sampling rate does not reach, or that holds fewer than four bins, is NaN: "not measured" is not
-"silent". Overall levels are mean squares of the whole sound in time, so that a click counts by its
-energy wherever it lies. The A-weighting is applied to the sound's transform with the magnitudes
-that the standard tabulates, a second at a time; a recursive filter would miss them near half the
-sampling rate, by several decibels where a creak is strong.
+Bands are integrals of the autospectrum over exact edges, a bin counting by the part of it that lies
+inside: exact for stationary sound, and for a transient its mean over the block. A band that a
+sampling rate does not reach, or that has fewer than four bins, is NaN: "not measured" is not
+"silent". `features.kernels.level_meter` has overall and A-weighted levels.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import njit
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
-from scipy import fft
 
-from features.kernels.conditioning import checked_signal
-from features.kernels.spectra import Spectrum, welch
-from models.blocks import Read
-from models.compilation import COMPILED
+from features.kernels.spectra import Spectrum
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
-from models.show import short_repr
 
 REFERENCES = {"pressure": REFERENCE_PRESSURE, "acceleration": 1e-6, "force": 1e-6}
 """Reference values of levels by kind of channel [Pa, m/s2, N] (ISO 1683)."""
@@ -41,25 +28,23 @@ NOMINAL_THIRD_OCTAVES = (
 """Nominal mid-band frequencies [Hz] of the bands from 25 Hz to 20 kHz (IEC 61260-1)."""
 
 THESIS_BANDS = ((0.0, 2e3), (2e3, 5e3), (5e3, 15e3))
-"""Bands [Hz] in which the thesis tells torque from structure from creak (5.2.3)."""
+"""Bands [Hz] of torque, structure and creak in the thesis (5.2.3)."""
 
 LEAST_SHARE_DB = -80.0
-"""Lowest relative level that is told from nothing [dB]."""
+"""Lowest relative level that differs from zero [dB]."""
 
 _ANTI_ALIAS = 0.9
-"""Share of the Nyquist frequency that a recorder's anti-aliasing filter leaves alone."""
+"""Share of the Nyquist frequency below a recorder's anti-aliasing filter."""
 
 _LEAST_BINS = 4
-"""Bins that a band must hold for its level to be its own."""
+"""Fewest bins of a band with a level of its own."""
 
 THIRD_OCTAVE_RESOLUTION = 1.4
 """Spacing of the bins [Hz] for one-third octaves: the band at 25 Hz is 5.8 Hz wide."""
 
-_A_POLES = (20.598997, 107.65265, 737.86223, 12194.217)
-
 
 def third_octave_edges() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Exact edges of the one-third-octave bands.
+    """Return the exact edges of the one-third-octave bands.
 
     Returns
     -------
@@ -84,7 +69,7 @@ def third_octave_edges() -> tuple[NDArray[np.float64], NDArray[np.float64], NDAr
 
 
 def band_power(spectrum: Spectrum, low: ArrayLike, high: ArrayLike) -> NDArray[np.float64]:
-    """Mean square between pairs of frequencies.
+    """Return the mean square in bands of a spectrum.
 
     Parameters
     ----------
@@ -95,12 +80,12 @@ def band_power(spectrum: Spectrum, low: ArrayLike, high: ArrayLike) -> NDArray[n
     Returns
     -------
     ndarray, shape (n_bands,)
-        [unit^2]; NaN where `high` lies above half the sampling rate.
+        [unit^2]; NaN where `high` is above half the sampling rate.
 
     Raises
     ------
     ParameterError
-        An upper edge below its lower one.
+        An upper edge is below its lower one.
 
     Examples
     --------
@@ -119,7 +104,7 @@ def band_power(spectrum: Spectrum, low: ArrayLike, high: ArrayLike) -> NDArray[n
 
 
 def band_levels(power: ArrayLike, reference: float) -> NDArray[np.float64]:
-    """Levels of mean squares.
+    """Return the levels of mean squares.
 
     Parameters
     ----------
@@ -131,7 +116,7 @@ def band_levels(power: ArrayLike, reference: float) -> NDArray[np.float64]:
     Returns
     -------
     ndarray
-        Of the same shape [dB]; minus infinity for none.
+        Of the same shape [dB]; minus infinity for zero.
 
     Examples
     --------
@@ -143,7 +128,7 @@ def band_levels(power: ArrayLike, reference: float) -> NDArray[np.float64]:
 
 
 def third_octave_levels(spectrum: Spectrum, *, reference: float) -> dict[str, float]:
-    """Levels in one-third-octave bands from 25 Hz to 20 kHz.
+    """Return the levels in one-third-octave bands from 25 Hz to 20 kHz.
 
     Parameters
     ----------
@@ -155,9 +140,9 @@ def third_octave_levels(spectrum: Spectrum, *, reference: float) -> dict[str, fl
     Returns
     -------
     dict of str to float
-        [dB] by nominal mid-band frequency. NaN where the band's upper edge lies above 0.9 times
-        half the sampling rate, where a recorder's anti-aliasing filter has set in, and where it
-        holds fewer than four bins: half a second is too short below 40 Hz.
+        [dB] by nominal mid-band frequency. NaN if the band's upper edge is above 0.9 times half the
+        sampling rate, where a recorder's anti-aliasing filter acts, or if it has fewer than four
+        bins: half a second is too short below 40 Hz.
 
     Examples
     --------
@@ -177,81 +162,8 @@ def third_octave_levels(spectrum: Spectrum, *, reference: float) -> dict[str, fl
     return dict(zip(NOMINAL_THIRD_OCTAVES, levels.tolist(), strict=True))
 
 
-def a_weighting(frequency: ArrayLike) -> NDArray[np.float64]:
-    """Gain of the A-weighting.
-
-    Parameters
-    ----------
-    frequency : array_like
-        [Hz]
-
-    Returns
-    -------
-    ndarray
-        Of the same shape [dB]; minus infinity at 0 Hz.
-
-    Notes
-    -----
-    IEC 61672-1:2013, Annex E: the analytic expression with its four poles, normalised to 0 dB at
-    1 kHz.
-
-    Examples
-    --------
-    >>> a_weighting([100.0, 1000.0, 10000.0]).round(1).tolist()
-    [-19.1, 0.0, -2.5]
-    """
-    with np.errstate(divide="ignore"):
-        gain = 20.0 * np.log10(_a_response(np.asarray(frequency, dtype=np.float64)))
-    reference = 20.0 * np.log10(_a_response(np.array(1000.0)))
-    return np.asarray(gain - reference)
-
-
-def overall_level(spectrum: Spectrum, *, reference: float, weighting: str = "Z") -> float:
-    """Level of the whole spectrum.
-
-    Parameters
-    ----------
-    spectrum : Spectrum
-    reference : float
-        [unit]
-    weighting : {"Z", "A"}
-        None, or A.
-
-    Returns
-    -------
-    float
-        [dB]
-
-    Raises
-    ------
-    ParameterError
-        Another weighting.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from features.kernels.spectra import autospectrum
-    >>> t = np.arange(48000) / 48e3
-    >>> pascal = autospectrum(np.sqrt(2) * np.sin(2 * np.pi * 1000 * t), 48e3)
-    >>> round(overall_level(pascal, reference=2e-5, weighting="A"), 2)
-    93.98
-    """
-    if weighting not in ("Z", "A"):
-        raise ParameterError(f"weighting is {weighting!r}; use 'Z' (none) or 'A'")
-    density = spectrum.density
-    if weighting == "A":
-        density = density * 10.0 ** (0.1 * a_weighting(spectrum.frequency))
-    return float(band_levels(density.sum() * spectrum.spacing, reference))
-
-
-def _a_response(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
-    f2 = frequency**2
-    p1, p2, p3, p4 = (pole**2 for pole in _A_POLES)
-    return np.asarray((p4 * f2**2) / ((f2 + p1) * np.sqrt((f2 + p2) * (f2 + p3)) * (f2 + p4)))
-
-
 def relative_db(part: float, whole: float) -> float:
-    """Level of a part relative to a whole, at least -80 dB.
+    """Return the level of a part relative to a whole, at least -80 dB.
 
     Parameters
     ----------
@@ -269,381 +181,3 @@ def relative_db(part: float, whole: float) -> float:
     (-10.0, -80.0)
     """
     return 10.0 * math.log10(max(part / whole, 10.0 ** (0.1 * LEAST_SHARE_DB)))
-
-
-FAST = 0.125
-"""Time constant of the weighting F [s] (IEC 61672-1)."""
-
-_SEGMENT = 0.8
-"""Transformed at once [s]: so short that it stays in the cache."""
-
-_MARGIN = 0.1
-"""What a segment has more on either side [s]: the response of the A-weighting's lowest pole has
-fallen by 110 dB. At its ends a sound is continued, turned about its last sample: cut off, a hum
-would click louder than it hums."""
-
-_SEGMENTS_AT_ONCE = 4
-"""Transformed side by side in the time of one."""
-
-
-@short_repr
-@dataclass(frozen=True)
-class SoundLevels:
-    """Levels of one sound, all re the same value.
-
-    Parameters
-    ----------
-    level : float
-        Of the mean square about the mean [dB].
-    level_a : float
-        The same, A-weighted [dB].
-    level_af_max : float
-        Largest A-weighted level with the time weighting F [dB].
-    third_octaves : dict of str to float
-        [dB] by nominal mid-band frequency; NaN where a band is not measured.
-    """
-
-    level: float
-    level_a: float
-    level_af_max: float
-    third_octaves: dict[str, float]
-
-    def raised(self, gain_db: float) -> SoundLevels:
-        """Return the levels of the same sound, this much louder.
-
-        Parameters
-        ----------
-        gain_db : float
-            [dB]
-
-        Returns
-        -------
-        SoundLevels
-
-        Examples
-        --------
-        >>> SoundLevels(60.0, 59.0, 61.0, {"1000": 60.0}).raised(3.0).level_a
-        62.0
-        """
-        return replace(
-            self,
-            level=self.level + gain_db,
-            level_a=self.level_a + gain_db,
-            level_af_max=self.level_af_max + gain_db,
-            third_octaves={band: level + gain_db for band, level in self.third_octaves.items()},
-        )
-
-
-def sound_levels(
-    signal: ArrayLike, rate: float, *, reference: float = REFERENCE_PRESSURE
-) -> SoundLevels:
-    """Levels of a sound as a whole.
-
-    Parameters
-    ----------
-    signal : array_like, shape (n_samples,)
-        Sound pressure [Pa], or fractions of full scale.
-    rate : float
-        Sampling rate [Hz]. Bands that it does not reach are NaN.
-    reference : float
-        [unit]; 1.0 for levels in dB re full scale.
-
-    Returns
-    -------
-    SoundLevels
-        Minus infinity for silence.
-
-    Raises
-    ------
-    ParameterError
-        A signal that can't be analysed.
-
-    Examples
-    --------
-    >>> t = np.arange(96000) / 48e3
-    >>> pascal = sound_levels(np.sqrt(2) * np.sin(2 * np.pi * 1000 * t), 48e3)
-    >>> round(pascal.level, 2), round(pascal.level_a, 2), round(pascal.third_octaves["1000"], 2)
-    (93.98, 93.98, 93.98)
-    """
-    x = checked_signal(signal, rate)
-    x = x - x.mean()
-    level = float(band_levels(np.mean(x**2), reference))
-    weighted = weighted_levels(_reader(x), x.size, rate, reference=reference)
-    bands = third_octave_levels(welch(x, rate, THIRD_OCTAVE_RESOLUTION), reference=reference)
-    return SoundLevels(level, weighted.level_a, weighted.level_af_max, bands)
-
-
-@dataclass(frozen=True, eq=False)
-class WeightedLevels:
-    """A-weighted levels of one sound, all re the same value.
-
-    Parameters
-    ----------
-    level_a : float
-        Of the mean square [dB].
-    level_af_max : float
-        Largest level with the time weighting F [dB].
-    short : ndarray, shape (n,)
-        Level of each eighth of a second [dB], as far as there are whole ones.
-    """
-
-    level_a: float
-    level_af_max: float
-    short: NDArray[np.float64]
-
-
-def weighted_levels(
-    read: Read, n: int, rate: float, *, reference: float = REFERENCE_PRESSURE
-) -> WeightedLevels:
-    """A-weighted levels of a sound that need not be in memory as a whole.
-
-    Parameters
-    ----------
-    read : callable
-        From first and last sample to the samples between them, shape (last - first,), finite.
-    n : int
-        Samples of the sound.
-    rate : float
-        Sampling rate [Hz].
-    reference : float
-        [unit]; 1.0 for levels in dB re full scale.
-
-    Returns
-    -------
-    WeightedLevels
-        Minus infinity for silence. The meter was at rest before the first sample.
-
-    Examples
-    --------
-    >>> tone = np.sqrt(2) * np.sin(2 * np.pi * 1000 * np.arange(96000) / 48e3)
-    >>> levels = weighted_levels(lambda first, last: tone[first:last], 96000, 48e3)
-    >>> round(levels.level_a, 2), round(levels.level_af_max, 2), levels.short.round(1)[1:3].tolist()
-    (93.98, 93.98, [94.0, 94.0])
-    """
-    kept, step = _kept(rate), max(1, round(FAST * rate))
-    state, sums = np.zeros(2), np.zeros(-(-n // step))
-    done = 0
-    for piece, scale in _weighted_pieces(read, n, rate):
-        _meter(piece, float(scale) ** 2, kept, state, sums, step, done)
-        done += piece.size
-    level, most = band_levels(np.array([sums.sum() / n, state[1]]), reference).tolist()
-    return WeightedLevels(level, most, band_levels(sums[: n // step] / step, reference))
-
-
-def a_weighted_level(
-    signal: ArrayLike, rate: float, *, reference: float = REFERENCE_PRESSURE
-) -> float:
-    """Return the A-weighted level of a sound [dB]; arguments and refusals as of `sound_levels`.
-
-    Parameters
-    ----------
-    signal : array_like, shape (n_samples,)
-        Sound pressure [Pa], or fractions of full scale.
-    rate : float
-        Sampling rate [Hz].
-    reference : float
-        [unit]
-
-    Returns
-    -------
-    float
-        [dB]; minus infinity for silence.
-
-    Raises
-    ------
-    ParameterError
-        A signal that can't be analysed.
-
-    Examples
-    --------
-    >>> hum = np.sqrt(2) * np.sin(2 * np.pi * 100 * np.arange(48000) / 48e3)
-    >>> round(a_weighted_level(hum, 48e3, reference=1.0), 1)
-    -19.1
-    """
-    x = checked_signal(signal, rate)
-    return weighted_levels(_reader(x), x.size, rate, reference=reference).level_a
-
-
-def _reader(x: NDArray[np.float64]) -> Read:
-    return lambda first, last: x[first:last]
-
-
-def _kept(rate: float) -> float:
-    """Share of the squared sound that the time weighting F keeps from sample to sample."""
-    return float(np.exp(-1.0 / (FAST * rate)))
-
-
-@njit(fastmath={"contract"}, cache=True, **COMPILED)
-def _meter(
-    weighted: NDArray[np.float32],
-    unit: float,
-    kept: float,
-    state: NDArray[np.float64],
-    sums: NDArray[np.float64],
-    step: int,
-    done: int,
-) -> None:
-    """Go on with the smoothed square and its maximum, the state, and the sums of each step."""
-    smoothed, most = state[0], state[1]
-    cell, left = done // step, step - done % step
-    total = 0.0
-    for i in range(weighted.size):
-        square = unit * np.float64(weighted[i]) * np.float64(weighted[i])
-        smoothed = kept * smoothed + (1.0 - kept) * square
-        most = max(most, smoothed)
-        total += square
-        left -= 1
-        if left == 0:
-            sums[cell] += total
-            cell, left, total = cell + 1, step, 0.0
-    if total > 0.0:
-        sums[cell] += total
-    state[0], state[1] = smoothed, most
-
-
-def a_weighted(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
-    """Return a sound with the A-weighting on it.
-
-    Parameters
-    ----------
-    signal : array_like, shape (n_samples,)
-    rate : float
-        In any [unit].
-        Sampling rate [Hz].
-
-    Returns
-    -------
-    ndarray, shape (n_samples,)
-        In the sound's own [unit]. Magnitudes are those of IEC 61672-1:2013, Annex E, up to half
-        the sampling rate; phases are left as they are.
-
-    Raises
-    ------
-    ParameterError
-        A signal that can't be analysed.
-
-    Examples
-    --------
-    >>> hum = np.sin(2 * np.pi * 100 * np.arange(48000) / 48e3)
-    >>> round(float(20 * np.log10(a_weighted(hum, 48e3)[12000:36000].max())), 1)
-    -19.1
-    """
-    x = checked_signal(signal, rate)
-    pieces = _weighted_pieces(_reader(x), x.size, rate)
-    return np.concatenate([piece * scale for piece, scale in pieces])
-
-
-def _weighted_pieces(
-    read: Read, n: int, rate: float
-) -> Iterator[tuple[NDArray[np.float32], float]]:
-    """Yield the weighted sound piece by piece, each with the unit it is in."""
-    margin = min(n - 1, round(_MARGIN * rate))
-    length = int(fft.next_fast_len(max(16, round(_SEGMENT * rate), 4 * margin), real=True))
-    useful = length - 2 * margin
-    gain = (10.0 ** (a_weighting(fft.rfftfreq(length, 1.0 / rate)) / 20.0)).astype(np.float32)
-    for start in range(0, n, _SEGMENTS_AT_ONCE * useful):
-        end = min(n, start + _SEGMENTS_AT_ONCE * useful)
-        count = -(-(end - start) // useful)
-        longer = _continued(read, n, start - margin, start + count * useful + margin, margin)
-        longer = longer - longer.mean()  # nothing to hear, and it would cost digits
-        scale = float(max(longer.max(), -longer.min()))
-        if scale > 0.0:
-            single = (longer / scale).astype(np.float32)
-            bins = fft.rfft(sliding_window_view(single, length)[::useful], axis=1)
-            bins *= gain
-            whole = fft.irfft(bins, length, axis=1)[:, margin : margin + useful]
-        else:
-            whole = np.zeros((count, useful), dtype=np.float32)
-        yield whole.reshape(-1)[: end - start], scale
-
-
-def _continued(read: Read, n: int, first: int, last: int, margin: int) -> NDArray[np.float64]:
-    """Return samples `first` up to `last`, turned about the ends for `margin` beyond them."""
-    x = read(max(first, 0), min(last, n))
-    before, after = max(0, -first), max(0, last - n)
-    if before:
-        x = np.concatenate([2.0 * x[0] - x[before:0:-1], x])
-    if after:
-        turned = min(after, margin)
-        x = np.concatenate([x, 2.0 * x[-1] - x[-2 : -2 - turned : -1]])
-        x = np.concatenate([x, np.full(after - turned, x[-1])])
-    return x
-
-
-def fast_level_pieces(
-    read: Read, n: int, rate: float, *, reference: float = REFERENCE_PRESSURE
-) -> Iterator[NDArray[np.float64]]:
-    """A-weighted `fast_levels` of a sound that need not be in memory as a whole.
-
-    Parameters
-    ----------
-    read, n, rate, reference
-        As in `weighted_levels`.
-
-    Yields
-    ------
-    ndarray, shape (m,)
-        The next levels [dB].
-
-    Examples
-    --------
-    >>> tone = np.sqrt(2) * np.sin(2 * np.pi * 1000 * np.arange(96000) / 48e3)
-    >>> pieces = fast_level_pieces(lambda first, last: tone[first:last], 96000, 48e3)
-    >>> round(float(max(piece.max() for piece in pieces)))
-    94
-    """
-    state = np.zeros(1)
-    for piece, scale in _weighted_pieces(read, n, rate):
-        smoothed, state = _smoothed((piece * scale) ** 2, rate, state)
-        yield band_levels(smoothed, reference)
-
-
-def fast_levels(
-    signal: ArrayLike,
-    rate: float,
-    edges: NDArray[np.int64],
-    *,
-    reference: float = REFERENCE_PRESSURE,
-) -> NDArray[np.float64]:
-    """Levels over time with the time weighting F, the largest in each cell.
-
-    Parameters
-    ----------
-    signal : array_like, shape (n_samples,)
-        Frequency-weighted already, where that is wanted.
-    rate : float
-        Sampling rate [Hz].
-    edges : ndarray of int, shape (n_cells + 1,)
-        Samples at which cells begin, rising, and the end of the last.
-    reference : float
-        [unit]
-
-    Returns
-    -------
-    ndarray, shape (n_cells,)
-        [dB]; what a meter shows that was at rest before the first sample.
-
-    Raises
-    ------
-    ParameterError
-        A signal that can't be analysed.
-
-    Examples
-    --------
-    >>> burst = np.sqrt(2) * np.sin(2 * np.pi * 4000 * np.arange(9600) / 48e3)
-    >>> fast_levels(burst, 48e3, np.array([0, 4800, 9600]), reference=1.0).round(1).tolist()
-    [-2.6, -1.0]
-    """
-    smoothed, _ = _smoothed(checked_signal(signal, rate) ** 2, rate, np.zeros(1))
-    return band_levels(np.maximum.reduceat(smoothed[: edges[-1]], edges[:-1]), reference)
-
-
-def _smoothed(
-    power: NDArray[np.floating], rate: float, state: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return a squared sound with the time weighting F on it, and where the meter stands then."""
-    from scipy.signal import lfilter
-
-    kept = _kept(rate)
-    smoothed, state = lfilter([1.0 - kept], [1.0, -kept], power, zi=state)
-    return smoothed, state

@@ -1,11 +1,11 @@
-"""Discrete lines of a spectrum: where a tone stands out of what surrounds it.
+"""Discrete lines of a spectrum: tones that exceed the noise around them.
 
-Squawk has several discrete frequencies and squeal one predominant, so the first question to a
-spectrum is which of its maxima are lines. A line must stand 10 dB above the median of its
-surroundings, by more still where so few segments were averaged that noise alone would do that, and
-fall to either side by 10 dB before the next one rises, so that a broad resonance filled with noise
-is none. Its power is what lies within the window's main lobe and half a per cent of its frequency:
-a friction tone wanders by about that much in a second and is still one tone.
+Squawk has several discrete frequencies and squeal one predominant frequency, so spectra are first
+searched for lines. A line must exceed the median of its surroundings by 10 dB, or by more if noise
+alone could do that because few segments were averaged, and fall by 10 dB on either side before the
+next maximum, so that a broad resonance filled with noise is not a line. Its power is that within
+the window's main lobe and half a per cent of its frequency, since a friction tone wanders by about
+that much in a second.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from features.kernels.spectra import DEFAULT_RESOLUTION, Spectrum
 from models.show import short_repr
 
 PROMINENCE_DB = 10.0
-"""A line stands this far above the local floor, and above the saddle to the next one [dB]."""
+"""Least height of a line above the local floor, and above the saddle to the next line [dB]."""
 
 RANGE_DB = 30.0
-"""Lines weaker than the strongest by more than this are not counted [dB]."""
+"""Largest distance of a line below the strongest [dB]."""
 
 WANDER = 0.005
 """Half the width of a line beyond the window's main lobe, as a share of its frequency."""
@@ -33,20 +33,20 @@ MAIN_LOBE = 2.0
 """Half the width of a Hann window's main lobe in bins."""
 
 _FLOOR_WIDTH = 200.0
-"""Width of the surroundings whose median is the floor [Hz] ..."""
+"""Width of the running median of the floor [Hz] ..."""
 
 _FLOOR_BINS = 31
-"""... but at least as many bins, as the median of few is no floor."""
+"""... but at least this number of bins."""
 
 _FALSE_LINES = 1e-7
 """Probability that noise makes one bin a line."""
 
 _LEAST_FLOOR = 1e-12
-"""Lowest floor relative to the strongest bin: what rounding leaves of an exact zero."""
+"""Lowest floor relative to the strongest bin, the rounding error of zero."""
 
 
 _NO_SECOND_LINE = 1e-4
-"""Power of a second line that is not there re the first: below all that count."""
+"""Relative power in place of a missing second line, below that of any line."""
 
 
 @short_repr
@@ -63,7 +63,7 @@ class Lines:
     prominence : ndarray, shape (n_lines,)
         Level of the peak above the local floor [dB].
     total : float
-        Mean square of the band that was searched [unit^2].
+        Mean square of the searched band [unit^2].
     """
 
     frequency: NDArray[np.float64]
@@ -78,17 +78,17 @@ class Lines:
 
     @property
     def strongest(self) -> float:
-        """Frequency of the strongest line [Hz], NaN if there is none."""
+        """Frequency of the strongest line [Hz]; NaN if there is none."""
         return float(self.frequency[0]) if self.frequency.size else math.nan
 
     @property
     def strongest_share(self) -> float:
-        """Share of the band's power in the strongest line, 0 if there is none."""
+        """Share of the band's power in the strongest line; 0 if there is none."""
         return float(self.power[0] / self.total) if self.power.size else 0.0
 
     @property
     def second_level(self) -> float:
-        """Level of the second line re the strongest [dB], at least -40; NaN without any."""
+        """Level of the second line re the strongest [dB], at least -40; NaN without lines."""
         if self.power.size == 0:
             return math.nan
         ratio = float(self.power[1] / self.power[0]) if self.power.size > 1 else 0.0
@@ -96,20 +96,20 @@ class Lines:
 
     @property
     def share(self) -> float:
-        """Share of the band's power in all lines together."""
+        """Share of the band's power in all lines."""
         return min(1.0, float(self.power.sum() / self.total)) if self.power.size else 0.0
 
 
 def line_resolution(duration: float) -> float:
-    """Spacing of the bins at which to look for lines.
+    """Return the spacing of the bins for a search of lines.
 
-    A quarter of a second a segment, less where fewer than three segments would be averaged: in a
-    single one noise itself rises 13 dB above its mean.
+    Segments have a quarter of a second, or less if there would be fewer than three: in a single one
+    noise exceeds its mean by up to 13 dB.
 
     Parameters
     ----------
     duration : float
-        Of the signal [s].
+        Duration of the signal [s].
 
     Returns
     -------
@@ -125,7 +125,7 @@ def line_resolution(duration: float) -> float:
 
 
 def noise_floor(spectrum: Spectrum) -> NDArray[np.float64]:
-    """Density of the noise between the lines.
+    """Return the density of the noise between the lines.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def noise_floor(spectrum: Spectrum) -> NDArray[np.float64]:
     Notes
     -----
     Running median over 200 Hz or 31 bins, divided by the median of the chi-square law for the
-    number of averages, so that it is the mean of noise and not its median.
+    number of averages, which gives the mean of noise.
 
     Examples
     --------
@@ -172,12 +172,12 @@ def find_lines(
     low, high : float
         Limits of the search [Hz].
     floor : ndarray, shape (n_bins,), optional
-        `noise_floor` of the spectrum, if it is at hand [unit^2/Hz].
+        `noise_floor` of the spectrum, if already computed [unit^2/Hz].
 
     Returns
     -------
     Lines
-        Within 30 dB of the strongest, at least 10 dB above the floor.
+        Lines within 30 dB of the strongest and at least 10 dB above the floor.
 
     Examples
     --------
@@ -225,16 +225,15 @@ def line_powers(
     *,
     spacing: NDArray[np.float64] | float,
 ) -> NDArray[np.float64]:
-    """Power above the floor about given frequencies.
+    """Return the power above the floor about frequencies.
 
-    A line reaches as far as the window's main lobe and its wander, but not beyond half of
-    `spacing`.
+    A line extends over the window's main lobe and its wander, but at most over half of `spacing`.
 
     Parameters
     ----------
     spectrum : Spectrum
     floor : ndarray, shape (n_bins,)
-        `noise_floor` of it [unit^2/Hz].
+        `noise_floor` of the spectrum [unit^2/Hz].
     frequency : ndarray, shape (n_lines,)
         [Hz]
     spacing : float or ndarray, shape (n_lines,)
@@ -267,14 +266,14 @@ def line_powers(
 def parabola_tops(
     values: NDArray[np.float64], peaks: NDArray[np.intp]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places and heights of local maxima between samples, by the parabola through three of them.
+    """Return positions and heights of local maxima between samples, by parabolas.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
         [unit]
     peaks : ndarray of int, shape (n_peaks,)
-        Samples at which they are highest.
+        Samples of the maxima.
 
     Returns
     -------
@@ -296,7 +295,7 @@ def parabola_tops(
 
 
 def _chance_level(spectrum: Spectrum) -> float:
-    """How far above its mean noise puts a bin by chance [dB]."""
+    """Return the level above its mean that noise exceeds in a bin with `_FALSE_LINES` [dB]."""
     half = 0.5 * spectrum.degrees_of_freedom
     return 10.0 * float(np.log10(special.gammainccinv(half, _FALSE_LINES) / half))
 
@@ -304,7 +303,7 @@ def _chance_level(spectrum: Spectrum) -> float:
 def _separate(
     peaks: NDArray[np.intp], level: NDArray[np.float64], f: NDArray[np.float64], spacing: float
 ) -> NDArray[np.intp]:
-    """Keep the strongest of peaks that lie within each other's width."""
+    """Return the strongest of peaks that lie within each other's width."""
     if peaks.size < 2:
         return peaks
     at = f[peaks]
@@ -312,15 +311,15 @@ def _separate(
     if bool((np.diff(at) > reach[1:]).all()):
         return peaks
     free = np.ones(peaks.size, dtype=np.bool_)
-    kept = np.zeros(peaks.size, dtype=np.bool_)
+    separate = np.zeros(peaks.size, dtype=np.bool_)
     for i in np.argsort(level[peaks])[::-1].tolist():
         if free[i]:
-            kept[i] = True
+            separate[i] = True
             free &= np.abs(at - at[i]) > reach[i]
-    return np.asarray(peaks[kept])
+    return np.asarray(peaks[separate])
 
 
 def _nearest_neighbour(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distance of each of rising frequencies to the nearest other one."""
+    """Return the distance of each of rising frequencies to its nearest neighbour."""
     gaps = np.concatenate([[np.inf], np.diff(frequency), [np.inf]])
     return np.asarray(np.minimum(gaps[:-1], gaps[1:]))

@@ -1,11 +1,11 @@
-"""Changes of a noise over time: its tones and levels in short segments, its modulation.
+"""Changes of a noise over time: tones and levels of short segments, and modulation.
 
-A squeal is one tone that stays, a bark or a crow is tones that move, a creak is neither: that is
-seen in segments of 64 ms, of which the fastest slip sequence still shows several and in which a
-gliding tone is still narrow. Each counts by its energy, so that pauses between strokes say nothing.
-A regular creak beats at its slip frequency, a helicopter at its blades', speech with no rate that
-lasts: the rate of modulation is that of the envelope's autocorrelation, since counting pulses fails
-where they run into each other.
+A squeal is one steady tone, a bark or a crow has moving tones, a creak neither. Segments of 64 ms
+show this: the fastest slip sequence still covers several, and a gliding tone is still narrow. They
+are weighted by energy, so pauses between strokes do not count. A regular creak is modulated at its
+slip frequency, a helicopter at its blade frequency, speech at no steady rate. The rate of
+modulation is that of the envelope's autocorrelation, since counting pulses fails where they
+overlap.
 """
 
 from __future__ import annotations
@@ -25,29 +25,29 @@ _SEGMENT = 0.064
 """Length of a segment [s]."""
 
 _LOBE = 2
-"""Bins on either side of a maximum that belong to it: the Hann window's main lobe. More, by the
-same factor, where a shorter signal is filled up with zeros."""
+"""Bins on either side of a maximum that belong to it: the Hann window's main lobe. A zero-padded
+segment has proportionally more."""
 
 _SAME_TONE = 1.0 / 12.0
-"""A tone that moves less than this between segments is the same tone [octave]."""
+"""Largest change of a tone between segments [octave]."""
 
 _TONE_DB = 13.0
-"""A tone stands this far above the floor of its segment: noise does so once in 5e8 bins."""
+"""Least height of a tone above its segment's floor [dB]; noise exceeds it in one of 5e8 bins."""
 
 _TONE_RANGE_DB = 20.0
-"""Tones weaker than the strongest of the segment by more than this do not count [dB]."""
+"""Largest distance of a tone below the strongest of its segment [dB]."""
 
 _FLOOR_BINS = 32
 """Bins in a block whose median is the floor."""
 
 _VOICED = 0.5
-"""Autocorrelation from which a segment counts as having a fundamental."""
+"""Autocorrelation from which a segment has a fundamental."""
 
 _LOWEST_FUNDAMENTAL = 60.0
-"""Lowest fundamental that 64 ms tell apart from noise [Hz]."""
+"""Lowest fundamental that segments of 64 ms resolve [Hz]."""
 
 _QUIETEST_DB = -60.0
-"""Segments count as at least this loud, relative to the loudest [dB]."""
+"""Lowest level of a segment relative to the loudest [dB]; lower ones are raised to it."""
 
 _LEAST_VOICED = 4
 _BANDS_PER_OCTAVE = 3
@@ -56,7 +56,7 @@ _TINY = float(np.finfo(np.float64).tiny)
 
 
 def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) -> dict[str, float]:
-    """Describe how a signal changes between two frequencies.
+    """Compute features of the changes of a signal between two frequencies.
 
     Parameters
     ----------
@@ -70,15 +70,14 @@ def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) 
     Returns
     -------
     dict of str to float
-        Over the length of the signal, segments counting by their energy: ``tone_share``, mean share
-        of the power in the strongest line of a segment [-]; ``tone_count``, lines within 20 dB of
-        the strongest and 13 dB above the floor; ``second_tone``, level of the second line relative
-        to the strongest, at least -20 [dB]; ``periodicity``, autocorrelation at the fundamental's
-        period [-]; ``fundamental_wander``, robust standard deviation of the fundamental [octave],
-        NaN unless four segments have one. And, NaN for a single segment: ``continuity``, as
-        ``tone_share``, counting only tones that are still there (within a semitone) in the next
-        one; ``flux``, share of the power that changes its one-third octave; ``level_variation``,
-        standard deviation of the levels [dB].
+        Means over segments, weighted by energy: ``tone_share``, share of the power in the strongest
+        line of a segment [-]; ``tone_count``, lines within 20 dB of the strongest and 13 dB above
+        the floor; ``second_tone``, level of the second line relative to the strongest, at least -20
+        [dB]; ``periodicity``, autocorrelation at the fundamental's period [-];
+        ``fundamental_wander``, robust standard deviation of the fundamental [octave], NaN unless
+        four segments have one. NaN for a single segment: ``continuity``, ``tone_share`` of tones
+        that continue (within a semitone) in the next segment; ``flux``, share of the power that
+        changes its one-third octave; ``level_variation``, standard deviation of the levels [dB].
 
     Examples
     --------
@@ -133,7 +132,7 @@ def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) 
 def _strongest_tones(
     power: NDArray[np.float64], energy: NDArray[np.float64], lobe: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Position of each segment's strongest line in bins, and its share of the segment's power."""
+    """Return the position of each segment's strongest line in bins, and its share of the power."""
     lobe = min(lobe, (power.shape[1] - 1) // 2)
     top = np.clip(power.argmax(axis=1), lobe, power.shape[1] - 1 - lobe)
     bins = top[:, np.newaxis] + np.arange(-lobe, lobe + 1)
@@ -146,7 +145,7 @@ def _strongest_tones(
 def _other_tones(
     power: NDArray[np.float64], lobe: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Count the lines in each segment; level of the second re the first [dB]."""
+    """Return the number of lines in each segment, and the level of the second re the first [dB]."""
     n_bins = power.shape[1]
     size = min(_FLOOR_BINS, n_bins)
     blocks = power[:, : n_bins // size * size].reshape(power.shape[0], -1, size)
@@ -164,7 +163,7 @@ def _other_tones(
 def _wander(
     frequency: NDArray[np.float64], strength: NDArray[np.float64], weight: NDArray[np.float64]
 ) -> float:
-    """Robust deviation of the segments' fundamentals about their median [octave]."""
+    """Return the robust deviation of the segments' fundamentals about their median [octave]."""
     voiced = (strength >= _VOICED) & (weight > 0.1 * weight.max())
     if np.count_nonzero(voiced) < _LEAST_VOICED:
         return math.nan
@@ -175,7 +174,7 @@ def _wander(
 
 
 def _band_edges(first: int, last: int) -> NDArray[np.intp]:
-    """First bin of each one-third octave from `first` to `last`, at least one bin each."""
+    """Return the first bin of each one-third octave from `first` to `last`."""
     first = max(first, 1)
     number = math.ceil(_BANDS_PER_OCTAVE * math.log2(max(last, first + 1) / first))
     edges = first * 2.0 ** (np.arange(max(number, 1)) / _BANDS_PER_OCTAVE)
@@ -183,13 +182,13 @@ def _band_edges(first: int, last: int) -> NDArray[np.intp]:
 
 
 _MODULATION_BAND = (2.0, 400.0)
-"""Rates of modulation that are looked at [Hz]."""
+"""Range of the rates of modulation [Hz]."""
 
 _LEAST_DEPTH = 0.01
-"""Depth below which a rate means nothing: the ripple that filters leave."""
+"""Depth below which modulation is only ripple of the filters."""
 
 _LEAST_STRENGTH = 0.2
-"""Autocorrelation below which an envelope counts as not repeating: that of noise reaches it."""
+"""Autocorrelation below which an envelope has no rate, since noise reaches it."""
 
 
 class Modulation(NamedTuple):
@@ -198,9 +197,9 @@ class Modulation(NamedTuple):
     Parameters
     ----------
     rate : float
-        Of its strongest repetition [Hz]; NaN if it does not repeat.
+        Rate of the strongest repetition [Hz]; NaN if there is none.
     strength : float
-        Normalised autocorrelation of the envelope there, 0 to 1 [-].
+        Normalised autocorrelation of the envelope at that period, 0 to 1 [-].
     depth : float
         Standard deviation of the envelope between 2 and 400 Hz over its mean: 0.71 for a sinusoidal
         modulation of 100 %.
@@ -212,7 +211,7 @@ class Modulation(NamedTuple):
 
 
 def modulation(envelope: NDArray[np.float64], rate: float) -> Modulation:
-    """Describe the modulation of an envelope.
+    """Compute the modulation of an envelope.
 
     Parameters
     ----------

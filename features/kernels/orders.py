@@ -1,8 +1,8 @@
-"""Orders of a turning shaft: how loud what happens so many times a revolution is, by speed.
+"""Order analysis of a turning shaft: levels by order and speed.
 
-A slip that the shaft's turning sets off stays at its order while the speed changes; a resonance
-stays at its frequency and crosses the orders. Frames of about the same speed are averaged by their
-power; one in which the speed changes much, as where a swing turns, belongs to none and is left out.
+A slip that the rotation triggers stays at its order while the speed changes; a resonance stays at
+its frequency and crosses the orders. Frames of similar speed are averaged by power; frames in which
+the speed changes much, such as at a reversal, are left out.
 """
 
 from __future__ import annotations
@@ -18,31 +18,31 @@ from models.recording import REFERENCE_PRESSURE
 from models.show import short_repr
 
 _FRAME, _HOP = 0.085, 0.02
-"""[s]"""
+"""Length and spacing of the frames [s]."""
 
 _LOWEST, _HIGHEST = 20.0, 10e3
-"""Frequencies that orders are told of [Hz]."""
+"""Limits of the frequencies of orders [Hz]."""
 
 _SLOWEST = 0.1
-"""Speeds below this share of the largest are left out: an order of theirs is no frequency yet."""
+"""Share of the largest speed below which speeds are left out, since their orders are too low."""
 
 _STEADY = 0.3
-"""Of its mean that the speed changes in a frame at most [-]."""
+"""Largest change of the speed in a frame over its mean [-]."""
 
 _GAPS = 0.05
-"""Share of the columns that may be empty; more are made wider."""
+"""Largest share of empty columns; with more, columns become wider."""
 
 _WIDEST = 0.3
-"""Share of the largest speed up to which the orders reach the highest frequency."""
+"""Share of the largest speed at which the orders reach the highest frequency."""
 
 _ORDERS, _SPEEDS = 150, 80
-"""Cells of a map at most."""
+"""Most cells of a map."""
 
 _LOOKS = 16
-"""At the speed, in a frame."""
+"""Samples of the speed per frame."""
 
 _SMOOTHED = 0.02
-"""Over which an angle's slope is taken [s]."""
+"""Time over which the slope of an angle is taken [s]."""
 
 
 @short_repr
@@ -55,9 +55,9 @@ class OrderMap:
     speed_edges : ndarray, shape (n_speeds + 1,)
         Magnitude of the shaft's speed [rad/s], rising.
     order_edges : ndarray, shape (n_orders + 1,)
-        Cycles a revolution [-], rising.
+        Cycles per revolution [-], rising.
     level : ndarray, shape (n_orders, n_speeds)
-        Strongest line in each cell [dB]; NaN where nothing was measured.
+        Strongest line in each cell [dB]; NaN for an empty cell.
     """
 
     speed_edges: NDArray[np.float64]
@@ -74,22 +74,22 @@ def order_map(
     *,
     reference: float = REFERENCE_PRESSURE,
 ) -> OrderMap:
-    """Levels of a signal by the shaft's speed and by order.
+    """Return the levels of a signal by the shaft's speed and by order.
 
     Parameters
     ----------
     read : callable
-        From first and last sample to the samples between them, shape (n,), finite.
+        Function of first and last sample that returns the samples, shape (n,), finite.
     n_samples : int
-        Of the signal.
+        Samples of the signal.
     rate : float
         Sampling rate [Hz].
     speed : ndarray, shape (n_speeds,)
-        Of the shaft [rad/s], in either direction.
+        Speed of the shaft [rad/s], signed.
     speed_rate : float
         Sampling rate of the speed [Hz].
     reference : float
-        Of the levels, in the [unit] of the signal.
+        Reference of the levels, in the [unit] of the signal.
 
     Returns
     -------
@@ -98,14 +98,14 @@ def order_map(
     Raises
     ------
     ParameterError
-        A signal that is shorter than a frame, or a shaft that stands.
+        The signal is shorter than a frame, or the shaft stands still.
 
     Examples
     --------
     >>> speed = np.linspace(2.0, 10.0, 96000)
-    >>> sound = np.sin(2000 * np.cumsum(speed) / 48e3)  # 2000 times a revolution
-    >>> found = order_map(lambda first, last: sound[first:last], 96000, 48e3, speed, 48e3)
-    >>> strongest = found.order_edges[np.nanargmax(found.level, axis=0)]
+    >>> sound = np.sin(2000 * np.cumsum(speed) / 48e3)  # 2000 cycles per revolution
+    >>> result = order_map(lambda first, last: sound[first:last], 96000, 48e3, speed, 48e3)
+    >>> strongest = result.order_edges[np.nanargmax(result.level, axis=0)]
     >>> bool(np.all(np.abs(strongest / 2000 - 1) < 0.1))
     True
     """
@@ -143,8 +143,8 @@ def order_map(
         largest = np.maximum.reduceat(np.append(lines, 0.0), np.minimum(ends[:-1], lines.size))
         # At low frequencies some orders lie between two lines.
         between = lines[np.minimum(nearest, lines.size - 1)]
-        found = np.where(np.diff(ends) > 0, largest, between)
-        power[inside, column_of[number]] += found[inside]
+        strongest = np.where(np.diff(ends) > 0, largest, between)
+        power[inside, column_of[number]] += strongest[inside]
         count[inside, column_of[number]] += 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
         level = 10.0 * np.log10(power / count / reference**2)
@@ -152,7 +152,7 @@ def order_map(
 
 
 def _columns(speeds: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return edges as many as the frames' speeds fill."""
+    """Return the edges of as many columns as the speeds fill."""
     low, high = float(speeds.min()), float(speeds.max()) * (1.0 + 1e-9)
     number = int(np.clip(speeds.size // 3, 1, _SPEEDS))
     while True:
@@ -164,7 +164,7 @@ def _columns(speeds: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def speed_of_angle(angle: ArrayLike, rate: float) -> NDArray[np.float64]:
-    """Speed of a shaft whose angle was recorded.
+    """Return the speed of a shaft from its angle.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ def speed_of_angle(angle: ArrayLike, rate: float) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (n_samples,)
-        [rad/s], its slope over a fiftieth of a second.
+        Slope of the angle over a fiftieth of a second [rad/s].
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Pitch over time by pYIN, where the one fundamental of `features.analyse_harmonics` is not enough.
+"""Pitch over time by pYIN, for sounds whose fundamental changes.
 
-A creak's pitch falls as the shaft slows down and a hinge's glides. The track takes about as long as
-the sound lasts; the first one waits for librosa to be compiled.
+A creak's pitch falls as the shaft slows down, and a hinge's glides. The computation takes about as
+long as the sound; the first one also compiles librosa.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from features.kernels.conditioning import checked_signal, usable_limit
 from models.show import short_repr
 
 _HOP = 0.01
-"""Time from one estimate to the next [s]."""
+"""Time between estimates [s]."""
 
 
 @short_repr
@@ -38,7 +38,7 @@ class PitchTrack:
 def pitch_track(
     signal: ArrayLike, rate: float, *, lowest: float = 60.0, highest: float = 3000.0
 ) -> PitchTrack:
-    """Follow the pitch of a signal.
+    """Estimate the pitch of a signal over time.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def pitch_track(
     Raises
     ------
     ParameterError
-        A signal that can't be analysed.
+        The signal cannot be analysed.
 
     Notes
     -----
@@ -66,7 +66,7 @@ def pitch_track(
 
     Examples
     --------
-    A tone that glides from 200 to 400 Hz in a second is followed within 3 %:
+    A tone that glides from 200 to 400 Hz in a second is tracked within 3 %:
 
     >>> time = np.arange(16_000) / 16e3
     >>> track = pitch_track(np.sin(2 * np.pi * (200 * time + 100 * time**2)), 16e3)

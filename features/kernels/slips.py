@@ -1,15 +1,15 @@
-"""Slips: drops in the torque, pulses in the sound, stretches of sliding.
+"""Slips: drops in the torque, pulses in the sound, intervals of sliding.
 
-A drop is a fall by a fair share of the torque's range, and it is sudden if it took less than half
-of the time of the rise after it (thesis, 5.1.1). A harmonic or triangular oscillation falls as
+A drop is a fall by a minimum share of the torque's range, and it is sudden if it takes less than
+half of the time of the rise after it (thesis, 5.1.1). A harmonic or triangular oscillation falls as
 slowly as it rises and so has no slips; if most falls of a signal are not sudden, none counts, since
-noise has a few that are. The torque is smoothed to 2 kHz by a Gaussian, which does not overshoot.
+noise has a few sudden ones. The torque is smoothed to 2 kHz by a Gaussian, which does not
+overshoot.
 
-A creak is a sequence of impulses, one at each slip (5.2.3), and what tells it from rain or a
-crackling fire is their rhythm: their rate, how regular they are about a rate that may glide, how
-high they stand. Pulses are maxima of the envelope of the part above 2 kHz, smoothed over 1 ms:
-pulses that ring for 5 ms stay apart up to about 200 a second, and white noise shows about 14
-irregular ones.
+A creak is a sequence of impulses, one at each slip (5.2.3). Their rhythm distinguishes it from rain
+or a crackling fire: rate, regularity about a rate that may glide, and height. Pulses are maxima of
+the envelope above 2 kHz, smoothed over 1 ms: pulses that ring for 5 ms are resolved up to about 200
+per second, and white noise shows about 14 irregular ones.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ from features.kernels.lines import parabola_tops
 from models.show import short_repr
 
 _TORQUE_SMOOTHING = math.sqrt(math.log(2.0) / 2.0) / math.pi / 2_000.0
-"""Standard deviation of a Gaussian that halves 2 kHz [s]: the torque has little above (5.2.3)."""
+"""Standard deviation of a Gaussian that halves 2 kHz [s]; the torque has little above (5.2.3)."""
 
 _DROP_SHARE = 0.3
-"""A drop is at least this share of the torque's range from its 5th to its 95th percentile."""
+"""Smallest drop over the torque's range from its 5th to its 95th percentile."""
 
 _FALLEN = 0.9
-"""A fall has ended when this share of the drop is done; what rings on is not part of it."""
+"""Share of the drop at which a fall has ended; the ringing after it does not count."""
 
 _SUDDEN = 0.5
 """Longest fall in a slip, as a share of the rise."""
 
 _SLOW = 0.1
-"""Length of the running mean that shows which way the shaft turns [s]."""
+"""Length of the running mean whose sign is the direction of the shaft [s]."""
 
 _MIDDLE = (0.2, 0.8)
 """Part of a rise over which its slope is taken."""
@@ -55,36 +55,36 @@ _LEAST_FOR_GLIDE = 5
 @short_repr
 @dataclass(frozen=True, eq=False)
 class TorqueSlips:
-    """Slips in a torque: it rises, then suddenly drops. NaN where there are fewer than two.
+    """Slips in a torque: rises followed by sudden drops. NaN for fewer than two.
 
     Parameters
     ----------
     times : ndarray, shape (n_slips,)
-        When each drop begins, from the start of the signal [s].
+        Start of each drop, from the start of the signal [s].
     rate : float
-        Slips in a second [1/s], 0 for fewer than two.
+        Slips per second [1/s]; 0 for fewer than two.
     mean_drop : float
-        Mean fall [N m].
+        Mean drop [N m].
     drop_variation : float
-        Coefficient of variation of the falls [-].
+        Coefficient of variation of the drops [-].
     mean_interval : float
-        [s]
+        Mean interval of the slips [s].
     interval_variation : float
         Coefficient of variation of the intervals [-].
     glide : float
-        Trend of the slip rate [octave/s]: 1 doubles it in a second. Median slope of its logarithm,
-        which a slip missed or made up does not move; NaN for fewer than five slips.
+        Trend of the slip rate [octave/s]: 1 doubles it in a second. It is the median slope of the
+        logarithm, which is robust against missing or spurious slips; NaN for fewer than five slips.
     stick_slope : float
-        Median slope of the torque in the middle of the rises [N m/s]. Its quotient with k_EFF times
-        the shaft's speed tells true stick from mere oscillation (thesis, (5.1)).
+        Median slope of the torque in the middle of the rises [N m/s]. Its ratio to k_EFF times the
+        shaft's speed distinguishes true stick from oscillation (thesis, (5.1)).
     stick_curvature : float
-        Slope in the later over that in the earlier half of a rise, median [-]: below 1 where the
+        Median ratio of the slopes in the later and earlier half of a rise [-]: below 1 if the
         torque rises ever more slowly (thesis, 5.1.1).
     stick_fraction : float
-        Share of the time between slips in which the torque is on its way up.
+        Share of the time between slips in which the torque rises.
     asymmetry : float
-        Skewness of the torque's slope away from zero [-]: strongly negative where it rises slowly
-        and drops, 0 for a harmonic oscillation. Given for any torque that is not constant.
+        Skewness of the slope of the torque's magnitude [-]: strongly negative for slow rises and
+        sudden drops, 0 for a harmonic oscillation. Defined for any torque that is not constant.
     """
 
     times: NDArray[np.float64]
@@ -106,7 +106,7 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
     Parameters
     ----------
     torque : array_like, shape (n_samples,)
-        [N m]; of either sign, also alternating as a shaft that oscillates makes it.
+        [N m]; signed, also alternating as for an oscillating shaft.
     rate : float
         Sampling rate [Hz].
 
@@ -117,7 +117,7 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
     Raises
     ------
     ParameterError
-        A signal that can't be analysed.
+        The signal cannot be analysed.
 
     Examples
     --------
@@ -145,7 +145,7 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
     peaks = peaks[sudden]
     troughs = _troughs(smooth, peaks)
     drops = smooth[peaks] - smooth[troughs]
-    # A fall that the end of the signal cuts off is an event, but its size is not known.
+    # A drop that the end of the signal cuts off counts as a slip, but its size is unknown.
     drops = drops[:-1] if troughs[-1] == x.size - 1 else drops
     rises = peaks[1:] - troughs[:-1]
     start, middle, late = (
@@ -173,16 +173,16 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
 
 
 def _no_slips(asymmetry: float) -> TorqueSlips:
-    """Return what is known of a torque without slips; `asymmetry` as in `TorqueSlips`."""
+    """Return the result for a torque without slips; `asymmetry` as in `TorqueSlips`."""
     nan = math.nan
     return TorqueSlips(np.empty(0), 0.0, nan, nan, nan, nan, nan, nan, nan, nan, asymmetry)
 
 
 def _upright(torque: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-    """Turn a torque so that friction is positive and a slip is a fall."""
+    """Return a torque with the sign that makes friction positive and a slip a fall."""
     slow = uniform_filter1d(torque, min(round(_SLOW * rate), torque.size), mode="nearest")
     fast = float((torque - slow).std())
-    if min(float(slow.max()), -float(slow.min())) > 2.0 * fast:  # a shaft that oscillates
+    if min(float(slow.max()), -float(slow.min())) > 2.0 * fast:  # an oscillating shaft
         return np.asarray(torque * np.sign(slow))
     mean, deviation = float(torque.mean()), float(torque.std())
     if abs(mean) > deviation:
@@ -191,7 +191,7 @@ def _upright(torque: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
 
 
 def _troughs(torque: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Index of the minimum between each peak and the next, or the end."""
+    """Return the index of the minimum between each peak and the next, or the end."""
     ends = np.append(peaks[1:], torque.size)
     return np.array([p + int(torque[p:e].argmin()) for p, e in zip(peaks, ends, strict=True)])
 
@@ -199,7 +199,7 @@ def _troughs(torque: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np
 def _is_sudden(
     torque: NDArray[np.float64], peaks: NDArray[np.intp], troughs: NDArray[np.intp]
 ) -> NDArray[np.bool_]:
-    """Whether the fall after each peak is short beside the rise that follows it."""
+    """Return whether the fall after each peak is short compared with the rise after it."""
     falls = np.empty(peaks.size)
     for i, (peak, trough) in enumerate(zip(peaks, troughs, strict=True)):
         level = torque[peak] - _FALLEN * (torque[peak] - torque[trough])
@@ -209,10 +209,10 @@ def _is_sudden(
 
 
 def _glide(times: NDArray[np.float64]) -> float:
-    """Slope of the slip rate's logarithm [octave/s].
+    """Return the slope of the slip rate's logarithm [octave/s].
 
     H. Theil, A rank-invariant method of linear and polynomial regression analysis, Proc. Kon. Ned.
-    Akad. v. Wetensch. A 53 (1950) 386-392: his incomplete method, whose pairs are as many as slips.
+    Akad. v. Wetensch. A 53 (1950) 386-392: the incomplete method, with as many pairs as slips.
     """
     if times.size < _LEAST_FOR_GLIDE:
         return math.nan
@@ -225,7 +225,7 @@ def _glide(times: NDArray[np.float64]) -> float:
 def _slopes(
     torque: NDArray[np.float64], first: NDArray[np.intp], last: NDArray[np.intp]
 ) -> NDArray[np.float64]:
-    """Least-squares slope from each first to each last sample [N m/sample]; NaN below three."""
+    """Return the least-squares slope of each interval [N m/sample]; NaN below three samples."""
     centred = torque - torque.mean()
     index = np.arange(torque.size, dtype=np.float64)
     zeroth = np.append(0.0, np.cumsum(centred))
@@ -243,7 +243,7 @@ def _skewness(values: NDArray[np.float64]) -> float:
     if not deviation > 0.0:
         return math.nan
     centred /= deviation
-    # Not centred**3: a power other than the second takes twenty times as long as a product.
+    # Not centred**3, which takes twenty times as long as the product.
     return float((centred * centred * centred).mean())
 
 
@@ -253,49 +253,49 @@ def _median(values: NDArray[np.float64]) -> float:
 
 
 _PULSE_BAND_FROM = 2_000.0
-"""Lower limit of the band in which pulses are sought [Hz]; lower for a rate below 16 kHz."""
+"""Lower limit of the band of pulses [Hz]; lower for a rate below 16 kHz."""
 
 _PULSE_SMOOTHING = 0.0005
 """Standard deviation of the Gaussian that smooths the squared envelope [s]."""
 
 _PULSE_PROMINENCE_DB = 6.0
-"""A pulse rises and falls by at least this much [dB]."""
+"""Least rise and fall of a pulse [dB]."""
 
 _LEAST_PULSES = 4
 
 _LEAST_HIGH_SHARE = 1e-6
-"""Power of the high band, relative to the whole, below which it holds leakage only."""
+"""Relative power of the high band below which it contains leakage only."""
 
 _PULSE_RANGE_DB = 25.0
-"""Pulses weaker than the strongest by more than this are not counted [dB]."""
+"""Largest distance of a pulse below the strongest [dB]."""
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Pulses:
-    """Pulses in a sound or an acceleration, one at each slip of a creak.
+    """Pulses in a sound or an acceleration, as at each slip of a creak.
 
     Parameters
     ----------
     times : ndarray, shape (n_pulses,)
-        From the start of the signal [s].
+        Times from the start of the signal [s].
     rate : float
-        Pulses in a second [1/s], 0 for fewer than two. The fades at the signal's ends do not count.
+        Pulses per second [1/s]; 0 for fewer than two. The fades at the signal's ends do not count.
     irregularity : float
-        Median magnitude of the logarithm of each interval's ratio to the one before: 0 for a clock
-        even where its rate glides or a pulse is missing, 1.1 (the logarithm of 3) for a Poisson
-        process. NaN for fewer than four pulses.
+        Median magnitude of the logarithm of the ratio of successive intervals: 0 for a clock, even
+        if its rate glides or a pulse is missing, 1.1 (the logarithm of 3) for a Poisson process.
+        NaN for fewer than four pulses.
     glide : float
-        Trend of the rate's logarithm [1/s]: 0.7 doubles the rate in a second. NaN likewise.
+        Trend of the rate's logarithm [1/s]: 0.7 doubles the rate in a second. NaN for fewer than
+        four pulses.
     crest_factor : float
         Peak of the envelope over the rms value of the signal [-]; 1.41 for a tone.
     kurtosis : float
-        Of the signal's part below 7 kHz [-]: 1.5 for a tone, 3 for noise, more for pulses.
+        Kurtosis of the signal below 7 kHz [-]: 1.5 for a tone, 3 for noise, more for pulses.
     high_kurtosis : float
-        The same of the band in which pulses are sought; NaN where that holds less than a millionth
-        of the power [-].
+        Kurtosis of the band of pulses [-]; NaN if that has less than a millionth of the power.
     concentration : float
-        Share of that band's energy in the loudest tenth of the time, 0.1 to 1; NaN likewise.
+        Share of that band's energy in the loudest tenth of the time, 0.1 to 1; NaN as before.
     """
 
     times: NDArray[np.float64]
@@ -309,11 +309,11 @@ class Pulses:
 
 
 _NO_PULSES = Pulses(np.empty(0), 0.0, *[math.nan] * 6)
-"""Of a signal without content."""
+"""Result for a signal without content."""
 
 
 def pulse_band_from(limit: float) -> float:
-    """Lower limit of the band in which pulses are sought.
+    """Return the lower limit of the band of pulses.
 
     Parameters
     ----------
@@ -340,12 +340,12 @@ def pulses_of(
     *,
     start: float = 0.0,
 ) -> Pulses:
-    """Find the pulses in a sound or an acceleration of which the analytic signals are at hand.
+    """Find the pulses in a sound or an acceleration from its analytic signals.
 
     Parameters
     ----------
     whole, high : ndarray of complex, shape (n,)
-        Analytic signal of all that counts, and of the band in which pulses are sought.
+        Analytic signals of the described band, and of the band of pulses.
     high_rate : float
         Sampling rate of the latter [Hz].
     start : float
@@ -389,10 +389,10 @@ def pulses_of(
 
 
 def envelope_kurtosis(power: NDArray[np.float64]) -> float:
-    """Kurtosis of a band-limited signal from its squared envelope; NaN without any.
+    """Return the kurtosis of a band-limited signal from its squared envelope; NaN if that is zero.
 
-    Half as much again as that of the envelope's square: for any signal whose phase is evenly
-    spread the same as of its samples, but sampled at the band's own rate.
+    It is 1.5 times the normalised second moment of the squared envelope, which equals the kurtosis
+    of the samples for a uniformly distributed phase, but needs only the band's own rate.
 
     Parameters
     ----------
@@ -411,12 +411,12 @@ def envelope_kurtosis(power: NDArray[np.float64]) -> float:
     1.5
     """
     mean = float(power.mean())
-    # Not power @ power: a long dot product wakes BLAS threads, which costs more than it saves.
+    # Not power @ power: starting BLAS threads for a long dot product costs more than it saves.
     return 1.5 * float(np.mean(power**2)) / mean**2 if mean > 0.0 else math.nan
 
 
 def squared(analytic: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Squared envelope of an analytic signal.
+    """Return the squared envelope of an analytic signal.
 
     Parameters
     ----------
@@ -438,7 +438,7 @@ def squared(analytic: NDArray[np.complex128]) -> NDArray[np.float64]:
 
 
 def _pulse_times(smooth: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-    """Find the maxima of a smoothed squared envelope; their times [s]."""
+    """Return the times of the maxima of a smoothed squared envelope [s]."""
     from scipy.signal import find_peaks
 
     top = float(smooth.max())
@@ -450,7 +450,7 @@ def _pulse_times(smooth: NDArray[np.float64], rate: float) -> NDArray[np.float64
 
 
 def _rhythm(times: NDArray[np.float64]) -> tuple[float, float]:
-    """Irregularity and glide of pulses, from the logarithms of their intervals."""
+    """Return irregularity and glide of pulses, from the logarithms of their intervals."""
     if times.size < _LEAST_PULSES:
         return math.nan, math.nan
     interval = np.log(np.diff(times))
@@ -463,21 +463,21 @@ def _rhythm(times: NDArray[np.float64]) -> tuple[float, float]:
 def slip_intervals(
     speed: NDArray[np.float64], *, above: float, below: float, apart: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Find the slips in a sliding speed.
+    """Find the intervals of slip in a sliding speed.
 
     Parameters
     ----------
     speed : ndarray, shape (n_samples,)
         Sliding speed [rad/s].
     above, below : float
-        Speeds above which a slip begins, and below which it ends; the latter is lower [rad/s].
+        Speed above which a slip begins, and lower speed below which it ends [rad/s].
     apart : int
-        Slips with fewer samples between them are one [-].
+        Slips with fewer samples between them are merged [-].
 
     Returns
     -------
     starts, ends : ndarray of int, shape (n_slips,)
-        First sample of each slip, and first after it. What has not ended is no slip.
+        First sample of each slip, and first sample after it. A slip without an end is left out.
 
     Examples
     --------
@@ -498,15 +498,15 @@ def slip_intervals(
 def in_intervals(
     starts: NDArray[np.int64], ends: NDArray[np.int64], n_samples: int, *, margin: int = 0
 ) -> NDArray[np.bool_]:
-    """Whether each sample lies in one of several intervals, or this close to one.
+    """Return whether each sample lies in one of several intervals, or close to one.
 
     Parameters
     ----------
     starts, ends : ndarray of int, shape (n_intervals,)
-        First sample of each, and first after it.
+        First sample of each interval, and first sample after it.
     n_samples : int
     margin : int
-        Samples that count as well on either side [-].
+        Samples added on either side [-].
 
     Returns
     -------

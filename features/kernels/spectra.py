@@ -1,12 +1,12 @@
 # mypy: allow-untyped-decorators
-"""Autospectra with a stated normalisation, and numbers for their shape.
+"""Autospectra as power spectral densities, and their shape.
 
-One estimator serves all: Welch's average of Hann-windowed segments. Its segments are spread evenly
-so that the last one ends with the last sample, overlapping by half or slightly more, because a
-block of 0.25 s has no samples to throw away. The result is a power spectral density, the only
-normalisation whose level does not depend on the resolution for noise; the amplitude of a sinusoid
-is a property beside it. The diagnosis takes segments that overlap by exactly half and keeps their
-phases, for it compares two channels.
+The estimator is Welch's average of Hann-windowed segments. The segments are spread evenly so that
+the last one ends with the last sample; they overlap by half or slightly more, because a block of
+0.25 s has no samples to lose. The result is a power spectral density, the only normalisation whose
+level for noise does not depend on the resolution; the amplitude of a sinusoid is a separate
+property. The diagnosis uses complex spectra of segments that overlap by exactly half, since it
+compares two channels.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from models.errors import ParameterError
 from models.show import short_repr
 
 _OVERLAP_SLACK = 0.02
-"""Segments that a signal may lack for an overlap of half: no further one for a few samples."""
+"""Fraction of a segment that may be left uncovered at an overlap of exactly half."""
 
 
 def segment_powers(
     x: NDArray[np.float64], length: int, *, transform_length: int | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Squared magnitudes of the transforms of segments that are spread over a signal.
+    """Return the squared spectra of segments that are spread over a signal.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def segment_powers(
     length : int
         Samples of a segment, at most `n_samples`.
     transform_length : int, optional
-        Zeros fill each segment up to it.
+        Length to which each segment is zero-padded.
 
     Returns
     -------
@@ -67,7 +67,9 @@ def segment_powers(
 
 
 def segment_spectra(x: NDArray[np.float64], length: int) -> NDArray[np.complex128]:
-    """Complex spectra of segments that overlap by half; samples that fill no segment are left out.
+    """Return the complex spectra of segments that overlap by half.
+
+    Samples after the last whole segment are left out.
 
     Parameters
     ----------
@@ -79,12 +81,13 @@ def segment_spectra(x: NDArray[np.float64], length: int) -> NDArray[np.complex12
     Returns
     -------
     ndarray of complex, shape (n_segments, length // 2 + 1)
-        Each about its own mean [unit]; their mean square is the signal's, summed over both sides.
+        Spectra about each segment's mean [unit]; their mean square, summed over both sides, is that
+        of the signal.
 
     Notes
     -----
-    Where the segments begin, and the last bits of the window, are not those of `segment_powers`:
-    the shipped model of the diagnosis has learned from these.
+    The starts of the segments and the last bits of the window differ from `segment_powers`, because
+    the shipped model of the diagnosis was trained with these.
 
     Examples
     --------
@@ -99,7 +102,7 @@ def segment_spectra(x: NDArray[np.float64], length: int) -> NDArray[np.complex12
 
 @lru_cache(maxsize=8)
 def _unit_hann(length: int) -> NDArray[np.float64]:
-    """Hann window of unit energy."""
+    """Return the Hann window of unit energy."""
     window = 0.5 + 0.5 * np.cos(np.linspace(-np.pi, np.pi, length + 1)[:-1])
     window /= math.sqrt(float((window**2).sum()))
     window.setflags(write=False)
@@ -108,7 +111,7 @@ def _unit_hann(length: int) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=16)
 def hann(length: int) -> NDArray[np.float64]:
-    """Hann window; the same few lengths come again and again.
+    """Return the Hann window, cached by length.
 
     Parameters
     ----------
@@ -130,14 +133,14 @@ def hann(length: int) -> NDArray[np.float64]:
 
 
 DEFAULT_RESOLUTION = 4.0
-"""Spacing of the bins [Hz] where nothing else is asked: a quarter of a second a segment."""
+"""Default spacing of the bins [Hz]: segments of a quarter of a second."""
 
 _ROLL_OFF = 0.85
 _HANN_NOISE_BANDWIDTH = 1.5
 _FLATNESS_FLOOR = 1e-12
 
 _FADE_ENERGY = 0.375
-"""Of the fades in a transform, per sample: the mean of sin^4."""
+"""Energy of the fades in a transform per sample: the mean of sin^4."""
 
 
 @short_repr
@@ -155,7 +158,7 @@ class Spectrum:
     rate : float
         Sampling rate of the signal [Hz].
     n_segments : int
-        How many segments were averaged.
+        Number of averaged segments.
     """
 
     frequency: NDArray[np.float64]
@@ -180,8 +183,8 @@ class Spectrum:
         """Peak amplitude spectrum [unit], shape (n_bins,).
 
         A sinusoid of amplitude A at a bin's frequency reads A there; between two bins up to
-        1.4 dB less, the scalloping of the Hann window. Noise has no amplitude: its reading falls
-        with the resolution.
+        1.4 dB less, the scalloping loss of the Hann window. Noise has no amplitude: its reading
+        depends on the resolution.
         """
         return np.sqrt(2.0 * self.density * self.spacing * _HANN_NOISE_BANDWIDTH)
 
@@ -189,8 +192,8 @@ class Spectrum:
     def degrees_of_freedom(self) -> float:
         """Degrees of freedom of a bin of Gaussian noise, segments overlapping by half [-].
 
-        Those of the chi-square law that the bin follows; Welch (1967): the powers of neighbouring
-        Hann segments correlate by 1/36.
+        They are those of the bin's chi-square law; the powers of neighbouring Hann segments
+        correlate by 1/36 (Welch 1967).
         """
         k = self.n_segments
         return 2.0 * k / (1.0 + (k - 1) / (18.0 * k))
@@ -221,7 +224,7 @@ class SpectralShape:
 def autospectrum(
     signal: ArrayLike, rate: float, *, resolution: float = DEFAULT_RESOLUTION
 ) -> Spectrum:
-    """One-sided power spectral density after Welch.
+    """Return the one-sided power spectral density by Welch's method.
 
     Parameters
     ----------
@@ -230,8 +233,8 @@ def autospectrum(
     rate : float
         Sampling rate [Hz].
     resolution : float
-        Spacing of the bins wanted [Hz]. A signal shorter than ``1 / resolution`` is one segment,
-        and its bins are further apart. Two sinusoids part if they are 4 bins from each other.
+        Desired spacing of the bins [Hz]. A signal shorter than ``1 / resolution`` is one segment,
+        with a larger spacing. Two sinusoids are resolved if they are 4 bins apart.
 
     Returns
     -------
@@ -241,7 +244,7 @@ def autospectrum(
     Raises
     ------
     ParameterError
-        A signal that can't be analysed, or a resolution that is not positive.
+        The signal cannot be analysed, or the resolution is not positive.
 
     Notes
     -----
@@ -262,7 +265,7 @@ def autospectrum(
 
 
 def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
-    """`autospectrum` of samples that have been checked already.
+    """Return the `autospectrum` of samples that are already checked.
 
     Parameters
     ----------
@@ -271,7 +274,7 @@ def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
     rate : float
         Sampling rate [Hz].
     resolution : float
-        Spacing of the bins wanted [Hz].
+        Desired spacing of the bins [Hz].
 
     Returns
     -------
@@ -292,7 +295,7 @@ def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
 
 
 def whole_spectrum(transform: Transform) -> Spectrum:
-    """Spectrum with the finest bins that a signal's length allows; fades count by their energy.
+    """Return the spectrum of a whole signal without averaging; fades count by their energy.
 
     Parameters
     ----------
@@ -323,7 +326,7 @@ def whole_spectrum(transform: Transform) -> Spectrum:
 
 
 def spectral_shape(spectrum: Spectrum, *, low: float, high: float) -> SpectralShape:
-    """Centroid, spread, flatness and roll-off of a spectrum between two frequencies.
+    """Return centroid, spread, flatness and roll-off of a spectrum between two frequencies.
 
     Parameters
     ----------
@@ -334,7 +337,7 @@ def spectral_shape(spectrum: Spectrum, *, low: float, high: float) -> SpectralSh
     Returns
     -------
     SpectralShape
-        All NaN where the band holds no power.
+        All NaN for a band without power.
 
     Raises
     ------
@@ -343,9 +346,9 @@ def spectral_shape(spectrum: Spectrum, *, low: float, high: float) -> SpectralSh
 
     Notes
     -----
-    G. Peeters, A large set of audio features for sound description, CUIDADO report, IRCAM (2004),
-    Flatness is that of the density as estimated: averages of few segments
-    scatter, and white noise in a single one reads 0.56.
+    G. Peeters, A large set of audio features for sound description, CUIDADO report, IRCAM (2004).
+    Flatness is that of the estimated density, which scatters for few segments: white noise in a
+    single one gives 0.56.
 
     Examples
     --------
@@ -376,12 +379,12 @@ def spectral_shape(spectrum: Spectrum, *, low: float, high: float) -> SpectralSh
 
 
 def weighted_median(values: NDArray[np.float64], weight: NDArray[np.float64]) -> float:
-    """Value below which half of the weight lies.
+    """Return the weighted median.
 
     Parameters
     ----------
     values, weight : ndarray, shape (n,)
-        In any [unit], and not negative [-].
+        Values in any [unit], and weights, not negative [-].
 
     Returns
     -------

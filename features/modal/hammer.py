@@ -1,14 +1,13 @@
-"""Hits with an impulse hammer: which can be used, and the transfer function that they give.
+"""Impulse hammer hits: checks, windows, and the transfer function with its coherence.
 
-Each hit is one segment under a boxcar window: the force is over before the segment ends and the
-response has died away, so a window could only add damping that is not there. Where it has not died
-away, an exponential window over force and response ends it; as both decay alike, it moves each pole
-by its own rate and nothing else, which is taken off the modes again. Cross- and autospectra are
-averaged over the hits. H1 takes noise to be in the response alone, H2 in the force alone, Hv in
-both in proportion to their power, which puts it half-way (geometrically) between.
+Each hit is one segment with a boxcar window: the force ends and the response decays before its end,
+so a window would only add damping. Otherwise an exponential window over force and response makes
+them decay; it shifts each pole by its own rate and nothing else, which is removed from the modes
+again. Cross- and autospectra are averaged over the hits. H1 assumes noise in the response only, H2
+in the force only, Hv in both in proportion to their power, which is their geometric mean.
 
-A second contact of the hammer makes notches in the spectrum of the force, a clipped force is not
-the force, and one that drifts hides its lowest lines; none can be mended, so such hits are refused.
+A second contact of the hammer causes notches in the spectrum of the force, a clipped force is
+wrong, and a drifting force hides its lowest lines; none can be corrected, so such hits are refused.
 
 J. S. Bendat, A. G. Piersol, Random Data, chapters 6 and 9; for Hv G. T. Rocklin, J. Crowley,
 H. Vold, A comparison of the H1, H2, and Hv frequency response functions, Proc. IMAC 3 (1985).
@@ -29,54 +28,54 @@ from models.show import short_repr
 from models.transfer_functions.transfer_function import TransferFunction
 
 ESTIMATORS = ("H1", "H2", "Hv")
-"""For noise in the response, for noise in the force, for noise in both."""
+"""Estimators for noise in the response, in the force, and in both."""
 
 DOUBLE_HIT = 0.05
-"""A further contact counts from this share of the largest force on; ringing of the sensor's own
-filter stays below."""
+"""Share of the largest force from which a further contact counts; ringing of the sensor's filter is
+lower."""
 
 FLAT, NEAR = 3.0, 0.03
-"""A signal is clipped that stands at its limit so many times as often as just below it."""
+"""Ratio of samples at the limit to those within 3 % below it, from which a signal is clipped."""
 
 LEAST_CREST = 10.0
-"""Largest force over the rms of the rest, below which there is no hit to be seen."""
+"""Least ratio of the largest force to the rms of the rest."""
 
 LONGEST_BLOW = 0.2
-"""No hammer touches for longer [s]; what seems to has its time in another unit."""
+"""Longest contact of a hammer [s]; a longer one indicates a wrong unit of time."""
 
 LARGEST_DRIFT = 0.01
-"""Change of the force beside the blow, as a share of the largest force."""
+"""Largest drift of the force outside the impact, over the largest force."""
 
 WINDOW_END = 0.01
-"""Value of the exponential window at the end of a hit; at the blow it is 1."""
+"""Value of the exponential window at the end of a hit; it is 1 at the impact."""
 
 NULL = 0.01
-"""Power of the force at a null, relative to that on either side of it."""
+"""Power of the force at a null over that on either side."""
 
 _SURE = 12.0  # times the median deviation of a part over the root of its length
-_PARTS = 8  # of a force, whose medians show a drift and not a short blow
-_LAST = 0.05  # share of a hit that counts as its end
+_PARTS = 8  # of a force, whose medians show a drift but not a short impact
+_LAST = 0.05  # share of a hit at its end
 _BESIDE = 1.5  # frequency ratio within which a null has neighbours
 _FINE = 1e-3  # steps of a converter, relative to the peak, that leave two neighbours unlike
-_EVEN = 1e-4  # flanks of a top that is sampled evenly about its middle differ by less
+_EVEN = 1e-4  # difference of the flanks of a top that is sampled evenly about its middle
 _DIGITS = 9  # to which levels of a converter agree
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Hit:
-    """One hit.
+    """Force and response of one hit.
 
     Parameters
     ----------
     force : ndarray, shape (n,)
-        [N], or [N m] where an arm has turned it into a torque.
+        [N], or [N m] for a torque by an arm.
     response : ndarray, shape (n,)
         Such as an acceleration [m/s2].
     rate : float
         Sampling rate [Hz].
     name : str
-        What messages call it, usually its file.
+        Name in messages, usually the file's.
 
     Examples
     --------
@@ -91,7 +90,7 @@ class Hit:
 
 
 def check_hit(hit: Hit) -> None:
-    """Refuse a hit that would spoil the average.
+    """Raise if a hit would distort the average.
 
     Parameters
     ----------
@@ -100,7 +99,7 @@ def check_hit(hit: Hit) -> None:
     Raises
     ------
     RecordingError
-        There is no hit in it, a second one, or force or response is clipped.
+        There is no hit, or a double one, or force or response is clipped.
 
     Examples
     --------
@@ -122,7 +121,7 @@ def check_hit(hit: Hit) -> None:
 
 
 def _problem(hit: Hit) -> str:
-    """Why a hit cannot be used, empty where it can."""
+    """Return the reason why a hit cannot be used; empty if it can."""
     if not hit.response.any():
         return "the response is zero throughout"
     force, top = _upright(hit.force)
@@ -163,7 +162,7 @@ def _problem(hit: Hit) -> str:
 
 
 def remaining_response(hits: Sequence[Hit]) -> float:
-    """How far responses have died away at the end of their hits.
+    """Return the relative amplitude of the responses at the end of their hits.
 
     Parameters
     ----------
@@ -172,8 +171,8 @@ def remaining_response(hits: Sequence[Hit]) -> float:
     Returns
     -------
     float
-        Largest amplitude at an end, above the noise before the blow, relative to that after the
-        blow [-].
+        Largest amplitude at an end, above the noise before the impact, relative to that after the
+        impact [-].
 
     Examples
     --------
@@ -198,7 +197,7 @@ def remaining_response(hits: Sequence[Hit]) -> float:
 
 
 def windowed_hits(hits: Sequence[Hit]) -> tuple[list[Hit], float]:
-    """Put a force and exponential window over hits.
+    """Apply a force and an exponential window to hits.
 
     Parameters
     ----------
@@ -207,9 +206,9 @@ def windowed_hits(hits: Sequence[Hit]) -> tuple[list[Hit], float]:
     Returns
     -------
     hits : list of Hit
-        The force zero but for the blow; force and response decay from the blow on.
+        Hits whose force is zero outside the impact, and whose force and response decay from there.
     rate : float
-        By which each pole decays faster than it does without [1/s].
+        Rate that the window adds to the decay of each pole [1/s].
 
     Examples
     --------
@@ -240,19 +239,19 @@ def windowed_hits(hits: Sequence[Hit]) -> tuple[list[Hit], float]:
 def force_nulls(
     hits: Sequence[Hit], frequency: NDArray[np.float64], half_width: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Whether the force holds next to nothing at frequencies, but does on either side of them.
+    """Return whether the spectrum of the force has a null at frequencies.
 
     Parameters
     ----------
     hits : sequence of Hit
-        All of one sampling rate and length.
+        Hits of one sampling rate and length.
     frequency, half_width : ndarray, shape (n,)
-        Middle of each band looked at, and its limits' distance from it [Hz]; a line at least.
+        Middle and half width of each band [Hz]; at least one line.
 
     Returns
     -------
     ndarray of bool, shape (n,)
-        True at a null; one entry per frequency [-].
+        One entry per frequency [-].
 
     Examples
     --------
@@ -282,23 +281,23 @@ def estimate_transfer_function(
     output_unit: str = "m/s^2",
     name: str = "response",
 ) -> TransferFunction:
-    """Estimate the transfer function and its coherence, averaged over hits.
+    """Estimate the transfer function and its coherence from hits.
 
     Parameters
     ----------
     hits : sequence of Hit
-        At least one, all of one sampling rate and length.
+        One or more hits of one sampling rate and length.
     estimator : str
         ``"H1"``, ``"H2"`` or ``"Hv"``.
     input_unit, output_unit : str
-        Of force and response.
+        Units of force and response.
     name : str
-        What messages call it.
+        Name in messages.
 
     Returns
     -------
     TransferFunction
-        From 0 Hz; its ordinary coherence is None where there is a single hit, which has none.
+        From 0 Hz, with ordinary coherence unless there is a single hit.
 
     Raises
     ------
@@ -310,8 +309,8 @@ def estimate_transfer_function(
     >>> force = np.zeros(64)
     >>> force[3] = 1.0
     >>> hits = [Hit(force, 2.0 * force, 1e3), Hit(-force, -2.0 * force, 1e3)]
-    >>> found = estimate_transfer_function(hits)
-    >>> float(found.response[5].real.round(6)), float(found.coherence[5].round(6))
+    >>> transfer = estimate_transfer_function(hits)
+    >>> float(transfer.response[5].real.round(6)), float(transfer.coherence[5].round(6))
     (2.0, 1.0)
     """
     if not hits:
@@ -330,29 +329,31 @@ def estimate_transfer_function(
     frequencies, cross = csd(force, response, rate, "boxcar", n, 0, detrend=False)
     _, of_force = welch(force, rate, "boxcar", n, 0, detrend=False)
     _, of_response = welch(response, rate, "boxcar", n, 0, detrend=False)
-    # Bins that hold nothing at all give zero, not a warning.
-    found = cross / np.maximum(of_force, np.finfo(np.float64).tiny)
+    # Empty bins give zero without a warning.
+    estimate = cross / np.maximum(of_force, np.finfo(np.float64).tiny)
     power = np.abs(cross) ** 2
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = power / (of_force * of_response)
         if estimator == "H2":
-            found = np.where(power > 0.0, of_response / np.where(power > 0.0, cross.conj(), 1.0), 0)
+            estimate = np.where(
+                power > 0.0, of_response / np.where(power > 0.0, cross.conj(), 1), 0
+            )
         elif estimator == "Hv":
-            found = found * np.where(ratio > 0.0, 1 / np.sqrt(ratio), 0.0)
+            estimate = estimate * np.where(ratio > 0.0, 1 / np.sqrt(ratio), 0.0)
     coherence = np.clip(np.where(np.isfinite(ratio), ratio, 0.0), 0.0, 1.0)
     return TransferFunction(
-        frequencies, found, coherence if len(hits) > 1 else None, input_unit, output_unit, name
+        frequencies, estimate, coherence if len(hits) > 1 else None, input_unit, output_unit, name
     )
 
 
 def _upright(force: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
-    """Return the force with its largest value positive, and where that is."""
+    """Return the force with its largest value positive, and the index of that value."""
     top = int(np.argmax(np.abs(force)))
     return force * math.copysign(1.0, force[top]), top
 
 
 def _lobe(signal: NDArray[np.float64], top: int, share: float) -> tuple[int, int]:
-    """First sample and end of what stays above a share of the value at `top`."""
+    """Return first sample and end of the lobe above a share of the value at `top`."""
     below = signal < share * signal[top]
     before = np.flatnonzero(below[:top])
     after = np.flatnonzero(below[top:])
@@ -363,10 +364,10 @@ def _lobe(signal: NDArray[np.float64], top: int, share: float) -> tuple[int, int
 
 
 def _flat_top(signal: NDArray[np.float64]) -> int:
-    """How many samples stand at the largest value, 0 where that is no clipping.
+    """Return the number of samples at a clipped maximum; 0 without clipping.
 
-    What goes over its top passes through the values just below it, and comes near the very top
-    less often than that, even where a converter rounds; what is clipped skips them.
+    A signal that turns at its maximum has more samples just below it than at it, even if a
+    converter rounds; a clipped signal skips them.
     """
     peak = float(signal.max())
     if peak <= 0.0:

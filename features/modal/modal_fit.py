@@ -1,17 +1,15 @@
-"""Modes of measured response functions: poles, damping and residues.
+"""Modal fit of measured response functions: poles, damping and residues.
 
-The least-squares complex frequency method fits a quotient of polynomials in z = exp(-i omega T)
-to all responses at once. It is linear, needs no starting values and does well with close modes;
-and of the poles of ever higher orders physical ones stay where they are while those that fit
-noise wander, so that modes can be told without a person picking them from a chart. Coefficients
-are complex and the band is laid over half the unit circle, which keeps the equations well
-conditioned however narrow the band. A band is cut into overlapping ones of few modes each, narrow
-ones first and wide ones for what is too broad for those.
+The least-squares complex frequency method fits a rational function in z = exp(-i omega T) to all
+responses at once. It is linear, needs no starting values and handles close modes. With rising order
+physical poles are stable while those that fit noise move, so modes are selected automatically from
+the stabilization diagram. Coefficients are complex and the band is mapped to half the unit circle,
+which keeps the equations well conditioned for any bandwidth. A band is divided into overlapping
+bands of few modes each, narrow ones first, then wide ones for broad modes.
 
-Residues follow from all poles together by linear least squares, poles that add next to nothing to
-any response are dropped, and a few steps of Gauss and Newton then fit poles and residues at once:
-a linear fit of a quotient weights lines by its denominator, which makes damping too small where
-there is noise.
+Residues follow from all poles by linear least squares, and poles that contribute almost nothing to
+any response are dropped. A few Gauss-Newton steps then fit poles and residues together, since the
+linear fit weights lines by the denominator, which underestimates damping in noise.
 
 P. Guillaume, P. Verboven, S. Vanlanduit, H. Van der Auweraer, B. Peeters, A poly-reference
 implementation of the least-squares complex frequency-domain estimator, Proc. IMAC 21 (2003).
@@ -38,32 +36,33 @@ from features.modal.modes import (
 from models.errors import ParameterError
 
 ORDERS = tuple(range(4, 25, 2))
-"""Orders of the denominators tried in each band."""
+"""Orders of the denominators in each band."""
 
 LINES = (250, 1000)
-"""Lines of a band, narrow and wide."""
+"""Lines of a narrow and of a wide band."""
 
 OVERLAP = 0.3
-"""Share of a band that its neighbour covers, too."""
+"""Overlap of neighbouring bands."""
 
 SAME_FREQUENCY, SAME_DAMPING = 1e-3, 0.3
-"""Relative change from one order to the next within which a pole is the same."""
+"""Largest relative change of a stable pole between orders."""
 
-LASTING = 4
-"""Orders that a pole must stay through."""
+STABLE = 4
+"""Fewest orders in which a pole is stable."""
 
 LARGEST_DAMPING = 0.2
+"""Largest damping ratio of a pole."""
 
 _TINY = 1e-12  # of the largest response, which keeps weights finite
 
 
-def lasting_poles(measured: Responses) -> list[Pole]:
-    """Poles of response functions that stay through several orders.
+def stable_poles(measured: Responses) -> list[Pole]:
+    """Return the poles of response functions that are stable over several orders.
 
     Parameters
     ----------
     measured : Responses
-        Weighted by the trust in each line, from 0 to 1 [-].
+        Responses with the weight of each line, from 0 to 1 [-].
 
     Returns
     -------
@@ -75,30 +74,30 @@ def lasting_poles(measured: Responses) -> list[Pole]:
     >>> f = np.arange(1.0, 301.0)
     >>> H = 1 / (100.0**2 - f**2 + 2j * 0.02 * 100.0 * f)
     >>> [(round(pole.frequency, 2), round(pole.damping_ratio, 4))
-    ...  for pole in lasting_poles(Responses(f, H[None], np.ones((1, 300))))]
+    ...  for pole in stable_poles(Responses(f, H[None], np.ones((1, 300))))]
     [(100.0, 0.02)]
     """
-    found: list[Pole] = []
+    poles: list[Pole] = []
     for size in LINES:
         new: list[Pole] = []
         for lines, least, most in _bands(measured.f, size):
             poles_by_order = _lscf(measured.at(lines))
-            new += [pole for pole in _lasting(poles_by_order) if least <= pole.frequency < most]
-        found = _merged(found, new)
+            new += [pole for pole in _stable(poles_by_order) if least <= pole.frequency < most]
+        poles = _merged(poles, new)
         if measured.f.size <= size:
             break
-    return sorted(found)
+    return sorted(poles)
 
 
 def line_weights(h: NDArray[np.complex128], weight: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Weights of the lines of a fit: responses are neither weighted alike nor by their logarithm.
+    """Return the weights of the lines of a fit, which decrease with the root of the response.
 
     Parameters
     ----------
     h : ndarray, shape (..., n), complex
         Response functions, in any unit.
     weight : ndarray, shape (..., n)
-        Trust in each line, from 0 to 1 [-].
+        Weight of each line, from 0 to 1 [-].
 
     Returns
     -------
@@ -116,7 +115,7 @@ def line_weights(h: NDArray[np.complex128], weight: NDArray[np.float64]) -> NDAr
 
 
 def _bands(f: NDArray[np.float64], size: int) -> list[tuple[slice, float, float]]:
-    """Lines of each band, and the limits between which its poles are taken."""
+    """Return the lines of each band, and the limits of its poles."""
     if f.size <= size:
         return [(slice(0, f.size), float(f[0]), float(f[-1]) + 1e-9)]
     n = int(np.ceil((f.size / size - OVERLAP) / (1 - OVERLAP)))
@@ -130,7 +129,7 @@ def _bands(f: NDArray[np.float64], size: int) -> list[tuple[slice, float, float]
 
 
 def _lscf(measured: Responses) -> list[list[tuple[float, float]]]:
-    """Frequencies and damping ratios of the poles of each order."""
+    """Return frequencies and damping ratios of the poles of each order."""
     f, h, weight = measured
     duration = 0.5 / (f[-1] - f[0])
     largest = min(ORDERS[-1], f.size // 2)
@@ -149,7 +148,7 @@ def _lscf(measured: Responses) -> list[list[tuple[float, float]]]:
             t[:n, :n] - s[:n, :n].conj().T @ np.linalg.lstsq(r[:n, :n], s[:n, :n], rcond=None)[0]
             for r, s, t in sums
         )
-        # The highest coefficient is one: poles that only fit noise then come out unstable.
+        # With the highest coefficient equal to one, poles that fit noise become unstable.
         a = np.ones(n, dtype=np.complex128)
         a[:-1] = np.linalg.lstsq(reduced[:-1, :-1], -reduced[:-1, -1], rcond=None)[0]
         roots = np.roots(a[::-1])
@@ -164,12 +163,12 @@ def _lscf(measured: Responses) -> list[list[tuple[float, float]]]:
     return result
 
 
-def _lasting(by_order: list[list[tuple[float, float]]]) -> list[Pole]:
-    """Poles that stay through several orders: frequency, damping ratio, number of orders."""
+def _stable(by_order: list[list[tuple[float, float]]]) -> list[Pole]:
+    """Return the poles that are stable over several orders."""
     chains: list[list[tuple[float, float]]] = []
     alive: list[list[tuple[float, float]]] = []
     for poles in by_order:
-        going: list[list[tuple[float, float]]] = []
+        extended: list[list[tuple[float, float]]] = []
         taken: set[int] = set()
         for frequency, ratio in poles:
             near = [
@@ -183,48 +182,48 @@ def _lasting(by_order: list[list[tuple[float, float]]]) -> list[Pole]:
                 i = min(near)[1]
                 taken.add(i)
                 alive[i].append((frequency, ratio))
-                going.append(alive[i])
+                extended.append(alive[i])
             else:
                 chains.append([(frequency, ratio)])
-                going.append(chains[-1])
-        alive = going
-    lasting = []
+                extended.append(chains[-1])
+        alive = extended
+    stable = []
     for chain in chains:
-        if len(chain) >= LASTING:
+        if len(chain) >= STABLE:
             frequency, ratio = np.median(chain[len(chain) // 2 :], axis=0).tolist()
-            lasting.append(Pole(frequency, ratio, len(chain)))
-    return lasting
+            stable.append(Pole(frequency, ratio, len(chain)))
+    return stable
 
 
-def _merged(known: list[Pole], new: list[Pole]) -> list[Pole]:
-    """Known poles, and the new ones that are neither one of them nor a chain broken in two."""
-    kept = list(known)
+def _merged(poles: list[Pole], new: list[Pole]) -> list[Pole]:
+    """Return poles with the new ones that are neither among them nor part of a broken chain."""
+    merged = list(poles)
     for pole in sorted(new, key=lambda pole: -pole.orders):
         f, width = pole.frequency, pole.damping_ratio * pole.frequency
         apart = max(width, SAME_FREQUENCY * f)
-        if all(abs(f - other.frequency) > apart for other in known) and all(
-            abs(f - other.frequency) > 0.5 * width for other in kept
+        if all(abs(f - other.frequency) > apart for other in poles) and all(
+            abs(f - other.frequency) > 0.5 * width for other in merged
         ):
-            kept.append(pole)
-    return kept
+            merged.append(pole)
+    return merged
 
 
 FEWEST_LINES = 32
 
 MOST_STEPS = 12
-"""Of the fit of poles and residues at once."""
+"""Most steps of the joint fit of poles and residues."""
 
 SWEEPS = 3
-"""Times that all poles are fitted again."""
+"""Number of passes over all poles."""
 
 GROUP, MARGIN = 12, 60.0
-"""Poles fitted at a time, and lines on either side of them in widths of the widest."""
+"""Poles fitted together, and margin of lines on either side in widths of the widest pole."""
 
 EDGE = 8.0
-"""Lines at the band's ends in which poles are not looked for: they would fit what lies beyond."""
+"""Lines at the band's ends without poles, which would fit modes beyond the band."""
 
 NEGLIGIBLE = 0.02
-"""A mode whose peak is a smaller share of the response about it is dropped."""
+"""Least peak of a mode over the response around it; others are dropped."""
 
 _ENOUGH = 1e-3  # relative gain of a step that is worth no further one
 
@@ -253,12 +252,12 @@ def fit_modes(
     Returns
     -------
     Modes
-        None at all where no pole lasts.
+        Empty if no pole is stable.
 
     Raises
     ------
     ParameterError
-        The band holds too few lines.
+        The band has too few lines.
 
     Examples
     --------
@@ -277,35 +276,35 @@ def fit_modes(
         raise ParameterError(
             f"{f.size} lines lie between {low:g} and {high:g} Hz; modes need {FEWEST_LINES} or more"
         )
-    # Many small products: threads that wait for each other take twenty times as long as one.
+    # Many small products: several threads take twenty times as long as one.
     with threadpool_limits(limits=1, user_api="blas"):
         edge = EDGE * float(f[1] - f[0])
         first, last = float(f[0]) + edge, float(f[-1]) - edge
         measured = Responses(f, h, line_weights(h, weight))
-        poles = lasting_poles(Responses(f, h, weight))
+        poles = stable_poles(Responses(f, h, weight))
         for sweep in range(SWEEPS + 1):
             within = [pole for pole in poles if first < pole.frequency < last]
-            modes = _pruned(_merged([], within), measured)  # of doubles, which stayed longest
+            modes = _pruned(_merged([], within), measured)  # of doubles the most stable one
             if sweep < SWEEPS:
                 poles = _refined(modes, measured)
         return modes
 
 
 def _pruned(poles: list[Pole], measured: Responses) -> Modes:
-    """Modes of those poles that show in a response."""
+    """Return the modes of the poles that are visible in a response."""
     poles = sorted(poles)
     while True:
         modes = modes_of_poles(poles, measured)
         share = _share(modes, measured)
         if share.size == 0 or share.min() >= NEGLIGIBLE:
             return modes
-        # The weakest go together; one that is just below may show once they are gone.
+        # Drop only the weakest; one just below the limit may be visible without them.
         limit = max(share.min(), 0.25 * NEGLIGIBLE)
         poles = [pole for pole, its in zip(poles, share, strict=True) if its > limit]
 
 
 def _refined(modes: Modes, measured: Responses) -> list[Pole]:
-    """Poles after Gauss-Newton steps, a few neighbours at a time with all others as they are."""
+    """Return the poles after Gauss-Newton steps, a few neighbours at a time."""
     f, poles = measured.f, _poles_of(modes)
     refined: list[Pole] = []
     for group in _groups(modes.frequency):
@@ -323,7 +322,7 @@ def _refined(modes: Modes, measured: Responses) -> list[Pole]:
 
 
 def _groups(frequency: NDArray[np.float64]) -> list[slice]:
-    """Neighbours that are fitted together, parted at the widest gaps."""
+    """Return groups of neighbours that are fitted together, split at the widest gaps."""
     limits = [0]
     while frequency.size - limits[-1] > GROUP:
         start = limits[-1]
@@ -334,7 +333,7 @@ def _groups(frequency: NDArray[np.float64]) -> list[slice]:
 
 
 def _moved(poles: list[Pole], measured: Responses) -> list[Pole]:
-    """Poles after as many steps as bring the model nearer."""
+    """Return the poles after as many steps as reduce the misfit."""
     modes = modes_of_poles(poles, measured)
     error = _misfit(modes, measured)
     for _ in range(MOST_STEPS):
@@ -354,7 +353,7 @@ def _poles_of(modes: Modes) -> list[Pole]:
 
 
 def _stepped(modes: Modes, measured: Responses) -> list[Pole]:
-    """Poles moved by one step, each by no more than its width."""
+    """Return the poles after one step, each moved by at most half its width."""
     n, s = modes.frequency.size, 2j * np.pi * measured.f
     poles = modes.poles
     here = 1 / (s - poles[:, None]) ** 2
@@ -369,7 +368,7 @@ def _stepped(modes: Modes, measured: Responses) -> list[Pole]:
         moves = np.vstack([a + b, 1j * (a - b)]) * w
         other = basis * w
         left = (one - model[row]) * w
-        # What residues can take up on their own is projected out.
+        # Project out the part that residues can fit alone.
         solved = least_squares(other, np.vstack([moves, left]))
         rest = real_and_imaginary(np.vstack([moves, left])) - solved @ real_and_imaginary(other)
         gram = rest @ rest.T
@@ -392,7 +391,7 @@ def _misfit(modes: Modes, measured: Responses) -> float:
 
 
 def _share(modes: Modes, measured: Responses) -> NDArray[np.float64]:
-    """Peak of each mode relative to the responses within its width, at best."""
+    """Return the largest peak of each mode relative to the responses within its width."""
     f, h, _ = measured
     shares = np.empty(modes.frequency.size)
     for r, (frequency, ratio) in enumerate(zip(modes.frequency, modes.damping_ratio, strict=True)):

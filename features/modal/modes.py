@@ -1,4 +1,4 @@
-"""Modes of a structure, and the residues that given poles need to make up its responses."""
+"""Modes of a structure, and the residues of poles fitted to its responses."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 _POINTS = 2000
 _MARGIN = 0.5
-"""Of the lowest natural frequency: where a curve begins on axes that are new."""
+"""Start of a curve on new axes, over the lowest natural frequency."""
 
 
 class Pole(NamedTuple):
-    """A pole of response functions.
+    """Pole of response functions.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Pole(NamedTuple):
     damping_ratio : float
         Fraction of critical damping [-].
     orders : int
-        Through how many orders it stayed.
+        Number of orders in which the pole is stable.
     """
 
     frequency: float
@@ -40,7 +40,7 @@ class Pole(NamedTuple):
 
 
 class Responses(NamedTuple):
-    """Measured response functions.
+    """Measured response functions with weights.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Responses(NamedTuple):
     h : ndarray, shape (n_responses, n), complex
         In any [unit].
     weight : ndarray, shape (n_responses, n)
-        Of each line [-].
+        Weight of each line [-].
     """
 
     f: NDArray[np.float64]
@@ -57,7 +57,7 @@ class Responses(NamedTuple):
     weight: NDArray[np.float64]
 
     def at(self, lines: slice | NDArray[np.bool_]) -> Responses:
-        """Return some lines of them."""
+        """Return the responses at some lines."""
         return Responses(self.f[lines], self.h[:, lines], self.weight[:, lines])
 
 
@@ -79,9 +79,9 @@ class Modes:
         R_r [unit of the response times rad/s].
     residuals : ndarray, shape (n_responses, 4)
         Real factors of 1/(i omega)^2, 1, i omega and (i omega)^2, relative to the highest omega:
-        what modes outside the band leave in it.
+        the contribution of modes outside the band.
     orders : ndarray, shape (n_modes,)
-        Through how many orders each pole stayed [-].
+        Number of orders in which each pole is stable [-].
     highest : float
         Upper end of the band [Hz].
 
@@ -103,11 +103,11 @@ class Modes:
 
     @property
     def poles(self) -> NDArray[np.complex128]:
-        """The poles s_r [rad/s], shape (n_modes,)."""
+        """Poles s_r [rad/s], shape (n_modes,)."""
         return _poles(self.frequency, self.damping_ratio)
 
     def response(self, frequency: ArrayLike) -> NDArray[np.complex128]:
-        """Response functions at frequencies.
+        """Return the response functions at frequencies.
 
         Parameters
         ----------
@@ -124,17 +124,17 @@ class Modes:
         return np.asarray(coefficients @ basis)
 
     def without_window(self, rate: float) -> Modes:
-        """Modes as they are without the exponential window under which they were measured.
+        """Return the modes without the effect of an exponential window.
 
         Parameters
         ----------
         rate : float
-            By which the window makes each pole decay faster [1/s].
+            Rate that the window adds to the decay of each pole [1/s].
 
         Returns
         -------
         Modes
-            Of those that still decay.
+            Modes that still decay.
 
         Examples
         --------
@@ -163,12 +163,12 @@ class Modes:
         )
 
     def to_pandas(self) -> DataFrame:
-        """Return one row per mode as a data frame of pandas.
+        """Return a pandas data frame with one row per mode.
 
         Returns
         -------
         pandas.DataFrame
-            ``frequency_hz``, ``damping_ratio`` and the order that the pole stayed through.
+            Columns ``frequency_hz``, ``damping_ratio`` and ``orders``.
 
         Raises
         ------
@@ -182,12 +182,12 @@ class Modes:
         return data_frame(columns, [dict(zip(columns, of, strict=True)) for of in values])
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the magnitudes of the responses that the modes make up, and where the modes are.
+        """Plot the magnitudes of the modes' responses, and their natural frequencies.
 
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Where to draw, such as on the measured response; by default a new figure.
+            Axes to draw into, such as those of the measured response; by default a new figure.
 
         Returns
         -------
@@ -234,7 +234,7 @@ class Modes:
 
 
 def modes_of_poles(poles: list[Pole], measured: Responses) -> Modes:
-    """Modes with given poles: residues and residuals by linear least squares.
+    """Return the modes of poles, with residues and residuals by linear least squares.
 
     Parameters
     ----------
@@ -265,7 +265,7 @@ def modes_of_poles(poles: list[Pole], measured: Responses) -> Modes:
 def modal_basis(
     poles: NDArray[np.complex128], f: NDArray[np.float64], highest: float
 ) -> NDArray[np.complex128]:
-    """Responses that unit residues, real and imaginary, and unit residuals make.
+    """Return the responses of unit residues, real and imaginary, and unit residuals.
 
     Parameters
     ----------
@@ -274,7 +274,7 @@ def modal_basis(
     f : ndarray, shape (n,)
         [Hz]
     highest : float
-        Frequency that residuals are relative to [Hz].
+        Reference frequency of the residuals [Hz].
 
     Returns
     -------
@@ -294,21 +294,21 @@ def modal_basis(
 
 
 def least_squares(
-    basis: NDArray[np.complex128], wanted: NDArray[np.complex128]
+    basis: NDArray[np.complex128], target: NDArray[np.complex128]
 ) -> NDArray[np.float64]:
-    """Real factors with which the rows of `basis` make up `wanted`, by normal equations.
+    """Return real factors of the rows of `basis` that sum to `target`, by normal equations.
 
     Parameters
     ----------
     basis : ndarray, shape (n_rows, n), complex
         In any unit.
-    wanted : ndarray, shape (n,) or (n_wanted, n), complex
+    target : ndarray, shape (n,) or (n_targets, n), complex
         In any unit.
 
     Returns
     -------
-    ndarray, shape (n_rows,) or (n_wanted, n_rows)
-        [unit of wanted over that of basis]
+    ndarray, shape (n_rows,) or (n_targets, n_rows)
+        [unit of target over that of basis]
 
     Examples
     --------
@@ -318,12 +318,12 @@ def least_squares(
     parts = real_and_imaginary(basis)
     scale = np.sqrt(np.maximum(np.sum(parts**2, axis=1), np.finfo(float).tiny))
     parts /= scale[:, None]
-    factors = np.linalg.lstsq(parts @ parts.T, parts @ real_and_imaginary(wanted).T, rcond=1e-13)[0]
+    factors = np.linalg.lstsq(parts @ parts.T, parts @ real_and_imaginary(target).T, rcond=1e-13)[0]
     return np.asarray(factors.T / scale)
 
 
 def real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Real and imaginary parts one after the other along the last axis.
+    """Return real and imaginary parts concatenated along the last axis.
 
     Parameters
     ----------

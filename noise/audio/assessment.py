@@ -11,12 +11,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.levels import (
-    NOMINAL_THIRD_OCTAVES,
-    SoundLevels,
-    a_weighting,
-    sound_levels,
-)
+from features.kernels.level_meter import SoundLevels, a_weighting, sound_levels
+from features.kernels.levels import NOMINAL_THIRD_OCTAVES
 from features.sound_quality import SOUND_QUALITY_RATE, SoundQuality, sound_quality_of
 from models.errors import ParameterError
 from models.radiation.sound_power import BandPower

@@ -1,6 +1,6 @@
 """Levels of any part of a recording, and of each of its segments over the background.
 
-A-weighted levels are those that `features.kernels.levels` measures of the same samples, the
+A-weighted levels are those that `features.kernels.level_meter` measures of the same samples, the
 loudness N5 that of the library that the field keeps for it.
 
 The background is what is left where no noise is named. Its level is the one exceeded for 90 % of
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.levels import weighted_levels
+from features.kernels.level_meter import weighted_levels
 from features.sound_quality import SHORTEST, SOUND_QUALITY_RATE, loudness_n5
 from models.blocks import RecordingBlocks
 from models.recording import REFERENCE_PRESSURE

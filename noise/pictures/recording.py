@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.levels import fast_level_pieces
+from features.kernels.level_meter import fast_level_pieces
 from features.kernels.orders import OrderMap, order_map, speed_of_angle
 from models.blocks import Read, RecordingBlocks, reader_of
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned

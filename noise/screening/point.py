@@ -21,7 +21,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.levels import WeightedLevels, weighted_levels
+from features.kernels.level_meter import WeightedLevels, weighted_levels
 from models.condition import Condition as Stated
 from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from features.kernels.levels import sound_levels
+from features.kernels.level_meter import sound_levels
 from models.condition import FIXED
 from models.errors import ParameterError
 from models.recording import Channel, Recording

@@ -26,7 +26,7 @@ from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from scipy.signal import fftconvolve
 
-from features.kernels.levels import a_weighting
+from features.kernels.level_meter import a_weighting
 from noise.training.classifier.augmentation.rooms import in_a_room
 from noise.training.classifier.background_sounds import background_sound
 from noise.training.classifier.background_sounds.building import blow, placed, wavering
