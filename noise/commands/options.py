@@ -220,7 +220,7 @@ def help_of(command: str) -> Help:
     Examples
     --------
     >>> help_of("render").options["--gap"]
-    'silence between two of them in s'
+    'silence between two inputs in s'
     """
     texts = packaged_toml("noise.commands", "help.toml")
     own = texts[command]
