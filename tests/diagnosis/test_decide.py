@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,6 +11,7 @@ from hypothesis import given, strategies as st
 
 from models.condition import Condition
 from models.errors import ParameterError
+from models.rig import LawSpec
 from noise.diagnosis.causes.verdict import likeliest, normalised
 from noise.diagnosis.fit import decide
 from noise.diagnosis.fit.closing import closed_of, room_of
@@ -20,9 +22,12 @@ from noise.diagnosis.fit.decide import (
     fit_notes,
     settled,
     updated,
+    weakened,
 )
-from noise.diagnosis.fit.fit import split
+from noise.diagnosis.fit.fit import Fitted, split
 from noise.diagnosis.fit.fits import illustrations_of
+from noise.diagnosis.simulated.model_runs import Model
+from sim.effects import EFFECTS
 
 PARTIAL, WEAK, PAIR = (
     frozenset(names)
@@ -131,6 +136,26 @@ def test_a_name_closes_some_of_the_gap_of_recordings_held_out(before, recalibrat
     assert fits_of(before, recalibrated, {PARTIAL: after}).closes(PARTIAL) == closes
 
 
+@pytest.mark.parametrize(("strength", "share"), [(0.29, 1.0), (0.5, 0.5), (0.9, 0.25), (9.0, 1.0)])
+def test_a_fit_that_overshoots_where_it_was_not_fitted_is_taken_in_part(strength, share):
+    def left(model, chosen):  # the gap is 6 without the effect, and all closed by 0.15 of it
+        return np.full(
+            len(chosen), (1.0 + abs(model.effects[0].parameters["gain"] - 0.15) / 0.03) ** 2
+        )
+
+    spec = LawSpec("velocity_strengthening", {"gain": strength})
+    model = Model((0.1, 0.0, 0.0, 0.0, 0.0), (spec,))
+    comparison = SimpleNamespace(effect_of=lambda spec: EFFECTS[spec.name], squared=left)
+    fits = fits_of(6.0, 5.0, {}, comparison)
+    fitted = Fitted(model, comparison, (0, 1))
+    fit = weakened(fits, HypothesisFit((spec.name,), fitted, left(model, range(4))))
+    assert fit.share == share
+    assert fit.fitted.model.offsets[0] == 0.1 * share
+    assert fit.fitted.model.effects[0].parameters["gain"] == pytest.approx(share * strength)
+    judged = decide.Judged(None, (2, 3), replace(fits, of={WEAK: fit}), {}, {}, tuple(WEAK))
+    assert bool(fit_notes(judged)) == (share < 1.0)
+
+
 def test_what_is_held_out_has_a_gap_where_more_than_one_condition_has():
     at = [Condition(speed=v) for v in (1.0, 1.5, 2.0, 2.5, 3.0)]
     gaps = [1.0, 4.0, 3.0, 1.0, 1.1]
@@ -198,7 +223,7 @@ def test_a_cause_that_cannot_be_simulated_is_left_out_and_ends_no_diagnosis(fitt
     fits, noted = fitted(chances({film: 0.6, PARTIAL: 0.3}, unknown=0.04), {PARTIAL: 1.0})
     assert noted == [PARTIAL]
     assert fits.impossible == {film: "steps of 1e-07 s cannot follow"}
-    (note,) = fit_notes(SimpleNamespace(fits=fits, among=()))
+    (note,) = fit_notes(SimpleNamespace(fits=fits, among=(), verdict=()))
     assert note.startswith("transfer_film was not fitted")
 
 

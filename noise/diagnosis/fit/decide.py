@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import ParameterError
+from models.rig import LawSpec
 from noise.diagnosis.causes.verdict import ALONE, Hypothesis, likeliest, marginals, normalised
 from noise.diagnosis.first_answer import FirstAnswer, known_effects
 from noise.diagnosis.fit.case_comparison import CaseComparison
@@ -58,6 +59,9 @@ _ENOUGH = 0.9
 _LIKELY = 0.05
 """Probability of a hypothesis that is worth a fit; assumed."""
 
+_SHARES = (0.5, 0.25)
+"""Of a fit that opens the gap of recordings held out; assumed."""
+
 _NO_FIT: tuple[Hypothesis, ...] = (frozenset(), *ALONE)
 
 
@@ -72,11 +76,14 @@ class HypothesisFit:
     fitted : Fitted
     squared : ndarray, shape (n_recordings,)
         What is left of each recording, in squared floors [-].
+    share : float
+        Of the fit that is taken, 1 where all of it is [-].
     """
 
     names: tuple[str, ...]
     fitted: Fitted
     squared: NDArray[np.float64]
+    share: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,8 +163,18 @@ class CaseFits:
         What parameters alone leave is weighed by `updated`: they may only stand for the effect.
         Where there was none to close, the fit must open none.
         """
-        gap, now = (rms(self.held_out(x)) for x in (self.before, self.least(hypothesis)))
-        return now < gap if gap >= 1.0 + CLOSABLE else now < 1.0 + CLOSABLE
+        return self.closes_held_out(self.held_out(self.least(hypothesis)))
+
+    def closes_held_out(self, left: NDArray[np.float64]) -> bool:
+        """Tell as `closes` whether what is left of recordings held out is a gap closed.
+
+        Parameters
+        ----------
+        left : ndarray, shape (n_held,)
+            In squared floors [-].
+        """
+        gap = rms(self.held_out(self.before))
+        return rms(left) < gap if gap >= 1.0 + CLOSABLE else rms(left) < 1.0 + CLOSABLE
 
 
 @dataclass(frozen=True, eq=False)
@@ -266,6 +283,13 @@ def fit_notes(judged: Judged) -> list[str]:
                 "what was held out hardly deviates, so that no fit could be tried on a deviation "
                 "that it had not seen: record the condition that deviates once more"
             )
+        fit = fits.of.get(frozenset(judged.verdict))
+        if fit is not None and fit.share < 1.0:
+            found.append(
+                f"{joined(fit.names)} as fitted overshoots in the recordings held out: "
+                f"{fit.share:.0%} of it is taken, which these have settled, so what it closes of "
+                "them is no forecast"
+            )
         found += [
             f"{' and '.join(sorted(names))} was not fitted, since no model of it can be simulated: "
             f"{why}"
@@ -312,7 +336,8 @@ def fit_hypotheses(
         after = fits.comparison.squared(fitted.model, range(len(fits.before)))
         # A model that breaks down on recordings that it has not seen closes nothing there.
         after = np.where(np.isfinite(after), after, np.maximum(fits.before, fits.recalibrated))
-        return replace(fits, of={**fits.of, hypothesis: HypothesisFit(names, fitted, after)})
+        fit = weakened(fits, HypothesisFit(names, fitted, after))
+        return replace(fits, of={**fits.of, hypothesis: fit})
 
     for name in always:
         fits = with_fit(fits, frozenset({name}))
@@ -333,6 +358,42 @@ def fit_hypotheses(
             break
         fits = with_fit(fits, next_one)
     return fits
+
+
+def weakened(fits: CaseFits, fit: HypothesisFit) -> HypothesisFit:
+    """Take a share of a fit that opens the gap of recordings held out.
+
+    A form that is not quite the rig's may follow the recordings that were fitted to and overshoot
+    beyond them, and a rig near a change of regime may change it by a little more. The strongest of
+    the shares that closes some of the gap held out is taken, of strengths and offsets alike; where
+    none does, the fit stays as it is.
+
+    Parameters
+    ----------
+    fits : CaseFits
+    fit : HypothesisFit
+    """
+    comparison, model = fits.comparison, fit.fitted.model
+    if fits.closes_held_out(fits.held_out(fit.squared)):
+        return fit
+    for share in _SHARES:
+        effects = tuple(_scaled(comparison.effect_of(spec), spec, share) for spec in model.effects)
+        weaker = Model(tuple(share * x for x in model.offsets), effects)
+        left = comparison.squared(weaker, fits.held)
+        if fits.closes_held_out(left):
+            squared = fit.squared.copy()
+            squared[list(fits.held)] = left
+            squared[list(fits.fitted_to)] = comparison.squared(weaker, fits.fitted_to)
+            return HypothesisFit(fit.names, replace(fit.fitted, model=weaker), squared, share)
+    return fit
+
+
+def _scaled(effect: Effect, spec: LawSpec, share: float) -> LawSpec:
+    """Return an effect of so much of its strength, within what that may be."""
+    declared = effect.parameters[effect.strength]
+    value = share * float(spec.parameters.get(effect.strength, declared.default))
+    value = min(max(value, declared.low), declared.high)
+    return LawSpec(spec.name, {**spec.parameters, effect.strength: value})
 
 
 def settled(hypotheses: Mapping[Hypothesis, float], fits: CaseFits) -> dict[Hypothesis, float]:
