@@ -20,7 +20,7 @@ from noise.base.arrays import Array
 from noise.identification.bushing_fit import BushingFit
 from noise.identification.law_fit import LawFit
 from noise.identification.law_model import LOCAL, fitted_evidence
-from noise.identification.outcome import Forecast, Number, Seen
+from noise.identification.outcome import UNITS, Forecast, Number, RecordingFit
 from sim.effects import EFFECTS
 from sim.friction import friction_law
 
@@ -81,45 +81,44 @@ def torque_levels(fit: BushingFit) -> Levels:
 
 
 def _slips(v: Array, shaft_speed: Array) -> NDArray[np.int64]:
-    """Find the samples at which the contact begins to slide, having been slow before."""
+    """Return the samples at which the contact begins to slide, having been slow before."""
     state = np.where(v > shaft_speed, 1, np.where(v < _SLOW * shaft_speed, -1, 0))
-    told = np.flatnonzero(state)
-    return np.asarray(told[1:][(state[told[1:]] == 1) & (state[told[:-1]] == -1)])
+    clear = np.flatnonzero(state)
+    return np.asarray(clear[1:][(state[clear[1:]] == 1) & (state[clear[:-1]] == -1)])
 
-
-_KINDS = (
-    ("elastomer_stiffness", "Nm/rad"), ("damping", "Nm s/rad"), ("elastomer_inertia", "kg m2"),
-    ("clamp_inertia", "kg m2"), ("elastomer_damping_share", ""),
-)  # fmt: skip
 
 _OF_THE_LAW = {
-    True: dict(zip((name for name, _ in _KINDS), (0.01, 0.055, 0.02, 0.01, 0.1), strict=True)),
-    False: dict(zip((name for name, _ in _KINDS), (0.015, 0.13, 0.03, 0.02, 0.2), strict=True)),
+    "elastomer_stiffness": (0.015, 0.01),
+    "damping": (0.13, 0.055),
+    "elastomer_inertia": (0.03, 0.02),
+    "clamp_inertia": (0.02, 0.01),
+    "elastomer_damping_share": (0.2, 0.1),
 }
 """Relative standard error that all recordings share, from a law that is never quite the real one,
-by whether it truly sticks [-]; from 26 development rigs of `tests.blind.identify`, seed 1."""
+of one whose contact creeps and of one that truly sticks [-]; from 26 development rigs of
+`tests.blind.identify`, seed 1."""
 
 _TORQUE_SCATTER, _TORQUE_SHARED = 0.018, 0.003
 """Of a level: from recording to recording at one speed, and by the band limit [-]; from the same
 26 rigs."""
 
 
-def read_again(seen: Sequence[Seen], fit: LawFit) -> list[Seen]:
+def read_again(recordings: Sequence[RecordingFit], fit: LawFit) -> list[RecordingFit]:
     """Read recordings once more, with the bushing that the law's fit gave each.
 
     Parameters
     ----------
-    seen : sequence of Seen
+    recordings : sequence of RecordingFit
     fit : LawFit
 
     Returns
     -------
-    list of Seen
+    list of RecordingFit
         Those that the law was not fitted to are left as they are.
     """
     model, own = fit.model, {}
     for subject, numbers, torque in zip(
-        model.subjects, np.exp(model.local(fit.vector)).tolist(), model.foretell(fit.vector),
+        model.subjects, np.exp(model.local(fit.vector)).tolist(), model.predicted(fit.vector),
         strict=True,
     ):  # fmt: skip
         e = subject.excerpts
@@ -127,22 +126,21 @@ def read_again(seen: Sequence[Seen], fit: LawFit) -> list[Seen]:
         forecast = None if torque is None else Forecast(e.rate, e.torque[middle], torque[middle])
         own[id(subject.measured)] = model.bushing(numbers, subject), forecast
     again = []
-    for one in seen:
-        if id(one.measured) not in own:
-            again.append(one)
-            continue
-        bushing, forecast = own[id(one.measured)]
-        read = replace(one.fit, bushing=bushing)
-        again.append(replace(one, fit=read, levels=torque_levels(read), forecast=forecast))
+    for one in recordings:
+        bushing, forecast = own.get(id(one.measured), (None, None))
+        if bushing is not None:
+            refitted = replace(one.fit, bushing=bushing)
+            one = RecordingFit(one.measured, refitted, torque_levels(refitted), forecast)
+        again.append(one)
     return again
 
 
-def bushing_numbers(seen: Sequence[Seen], fit: LawFit) -> list[Number]:
-    """Tell the rig's numbers.
+def bushing_numbers(recordings: Sequence[RecordingFit], fit: LawFit) -> list[Number]:
+    """Return the rig's numbers.
 
     Parameters
     ----------
-    seen : sequence of Seen
+    recordings : sequence of RecordingFit
         As of `read_again`.
     fit : LawFit
         To all recordings that slip.
@@ -152,24 +150,22 @@ def bushing_numbers(seen: Sequence[Seen], fit: LawFit) -> list[Number]:
     list of Number
         Stiffness and torques by interference, damping by interference and support, inertias.
     """
-    numbers = [*_of_fit(fit, *_KINDS[0]), *_levels(seen)]
-    for name, unit in _KINDS[1:]:
-        numbers += _of_fit(fit, name, unit)
-    return numbers
+    stiffness, *others = (_of_fit(fit, name) for name in _OF_THE_LAW)
+    return [*stiffness, *_levels(recordings), *itertools.chain(*others)]
 
 
-def _of_fit(fit: LawFit, name: str, unit: str) -> list[Number]:
+def _of_fit(fit: LawFit, name: str) -> list[Number]:
     model, place = fit.model, LOCAL.index(name)
     means, spread = model.means(fit.vector), np.sqrt(np.diag(fit.covariance))
-    shared = _OF_THE_LAW[model.candidate.sticks][name]
-    said = list(fitted_evidence(model).values())
+    shared = _OF_THE_LAW[name][model.candidate.sticks]
+    of_evidence = list(fitted_evidence(model).values())
     numbers = []
     for g, (i, key) in enumerate(model.groups):
         if i == place:
             at = key if isinstance(key, tuple) else (key, None)
             error = math.hypot(float(spread[model.n_local + g]), shared)
-            n = int(np.sum(model.group_of[:, i] == g)) + said.count(g)
-            numbers.append(_number(name, unit, math.exp(means[g]), error, n, *at))
+            n = int(np.sum(model.group_of[:, i] == g)) + of_evidence.count(g)
+            numbers.append(_number(name, UNITS[name], math.exp(means[g]), error, n, *at))
     return sorted(numbers, key=lambda n: (n.interference or 0.0, n.support_stiffness or 0.0))
 
 
@@ -179,12 +175,12 @@ def _number(name: str, unit: str, value: float, error: float, n: int, *at: float
     return Number(name, unit, value, value / away, value * away, n, *at)
 
 
-def _levels(seen: Sequence[Seen]) -> list[Number]:
-    """Levels of the torque in these recordings, their mean."""
+def _levels(recordings: Sequence[RecordingFit]) -> list[Number]:
+    """Return levels of the torque in these recordings, their mean."""
     numbers = []
     for name in ("critical_torque", "kinetic_torque"):
         groups: dict[float, list[float]] = defaultdict(list)
-        for one in seen:
+        for one in recordings:
             if one.levels.slips:
                 level = getattr(one.levels, name.removesuffix("_torque"))
                 groups[one.measured.condition.interference].append(level)
@@ -192,12 +188,12 @@ def _levels(seen: Sequence[Seen]) -> list[Number]:
             # levels that change with speed do so for a reason: their mean is no less sure
             value, n = float(np.exp(np.mean(np.log(values)))), len(values)
             error = math.hypot(_TORQUE_SCATTER / math.sqrt(n), _TORQUE_SHARED)
-            numbers.append(_number(name, "Nm", value, error, n, at))
+            numbers.append(_number(name, UNITS[name], value, error, n, at))
     return numbers
 
 
 def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
-    """Torques as the law means them, and the law's own parameters, by the curvature of the fit.
+    """Return torques as the law means them, and the law's own parameters.
 
     Parameters
     ----------

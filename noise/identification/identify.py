@@ -25,17 +25,17 @@ from noise.identification.bushing_numbers import (
     read_again,
     torque_levels,
 )
+from noise.identification.evidence import static_evidence, with_evidence
 from noise.identification.law_fit import MARGIN, choose_law
-from noise.identification.law_model import Candidate, fitted_evidence
+from noise.identification.law_model import Candidate, fitted_evidence, subjects_of
 from noise.identification.measured import (
     Beforehand,
     Measurements,
     known_beforehand,
     read_measurements,
 )
-from noise.identification.outcome import Identification, LawScore, Seen, as_json
-from noise.identification.static_test import static_evidence, static_notes, with_evidence
-from noise.identification.subjects import subjects_of
+from noise.identification.outcome import Identification, LawScore, RecordingFit, as_json
+from noise.identification.static_test import StaticTest
 
 
 class NothingSlipsError(ParameterError):
@@ -76,22 +76,20 @@ def identify_rig(
     if units := unit_findings([one.recording for one in measurements.used], beforehand.rig):
         raise ParameterError(f"{'; '.join(units)}; put units right in the sidecars")
     tell = progress or (lambda _text: None)
-    seen = []
+    recordings = []
     for one in measurements.used:
         alone = fit_bushing(one, beforehand.known)
-        seen.append(Seen(one, alone, torque_levels(alone)))
-        tell(_sentence(seen[-1]))
-    if not any(one.levels.slips for one in seen) and measurements.static:
-        return _by_static_tests(measurements, beforehand)
-    if not any(one.levels.slips for one in seen):
+        recordings.append(RecordingFit(one, alone, torque_levels(alone)))
+        tell(_sentence(recordings[-1]))
+    if not any(one.levels.slips for one in recordings):
+        if measurements.static:
+            return _by_static_tests(measurements, beforehand)
         raise NothingSlipsError(
             "no recording shows stick and slip, so that neither stiffness nor torques can be told; "
             "record slower rotation, or a larger interference"
         )
-    stated = {one.measured.condition.material for one in seen} - {None}
-    material = str(stated.pop() if len(stated) == 1 else beforehand.rig.material)
     static, known = measurements.static, beforehand.known
-    subjects = subjects_of(seen, known)
+    subjects = subjects_of(recordings, known)
     if not subjects:
         raise NothingSlipsError(
             "no recording shows enough slips one like the other to tell a law; record longer, at "
@@ -101,27 +99,31 @@ def identify_rig(
     evidence = {sticks: static_evidence(static, known, sticks=sticks) for sticks in (True, False)}
     fit, scores, held_out = choose_law(known, subjects, tell, evidence)
     model = fit.model
-    seen = read_again(seen, fit)
-    rig = model.rig(fit.vector, beforehand.rig, material)
+    recordings = read_again(recordings, fit)
+    stated = {one.measured.condition.material for one in recordings} - {None}
+    material = str(stated.pop() if len(stated) == 1 else beforehand.rig.material)
+    rig = replace(
+        model.rig(fit.vector, beforehand.rig, material),
+        fastest_fitted=max(one.measured.written_speed for one in recordings),
+        temperature=_dependence(beforehand.rig, recordings, material),
+    )
     fitted = fitted_evidence(model)
     rest = [one for one in model.evidence if one not in fitted]
-    numbers = with_evidence(bushing_numbers(seen, fit), rest)
-    rig = replace(rig, fastest_fitted=max(one.measured.written_speed for one in seen))
-    rig = replace(rig, temperature=_dependence(beforehand.rig, seen, material))
-    assumed, not_found = _assumed(beforehand, seen)
+    numbers = with_evidence(bushing_numbers(recordings, fit), rest)
+    assumed, not_found = _assumed(beforehand, recordings)
     return Identification(
         rig_toml=rig_text(rig, (_HEAD, f"{_structure(beforehand)}."), beforehand.structure),
         numbers=(*numbers, *law_numbers(fit, rig)),
         laws=scores,
         law=model.candidate.name,
-        seen=tuple(seen),
+        recordings=tuple(recordings),
         assumed=assumed,
         not_found=not_found,
         notes=(
             *remarks(rig),
             *_notes(model.candidate, scores, held_out),
             *_moved_inertias(beforehand, rig),
-            *static_notes(static),
+            *_static_notes(static),
         ),
         refused=measurements.refused,
         held_out=held_out,
@@ -195,10 +197,10 @@ def _by_static_tests(measurements: Measurements, beforehand: Beforehand) -> Iden
     steady = [one.name for one in measurements.used]
     return Identification(
         rig_toml=rig_text(rig, (_HEAD,), beforehand.structure), numbers=tuple(numbers), laws=(),
-        law=rig.friction.name, seen=(), refused=measurements.refused, static=static,
+        law=rig.friction.name, recordings=(), refused=measurements.refused, static=static,
         assumed=("torques and the law of friction are the known rig's",),
         not_found=tuple(f"torques from {name}: nothing slips there" for name in steady),
-        notes=tuple(static_notes(static)),
+        notes=tuple(_static_notes(static)),
     )  # fmt: skip
 
 
@@ -258,13 +260,27 @@ _MISSED = 0.2
 _HEAD = "Identified from recordings; intervals and what is assumed are in identification.json."
 
 
-def _dependence(rig: Rig, seen: Sequence[Seen], material: str) -> TemperatureDependence | None:
-    """How the known rig depends on temperature, for numbers found at that of the runs."""
-    found = [one.measured.condition.temperature for one in seen]
-    known = [value for value in found if value is not None]
+def _static_notes(tests: Sequence[StaticTest]) -> list[str]:
+    """Say of static tests that are not elastic what was taken off."""
+    return [
+        f"{one.name}: loading and unloading part, by {100.0 * one.parting:.1f} % of the angle, so "
+        f"not all is elastic; with what yields in the contact the slope is "
+        f"{one.effective_stiffness:.4g} Nm/rad, without it {one.held_stiffness:.4g} "
+        f"(+-{100.0 * one.held_error:.1f} %)"
+        for one in tests
+        if not one.elastic
+    ]
+
+
+def _dependence(
+    rig: Rig, recordings: Sequence[RecordingFit], material: str
+) -> TemperatureDependence | None:
+    """Return how the known rig depends on temperature, for numbers found at that of the runs."""
+    stated = [one.measured.condition.temperature for one in recordings]
+    known = [value for value in stated if value is not None]
     if rig.temperature is None or rig.material != material:
         return None
-    return rig.temperature.at_reference(sum(known) / len(known)) if known else rig.temperature
+    return rig.temperature.given_at(sum(known) / len(known)) if known else rig.temperature
 
 
 def _structure(beforehand: Beforehand) -> str:
@@ -272,7 +288,7 @@ def _structure(beforehand: Beforehand) -> str:
     return f"structure, plate and microphone are those of {whose}"
 
 
-def _sentence(one: Seen) -> str:
+def _sentence(one: RecordingFit) -> str:
     fit, levels = one.fit, one.levels
     if not levels.slips:  # nothing winds the elastomer up, so nothing tells how stiff it is
         return f"{one.measured.name}: mean torque {levels.mean:.3g} Nm, no slips"
@@ -283,9 +299,11 @@ def _sentence(one: Seen) -> str:
     )
 
 
-def _assumed(beforehand: Beforehand, seen: list[Seen]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _assumed(
+    beforehand: Beforehand, recordings: Sequence[RecordingFit]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
     assumed, not_found = [], []
-    flexible = any(not one.fit.bushing.clamp_is_fixed for one in seen)
+    flexible = any(not one.fit.bushing.clamp_is_fixed for one in recordings)
     if "elastomer_damping_share" not in beforehand.stated and not flexible:
         assumed.append(
             "damping is split evenly between elastomer and beams, as the thesis does: with the "
@@ -300,12 +318,14 @@ def _assumed(beforehand: Beforehand, seen: list[Seen]) -> tuple[tuple[str, ...],
         )
     if not flexible:
         not_found.append("clamp inertia: all recordings were made with the clamp fixed")
-    slipping = {one.measured.condition.interference for one in seen if one.levels.slips}
+    slipping = {one.measured.condition.interference for one in recordings if one.levels.slips}
     not_found += [
         f"anything at {1e3 * interference:g} mm: nothing slips there; record slower rotation"
-        for interference in sorted({one.measured.condition.interference for one in seen} - slipping)
+        for interference in sorted(
+            {one.measured.condition.interference for one in recordings} - slipping
+        )
     ]
-    steady = [one.measured.name for one in seen if not one.levels.slips]
+    steady = [one.measured.name for one in recordings if not one.levels.slips]
     if steady:
         not_found.append(f"critical torque from {', '.join(steady)}: nothing slips there")
     return tuple(assumed), tuple(not_found)

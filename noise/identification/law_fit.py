@@ -1,12 +1,8 @@
 """Laws of friction fitted to what recordings do next, and the simplest that does as well as any.
 
-A fit is least squares over excerpts of a cycle or two. Begun where the recording shows what it
-does, a model's torque depends smoothly on its numbers, so the slopes come from small steps and the
-search is that of Levenberg (1944) and Marquardt (1963). It begins at many places with few excerpts,
-each recording by itself, and ends with all of them and one rig about which the recordings scatter.
-
-Laws are compared on whole conditions that are left out: what counts is how much of their
-oscillation a law predicts, cycle by cycle.
+A search begins at many places with few excerpts, each recording by itself, and ends with all of
+them and one rig about which the recordings scatter. Laws are compared on whole conditions that are
+left out: what counts is how much of their oscillation a law predicts, cycle by cycle.
 """
 
 from __future__ import annotations
@@ -21,206 +17,17 @@ from numpy.typing import NDArray
 
 from noise.base.arrays import Array
 from noise.identification.bushing_fit import Known
+from noise.identification.evidence import Evidence
 from noise.identification.law_model import (
     CANDIDATES,
-    LOCAL,
     SHARE_ASSUMED,
-    Candidate,
     LawModel,
-    priors,
+    Subject,
     share_error,
 )
 from noise.identification.measured import Measured
+from noise.identification.misfit import Misfit
 from noise.identification.outcome import LawScore
-from noise.identification.static_test import Evidence
-from noise.identification.subjects import Subject
-
-_STEP = 3e-4
-"""Of the logarithms, for slopes."""
-
-_BEND = 2.5
-"""Deviations beyond so many times their usual size count linearly; assumed."""
-
-_COUNT = 5e-4
-"""Neighbouring samples err alike: so long a time counts as one observation [s]; assumed."""
-
-_HOPELESS = 300.0
-_FAR = 60.0
-"""Deviations beyond which one is as bad as the other; assumed."""
-
-
-class Misfit:
-    """Misfit of a model as a function of its vector.
-
-    Parameters
-    ----------
-    model : LawModel
-    start : ndarray, shape (n,)
-        About which it is searched, logarithms [-].
-    loose : float
-        Factor on what recordings may differ by [-].
-    """
-
-    def __init__(self, model: LawModel, start: Array, *, loose: float = 1.0) -> None:
-        self._model = model
-        self._low, self._high = model.limits(start)
-        self._matrix, self._target = priors(model, loose)
-        self._weights = [
-            (_COUNT * one.excerpts.rate) ** -0.5 * np.ones(one.excerpts.torque.size)
-            for one in model.subjects
-        ]
-
-    def within(self, x: Array) -> Array:
-        """Return a vector within its limits.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n,)
-            Logarithms [-].
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            [-]
-        """
-        return np.clip(x, self._low, self._high)
-
-    def away(self, x: Array) -> list[Array]:
-        """Tell how far each recording is from what a vector foretells.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n,)
-            Logarithms [-].
-
-        Returns
-        -------
-        list of ndarray, shape (n_samples,)
-            In what a good model may miss it by [-].
-        """
-        found = []
-        for one, torque in zip(self._model.subjects, self._model.foretell(x), strict=True):
-            e = one.excerpts
-            if torque is None:
-                found.append(np.full(e.torque.size, _HOPELESS))
-                continue
-            away = np.nan_to_num((torque - e.torque) / e.scale, nan=_HOPELESS)
-            found.append(np.clip(away, -_HOPELESS, _HOPELESS).ravel())
-        return found
-
-    def by_recording(self, away: list[Array]) -> Array:
-        """Mean size of each recording's deviations, large ones cut.
-
-        Parameters
-        ----------
-        away : list of ndarray, shape (n_samples,)
-            As of `away` [-].
-
-        Returns
-        -------
-        ndarray, shape (n_recordings,)
-            [-]
-        """
-        return np.array([np.mean(np.minimum(np.abs(one), _FAR)) for one in away])
-
-    def missed(self, away: list[Array]) -> Array:
-        """Share of each recording's oscillation that is not foretold.
-
-        Parameters
-        ----------
-        away : list of ndarray, shape (n_samples,)
-            As of `away` [-].
-
-        Returns
-        -------
-        ndarray, shape (n_recordings,)
-            Of the median excerpt [-].
-        """
-        shares = []
-        for one, deviations in zip(self._model.subjects, away, strict=True):
-            e = one.excerpts
-            error = (deviations.reshape(e.torque.shape) * e.scale) ** 2
-            shares.append(np.sqrt(np.median(error.mean(axis=1)) / e.torque.var(axis=1).mean()))
-        return np.array(shares)
-
-    def usual(self, away: list[Array]) -> float:
-        """Return the usual size of deviations, 1 where the model is good.
-
-        Parameters
-        ----------
-        away : list of ndarray, shape (n_samples,)
-            As of `away` [-].
-        """
-        return max(1.0, 1.4826 * float(np.median(np.abs(np.concatenate(away)))))
-
-    def cost(self, x: Array, away: list[Array], usual: float) -> float:
-        """Sum of squares, of Huber's kind.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n,)
-            Logarithms [-].
-        away : list of ndarray, shape (n_samples,)
-            Deviations there [-].
-        usual : float
-            Their usual size [-].
-        """
-        size = np.abs(np.concatenate(away)) / usual
-        bent = np.where(size <= _BEND, size**2, _BEND * (2.0 * size - _BEND))
-        prior = self._matrix @ x - self._target
-        return float(bent @ np.concatenate(self._weights) ** 2 + prior @ prior)
-
-    def curvature(
-        self, x: Array, away: list[Array], usual: float, free: NDArray[np.bool_]
-    ) -> tuple[Array, Array]:
-        """Return curvature and slope of the cost.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n,)
-            Logarithms [-].
-        away : list of ndarray, shape (n_samples,)
-            Deviations there [-].
-        usual : float
-            Their usual size [-].
-        free : ndarray of bool, shape (n,)
-            Which numbers move.
-
-        Returns
-        -------
-        curvature : ndarray, shape (n, n)
-            [-]
-        slope : ndarray, shape (n,)
-            [-]
-        """
-        normal = self._matrix.T @ self._matrix
-        slope = self._matrix.T @ (self._matrix @ x - self._target)
-        slopes = self._slopes(x, away, free)
-        for one, deviations, weight in zip(slopes, away, self._weights, strict=True):
-            size = np.abs(deviations) / usual
-            bent = np.where(size <= _BEND, 1.0, _BEND / np.maximum(size, _BEND))
-            weighted = one * (weight**2 * bent / usual**2)[:, None]
-            normal += one.T @ weighted
-            slope += weighted.T @ deviations
-        return normal, slope
-
-    def _slopes(self, x: Array, away: list[Array], free: NDArray[np.bool_]) -> list[Array]:
-        """Slopes of each recording's deviations: a number of its own is moved in all at once."""
-        model = self._model
-        slopes = [np.zeros((one.size, x.size)) for one in away]
-        places = [slice(i, model.n_local, len(LOCAL)) for i in range(len(LOCAL))]
-        places += [slice(j, j + 1) for j in range(model.n_common, x.size)]
-        for place in places:
-            if not free[place].any():
-                continue
-            step = -_STEP if np.any(x[place] + _STEP > self._high[place]) else _STEP
-            moved = x.copy()
-            moved[place] += step
-            for r, new in enumerate(self.away(moved)):
-                column = place.start + (len(LOCAL) * r if place.stop == model.n_local else 0)
-                slopes[r][:, column] = (new - away[r]) / step
-        return slopes
-
 
 _STUCK, _ELASTIC = (0.95, 1.0, 1.05), (0.85, 1.1, 1.5)
 """Factors on stiffness that are tried; an elastic contact hides some of the elastomer's [-];
@@ -254,7 +61,10 @@ def starts(model: LawModel) -> Iterator[tuple[Array, list[Array]]]:
         np.log(_SHARED if share_error(model) > SHARE_ASSUMED else (1.0,)),
     ))  # fmt: skip
     for chosen in itertools.product(*(some for _, _, some in model.candidate.free.values())):
-        begun = _begun(model.candidate, own, chosen)
+        begun = own.copy()
+        if "share" in model.candidate.free:  # a torque that fades with speed replaces the step
+            share = chosen[list(model.candidate.free).index("share")]
+            begun[:, 1] -= math.log(1.0 - share)
         yield (
             np.log(chosen),
             [
@@ -264,20 +74,10 @@ def starts(model: LawModel) -> Iterator[tuple[Array, list[Array]]]:
         )
 
 
-def _begun(candidate: Candidate, local: Array, chosen: tuple[float, ...]) -> Array:
-    """Let a torque that fades with speed take the place of the step between two torques."""
-    if "share" not in candidate.free:
-        return local
-    share = chosen[list(candidate.free).index("share")]
-    begun = local.copy()
-    begun[:, 1] -= math.log(1.0 - share)
-    return begun
-
-
 _FEW = 3
 """Excerpts of each recording while places to begin at are compared."""
 
-_TRIED, _KEPT = 3, 2
+_TRIED, _SEARCHED = 3, 2
 """Places from which is searched roughly, and then to the end."""
 
 _LOOSE = 4.0
@@ -287,15 +87,6 @@ _TIGHTENED = (2.0, 1.0)
 """And so many times in the end; assumed."""
 
 _ITERATIONS = {"sketch": 6, "hopeless": 3, "fit": 20}
-
-_ENOUGH = 4e-3
-"""Relative gain of an iteration below which it is the last; assumed."""
-
-_TURNS = 4
-"""Shorter steps tried in an iteration."""
-
-_LONGEST_STEP = 0.5
-"""Of a logarithm in one iteration; assumed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -326,15 +117,18 @@ class LawFit:
     vector : ndarray, shape (n,)
         Logarithms.
     missed : ndarray, shape (n_recordings,)
-        Share of each recording's oscillation that is not foretold [-].
+        Share of each recording's oscillation that is not predicted [-].
     covariance : ndarray, shape (n, n)
         Of the vector by the curvature [-].
+    cost : float
+        Sum of squares [-].
     """
 
     model: LawModel
     vector: Array
     missed: Array
     covariance: Array
+    cost: float
 
 
 def sketch_law(model: LawModel, earlier: Sequence[Sketch] = ()) -> Sketch:
@@ -350,28 +144,30 @@ def sketch_law(model: LawModel, earlier: Sequence[Sketch] = ()) -> Sketch:
     -------
     Sketch
     """
-    few = replace(model, subjects=tuple(one.with_some(_FEW) for one in model.subjects))
+    few = replace(model, subjects=tuple(
+        replace(one, excerpts=one.excerpts.some(_FEW)) for one in model.subjects
+    ))  # fmt: skip
     begun = []
     for law, choices in starts(few):
         misfit = Misfit(few, few.vector(choices[0], law), loose=_LOOSE)
         # each recording takes what suits it best
-        costs = [misfit.by_recording(misfit.away(few.vector(local, law))) for local in choices]
+        costs = [misfit.by_recording(few.vector(local, law)) for local in choices]
         best = np.argmin(costs, axis=0)
         local = np.stack([choices[c][r] for r, c in enumerate(best)])
         begun.append((float(np.sum(np.min(costs, axis=0))), few.vector(local, law)))
     for other in earlier:
         theirs = other.vectors[0]
         start = few.vector(other.model.local(theirs), few.law_like(other.model, theirs))
-        misfit = Misfit(few, start, loose=_LOOSE)
-        begun.append((float(np.sum(misfit.by_recording(misfit.away(start)))), start))
+        cost = Misfit(few, start, loose=_LOOSE).by_recording(start)
+        begun.append((float(np.sum(cost)), start))
     begun.sort(key=lambda start: start[0])
-    tried = []
+    sketches = []
     for _, start in begun[:_TRIED]:
         misfit = Misfit(few, start, loose=_LOOSE)
-        vector, away, _ = _searched(misfit, start, _ITERATIONS["sketch"])
-        tried.append((float(np.mean(misfit.by_recording(away))), vector))
-    tried.sort(key=lambda one: one[0])
-    return Sketch(model, tuple(vector for _, vector in tried[:_KEPT]), tried[0][0])
+        vector, *_ = misfit.search(start, _ITERATIONS["sketch"])
+        sketches.append((float(np.mean(misfit.by_recording(vector))), vector))
+    sketches.sort(key=lambda one: one[0])
+    return Sketch(model, tuple(vector for _, vector in sketches[:_SEARCHED]), sketches[0][0])
 
 
 def fit_law(sketch: Sketch, *, hopeless: bool = False) -> LawFit:
@@ -388,68 +184,29 @@ def fit_law(sketch: Sketch, *, hopeless: bool = False) -> LawFit:
     -------
     LawFit
     """
-    found = []
-    for start in sketch.vectors[: 1 if hopeless else _KEPT]:
+    fits = []
+    for start in sketch.vectors[: 1 if hopeless else _SEARCHED]:
         vector = start
         for loose in _TIGHTENED[-1:] if hopeless else _TIGHTENED:
-            misfit = Misfit(sketch.model, vector, loose=loose)
             iterations = _ITERATIONS["hopeless" if hopeless else "fit"]
-            vector, away, normal = _searched(misfit, vector, iterations)
-        found.append((misfit.cost(vector, away, 1.0), vector, misfit.missed(away), normal))
-    _, vector, missed, normal = min(found, key=lambda one: one[0])
-    return LawFit(sketch.model, vector, missed, np.asarray(np.linalg.pinv(normal), np.float64))
+            fit = _fitted(sketch.model, vector, iterations, loose=loose)
+            vector = fit.vector
+        fits.append(fit)
+    return min(fits, key=lambda one: one.cost)
 
 
-def fit_some(model: LawModel, vector: Array, free: NDArray[np.bool_]) -> LawFit:
-    """Fit some numbers of a law, the others being known.
-
-    Parameters
-    ----------
-    model : LawModel
-    vector : ndarray, shape (n,)
-        Where to begin, logarithms [-].
-    free : ndarray of bool, shape (n,)
-        Which numbers are searched.
-
-    Returns
-    -------
-    LawFit
-    """
-    misfit = Misfit(model, vector)
-    vector, away, normal = _searched(misfit, vector, _ITERATIONS["fit"], free)
-    return LawFit(
-        model, vector, misfit.missed(away), np.asarray(np.linalg.pinv(normal), np.float64)
-    )
-
-
-def _searched(
-    misfit: Misfit, x: Array, iterations: int, free: NDArray[np.bool_] | None = None
-) -> tuple[Array, list[Array], Array]:
-    """Return the vector found, deviations there, and the curvature of the misfit."""
-    free = np.ones(x.size, dtype=bool) if free is None else free
-    away = misfit.away(x)
-    damping = 1e-3
-    normal = np.eye(x.size)
-    for _ in range(iterations):
-        usual = misfit.usual(away)
-        normal, slope = misfit.curvature(x, away, usual, free)
-        before = misfit.cost(x, away, usual)
-        inner = normal[np.ix_(free, free)]
-        found = False
-        for _ in range(_TURNS):
-            change = np.zeros(x.size)
-            change[free] = np.linalg.solve(inner + damping * np.diag(np.diag(inner)), -slope[free])
-            largest = max(1.0, float(np.abs(change).max()) / _LONGEST_STEP)
-            tried = misfit.within(x + change / largest)
-            new = misfit.away(tried)
-            after = misfit.cost(tried, new, usual)
-            if after < before:
-                x, away, damping, found = tried, new, max(damping / 10.0, 1e-9), True
-                break
-            damping *= 8.0
-        if not found or after > (1.0 - _ENOUGH) * before:
-            break
-    return x, away, normal
+def _fitted(
+    model: LawModel,
+    start: Array,
+    iterations: int,
+    free: NDArray[np.bool_] | None = None,
+    loose: float = 1.0,
+) -> LawFit:
+    """Fit the free numbers of a law, the others being known."""
+    misfit = Misfit(model, start, loose=loose)
+    vector, away, normal = misfit.search(start, iterations, free)
+    covariance = np.asarray(np.linalg.pinv(normal), np.float64)
+    return LawFit(model, vector, misfit.missed(away), covariance, misfit.cost(vector, away))
 
 
 MARGIN = 1.09
@@ -517,10 +274,10 @@ def choose_law(
     recordings = [one.measured for one in subjects]
     held = left_out(recordings)
     trained = [i for i in range(len(subjects)) if i not in held]
+    chosen = tuple(subjects[i] for i in trained)
     sketches: dict[str, Sketch] = {}
     for candidate in CANDIDATES:
         progress(f"law {candidate.name}: a first look")
-        chosen = tuple(subjects[i] for i in trained)
         model = LawModel(candidate, chosen, known, evidence[candidate.sticks])
         alike = [s for s in sketches.values() if s.model.candidate.sticks == candidate.sticks]
         sketches[candidate.name] = sketch_law(model, alike)
@@ -530,14 +287,13 @@ def choose_law(
     for name, sketch in sketches.items():
         fits[name] = fit_law(sketch, hopeless=sketch.away > _NOT_WORTH_IT * least)
         missed = _with_held(fits[name], subjects, trained, held).missed
-        scores.append(
-            LawScore(
-                name, _mean(missed[held or trained]), _mean(missed[trained]), _mean(missed),
-                _parameters(fits[name]),
-            )
-        )  # fmt: skip
-        share = 100.0 * scores[-1].missed
-        progress(f"law {name}: leaves {share:.1f} % of the oscillation unexplained")
+        shares = [_mean(missed[some]) for some in (held or trained, trained, slice(None))]
+        law, effects = fits[name].model.specs(fits[name].vector)
+        values = {
+            key: float(value) for spec in (law, *effects) for key, value in spec.parameters.items()
+        }
+        scores.append(LawScore(name, *shares, values))
+        progress(f"law {name}: leaves {100.0 * shares[2]:.1f} % of the oscillation unexplained")
     scores.sort(key=lambda score: score.missed)
     fit = fits[_simplest(scores)]
     if held:
@@ -551,7 +307,7 @@ def _mean(shares: Array) -> float:
 
 
 def _simplest(scores: Sequence[LawScore]) -> str:
-    """Name the simplest law that foretells nearly as much as the best."""
+    """Name the simplest law that predicts nearly as much as the best."""
     best = scores[0]
     missed = {score.law: score.missed for score in scores}
     numbers = {candidate.name: candidate.n_parameters for candidate in CANDIDATES}
@@ -572,9 +328,4 @@ def _with_held(
     x = model.extended(fit.model, fit.vector, trained)
     free = np.zeros(x.size, dtype=bool)
     free[: model.n_local].reshape(len(subjects), -1)[held] = True
-    return fit_some(model, x, free)
-
-
-def _parameters(fit: LawFit) -> dict[str, float]:
-    law, effects = fit.model.specs(fit.vector)
-    return {key: float(value) for spec in (law, *effects) for key, value in spec.parameters.items()}
+    return _fitted(model, x, _ITERATIONS["fit"], free)

@@ -1,22 +1,19 @@
-"""Laws of friction as a fit searches them, and what they predict of excerpts of recordings.
-
-A fit searches numbers of each recording, their means over a rig, and the law's own.
+"""Laws of friction as a fit searches them: numbers of each recording, of the rig, of the law.
 
 All are logarithms. A rig is never quite the same twice: each recording has a bushing and torques of
-its own, which scatter about those of the rig, and these are what is to be found.
-
-Excerpts begin where the recording has them, and what recordings scatter by is known beforehand.
+its own, which scatter about those of the rig, and these are what is to be determined. What
+recordings scatter by is known beforehand.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from models.errors import ParameterError
@@ -24,17 +21,13 @@ from models.rig import Fit, LawSpec, Rig
 from noise.base import packaged_toml
 from noise.base.arrays import Array
 from noise.identification.bushing_fit import Known
-from noise.identification.static_test import Evidence
-from noise.identification.subjects import Excerpts, Subject
+from noise.identification.evidence import Evidence
+from noise.identification.measured import Measured
+from noise.identification.outcome import RecordingFit
+from noise.identification.prediction import Excerpts, excerpts_of, friction_of, predicted_torque
 from sim.bushing import LumpedBushing
-from sim.contact import CRITICAL, KINETIC, N_CONTACT, address_of, call_law_at
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.friction import friction_law
-from sim.friction.law import FrictionLaw
-from sim.motion import contact_hooks
 from sim.parameters import resolve
-from sim.solvers.contact_solver import ContactRun, Hook
 
 _SCATTER = np.array([0.025, 0.025, 0.03, 0.03, 0.02, 0.008, 0.01])
 """By which they scatter about the rig's [-]; a support's counts as its clamp's inertia;
@@ -51,92 +44,16 @@ SHARE_ASSUMED = 0.02
 """Relative standard error of a share that the recordings cannot tell; assumed."""
 
 
-def share_error(model: LawModel) -> float:
-    """Relative standard error of the elastomer's share of the damping beforehand [-].
+LOCAL = (
+    "elastomer_stiffness", "kinetic_torque", "drop", "damping", "elastomer_inertia",
+    "clamp_inertia", "elastomer_damping_share",
+)  # fmt: skip
+"""Numbers that each recording has of its own; the drop is from critical to kinetic torque."""
 
-    What rings while the contact sticks tells all of it, while it slides the elastomer's; a
-    clamp that is bolted down only this.
+_LEAST_DROP = 0.004
+"""Over the kinetic torque; equal torques make a weakening contact chatter; assumed."""
 
-    Parameters
-    ----------
-    model : LawModel
-    """
-    if all(math.isinf(one.support) for one in model.subjects):
-        return SHARE_ASSUMED
-    return model.known.share_error
-
-
-def fitted_evidence(model: LawModel) -> dict[Evidence, int]:
-    """Return the group that each piece of evidence speaks of, where the fit has one.
-
-    Parameters
-    ----------
-    model : LawModel
-
-    Returns
-    -------
-    dict of Evidence to int
-        Torques are left out: those that a table states are levels, a law's are not.
-    """
-    places = {group: g for g, group in enumerate(model.groups)}
-    found = {}
-    for one in model.evidence:
-        if one.name not in LOCAL or one.name == "kinetic_torque":
-            continue
-        fit, support = one.interference, one.support_stiffness
-        i = LOCAL.index(one.name)
-        key: object = {"elastomer_stiffness": fit, "damping": (fit, support)}.get(one.name)
-        if (i, key) in places:
-            found[one] = places[i, key]
-    return found
-
-
-def priors(model: LawModel, loose: float = 1.0) -> tuple[Array, Array]:
-    """Return what is known of a vector x: matrix @ x - target is away by one each.
-
-    Parameters
-    ----------
-    model : LawModel
-    loose : float
-        Factor on what recordings may differ by [-].
-
-    Returns
-    -------
-    matrix : ndarray, shape (n_known, n)
-        [-]
-    target : ndarray, shape (n_known,)
-        [-]
-    """
-    n = model.n_common + model.candidate.n_parameters
-    rows, target = [], []
-
-    def row(places: dict[int, float], value: float) -> None:
-        line = np.zeros(n)
-        for place, factor in places.items():
-            line[place] = factor
-        rows.append(line)
-        target.append(value)
-
-    for r, groups in enumerate(model.group_of.tolist()):
-        for i, group in enumerate(groups):
-            weight = 1.0 / (loose * _SCATTER[i])
-            row({len(LOCAL) * r + i: weight, model.n_local + group: -weight}, 0.0)
-    own = np.stack([one.start for one in model.subjects])
-    inertia = model.known.inertia_error
-    width = np.array([*_MEAN_WIDTH, inertia, inertia, share_error(model)])
-    for g, (i, _) in enumerate(model.groups):
-        usual = float(np.median(own[model.group_of[:, i] == g, i]))
-        if i == LOCAL.index("damping"):
-            usual = math.log(_USUAL_DAMPING)
-        row({model.n_local + g: 1.0 / width[i]}, usual / width[i])
-    for one, g in fitted_evidence(model).items():
-        i = model.groups[g][0]
-        error = math.hypot(one.error, _SCATTER[i])
-        row({model.n_local + g: 1.0 / error}, math.log(one.value) / error)
-    for j, (low, high, _) in enumerate(model.candidate.free.values()):
-        weight = 2.0 / math.log(high / low)
-        row({model.n_common + j: weight}, weight * 0.5 * math.log(low * high))
-    return np.array(rows), np.array(target)
+_LARGEST_SHARE = 0.97
 
 
 @dataclass(frozen=True)
@@ -186,131 +103,70 @@ CANDIDATES = tuple(
 """By rising number of parameters."""
 
 
-_TOLERANCE = 1e-6
-"""Of the solver, over one cycle."""
-
-_SUBSTEPS = 12
-"""Between two samples, of a contact that is driven: it settles within microseconds."""
+_LEAST_START = 0.05
+"""What the critical torque exceeds the kinetic one by where a search begins, at least [-];
+assumed."""
 
 
 @dataclass(frozen=True, eq=False)
-class Friction:
-    """A law of friction ready to be solved."""
-
-    law: FrictionLaw
-    coefficients: Array
-    hooks: tuple[Hook, ...]
-
-
-def friction_of(law: LawSpec, effects: tuple[LawSpec, ...] = ()) -> Friction:
-    """Prepare a law and the effects that act on the contact.
-
-    Raises
-    ------
-    ParameterError
-        A parameter is out of its range.
-    """
-    found = friction_law(law.name)
-    values = resolve(f"friction law {law.name!r}", found.parameters, law.parameters)
-    hooks = contact_hooks(activated(effects, EFFECTS), np.random.default_rng(0))
-    return Friction(found, found.coefficients(values), hooks)
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def _driven(law, speed, step, substeps, c, contact, state) -> None:  # type: ignore[no-untyped-def] # noqa: ANN001
-    """Carry the inner state of a contact through sliding that is known (Heun's method)."""
-    first, second, guess = np.zeros_like(state), np.zeros_like(state), np.zeros_like(state)
-    h = step / substeps
-    for i in range(speed.size - 1):
-        slope = (speed[i + 1] - speed[i]) / substeps
-        for j in range(substeps):
-            v = speed[i] + slope * j
-            call_law_at(law, v, c.ctypes, contact.ctypes, state.ctypes, first.ctypes)
-            for m in range(state.size):
-                guess[m] = state[m] + h * first[m]
-            call_law_at(law, v + slope, c.ctypes, contact.ctypes, guess.ctypes, second.ctypes)
-            for m in range(state.size):
-                state[m] += 0.5 * h * (first[m] + second[m])
-
-
-def foretold(
-    excerpts: Excerpts, bushing: LumpedBushing, friction: Friction, critical: float, kinetic: float
-) -> Array:
-    """Foretell the torque of the cell in each excerpt.
+class Subject:
+    """A recording that laws are fitted to.
 
     Parameters
     ----------
+    measured : Measured
     excerpts : Excerpts
-    bushing : LumpedBushing
-    friction : Friction
-    critical, kinetic : float
-        Torques as the law means them [Nm].
+    start : ndarray, shape (7,)
+        Where a search begins: logarithms of `noise.identification.law_model.LOCAL` [-].
+    """
+
+    measured: Measured
+    excerpts: Excerpts
+    start: Array
+
+    @property
+    def interference(self) -> float:
+        """Fit [m]."""
+        return self.measured.condition.interference
+
+    @property
+    def support(self) -> float:
+        """Stiffness of the support [Nm/rad]."""
+        return self.measured.condition.support_stiffness
+
+
+def subjects_of(recordings: Sequence[RecordingFit], known: Known) -> list[Subject]:
+    """Make subjects of the recordings that slip, each begun at the median of its interference.
+
+    Parameters
+    ----------
+    recordings : sequence of RecordingFit
+    known : Known
 
     Returns
     -------
-    ndarray, shape (n_excerpts, length)
-        [Nm]
-
-    Raises
-    ------
-    ParameterError
-        The friction is too steep to be solved.
+    list of Subject
     """
-    step, packed, law = 1.0 / excerpts.rate, bushing.packed(), friction.law
-    contact = np.zeros(N_CONTACT)
-    contact[CRITICAL], contact[KINETIC] = critical, kinetic
-    motions, run_ins, speeds = _begun(
-        excerpts, bushing.elastomer_stiffness, bushing.elastomer_damping,
-        bushing.support_stiffness, bushing.support_damping, bushing.clamp_inertia,
-    )  # fmt: skip
-    torque = np.empty((excerpts.starts.size, excerpts.length))
-    for row, motion, run_in, speed in zip(torque, motions, run_ins, speeds, strict=True):
-        inner = law.state()
-        if inner.size:
-            _driven(
-                address_of(law.torque), run_in, step, _SUBSTEPS, friction.coefficients, contact,
-                inner,
-            )  # fmt: skip
-        run = ContactRun(
-            packed, critical, kinetic, float(speed), step, law=law.torque,
-            coefficients=friction.coefficients, law_state=inner, hooks=friction.hooks,
-            tolerance=_TOLERANCE, motion=motion,
+    slipping = [one for one in recordings if one.levels.slips]
+    subjects = []
+    for one in slipping:
+        c, kinetic = one.measured.condition, one.levels.kinetic
+        alike = [o for o in slipping if o.measured.condition.interference == c.interference]
+        stiffness = float(np.median([o.fit.bushing.elastomer_stiffness for o in alike]))
+        damping = float(np.median([o.fit.damping for o in alike]))
+        drop = float(np.median([o.levels.critical / o.levels.kinetic - 1.0 for o in alike]))
+        bushing = LumpedBushing(
+            known.elastomer_inertia, known.clamp_inertia, stiffness, c.support_stiffness,
+            known.damping_share * damping, (1.0 - known.damping_share) * damping,
         )  # fmt: skip
-        row[:] = run.advance(np.full(excerpts.length, speed), excerpts.length)[0][:, 1]
-    return torque
-
-
-@lru_cache(maxsize=600)
-def _begun(
-    excerpts: Excerpts, stiffness: float, damping: float, support: float, support_damping: float,
-    clamp_inertia: float,
-) -> tuple[Array, Array, Array]:  # fmt: skip
-    """Motion where each excerpt begins, sliding speed before it, and the shaft's speed in it.
-
-    Kept, since a search moves the bushing less often than the rest.
-    """
-    spectrum = excerpts.spectrum
-    bushing = LumpedBushing(1.0, clamp_inertia, stiffness, support, damping, support_damping)
-    states = spectrum.states(bushing)
-    inside = excerpts.starts[:, None] + np.arange(excerpts.length)
-    before = excerpts.starts[:, None] + np.arange(-excerpts.run_in, 1)
-    return (
-        np.ascontiguousarray(states[:, excerpts.starts].T),
-        spectrum.shaft_speed[before] - states[1][before],
-        spectrum.shaft_speed[inside].mean(axis=1),
-    )
-
-
-LOCAL = (
-    "elastomer_stiffness", "kinetic_torque", "drop", "damping", "elastomer_inertia",
-    "clamp_inertia", "elastomer_damping_share",
-)  # fmt: skip
-"""Numbers that each recording has of its own; the drop is from critical to kinetic torque."""
-
-_LEAST_DROP = 0.004
-"""Over the kinetic torque; equal torques make a weakening contact chatter; assumed."""
-
-_LARGEST_SHARE = 0.97
+        excerpts = excerpts_of(one.measured, bushing)
+        if excerpts is not None:
+            start = np.log([
+                stiffness, kinetic, max(drop, _LEAST_START) * kinetic, damping,
+                known.elastomer_inertia, known.clamp_inertia, known.damping_share,
+            ])  # fmt: skip
+            subjects.append(Subject(one.measured, excerpts, start))
+    return subjects
 
 
 @dataclass(frozen=True, eq=False)
@@ -425,8 +281,8 @@ class LawModel:
             return LawSpec(self.candidate.law, values), ()
         return LawSpec(self.candidate.law), (LawSpec(self.candidate.effect, values),)
 
-    def foretell(self, x: Array) -> list[Array | None]:
-        """Foretell the excerpts of each recording at a vector, shape (n,).
+    def predicted(self, x: Array) -> list[Array | None]:
+        """Return the predicted excerpts of each recording at a vector, shape (n,).
 
         Returns
         -------
@@ -434,17 +290,15 @@ class LawModel:
             Torque of the cell [Nm]; None where it cannot be solved.
         """
         friction = friction_of(*self.specs(x))
-        found: list[Array | None] = []
+        torques: list[Array | None] = []
         for one, own in zip(self.subjects, np.exp(self.local(x)).tolist(), strict=True):
             _, kinetic, drop, *_ = own
             critical = kinetic + max(drop, _LEAST_DROP * kinetic)
-            try:
-                found.append(
-                    foretold(one.excerpts, self.bushing(own, one), friction, critical, kinetic)
-                )
-            except ParameterError:
-                found.append(None)
-        return found
+            bushing, torque = self.bushing(own, one), None
+            with suppress(ParameterError):
+                torque = predicted_torque(one.excerpts, bushing, friction, critical, kinetic)
+            torques.append(torque)
+        return torques
 
     def bushing(self, own: Sequence[float], one: Subject) -> LumpedBushing:
         """Bushing of a recording by its numbers, as `LOCAL` has them [SI units]."""
@@ -517,3 +371,91 @@ def _keys(one: Subject) -> tuple[object, ...]:
     """Say what each number of `LOCAL` of a recording shares its mean with."""
     fit = one.interference
     return fit, fit, fit, (fit, one.support), None, None, None
+
+
+def share_error(model: LawModel) -> float:
+    """Relative standard error of the elastomer's share of the damping beforehand [-].
+
+    What rings while the contact sticks tells all of it, while it slides the elastomer's; a
+    clamp that is bolted down only this.
+
+    Parameters
+    ----------
+    model : LawModel
+    """
+    if all(math.isinf(one.support) for one in model.subjects):
+        return SHARE_ASSUMED
+    return model.known.share_error
+
+
+def fitted_evidence(model: LawModel) -> dict[Evidence, int]:
+    """Return the group that each piece of evidence speaks of, where the fit has one.
+
+    Parameters
+    ----------
+    model : LawModel
+
+    Returns
+    -------
+    dict of Evidence to int
+        Torques are left out: those that a table states are levels, a law's are not.
+    """
+    places = {group: g for g, group in enumerate(model.groups)}
+    groups = {}
+    for one in model.evidence:
+        if one.name not in LOCAL or one.name == "kinetic_torque":
+            continue
+        fit, support = one.interference, one.support_stiffness
+        i = LOCAL.index(one.name)
+        key: object = {"elastomer_stiffness": fit, "damping": (fit, support)}.get(one.name)
+        if (i, key) in places:
+            groups[one] = places[i, key]
+    return groups
+
+
+def priors(model: LawModel, loose: float = 1.0) -> tuple[Array, Array]:
+    """Return what is known of a vector x: matrix @ x - target is away by one each.
+
+    Parameters
+    ----------
+    model : LawModel
+    loose : float
+        Factor on what recordings may differ by [-].
+
+    Returns
+    -------
+    matrix : ndarray, shape (n_known, n)
+        [-]
+    target : ndarray, shape (n_known,)
+        [-]
+    """
+    n = model.n_common + model.candidate.n_parameters
+    rows, target = [], []
+
+    def row(places: dict[int, float], value: float) -> None:
+        line = np.zeros(n)
+        for place, factor in places.items():
+            line[place] = factor
+        rows.append(line)
+        target.append(value)
+
+    for r, groups in enumerate(model.group_of.tolist()):
+        for i, group in enumerate(groups):
+            weight = 1.0 / (loose * _SCATTER[i])
+            row({len(LOCAL) * r + i: weight, model.n_local + group: -weight}, 0.0)
+    own = np.stack([one.start for one in model.subjects])
+    inertia = model.known.inertia_error
+    width = np.array([*_MEAN_WIDTH, inertia, inertia, share_error(model)])
+    for g, (i, _) in enumerate(model.groups):
+        usual = float(np.median(own[model.group_of[:, i] == g, i]))
+        if i == LOCAL.index("damping"):
+            usual = math.log(_USUAL_DAMPING)
+        row({model.n_local + g: 1.0 / width[i]}, usual / width[i])
+    for one, g in fitted_evidence(model).items():
+        i = model.groups[g][0]
+        error = math.hypot(one.error, _SCATTER[i])
+        row({model.n_local + g: 1.0 / error}, math.log(one.value) / error)
+    for j, (low, high, _) in enumerate(model.candidate.free.values()):
+        weight = 2.0 / math.log(high / low)
+        row({model.n_common + j: weight}, weight * 0.5 * math.log(low * high))
+    return np.array(rows), np.array(target)

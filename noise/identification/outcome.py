@@ -19,6 +19,18 @@ if TYPE_CHECKING:
     from noise.identification.static_test import StaticTest
 
 
+UNITS = {
+    "elastomer_stiffness": "Nm/rad",
+    "critical_torque": "Nm",
+    "kinetic_torque": "Nm",
+    "damping": "Nm s/rad",
+    "elastomer_inertia": "kg m2",
+    "clamp_inertia": "kg m2",
+    "elastomer_damping_share": "",
+}
+"""Of the numbers that a rig has."""
+
+
 @dataclass(frozen=True)
 class Number:
     """A number of the rig with its 90 % interval.
@@ -56,10 +68,10 @@ class LawScore:
     law : str
         Of `noise.identification.law_model`.
     held_out : float
-        Share of the oscillation that it does not foretell over a cycle or two, of recordings that
-        its fit has not seen [-].
+        Share of the oscillation that it does not predict over a cycle or two, of recordings that
+        its fit has not used [-].
     trained, missed : float
-        The same of those that it has seen, and of all [-].
+        The same of those that it has used, and of all [-].
     parameters : mapping of str to float
         [units of the law's file]
     """
@@ -73,8 +85,26 @@ class LawScore:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
-class Seen:
-    """One recording and what it said by itself.
+class Forecast:
+    """What the law predicts of an excerpt of a recording.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    recorded, predicted : ndarray, shape (n,)
+        Torque of the cell [Nm].
+    """
+
+    rate: float
+    recorded: Array
+    predicted: Array
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class RecordingFit:
+    """One recording with its own bushing and torque levels.
 
     Parameters
     ----------
@@ -89,24 +119,6 @@ class Seen:
     fit: BushingFit
     levels: Levels
     forecast: Forecast | None = None
-
-
-@short_repr
-@dataclass(frozen=True, eq=False)
-class Forecast:
-    """What the law foretells of an excerpt of a recording.
-
-    Parameters
-    ----------
-    rate : float
-        [Hz]
-    recorded, foretold : ndarray, shape (n,)
-        Torque of the cell [Nm].
-    """
-
-    rate: float
-    recorded: Array
-    foretold: Array
 
 
 _NUMBER_COLUMNS = (
@@ -129,7 +141,7 @@ class Identification:
         Best first.
     law : str
         The one that was chosen.
-    seen : tuple of Seen
+    recordings : tuple of RecordingFit
     assumed, not_found, notes : tuple of str
         What the rig file assumes, what these recordings could not tell, what else to know.
     refused : tuple of (str, str)
@@ -154,7 +166,7 @@ class Identification:
     numbers: tuple[Number, ...]
     laws: tuple[LawScore, ...]
     law: str
-    seen: tuple[Seen, ...]
+    recordings: tuple[RecordingFit, ...]
     assumed: tuple[str, ...] = ()
     not_found: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
@@ -167,7 +179,7 @@ class Identification:
     def number(
         self, name: str, interference: float | None = None, support: float | None = None
     ) -> Number:
-        """Find a number by name, and by interference [m] and support [Nm/rad] where it has them.
+        """Return a number by name, and by interference [m] and support [Nm/rad] where it has them.
 
         Raises
         ------
@@ -199,21 +211,21 @@ class Identification:
         return data_frame(_NUMBER_COLUMNS, map(_number, self.numbers))
 
 
-def as_json(found: Identification) -> dict[str, Any]:
+def as_json(result: Identification) -> dict[str, Any]:
     """Return what ``identification.json`` holds."""
     return {
-        "law": found.law,
-        "numbers": [_number(one) for one in found.numbers],
-        "laws": [_rounded(asdict(one)) for one in found.laws],
-        "margin": found.margin,
-        "held_out": list(found.held_out),
-        "recordings": [_recording(one) for one in found.seen],
-        "static": [_static(one) for one in found.static],
-        "assumed": list(found.assumed),
-        "not_found": list(found.not_found),
-        "notes": list(found.notes),
-        "refused": [{"file": name, "reason": reason} for name, reason in found.refused],
-        "seconds": round(found.seconds, 2),
+        "law": result.law,
+        "numbers": [_number(one) for one in result.numbers],
+        "laws": [_rounded(asdict(one)) for one in result.laws],
+        "margin": result.margin,
+        "held_out": list(result.held_out),
+        "recordings": [_recording(one) for one in result.recordings],
+        "static": [_static(one) for one in result.static],
+        "assumed": list(result.assumed),
+        "not_found": list(result.not_found),
+        "notes": list(result.notes),
+        "refused": [{"file": name, "reason": reason} for name, reason in result.refused],
+        "seconds": round(result.seconds, 2),
     }
 
 
@@ -252,7 +264,7 @@ def _static(one: StaticTest) -> dict[str, Any]:
     return dict(_rounded(row))
 
 
-def _recording(one: Seen) -> dict[str, Any]:
+def _recording(one: RecordingFit) -> dict[str, Any]:
     speed = {"speed_rad_s": one.measured.written_speed}
     row = _place(one.measured.condition) | {
         "elastomer_stiffness_Nm_rad": one.fit.bushing.elastomer_stiffness,

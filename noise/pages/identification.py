@@ -14,7 +14,7 @@ from models.condition import Condition
 from models.drawing import BLUE, GREY, VERMILION, styled
 from noise.base.files import atomic
 from noise.identification.law_model import CANDIDATES
-from noise.identification.outcome import Forecast, Identification, Number, Seen, as_json
+from noise.identification.outcome import Forecast, Identification, Number, RecordingFit, as_json
 from noise.pages import blocks as b
 from noise.pages.figures import Line, Panel, cycle_window, lines_panel
 from noise.pages.page import page_html, write_page
@@ -27,12 +27,12 @@ _SHOWN = 0.03
 """Of a recording around a slip [s]."""
 
 
-def recording_panels(one: Seen) -> tuple[Panel, ...]:
+def recording_panels(one: RecordingFit) -> tuple[Panel, ...]:
     """Draw what one recording shows: the rise in stick, and what the law predicts.
 
     Parameters
     ----------
-    one : Seen
+    one : RecordingFit
 
     Returns
     -------
@@ -43,7 +43,7 @@ def recording_panels(one: Seen) -> tuple[Panel, ...]:
         return panels if one.forecast is None else (*panels, _prediction(one.forecast))
 
 
-def _rise(one: Seen) -> Panel:
+def _rise(one: RecordingFit) -> Panel:
     """Draw the torque over the shaft's angle, with the rise by elastomer and support in series."""
     spectrum, fit = one.fit.spectrum, one.fit
     begin = round(cycle_window(spectrum.torque, spectrum.rate, _SHOWN)[0] * spectrum.rate)
@@ -72,12 +72,12 @@ def _rise(one: Seen) -> Panel:
 def _prediction(forecast: Forecast) -> Panel:
     """Draw the torque of an excerpt, and what the law predicts of it from its first sample on."""
     time = 1e3 * np.arange(forecast.recorded.size) / forecast.rate
-    missed = float(np.std(forecast.foretold - forecast.recorded) / np.std(forecast.recorded))
+    missed = float(np.std(forecast.predicted - forecast.recorded) / np.std(forecast.recorded))
     return lines_panel(
         "What the law predicts of a cycle", "Time [ms]", "Torque [Nm]",
         [
             Line(time, forecast.recorded, GREY, "recorded", 2.5),
-            Line(time, forecast.foretold, VERMILION, "predicted", 1.0),
+            Line(time, forecast.predicted, VERMILION, "predicted", 1.0),
         ],
         f"Recorded and predicted torque; {100.0 * missed:.1f} % is missed.",
         legend="lower right", room=(0.25, 0.0),
@@ -174,7 +174,7 @@ def write_identification(folder: Path, result: Identification) -> None:
 
 
 def _html(result: Identification) -> str:
-    slipping = [one for one in result.seen if one.levels.slips]
+    slipping = [one for one in result.recordings if one.levels.slips]
     answer, *further = _answer(result)
     most = max([one.missed for one in result.laws], default=0.0) or 1.0
     laws: list[list[b.Cell | str]] = [
@@ -268,7 +268,7 @@ def _in_rig_file(law: str) -> str:
 
 
 def _title(result: Identification) -> str:
-    counts = {"recordings": len(result.seen), "static tests": len(result.static)}
+    counts = {"recordings": len(result.recordings), "static tests": len(result.static)}
     sources = [f"{n} {what}" for what, n in counts.items() if n]
     return f"The rig, identified from {' and '.join(sources) or 'what was known'}"
 
@@ -306,6 +306,6 @@ def _row(one: Number) -> list[b.Cell | str]:
     ]  # fmt: skip
 
 
-def _condition(one: Seen) -> str:
+def _condition(one: RecordingFit) -> str:
     condition = one.measured.condition
     return ", ".join(replace(condition, speed=float(f"{condition.speed:.3g}")).words)

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from noise.identification.evidence import Evidence, elastomer_stiffness, with_evidence
 from noise.identification.outcome import Number
-from noise.identification.static_test import Evidence, elastomer_stiffness, with_evidence
 
 
 def test_a_stiffness_in_series_with_beams_says_that_of_the_elastomer():

@@ -11,8 +11,7 @@ from models.rig_file import load_material_rig, load_rig, rig_text
 from noise.identification.bushing_fit import Known
 from noise.identification.identify import identify
 from noise.identification.law_fit import left_out, starts
-from noise.identification.law_model import CANDIDATES, LawModel
-from noise.identification.subjects import Subject
+from noise.identification.law_model import CANDIDATES, LawModel, Subject
 from tests.blind.identify.laws import LAWS
 from tests.blind.identify.rigs import make_rig, write_rig
 

@@ -5,8 +5,7 @@ import pytest
 
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
-from noise.identification.law_model import foretold, friction_of
-from noise.identification.subjects import excerpts_of
+from noise.identification.prediction import excerpts_of, friction_of, predicted_torque
 from sim.bushing import lumped_bushing
 from sim.motion import simulate_motion
 from sim.rig_effects import constant_version
@@ -31,7 +30,7 @@ def missed(case, friction=None, **torques):
     rig, bushing, excerpts = case
     fit = rig.fit(0.279e-3)
     levels = {"critical": fit.critical_torque, "kinetic": fit.kinetic_torque} | torques
-    torque = foretold(excerpts, bushing, friction_of(friction or rig.friction), **levels)
+    torque = predicted_torque(excerpts, bushing, friction_of(friction or rig.friction), **levels)
     return float(np.std(torque - excerpts.torque) / np.std(excerpts.torque))
 
 

@@ -15,13 +15,9 @@ from models.rig import Fit, LawSpec
 from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.identification.bushing_fit import Known
+from noise.identification.evidence import elastomer_stiffness, static_evidence
 from noise.identification.measured import read_measurements
-from noise.identification.static_test import (
-    elastomer_stiffness,
-    find_ring_down,
-    static_evidence,
-    static_test,
-)
+from noise.identification.static_test import find_ring_down, static_test
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed, LoggedSpeed, Oscillation
 from tests.blind.identify.laws import LAWS, draw_law
