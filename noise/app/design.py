@@ -17,7 +17,7 @@ from models.rig_file import changed_rig_text
 from noise.app.design_controls import (
     Base,
     base_of,
-    heard_table,
+    condition_table,
     motion_of,
     motion_options,
     read_values,
@@ -77,7 +77,7 @@ class Design:
         notes = [f"bushing-noise simulate --rig {name} {self.options}"]
         return changed_rig_text(
             self.base.named_in(folder), self.changes, self.rig.effects, {}, notes,
-            friction=self.friction, condition=heard_table(self.base.controls, self.values),
+            friction=self.friction, condition=condition_table(self.base.controls, self.values),
         )  # fmt: skip
 
     @property
@@ -97,7 +97,7 @@ class Design:
         """Return what the bushing's quantities have become, with their units, by short name."""
         setting = self.setting
         fit = at_temperature(setting.rig, setting.temperature).fit(setting.interference)
-        found = {
+        quantities = {
             "critical_torque": (fit.critical_torque, "Nm"),
             "kinetic_torque": (fit.kinetic_torque, "Nm"),
             "elastomer_stiffness": (fit.elastomer_stiffness, "Nm/rad"),
@@ -106,35 +106,35 @@ class Design:
             "clamp_inertia": (setting.rig.clamp_inertia, "kg m2"),
         }
         if (sleeve := setting.rig.sleeve) is not None:
-            found["wall"] = (1e3 * sleeve.wall, "mm")
-            found["length"] = (1e3 * sleeve.length, "mm")
-            found["youngs_modulus"] = (1e-6 * sleeve.youngs_modulus, "MPa")
-        return {name: f"{value:.4g} {unit}" for name, (value, unit) in found.items()}
+            quantities["wall"] = (1e3 * sleeve.wall, "mm")
+            quantities["length"] = (1e3 * sleeve.length, "mm")
+            quantities["youngs_modulus"] = (1e-6 * sleeve.youngs_modulus, "MPa")
+        return {name: f"{value:.4g} {unit}" for name, (value, unit) in quantities.items()}
 
     def remarks(self) -> list[str]:
         """Say what the listener should know: what lies outside the usual or was not measured."""
         setting = self.setting
-        found = use_remarks(
+        notes = use_remarks(
             setting.rig,
             speed=[setting.shaft.top_speed(math.inf)],
             interference=[setting.interference],
             support_stiffness=[setting.support_stiffness],
             temperature=[setting.temperature],
         )
-        found.append(fits_remark(setting.rig, [setting.interference]))
-        found.append(temperature_remark(setting.rig, setting.temperature))
-        found += effect_remarks(setting.rig, EFFECTS)
+        notes.append(fits_remark(setting.rig, [setting.interference]))
+        notes.append(temperature_remark(setting.rig, setting.temperature))
+        notes += effect_remarks(setting.rig, EFFECTS)
         left_out = [
             e.name
             for e in setting.rig.effects
             if e.name in EFFECTS and EFFECTS[e.name].needs_whole_run
         ]
         if left_out:
-            found.append(
+            notes.append(
                 f"effect {', '.join(left_out)}: acts on a run as a whole, so it is not heard "
                 "here, but in what is saved"
             )
-        return [text for text in found if text]
+        return [text for text in notes if text]
 
 
 def _amount(value: str | float) -> str:
@@ -192,28 +192,28 @@ def _friction(values: Values, own: Values) -> tuple[LawSpec | None, dict[str, st
 def _effects(rig: Rig, values: Values, own: Values) -> tuple[LawSpec, ...]:
     """Return those of the base as they have become, then those that are new."""
     stated = {spec.name: spec for spec in rig.effects}
-    found = []
+    effects = []
     for name in dict.fromkeys([*stated, *EFFECTS]):
         if name not in EFFECTS:  # which is told where it is used
-            found.append(stated[name])
+            effects.append(stated[name])
             continue
         if not values[f"effect.{name}"]:
             continue
         start = f"effect.{name}."
         keys = [key for key in values if key.startswith(start)]
         if name in stated and all(values[key] == own[key] for key in keys):
-            found.append(stated[name])
+            effects.append(stated[name])
             continue
         changed = {key.removeprefix(start): values[key] for key in keys}
         # Through its text, since that is what a rig file holds.
-        found.append(parse_spec(str(LawSpec(name, changed)), "design, effect"))
-    return tuple(found)
+        effects.append(parse_spec(str(LawSpec(name, changed)), "design, effect"))
+    return tuple(effects)
 
 
 _NAME = re.compile(r"[\w][\w .+-]{0,79}")
 
 
-def name_of(asked: dict[str, Any]) -> str:
+def name_of(request: dict[str, Any]) -> str:
     """Return a name for files that a request states, without ending.
 
     Raises
@@ -226,7 +226,7 @@ def name_of(asked: dict[str, Any]) -> str:
     >>> name_of({"name": "softer"})
     'softer'
     """
-    name = asked.get("name")
+    name = request.get("name")
     if not isinstance(name, str) or not _NAME.fullmatch(name) or name.endswith((".", " ")):
         raise ParameterError(
             "name: must begin with a letter or digit and hold letters, digits, spaces, and . _ + - "
@@ -235,7 +235,7 @@ def name_of(asked: dict[str, Any]) -> str:
     return name.removesuffix(".toml")
 
 
-def save_rig(asked: dict[str, Any], bases: dict[str, Base], folder: Path) -> dict[str, str]:
+def save_rig(request: dict[str, Any], bases: dict[str, Base], folder: Path) -> dict[str, str]:
     """Write a design as a rig file, and tell where and how it is simulated.
 
     Raises
@@ -243,9 +243,9 @@ def save_rig(asked: dict[str, Any], bases: dict[str, Base], folder: Path) -> dic
     ParameterError
         The design or its name cannot be, or a file has that name that is another's.
     """
-    design, name = design_of(asked, bases), f"{name_of(asked)}.toml"
+    design, name = design_of(request, bases), f"{name_of(request)}.toml"
     target = folder / name
-    again = asked.get("replace") is True
+    again = request.get("replace") is True
     if target.exists() and not again:
         raise ParameterError(f"{name} is there already; take another name, or save again over it")
     if any(base.file is not None and base.file.absolute() == target for base in bases.values()):

@@ -52,7 +52,7 @@ _FASTEST = 13.0
 """Of a chart of a bushing that states none [rad/s]."""
 
 
-def chart_of(asked: ChartRequest) -> dict[str, object]:
+def chart_of(request: ChartRequest) -> dict[str, object]:
     """Return the map of noises over speed and interference as a piece of a page, and its legend.
 
     Examples
@@ -65,21 +65,21 @@ def chart_of(asked: ChartRequest) -> dict[str, object]:
     >>> found["legend"], 'data-label="none"' in found["html"]
     ('Quiet everywhere', True)
     """
-    rig = asked.rig
+    rig = request.rig
     low, high = rig.interference_range
     fastest = rig.fastest_fitted if math.isfinite(rig.fastest_fitted) else _FASTEST
-    step, n_fits, simulations = _DETAIL[asked.detail]
+    step, n_fits, simulations = _DETAIL[request.detail]
     use = Use(
         speed=tuple((step * np.arange(1, round(fastest / step) + 1)).tolist()),
         interference=tuple(np.linspace(low, high, n_fits).tolist()) if high > low else (low,),
-        support_stiffness=(asked.support_stiffness,),
-        temperature=(asked.temperature,),
+        support_stiffness=(request.support_stiffness,),
+        temperature=(request.temperature,),
     )
     grid = shared_grid([Screened("design", rig)], use)
     with batch_evaluator(workers=1) as evaluate:
-        found = map_design(rig, grid, evaluate, design="design", most=simulations)
+        design_map = map_design(rig, grid, evaluate, design="design", most=simulations)
     speed, fit = np.meshgrid(grid.speed, 1e3 * np.array(grid.interference))
-    cells, labels = cells_of(speed.ravel(), fit.ravel().round(6)), found.label[0, 0]
+    cells, labels = cells_of(speed.ravel(), fit.ravel().round(6)), design_map.label[0, 0]
     across = axis_of(cells.speed_edges, edges=True)
     up = axis_of(cells.interference_edges, edges=True)
     areas = areas_of(cells, labels.ravel().tolist(), across, up, (MAP_SIZE[0], _HEIGHT))
@@ -89,7 +89,7 @@ def chart_of(asked: ChartRequest) -> dict[str, object]:
     return {"legend": ", ".join(legend) or "Quiet everywhere", "html": map_html(noises)}
 
 
-def suggestions_of(asked: SuggestionRequest) -> dict[str, object]:
+def suggestions_of(request: SuggestionRequest) -> dict[str, object]:
     """Return the noise at a condition, and the least change of each quantity that ends it.
 
     Examples
@@ -100,9 +100,9 @@ def suggestions_of(asked: SuggestionRequest) -> dict[str, object]:
     >>> suggestions_of(SuggestionRequest(chart, 0.279e-3, 5.0))
     {'noise': 'none', 'speed_rad_s': 5.0, 'changes': []}
     """
-    chart = asked.chart
-    at = Condition(asked.speed, asked.interference, chart.support_stiffness, chart.temperature)
-    found = evaluate_point(chart.rig, at)
-    offers = advise(chart.rig, at, workers=1) if found.label in NAMED else ()
+    chart = request.chart
+    at = Condition(request.speed, request.interference, chart.support_stiffness, chart.temperature)
+    point = evaluate_point(chart.rig, at)
+    offers = advise(chart.rig, at, workers=1) if point.label in NAMED else ()
     changes = [{"name": one.name, "factor": one.factor} for one in offers if one.ends]
-    return {"noise": found.label, "speed_rad_s": asked.speed, "changes": changes}
+    return {"noise": point.label, "speed_rad_s": request.speed, "changes": changes}

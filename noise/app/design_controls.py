@@ -120,7 +120,7 @@ _NAMES = {
 """Of controls, in files."""
 
 
-def heard_table(
+def condition_table(
     controls: Iterable[Control], values: Mapping[str, float | bool | str]
 ) -> dict[str, str | float]:
     """Return what a rig file says of the condition that values of controls describe.
@@ -129,22 +129,22 @@ def heard_table(
     --------
     >>> from noise.app.design_controls import Base
     >>> controls = Base("PDMS").controls
-    >>> heard_table(controls, {one.key: one.value for one in controls})
+    >>> condition_table(controls, {one.key: one.value for one in controls})
     {'motion': 'constant', 'speed_rad_s': 5.0, 'interference_mm': 0.279,
      'support_stiffness_Nm_rad': 2214.0, 'temperature_C': 23.0}
     """
-    found: dict[str, str | float] = {}
+    table: dict[str, str | float] = {}
     for one in controls:
         if not one.condition or (one.only and values[one.only[0]] != one.only[1]):
             continue
         if one.key != "fixed":
-            found[_NAMES[one.key]] = values[one.key]
+            table[_NAMES[one.key]] = values[one.key]
         elif values["fixed"]:
-            found[_SUPPORT] = "fixed"
-    return found
+            table[_SUPPORT] = "fixed"
+    return table
 
 
-def heard_values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
+def condition_values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
     """Return what a rig file says of the condition by control, as it stands there.
 
     Parameters
@@ -161,7 +161,7 @@ def heard_values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
 
     Examples
     --------
-    >>> heard_values({"design": {"heard": {"support_stiffness_Nm_rad": "fixed"}}}, "rig.toml")
+    >>> condition_values({"design": {"heard": {"support_stiffness_Nm_rad": "fixed"}}}, "rig.toml")
     {'fixed': True}
     """
     design = as_table(content.get("design", {}), "design", where)
@@ -171,11 +171,11 @@ def heard_values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
         inner = value if isinstance(value, Mapping) else {}
         stated |= {f"{name}.{key}": one for key, one in inner.items()} or {name: value}
     refuse_unknown(stated, set(_NAMES.values()), f"{where}.heard")
-    found = {key: stated[name] for key, name in _NAMES.items() if name in stated}
-    if found.get("support") == "fixed":
-        del found["support"]
-        found["fixed"] = True
-    return found
+    values = {key: stated[name] for key, name in _NAMES.items() if name in stated}
+    if values.get("support") == "fixed":
+        del values["support"]
+        values["fixed"] = True
+    return values
 
 
 MOTIONS = {"constant": "constant speed", "run_up": "run-up", "swing": "swing"}
@@ -272,19 +272,19 @@ class Control:
         return float(f"{stated:.6g}")  # as a rig file writes it
 
 
-def controls_of(rig: Rig, heard: Mapping[str, object] | None = None) -> list[Control]:
+def controls_of(rig: Rig, condition: Mapping[str, object] | None = None) -> list[Control]:
     """List what can be changed about a rig.
 
     Parameters
     ----------
     rig : Rig
-    heard : mapping of str to float, bool or str, optional
+    condition : mapping of str to float, bool or str, optional
         Values of the condition that are other than usual [unit of each].
 
     Raises
     ------
     ParameterError
-        A control does not take what `heard` says.
+        A control does not take what `condition` says.
 
     Examples
     --------
@@ -293,7 +293,7 @@ def controls_of(rig: Rig, heard: Mapping[str, object] | None = None) -> list[Con
     >>> keys[:3], "law.lugre.stribeck_speed" in keys, "effect.slip_pulse.amplitude" in keys
     (['motion', 'speed', 'run_up.start'], True, True)
     """
-    stated = heard or {}
+    stated = condition or {}
     conditions = [
         replace(one, condition=True, value=one.read(stated.get(one.key, one.value)))
         for one in (*_motion(rig), *_condition(rig))
@@ -405,8 +405,8 @@ def _effects(rig: Rig) -> Iterator[Control]:
     for name, effect in sorted(EFFECTS.items(), key=lambda one: stages.index(one[1].stage)):
         on, group = name in own, f"Effects of the {effect.stage.value}"
         active = effect.active(own[name].parameters if on else {})
-        heard = "not heard here, but in what is saved" if effect.needs_whole_run else ""
-        yield Control(f"effect.{name}", "switch", group, name.replace("_", " "), on, heard)
+        remark = "not heard here, but in what is saved" if effect.needs_whole_run else ""
+        yield Control(f"effect.{name}", "switch", group, name.replace("_", " "), on, remark)
         only = (f"effect.{name}", True)
         if len(effect.forms) > 1:
             forms = {form: form.replace("_", " ") for form in effect.forms}
@@ -474,16 +474,16 @@ class Base:
     @cached_property
     def controls(self) -> list[Control]:
         """What can be changed about it; the condition is that which the file was heard at."""
-        heard = heard_values(self._content, self._where)
+        condition = condition_values(self._content, self._where)
         try:
-            return controls_of(self.rig, heard)
+            return controls_of(self.rig, condition)
         except ParameterError as error:
             raise ParameterError(f"{self._where}, design.heard: {error}") from None
 
     @property
-    def heard(self) -> bool:
+    def has_condition(self) -> bool:
         """Whether the file says at which condition."""
-        return bool(heard_values(self._content, self._where))
+        return bool(condition_values(self._content, self._where))
 
     def named_in(self, folder: Path) -> str:
         """Name it as ``base`` in a rig file of a folder."""
@@ -504,11 +504,11 @@ def bases_of(opened: Opened) -> dict[str, Base]:
     >>> next(iter(bases_of(open_paths([]))))
     'fluorocarbon'
     """
-    found = {f"rig {i}": Base(path.name, path) for i, path in enumerate(opened.rigs)}
-    for named in found.values():
+    bases = {f"rig {i}": Base(path.name, path) for i, path in enumerate(opened.rigs)}
+    for named in bases.values():
         _ = named.controls  # what is wrong with it is told where it was named
     names = sorted(material_names(), key=lambda name: (name != "fluorocarbon", name.lower()))
-    return found | {name: Base(name) for name in names}
+    return bases | {name: Base(name) for name in names}
 
 
 def base_of(stated: object, bases: dict[str, Base]) -> Base:

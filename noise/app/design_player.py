@@ -49,7 +49,7 @@ class LiveTransferPaths:
         self._beside = beside
         self._known: tuple[tuple[object, ...], ImpulseResponses] | None = None
         self._wanted: tuple[Setting, tuple[object, ...]] | None = None
-        self._asked: dict[int, tuple[Setting, tuple[object, ...]]] = {}
+        self._requested: dict[int, tuple[Setting, tuple[object, ...]]] = {}
         self._refused: tuple[tuple[object, ...], str] | None = None
 
     @property
@@ -68,7 +68,7 @@ class LiveTransferPaths:
         if key == self._known[0]:
             return self._known[1]
         newest = self._beside.newest
-        mine = None if newest is None else self._asked.pop(id(newest[0]), None)
+        mine = None if newest is None else self._requested.pop(id(newest[0]), None)
         if newest is not None and mine is not None:
             if newest[1] is not None:
                 self._known = mine[1], newest[1]
@@ -76,14 +76,14 @@ class LiveTransferPaths:
             self._refused = mine[1], newest[2]
         if self.refusal:  # asking again would bring no other answer
             return None
-        if mine is None and not any(asked == key for _, asked in self._asked.values()):
+        if mine is None and not any(requested == key for _, requested in self._requested.values()):
             self._ask(setting, key)
         elif not self._beside.busy:  # what another page asked for took its place
-            self._asked.clear()
+            self._requested.clear()
         return None
 
     def _ask(self, setting: Setting, key: tuple[object, ...]) -> None:
-        self._asked[id(setting)] = setting, key
+        self._requested[id(setting)] = setting, key
         self._beside.ask(setting)
 
 
@@ -283,10 +283,10 @@ def play(link: Connection) -> None:
             while True:
                 due = player.due(time.perf_counter())
                 if link.poll(None if due is None else due[0]):
-                    told = link.recv()
-                    if told is None:
+                    command = link.recv()
+                    if command is None:
                         return
-                    what, number, *rest = told
+                    what, number, *rest = command
                 else:
                     what, number, rest = "", due[1] if due else 0, []
                 _do(player, link, what, number, rest)

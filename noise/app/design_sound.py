@@ -54,13 +54,13 @@ _SOONEST = 2.0
 class _Stream:
     loop: asyncio.AbstractEventLoop
     queue: asyncio.Queue[bytes | None] = field(default_factory=asyncio.Queue)
-    heard: deque[bytes] = field(default_factory=lambda: deque(maxlen=_METER))
+    recent: deque[bytes] = field(default_factory=lambda: deque(maxlen=_METER))
     speed: float = 0.0
 
     def put(self, message: bytes) -> None:
         """Hand on what the player made; an empty message ends the stream."""
         if message and HEADER.unpack_from(message)[0] != REFUSED:
-            self.heard.append(message[HEADER.size : HEADER.size + 4 * BLOCK])
+            self.recent.append(message[HEADER.size : HEADER.size + 4 * BLOCK])
             self.speed = HEADER.unpack_from(message)[4]
         given_up = not message or self.queue.qsize() > _UNREAD
         with suppress(RuntimeError):  # the loop has ended
@@ -111,12 +111,12 @@ class LiveSounds:
             with suppress(OSError):
                 link.send(None)
 
-    def started(self, asked: dict[str, Any]) -> tuple[int, int, Design]:
+    def started(self, request: dict[str, Any]) -> tuple[int, int, Design]:
         """Return number, serial and design of a run that is to begin or to be changed.
 
         Parameters
         ----------
-        asked : dict
+        request : dict
             ``{"run": number, "serial": number, "design": {...}}``; `serial` counts changes.
 
         Raises
@@ -124,8 +124,8 @@ class LiveSounds:
         ParameterError
             Something of it cannot be.
         """
-        number, serial = (_whole(asked, key) for key in ("run", "serial"))
-        stated = asked.get("design")
+        number, serial = (_whole(request, key) for key in ("run", "serial"))
+        stated = request.get("design")
         return number, serial, design_of(stated, self._bases)
 
     async def stream(self, number: int, serial: int, design: Design) -> AsyncIterator[bytes]:
@@ -144,19 +144,19 @@ class LiveSounds:
             if self._streams.get(number) is stream:
                 del self._streams[number]
 
-    def change(self, asked: dict[str, Any]) -> None:
-        """Let another design be heard from the next block on; `asked` is as of `started`.
+    def change(self, request: dict[str, Any]) -> None:
+        """Let another design be heard from the next block on; `request` is as of `started`.
 
         Raises
         ------
         ParameterError
             Something of it cannot be; the run goes on as it was.
         """
-        number, serial, design = self.started(asked)
+        number, serial, design = self.started(request)
         self._known(number)
         self._tell("change", number, serial, design.setting)
 
-    def pace(self, asked: dict[str, Any]) -> None:
+    def pace(self, request: dict[str, Any]) -> None:
         """Let the blocks that follow come sooner, or later: ``{"run": number, "sooner": seconds}``.
 
         Raises
@@ -164,8 +164,8 @@ class LiveSounds:
         ParameterError
             Something of it cannot be.
         """
-        run = _whole(asked, "run")
-        seconds = number(asked, "sooner", -_SOONEST, _SOONEST)
+        run = _whole(request, "run")
+        seconds = number(request, "sooner", -_SOONEST, _SOONEST)
         self._known(run)
         self._tell("sooner", run, float(seconds))
 
@@ -175,20 +175,22 @@ class LiveSounds:
         The name is that of the second before, since it takes as long as that to be found.
         """
         stream = self._streams.get(number)
-        heard = b"".join(stream.heard.copy()) if stream is not None else b""
-        pressure = np.frombuffer(heard, "<f4").astype(np.float64)
+        recent = b"".join(stream.recent.copy()) if stream is not None else b""
+        pressure = np.frombuffer(recent, "<f4").astype(np.float64)
         if pressure.size < RATE // 4:
             return {"level_db": None, "level_dba": None, "l_afmax_dba": None}
         newest = self._names.newest
         name = newest[1] if newest is not None and newest[0][0] == number else None
-        if stream is not None and len(stream.heard) == _METER and not self._names.busy:
-            self._names.ask((number, stream.speed, heard))
-        found = sound_levels(pressure, RATE)
-        told = {
-            "level_db": found.level, "level_dba": found.level_a, "l_afmax_dba": found.level_af_max,
-        }  # fmt: skip
+        if stream is not None and len(stream.recent) == _METER and not self._names.busy:
+            self._names.ask((number, stream.speed, recent))
+        measured = sound_levels(pressure, RATE)
+        levels = {
+            "level_db": measured.level,
+            "level_dba": measured.level_a,
+            "l_afmax_dba": measured.level_af_max,
+        }
         return (name or {}) | {
-            key: round(value, 1) if math.isfinite(value) else None for key, value in told.items()
+            key: round(value, 1) if math.isfinite(value) else None for key, value in levels.items()
         }
 
     def _known(self, number: int) -> None:
@@ -214,12 +216,12 @@ class LiveSounds:
             stream.put(b"")
 
 
-def name_of(asked: tuple[int, float, bytes]) -> dict[str, object]:
+def name_of(question: tuple[int, float, bytes]) -> dict[str, object]:
     """Return the label and the frequency [Hz] of a run's last second, by the classifier.
 
     Parameters
     ----------
-    asked : tuple of (int, float, bytes)
+    question : tuple of (int, float, bytes)
         Number of the run, speed [rad/s], sound pressure as 32-bit floats [Pa].
 
     Examples
@@ -229,13 +231,13 @@ def name_of(asked: tuple[int, float, bytes]) -> dict[str, object]:
     """
     from noise.labels.segments import file_label, label_recording
 
-    _, speed, heard = asked
-    pressure = np.frombuffer(heard, "<f4").astype(np.float64)
+    _, speed, samples = question
+    pressure = np.frombuffer(samples, "<f4").astype(np.float64)
     run = Recording(
         pressure[None], RATE, (Channel("pressure"),), Condition(speed=speed), calibrated=True
     )
-    found = file_label(label_recording(run, _classifier()))
-    return {"label": found.label, "frequency_hz": found.frequency}
+    segment = file_label(label_recording(run, _classifier()))
+    return {"label": segment.label, "frequency_hz": segment.frequency}
 
 
 @cache
@@ -246,5 +248,5 @@ def _classifier() -> Classifier:
     return load_classifier()
 
 
-def _whole(asked: dict[str, Any], key: str) -> int:
-    return int(number(asked, key, 0, (1 << 32) - 1, whole=True))
+def _whole(request: dict[str, Any], key: str) -> int:
+    return int(number(request, key, 0, (1 << 32) - 1, whole=True))

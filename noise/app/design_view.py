@@ -49,7 +49,10 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
     def listed(_: Request) -> Response:
         sounds.get_ready()
-        named = [{"id": key, "name": base.name, "heard": base.heard} for key, base in bases.items()]
+        named = [
+            {"id": key, "name": base.name, "heard": base.has_condition}
+            for key, base in bases.items()
+        ]
         about = {"bases": named, "rate": RATE, "block": BLOCK, "torque_step": TORQUE_STEP}
         return JSONResponse(about)
 
@@ -57,20 +60,20 @@ def routes(opened: Opened) -> list[BaseRoute]:
         base = base_of(request.query_params.get("base"), bases)
         return JSONResponse({"controls": [one.as_json() for one in base.controls]})
 
-    def sound(_: Request, asked: dict[str, Any]) -> Response:
-        blocks = sounds.stream(*sounds.started(asked))
+    def sound(_: Request, request: dict[str, Any]) -> Response:
+        blocks = sounds.stream(*sounds.started(request))
         return StreamingResponse(blocks, media_type="application/octet-stream")
 
-    def changed(_: Request, asked: dict[str, Any]) -> Response:
-        sounds.change(asked)
+    def changed(_: Request, request: dict[str, Any]) -> Response:
+        sounds.change(request)
         return JSONResponse({})
 
-    def paced(_: Request, asked: dict[str, Any]) -> Response:
-        sounds.pace(asked)
+    def paced(_: Request, request: dict[str, Any]) -> Response:
+        sounds.pace(request)
         return JSONResponse({})
 
-    def told(_: Request, asked: dict[str, Any]) -> Response:
-        design = design_of(asked, bases)
+    def facts_of(_: Request, request: dict[str, Any]) -> Response:
+        design = design_of(request, bases)
         facts = {"facts": design.facts(), "remarks": design.remarks(), "options": design.options}
         return JSONResponse(facts)
 
@@ -80,20 +83,20 @@ def routes(opened: Opened) -> list[BaseRoute]:
             raise ParameterError(f"sound: run {run[:20]!r} is no number")
         return JSONResponse(sounds.levels(int(run)))
 
-    def charted(_: Request, asked: dict[str, Any]) -> Response:
-        question = _chart(design_of(asked, bases).setting)
-        detail = int(number(asked, "detail", 0, 2, 2, whole=True))
+    def charted(_: Request, request: dict[str, Any]) -> Response:
+        question = _chart(design_of(request, bases).setting)
+        detail = int(number(request, "detail", 0, 2, 2, whole=True))
         return _waited(charts.answer_to(question._replace(detail=detail)))
 
-    def helped(_: Request, asked: dict[str, Any]) -> Response:
-        setting = design_of(asked, bases).setting
+    def helped(_: Request, request: dict[str, Any]) -> Response:
+        setting = design_of(request, bases).setting
         at_first = float(setting.shaft.speed(np.zeros(1))[0])
-        speed = max(abs(number(asked, "speed", -_FASTEST, _FASTEST, at_first)), _SLOWEST)
+        speed = max(abs(number(request, "speed", -_FASTEST, _FASTEST, at_first)), _SLOWEST)
         question = SuggestionRequest(_chart(setting), setting.interference, speed)
         return _waited(suggestions.answer_to(question))
 
-    def saved(_: Request, asked: dict[str, Any]) -> Response:
-        return JSONResponse(save_rig(asked, bases, opened.folder))
+    def saved(_: Request, request: dict[str, Any]) -> Response:
+        return JSONResponse(save_rig(request, bases, opened.folder))
 
     return [
         Route("/api/design", listed),
@@ -101,7 +104,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/design/sound", body(sound), methods=["POST"]),
         Route("/api/design/change", body(changed), methods=["POST"]),
         Route("/api/design/pace", body(paced), methods=["POST"]),
-        Route("/api/design/facts", body(told), methods=["POST"]),
+        Route("/api/design/facts", body(facts_of), methods=["POST"]),
         Route("/api/design/levels", levels),
         Route("/api/design/chart", body(charted), methods=["POST"]),
         Route("/api/design/helps", body(helped), methods=["POST"]),
@@ -115,5 +118,5 @@ def _chart(setting: Setting) -> ChartRequest:
 
 def _waited(answer: tuple[dict[str, object] | None, str] | None) -> Response:
     """Answer what is known by now: the page asks again until it is."""
-    found, error = answer or (None, "")
-    return JSONResponse({"known": answer is not None, "found": found, "error": error})
+    result, error = answer or (None, "")
+    return JSONResponse({"known": answer is not None, "found": result, "error": error})

@@ -266,11 +266,11 @@ def random_pairs(
         order = rng.permutation(len(names))
         chain = {tuple(sorted(two)) for two in pairwise(order.tolist())}
     places = dict(zip(pairs, combinations(range(len(names)), 2), strict=True))
-    found = [pairs[place] for place in rng.permutation(len(pairs))]
+    shuffled = [pairs[place] for place in rng.permutation(len(pairs))]
     if chain:
-        found.sort(key=lambda pair: places[pair] not in chain)
-        found = [found[place] for place in rng.permutation(count or 0)]
-    return [pair[::-1] if rng.random() < 0.5 else pair for pair in found]
+        shuffled.sort(key=lambda pair: places[pair] not in chain)
+        shuffled = [shuffled[place] for place in rng.permutation(count or 0)]
+    return [pair[::-1] if rng.random() < 0.5 else pair for pair in shuffled]
 
 
 def bradley_terry(share: NDArray[np.float64]) -> NDArray[np.float64]:

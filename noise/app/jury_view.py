@@ -70,7 +70,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
             "open": all(len(by_name.get(name, ())) == 1 for name in jury.sounds),
         }  # fmt: skip
 
-    def asked(request: Request) -> Jury:
+    def jury_of(request: Request) -> Jury:
         return votes.jury(request.path_params["jury"])
 
     def juries(_: Request) -> Response:
@@ -99,12 +99,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return JSONResponse(state(jury))
 
     def gone_on(request: Request) -> Response:
-        jury = asked(request)
+        jury = jury_of(request)
         gain = playing.gain(indices(jury.sounds), jury.played)
         return JSONResponse(state(jury) | {"gain": gain})
 
-    def heard(request: Request) -> Response:
-        jury, place = asked(request), request.path_params["place"]
+    def audio(request: Request) -> Response:
+        jury, place = jury_of(request), request.path_params["place"]
         side = {"a": 0, "b": 1}.get(request.path_params["side"])
         if side is None or place >= len(jury.pairs):
             raise ParameterError("there is no such sound")
@@ -123,7 +123,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return JSONResponse(state(votes.undo(request.path_params["jury"], _place(vote))))
 
     def result(request: Request) -> Response:
-        jury = asked(request)
+        jury = jury_of(request)
         rows, remarks = scale(jury)
         return JSONResponse(
             state(jury)
@@ -136,7 +136,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/juries", juries, methods=["GET"]),
         Route("/api/juries", body(begun), methods=["POST"]),
         Route(one, gone_on),
-        Route(f"{one}/heard/{{place:int}}/{{side}}", heard),
+        Route(f"{one}/heard/{{place:int}}/{{side}}", audio),
         Route(f"{one}/vote", body(voted), methods=["POST"]),
         Route(f"{one}/undo", body(undone), methods=["POST"]),
         Route(f"{one}/result", result),
@@ -166,13 +166,13 @@ class JuryPlaying:
         BushingNoiseError
             They cannot be played so; it says why.
         """
-        found = self._full_scales(indices, played)[str(indices[0])]
-        if found.target is not None:
-            return f"equal loudness, {found.target:.0f} LUFS"
+        full_scale = self._full_scales(indices, played)[str(indices[0])]
+        if full_scale.target is not None:
+            return f"equal loudness, {full_scale.target:.0f} LUFS"
         if not self._sounds.track(indices[0]).calibrated:
-            return f"one gain: full scale = {found.value:.3g} of that of the files"
-        level = 20.0 * math.log10(found.value / REFERENCE_PRESSURE)
-        return f"one gain: full scale = {found.value:.4g} Pa ({level:.0f} dB peak re 20 µPa)"
+            return f"one gain: full scale = {full_scale.value:.3g} of that of the files"
+        level = 20.0 * math.log10(full_scale.value / REFERENCE_PRESSURE)
+        return f"one gain: full scale = {full_scale.value:.4g} Pa ({level:.0f} dB peak re 20 µPa)"
 
     def wav(self, index: int, indices: Sequence[int], played: str) -> bytes:
         """Return one of several sounds as a WAV file of floats, to be played as it is.
@@ -183,7 +183,7 @@ class JuryPlaying:
             They cannot be played so; it says why.
         """
         full_scale = self._full_scales(indices, played)[str(index)].value
-        return wav_bytes(audible(self._heard(index), _RATE) / full_scale, _RATE, 32)
+        return wav_bytes(audible(self._sound_of(index), _RATE) / full_scale, _RATE, 32)
 
     def _full_scales(self, indices: Sequence[int], played: str) -> dict[str, FullScale]:
         matched = played == EQUAL_LOUDNESS
@@ -202,10 +202,10 @@ class JuryPlaying:
         key = index, state.st_size, state.st_mtime_ns, match
         with self._lock:
             if key not in self._measured:
-                self._measured[key] = measure([self._heard(index)], rate=_RATE, match=match)
+                self._measured[key] = measure([self._sound_of(index)], rate=_RATE, match=match)
             return self._measured[key]
 
-    def _heard(self, index: int) -> Recording:
+    def _sound_of(self, index: int) -> Recording:
         name = self._opened.job(index).name
         try:
             track = self._sounds.track(index)

@@ -78,8 +78,8 @@ def routes(opened: Opened) -> list[BaseRoute]:
             answer["rows"] = None
         answer["known"] = known
         if query.get("open"):
-            seen = int(number(query, "open", 0, len(opened.jobs) - 1, whole=True))
-            answer["open"] = {"id": seen, "version": version(labels.rows(seen))}
+            number_open = int(number(query, "open", 0, len(opened.jobs) - 1, whole=True))
+            answer["open"] = {"id": number_open, "version": version(labels.rows(number_open))}
         done = sum(bool(one["labels"] or one["error"]) for one in shown)
         return JSONResponse({**answer, "state": {"done": done, **state()}})
 
@@ -220,12 +220,12 @@ def list_answer(query: Mapping[str, str], shown: Sequence[Row]) -> dict[str, obj
     text = query.get("text", "").casefold()
     named = [one for one in shown if text in str(one["name"]).casefold()]
     counts = Counter(kind for one in named for kind in _kinds(one))
-    found = [one for one in named if not label or label in _kinds(one)]
+    matching = [one for one in named if not label or label in _kinds(one)]
     if sort:
-        found = _sorted(found, _ORDERS[sort], descending=order == "desc")
+        matching = _sorted(matching, _ORDERS[sort], descending=order == "desc")
     return {
         "counts": {"": len(named), **{kind: counts[kind] for kind in kinds}},
-        "rows": found,
+        "rows": matching,
     }
 
 

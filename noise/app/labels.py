@@ -239,8 +239,10 @@ def row_of_piece(at: tuple[str, float, float], before: Sequence[Row]) -> Row:
         return dict.fromkeys(COLUMNS) | dict.fromkeys(sources, "missing")
     nearest = max(kin, key=lambda row: (track(row) == at[0], common_time(place(row), at)))
     left = without_opinion(nearest)
-    kept = {*_OF_RECORDING, *(f"{name}{part}" for name in CONDITIONS for part in _PARTS)}
-    piece = {name: None if name in COLUMNS and name not in kept else left[name] for name in left}
+    retained = {*_OF_RECORDING, *(f"{name}{part}" for name in CONDITIONS for part in _PARTS)}
+    piece = {
+        name: None if name in COLUMNS and name not in retained else left[name] for name in left
+    }
     note = _without(piece.get("note"), NOT_MEASURED)
     if any(nearest.get(name) is not None for name in _LEVELS):
         note = "; ".join(filter(None, (note, NOT_MEASURED)))
@@ -352,12 +354,12 @@ def full_scale_of(rows: Sequence[Row]) -> float | tuple[float, ...] | None:
 
 def _over_background(rows: Sequence[Row]) -> dict[str, float]:
     """Return the level of the background of each track, as `label` has found it [dB(A)]."""
-    found = {}
+    backgrounds = {}
     for row in rows:
         level, snr = row.get("level_dba"), row.get("snr_dba")
         if isinstance(level, float) and isinstance(snr, float):
-            found[track(row)] = level - snr
-    return found
+            backgrounds[track(row)] = level - snr
+    return backgrounds
 
 
 @dataclass(frozen=True, eq=False)
@@ -392,7 +394,7 @@ class Labels:
         self._lock = RLock()
         self._jobs = jobs
         self.path = table
-        self._seen: tuple[int, ...] | None = None
+        self._table_state: tuple[int, ...] | None = None
         self._rows: list[list[Row]] = [[] for _ in jobs]
         self._others: list[Row] = []
         self._summaries: list[dict[str, object] | None] = [None for _ in jobs]
@@ -415,7 +417,7 @@ class Labels:
     def refresh(self) -> None:
         """Take what others wrote: the classifier its journal, anybody the table."""
         with self._lock:
-            if self._state() != self._seen:
+            if self._state() != self._table_state:
                 self._read_table()
                 for index, rows in self._fresh.items():
                     self._put(index, with_corrected_rows(self._rows[index], rows))
@@ -469,12 +471,12 @@ class Labels:
         """
         job = self._jobs[index]
         before = self.rows(index)
-        self._check_seen(index, of, before)
+        self._check_version(index, of, before)
         measured = measured_rows(job, segments, before)
         with self._lock, locked(self.path):
             self.refresh()
             before = self._rows[index]
-            self._check_seen(index, of, before)
+            self._check_version(index, of, before)
             after = as_rows(segments, job.name, before, measured)
             self._write(index, after)
             changed = _changed_tracks(before, after)
@@ -517,15 +519,15 @@ class Labels:
                 name = self._jobs[last.index].name
                 raise ParameterError(f"{name}: what was corrected last has been changed since then")
             # What the classifier has found since then is better than nothing.
-            found = self._classified.get(last.index, []) if not last.before else []
-            back = last.before or [row for row in found if track(row) in tracks]
+            classified = self._classified.get(last.index, []) if not last.before else []
+            back = last.before or [row for row in classified if track(row) in tracks]
             rows = [*(row for row in rows if track(row) not in tracks), *back]
             self._write(last.index, sorted(rows, key=_order))
             done.remove(last)
             undone.append(_Correction(last.index, last.after, back, by))
             return last.index, self._rows[last.index]
 
-    def _check_seen(self, index: int, of: str, rows: Sequence[Row]) -> None:
+    def _check_version(self, index: int, of: str, rows: Sequence[Row]) -> None:
         """Refuse corrections of other rows than these."""
         # Whoever names a recording before the classifier has does not depend on what that says.
         unseen = of == version(()) and all(row.get("label_source") != HUMAN for row in rows)
@@ -541,7 +543,7 @@ class Labels:
         try:
             rows = [*(row for of_one in self._rows for row in of_one), *self._others]
             LabelTable(rows).write(self.path)
-            self._seen = self._state()
+            self._table_state = self._state()
         except BaseException:
             self._put(index, before)
             raise
@@ -553,21 +555,21 @@ class Labels:
     def _read_table(self) -> None:
         state = self._state()  # before: what is written meanwhile is read again
         rows = [] if state is None else read_label_table(self.path)
-        self._seen = state  # after: what could not be read is not taken for what was
-        found = _by_recording(rows, self._jobs, self.path)
+        self._table_state = state  # after: what could not be read is not taken for what was
+        by_recording = _by_recording(rows, self._jobs, self.path)
         for job in self._jobs:
-            of_one = [row | {"file": job.name} for row in found.pop(job.index, [])]
+            of_one = [row | {"file": job.name} for row in by_recording.pop(job.index, [])]
             if of_one != self._rows[job.index]:
                 self._put(job.index, of_one)
-        self._others = found.pop(None, [])
+        self._others = by_recording.pop(None, [])
 
     def _state(self) -> tuple[int, ...] | None:
         """Tell one version of the table on disk from another; None where there is none."""
         try:
-            found = self.path.stat()
+            status = self.path.stat()
         except OSError:
             return None
-        return found.st_ino, found.st_size, found.st_mtime_ns
+        return status.st_ino, status.st_size, status.st_mtime_ns
 
     def _arrived(self) -> Mapping[int, list[Row]]:
         news = {index: _rows(done) for index, done in self._journal.news(self._jobs).items()}

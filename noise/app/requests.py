@@ -14,7 +14,7 @@ _SHOWN = 40
 
 
 def number(
-    said: Mapping[str, Any],
+    request: Mapping[str, Any],
     key: str,
     low: float,
     high: float,
@@ -26,7 +26,7 @@ def number(
 
     Parameters
     ----------
-    said : mapping
+    request : mapping
         What the request says: numbers of JSON, or words of an address.
     key : str
     low, high : float
@@ -48,25 +48,25 @@ def number(
     >>> number({"place": 3}, "place", 0, 9, whole=True)
     3
     """
-    value = said.get(key)
+    value = request.get(key)
     if value in (None, "") and missing is not None:
         return missing
-    found: float = math.nan
+    parsed: float = math.nan
     if isinstance(value, int | float) and not isinstance(value, bool):
-        found = value
+        parsed = value
     elif isinstance(value, str):
         try:
-            found = int(value) if whole else float(value)
+            parsed = int(value) if whole else float(value)
         except ValueError:
-            found = math.nan
+            parsed = math.nan
     bounds = Quantity(key, low=low, high=high, closed=True)
-    if not bounds.possible(found) or (whole and not isinstance(found, int)):
+    if not bounds.possible(parsed) or (whole and not isinstance(parsed, int)):
         wanted = bounds.wanted.replace("a number", "a whole number" if whole else "a number")
         raise ParameterError(f"{key} {str(value)[:_SHOWN]!r}: must be {wanted}")
-    return found
+    return parsed
 
 
-def choice(said: Mapping[str, Any], key: str, known: Iterable[str], missing: str = "") -> str:
+def choice(request: Mapping[str, Any], key: str, known: Iterable[str], missing: str = "") -> str:
     """Return one of several words.
 
     Raises
@@ -79,14 +79,14 @@ def choice(said: Mapping[str, Any], key: str, known: Iterable[str], missing: str
     >>> choice({"order": "desc"}, "order", ("asc", "desc"))
     'desc'
     """
-    value, words = said.get(key, missing), tuple(known)
+    value, words = request.get(key, missing), tuple(known)
     if not isinstance(value, str) or (value not in words and value != missing):
         named = ", ".join(filter(None, words))
         raise ParameterError(f"{key} {str(value)[:_SHOWN]!r}: must be one of {named}")
     return value
 
 
-def text(said: Mapping[str, Any], key: str, longest: int) -> str:
+def text(request: Mapping[str, Any], key: str, longest: int) -> str:
     """Return a text, its spaces single; empty where nothing is said.
 
     Raises
@@ -99,7 +99,7 @@ def text(said: Mapping[str, Any], key: str, longest: int) -> str:
     >>> text({"question": " Which  annoys more? "}, "question", 80)
     'Which annoys more?'
     """
-    value = said.get(key, "")
+    value = request.get(key, "")
     if not isinstance(value, str) or len(value) > longest:
         raise ParameterError(f"{key}: must be a text of at most {longest} characters")
     return " ".join(value.split())

@@ -111,8 +111,8 @@ def create_app(
         return JSONResponse({"stopped": True})
 
     def routes_of(module: str) -> list[BaseRoute]:
-        found: list[BaseRoute] = import_module(module).routes(opened)
-        return found
+        module_routes: list[BaseRoute] = import_module(module).routes(opened)
+        return module_routes
 
     routes = [
         Route("/", shown),

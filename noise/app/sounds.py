@@ -49,7 +49,7 @@ Query = Mapping[str, str]
 Facts = dict[str, object]
 
 
-_KEPT = 6
+_MOST_OPEN = 6
 """Recordings in memory: two that are compared, and those beside them."""
 
 
@@ -134,7 +134,7 @@ class SoundCache:
     def __init__(self, opened: Opened) -> None:
         self._opened = opened
         self._lock = Lock()
-        self._kept: OrderedDict[tuple[int, int, int], _Reading] = OrderedDict()
+        self._readings: OrderedDict[tuple[int, int, int], _Reading] = OrderedDict()
 
     def blocks(self, index: int) -> RecordingBlocks:
         """Return a recording, read anew where its file has changed.
@@ -170,15 +170,15 @@ class SoundCache:
     def _reading(self, index: int) -> _Reading:
         path = self._opened.job(index).path
         try:
-            found = path.stat()
+            status = path.stat()
         except OSError as error:
             raise RecordingError(f"{path.name}: {error.strerror}") from None
-        key = index, found.st_size, found.st_mtime_ns
+        key = index, status.st_size, status.st_mtime_ns
         with self._lock:
-            reading = self._kept.setdefault(key, _Reading(path))
-            self._kept.move_to_end(key)
-            while len(self._kept) > _KEPT:
-                self._kept.popitem(last=False)
+            reading = self._readings.setdefault(key, _Reading(path))
+            self._readings.move_to_end(key)
+            while len(self._readings) > _MOST_OPEN:
+                self._readings.popitem(last=False)
         return reading
 
 
@@ -255,15 +255,15 @@ def bands(track: Track, query: Query) -> dict[str, object]:
     """Return levels and third octaves of a stretch, as the tables have them."""
     first, last = read_stretch(query, track, _LONGEST_BANDS)
     signal = track.read(first, last)
-    found = sound_levels(signal, track.rate, reference=track.reference)
+    measured = sound_levels(signal, track.rate, reference=track.reference)
     return {
         "start": first / track.rate,
         "end": last / track.rate,
         "unit": track.level_unit,
-        "level": _plain(found.level),
-        "level_a": _plain(found.level_a),
-        "level_af_max": _plain(found.level_af_max),
-        "third_octaves": {band: _plain(level) for band, level in found.third_octaves.items()},
+        "level": _plain(measured.level),
+        "level_a": _plain(measured.level_a),
+        "level_af_max": _plain(measured.level_af_max),
+        "third_octaves": {band: _plain(level) for band, level in measured.third_octaves.items()},
     }
 
 
@@ -361,16 +361,16 @@ def routes(opened: Opened) -> list[BaseRoute]:
         channels = [
             {"name": of.channel.name, "kind": of.channel.kind, "unit": of.unit} for of in tracks
         ]
-        heard = sounds.track(index)
+        played = sounds.track(index)
         return JSONResponse(
             {
                 "id": index,
                 "name": opened.job(index).name,
                 "channels": channels,
                 "tracks": labelled_tracks(opened.job(index).path, len(channels)),
-                "channel": heard.channel.name,
+                "channel": played.channel.name,
                 "rate": blocks.rate,
-                "duration_s": heard.duration,
+                "duration_s": played.duration,
                 "calibrated": blocks.calibrated,
                 "conditions": blocks.condition.words,
             }
@@ -390,15 +390,15 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return endpoint
 
     def measured(answer: Callable[[Track, Query], Facts]) -> Callable[[Request], Response]:
-        return of_track(lambda *asked: JSONResponse(answer(*asked)), one_at_a_time)
+        return of_track(lambda *given: JSONResponse(answer(*given)), one_at_a_time)
 
     def drawn(
         answer: Callable[[Track, Query], tuple[Facts, NDArray[np.generic]]],
     ) -> Callable[[Request], Response]:
-        return of_track(lambda *asked: _framed(*answer(*asked)), nullcontext())
+        return of_track(lambda *given: _framed(*answer(*given)), nullcontext())
 
-    def audio(*asked: Any) -> Response:
-        return Response(wav(*asked), media_type="audio/wav")
+    def audio(*given: Any) -> Response:
+        return Response(wav(*given), media_type="audio/wav")
 
     at = "/api/sounds/{id:int}"
     return [

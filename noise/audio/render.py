@@ -144,14 +144,14 @@ def measure(
     parts, untold = [], []
     for recording, (start, end) in zip(recordings, times, strict=True):
         try:
-            found = assess(recording, quality=quality)
+            assessment = assess(recording, quality=quality)
         except ParameterError as error:
             if not quality:
                 raise
-            found = assess(recording)
+            assessment = assess(recording)
             untold.append(f"{recording.name}: {error}")
         about = replace(recording, samples=np.empty((1, 0)))
-        parts.append(Part(start, end, about, found))
+        parts.append(Part(start, end, about, assessment))
     reached = None
     if match:
         try:

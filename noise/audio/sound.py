@@ -23,7 +23,7 @@ FADE = 0.010
 GAP = 0.5
 """Silence between two recordings in one file [s]."""
 
-LOWEST_HEARD = 40.0
+LOWEST_AUDIBLE_RATE = 40.0
 """Sampling rate below which no frequency is left that is heard [Hz]."""
 
 _STOP_BAND = 100.0  # dB
@@ -115,10 +115,10 @@ def pressure_channel(recording: Recording | RecordingBlocks) -> Channel:
     >>> pressure_channel(run).name
     'pressure_2'
     """
-    if recording.rate < LOWEST_HEARD:
+    if recording.rate < LOWEST_AUDIBLE_RATE:
         raise RecordingError(
             f"recording {recording.name!r} is sampled at {recording.rate:g} Hz, so nothing in it "
-            f"can be heard; {LOWEST_HEARD:g} Hz at least"
+            f"can be heard; {LOWEST_AUDIBLE_RATE:g} Hz at least"
         )
     for channel in recording.channels:
         if channel.kind == "pressure":
@@ -209,7 +209,7 @@ def in_band(
     return np.asarray(sosfiltfilt(sections, signal - signal.mean(), padlen=padding))
 
 
-def heard(
+def pressure_recording(
     recording: Recording | RecordingBlocks, band: tuple[float, float] | None = None
 ) -> Recording:
     """Return the first pressure channel of a recording as one of its own, in a band [Hz] alone.
@@ -226,7 +226,7 @@ def heard(
     >>> from models.recording import Channel
     >>> tones = np.sin(2 * np.pi * np.array([[100.0], [1000.0]]) * np.arange(48000) / 48e3).sum(0)
     >>> both = Recording(tones[None], 48e3, (Channel("pressure"),))
-    >>> heard(both, (500.0, 2000.0)).notes
+    >>> pressure_recording(both, (500.0, 2000.0)).notes
     ('filtered: 500 to 2000 Hz, zero-phase; 3.0 dB below the whole sound',)
     """
     blocks = RecordingBlocks.of(recording)
@@ -235,16 +235,16 @@ def heard(
     notes = getattr(recording, "notes", ())
     if band is not None:
         try:
-            kept = in_band(samples[0], blocks.rate, band)
+            filtered = in_band(samples[0], blocks.rate, band)
         except ParameterError as error:
             raise ParameterError(f"{blocks.name}: {error}") from None
-        before, after = float(samples.std()), float(kept.std())
+        before, after = float(samples.std()), float(filtered.std())
         change = "silent"
         if before > 0.0 and after > 0.0:
             change = f"{20.0 * math.log10(before / after):.1f} dB below the whole sound"
         low, high = band
         notes = (*notes, f"filtered: {low:g} to {high:g} Hz, zero-phase; {change}")
-        samples = kept[np.newaxis]
+        samples = filtered[np.newaxis]
     return Recording(
         samples, blocks.rate, (channel,), blocks.condition, blocks.calibrated, blocks.name, notes
     )

@@ -156,9 +156,9 @@ def _without_offset(
     """
     # No product of matrices: that begins threads, which cost more than they save here.
     offset = np.einsum("...i,i->...", frames, window) / window.sum()
-    found = frames - offset[..., None]
-    found *= window
-    return np.asarray(found)
+    centred = frames - offset[..., None]
+    centred *= window
+    return np.asarray(centred)
 
 
 def _part(

@@ -94,10 +94,10 @@ class _File(NamedTuple):
 
 def _recordings(file: _File, band: tuple[float, float] | None) -> list[Recording]:
     """Read or simulate the recordings of a file, filtered to a band [Hz]."""
-    from noise.audio.sound import heard
+    from noise.audio.sound import pressure_recording
 
     recordings = [source.make(source.name) for source in file.sources]
-    return recordings if band is None else [heard(one, band) for one in recordings]
+    return recordings if band is None else [pressure_recording(one, band) for one in recordings]
 
 
 def _folder(options: Namespace, sources: list[Source]) -> Path | None:

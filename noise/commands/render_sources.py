@@ -122,11 +122,11 @@ def _recorded(path: Path, full_scale: PascalPerFullScale | None) -> list[Source]
 
 def _read(path: Path, full_scale: PascalPerFullScale | None, _: str) -> Recording:
     """Read the pressure of a recording."""
-    from noise.audio.sound import heard
+    from noise.audio.sound import pressure_recording
     from noise.recordings.files import open_blocks
 
     with open_blocks(path, full_scale=full_scale) as recording:
-        return heard(recording)
+        return pressure_recording(recording)
 
 
 def _simulated(text: str, options: Namespace) -> Source:
@@ -163,11 +163,11 @@ def _source(name: str, options: Namespace) -> Source:
 
     @cache
     def simulated(name: str) -> Recording:
-        from noise.audio.sound import heard
+        from noise.audio.sound import pressure_recording
         from sim.run import simulate
 
         run = with_notes(simulate(**arguments), notes, arguments, name)
-        return heard(replace(run, name=name))
+        return pressure_recording(replace(run, name=name))
 
     return Source(name, simulated, notes=notes)
 

@@ -209,17 +209,17 @@ class Gain:
         'Calibrated sounds share one gain and may be compared: full scale = 2 Pa (100 dB peak re 20
         µPa).'
         """
-        told = []
+        sentences = []
         if self.calibrated is not None:
             how = "are level-true" if self.stated else "share one gain and may be compared"
-            told.append(f"Calibrated sounds {how}: {full_scale_words(self.calibrated)}.")
+            sentences.append(f"Calibrated sounds {how}: {full_scale_words(self.calibrated)}.")
         if self.uncalibrated is not None:
             decibel = f"{-20.0 * math.log10(self.uncalibrated):+.1f}".replace("-", "\N{MINUS SIGN}")
-            told.append(
+            sentences.append(
                 "Sounds marked dBFS are not calibrated: how loud they were is not known; they "
                 f"share a gain of {decibel} dB among themselves."
             )
-        return tuple(told)
+        return tuple(sentences)
 
 
 @dataclass(frozen=True)
@@ -362,13 +362,13 @@ def _that_may_be_loudest(
 ) -> Iterator[tuple[Entry, NDArray[np.float32]]]:
     """Sounds with samples within 12 dB of the largest: no peak between samples is as far above."""
     for calibrated in (True, False):
-        heard = [
+        audible = [
             (entry, entry.sound, float(np.abs(entry.sound).max(initial=0.0)))
             for entry in entries
             if entry.sound is not None and entry.calibrated == calibrated
         ]
-        most = max((largest for _, _, largest in heard), default=0.0)
-        yield from ((entry, sound) for entry, sound, largest in heard if largest >= 0.25 * most)
+        most = max((largest for _, _, largest in audible), default=0.0)
+        yield from ((entry, sound) for entry, sound, largest in audible if largest >= 0.25 * most)
 
 
 def _clip(

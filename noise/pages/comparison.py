@@ -54,7 +54,7 @@ DIFFERENCES = {
 }
 """Of a design against another."""
 
-_SAID = {
+_HOW_WORDS = {
     "refined": "interpolated",
     "beyond": "not run: vibration dies before",
     "unchanged": "as at another temperature or fit",
@@ -155,7 +155,7 @@ _FEW_ROWS = 8
 _LEAST_HEIGHT, _ROW_HEIGHT = 180.0, 40.0
 """Of a map of few interferences, and what each adds [px]."""
 
-_MOST_HEARD = 12
+_MOST_SOUNDS = 12
 """Conditions of one map that are heard: more would hide it."""
 
 _TICK_APART = 18.0
@@ -189,7 +189,7 @@ def compare_designs(
     Returns
     -------
     compared : Compared
-    heard : dict of str to Entry
+    sounds : dict of str to Entry
         Sounds by id.
     """
     names = list(dict.fromkeys(one.design for one in maps))
@@ -203,7 +203,7 @@ def compare_designs(
             for i, own in zip(members, point.points, strict=True):
                 if own is not None and isinstance(rig := rigs[i], Rig):
                     jobs.append((i, own, rig))
-    heard: dict[str, Entry] = {}
+    sounds: dict[str, Entry] = {}
     keys: dict[tuple[int, float, float], str] = {}
     silent = {i: rig for i, rig in enumerate(rigs) if isinstance(rig, str)}
     entries = simulated_entries(
@@ -213,8 +213,8 @@ def compare_designs(
         if isinstance(entry, str):
             silent.setdefault(i, entry)
             continue
-        keys[i, own.speed, own.interference] = key = f"m{len(heard) + 1}"
-        heard[key] = entry
+        keys[i, own.speed, own.interference] = key = f"m{len(sounds) + 1}"
+        sounds[key] = entry
     laid = tuple(
         _laid_out(
             [maps[i] for i in members],
@@ -230,7 +230,7 @@ def compare_designs(
     )
     first, second = pair or (names[0], names[min(1, len(names) - 1)])
     at = names.index(first), names.index(second)
-    return Compared(tuple(names), laid, at), heard
+    return Compared(tuple(names), laid, at), sounds
 
 
 def _places(maps: Sequence[ScreenMap]) -> list[list[int]]:
@@ -251,13 +251,13 @@ def _shares(number: int, designs: Sequence[int]) -> list[int]:
                 shares[i] += 1
                 left -= n
         if left == before:
-            return [min(share, _MOST_HEARD) for share in shares]
+            return [min(share, _MOST_SOUNDS) for share in shares]
 
 
 def _laid_out(
     maps: Sequence[ScreenMap],
     designs: Sequence[int],
-    heard: Sequence[tuple[SharedPoint, tuple[str, ...]]],
+    audible: Sequence[tuple[SharedPoint, tuple[str, ...]]],
     silent: Sequence[str],
     n_designs: int,
 ) -> Place:
@@ -284,7 +284,7 @@ def _laid_out(
         levels: tuple[Area, ...] = (),
         note: str = "",
     ) -> ConditionMap:
-        spots = _spots(across, up, heard, own, designs, n_designs)
+        spots = _spots(across, up, audible, own, designs, n_designs)
         number = None if own is None else designs[own]
         return ConditionMap(
             title, across, up, areas, spots, note, speed, height, number, True, levels
@@ -305,7 +305,7 @@ def _laid_out(
             for one, of, number in zip(maps, cells, designs, strict=True)
         },
     }
-    return Place(maps[0].where, tuple(laid), values, _note(maps, heard))
+    return Place(maps[0].where, tuple(laid), values, _note(maps, audible))
 
 
 def _level_step(point: ScreenPoint) -> str:
@@ -344,14 +344,14 @@ def _fit_axis(cells: Cells, fits: Sequence[float], height: float) -> Axis:
 def _spots(
     across: Axis,
     up: Axis,
-    heard: Sequence[tuple[SharedPoint, tuple[str, ...]]],
+    audible: Sequence[tuple[SharedPoint, tuple[str, ...]]],
     own: int | None,
     designs: Sequence[int],
     n_designs: int,
 ) -> tuple[Spot, ...]:
     """Spots of one of the maps, or of their difference."""
     spots = []
-    for shared, keys in heard:
+    for shared, keys in audible:
         point = None if own is None else shared.points[own]
         if own is not None and (point is None or not keys[own]):
             continue
@@ -375,24 +375,24 @@ def _spots(
 def _own_note(one: ScreenMap, silent: str) -> str:
     """Say what to know of a map: where its data are not the design's own, and why it is silent."""
     counts = Counter(part for point in one.points for part in point.note.split("; ") if part)
-    told = [
+    notes = [
         f"{part[0].upper()}{part[1:]}: {'all' if n == len(one.points) else n} points."
         for part, n in counts.most_common()
     ]
-    return " ".join([*told, *([f"No sounds: {silent}."] if silent else [])])
+    return " ".join([*notes, *([f"No sounds: {silent}."] if silent else [])])
 
 
-def _note(maps: Sequence[ScreenMap], heard: Sequence[tuple[SharedPoint, tuple[str, ...]]]) -> str:
+def _note(maps: Sequence[ScreenMap], audible: Sequence[tuple[SharedPoint, tuple[str, ...]]]) -> str:
     """How many points there are, how they are known, and how many are heard."""
     counts = Counter(point.how for one in maps for point in one.points if point.how)
-    how = "; ".join(f"{n} {_SAID.get(how, how)}" for how, n in counts.most_common())
+    how = "; ".join(f"{n} {_HOW_WORDS.get(how, how)}" for how, n in counts.most_common())
     n_points = counted(max(len(one.points) for one in maps), "point")
     of_all = " of each design; of all" if len(maps) > 1 else ""
-    told = [f"{n_points}{of_all}: {how}." if how else f"{n_points}{of_all[:15]}."]
-    n_sounds = sum(bool(key) for _, keys in heard for key in keys)
+    sentences = [f"{n_points}{of_all}: {how}." if how else f"{n_points}{of_all[:15]}."]
+    n_sounds = sum(bool(key) for _, keys in audible for key in keys)
     if n_sounds:
-        told.append(
+        sentences.append(
             f"{counted(n_sounds, 'sound')} simulated at the spots; a click elsewhere plays the "
             "nearest of the same label."
         )
-    return " ".join(told)
+    return " ".join(sentences)

@@ -290,7 +290,7 @@ def recording_panels(entries: Sequence[tuple[Recording, Segment]]) -> list[Panel
     alike: dict[tuple[str, bool], list[_Trace]] = {}
     for trace in (trace for traces in drawn for trace in traces):
         alike.setdefault((trace.kind, trace.calibrated), []).append(trace)
-    found = []
+    panels = []
     with styled():
         for (_, segment), traces in zip(entries, drawn, strict=True):
             pictures: list[Panel] = []
@@ -300,8 +300,8 @@ def recording_panels(entries: Sequence[tuple[Recording, Segment]]) -> list[Panel
                     _time_panel(trace, others),
                     _spectrum_panel(trace, max(of.top for of in others), segment.frequency),
                 ]
-            found.append(Panels(pictures, _caption(traces, segment)))
-    return found
+            panels.append(Panels(pictures, _caption(traces, segment)))
+    return panels
 
 
 def _traces(recording: Recording, segment: Segment) -> list[_Trace]:
@@ -315,7 +315,7 @@ def _traces(recording: Recording, segment: Segment) -> list[_Trace]:
     own = segment.channel
     if own.isdecimal() and 1 <= int(own) <= len(recording.channels):
         own = recording.channel_names[int(own) - 1]
-    found = []
+    traces = []
     for kind in KINDS:
         names = [channel.name for channel in recording.channels if channel.kind == kind]
         if not names:
@@ -324,13 +324,13 @@ def _traces(recording: Recording, segment: Segment) -> list[_Trace]:
         spectrum = autospectrum(signal[first:last], rate)
         shown = (spectrum.frequency >= LOWEST) & (spectrum.frequency <= HIGHEST)
         reference = KINDS[kind].reference if recording.calibrated else 1.0
-        found.append(
+        traces.append(
             _Trace(
                 kind, recording.calibrated, begin / rate, rate, signal[begin : begin + n_shown],
                 spectrum, spectrum.frequency[shown], levels(spectrum.density[shown], reference),
             )
         )  # fmt: skip
-    return found
+    return traces
 
 
 def _time_panel(trace: _Trace, alike: Sequence[_Trace]) -> Panel:

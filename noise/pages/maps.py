@@ -323,7 +323,7 @@ def axis_of(values: Iterable[float], *, edges: bool) -> Axis:
 
 
 def recorded_maps(
-    rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], heard: Iterable[str]
+    rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], with_sound: Iterable[str]
 ) -> tuple[list[ConditionMap], int]:
     """Lay recordings out by the conditions that were logged with them.
 
@@ -333,7 +333,7 @@ def recorded_maps(
         Of a label table whose files are ids.
     titles : mapping of str to str
         By id.
-    heard : iterable of str
+    with_sound : iterable of str
         Ids that can be played.
 
     Returns
@@ -343,7 +343,7 @@ def recorded_maps(
     left_out : int
         Recordings whose speed or interference is not known.
     """
-    playable = set(heard)
+    playable = set(with_sound)
     places = conditions_map(rows)
     known = [p for p in places if p.speed is not None and p.interference is not None]
     placed = {one for place in known for one in place.recordings}
@@ -388,5 +388,5 @@ def _title(place: Place) -> str:
     return place_title(place.material, place.support_stiffness)
 
 
-def _middle(found: Range | None) -> float:
-    return math.nan if found is None else found.middle
+def _middle(span: Range | None) -> float:
+    return math.nan if span is None else span.middle

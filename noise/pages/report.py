@@ -137,14 +137,14 @@ def write_report(
 
 
 def _entry(entry: ReportEntry) -> Entry:
-    recording, heard = entry.recording, entry.recording.first("pressure") is not None
+    recording, has_sound = entry.recording, entry.recording.first("pressure") is not None
     return Entry(
         entry.title,
         tuple(label_rows(entry.title, recording, [entry.segment])),
         recording.condition,
         recording.duration,
-        audible(recording, RATE).astype(np.float32) if heard else None,
+        audible(recording, RATE).astype(np.float32) if has_sound else None,
         calibrated=recording.calibrated,
         note=entry.note,
-        fast_levels=recorded_levels(recording) if heard else None,
+        fast_levels=recorded_levels(recording) if has_sound else None,
     )

@@ -238,14 +238,14 @@ def screened_maps(
     rigs: list[Rig | str] = []
     for path in inputs.screens:
         try:
-            found = read_screen(path)
+            of_file = read_screen(path)
         except BushingNoiseError as error:
             refused.append(Refusal.of(path, error))
             continue
-        rigs += [_rig(one, path.parent, inputs.designs) for one in found]
-        if {one.title for one in maps} & {one.title for one in found}:
-            found = [replace(one, design=f"{one.design}, {path.parent.name}") for one in found]
-        maps += found
+        rigs += [_rig(one, path.parent, inputs.designs) for one in of_file]
+        if {one.title for one in maps} & {one.title for one in of_file}:
+            of_file = [replace(one, design=f"{one.design}, {path.parent.name}") for one in of_file]
+        maps += of_file
     if not maps:
         return None, {}
     return compare_designs(maps, rigs, number=number, seed=seed)
@@ -361,10 +361,10 @@ def review(
         inputs, refused, seconds=seconds, full_scale=full_scale, budget=budget, classify=classify
     )
     diagnosed = _diagnosed(inputs, refused)
-    compared, heard = screened_maps(inputs, refused, number=simulated, seed=seed)
+    compared, simulated_sounds = screened_maps(inputs, refused, number=simulated, seed=seed)
 
     keys = [f"s{number + 1}" for number in range(len(recorded))]
-    entries = dict(zip(keys, recorded, strict=True)) | heard
+    entries = dict(zip(keys, recorded, strict=True)) | simulated_sounds
     if not (entries or compared or diagnosed):
         raise ParameterError(f"{refused[0].name}: {refused[0].reason}; there is nothing else")
     gain = common_gain(entries.values(), pascal_per_full_scale)
@@ -379,7 +379,7 @@ def review(
     of_recordings, unplaced = recorded_maps(rows, titles, clips)
     counts = label_counts(recorded)
     left_out = f"Not on a map, without a logged speed and interference: {unplaced}."
-    summary = _summary(recorded, diagnosed, n_maps, len(heard))
+    summary = _summary(recorded, diagnosed, n_maps, len(simulated_sounds))
     html = page_html(
         "review",
         title,
@@ -411,7 +411,7 @@ def review(
         ],
         entries=entries,
         clips=clips,
-        without_card=heard,
+        without_card=simulated_sounds,
     )
     write_page(target, html)
     return Review(target, len(clips), shortened, tuple(refused))
@@ -439,14 +439,14 @@ def _diagnosed(inputs: Inputs, refused: list[Refusal]) -> list[b.Section]:
 
 
 def _summary(
-    recorded: Sequence[Entry], diagnosed: Sequence[b.Section], n_maps: int, n_heard: int
+    recorded: Sequence[Entry], diagnosed: Sequence[b.Section], n_maps: int, n_sounds: int
 ) -> str:
-    told = []
+    parts = []
     if recorded:
-        told.append(labels_sentence(recorded))
+        parts.append(labels_sentence(recorded))
     if diagnosed:
-        told.append(f"{len(diagnosed)} diagnos{'is' if len(diagnosed) == 1 else 'es'}")
+        parts.append(f"{len(diagnosed)} diagnos{'is' if len(diagnosed) == 1 else 'es'}")
     if n_maps:
-        heard = f" with {counted(n_heard, 'simulated sound')}" if n_heard else ""
-        told.append(f"{counted(n_maps, 'map')} of a screen{heard}")
-    return f"{'; '.join(told)}." if told else ""
+        sounds = f" with {counted(n_sounds, 'simulated sound')}" if n_sounds else ""
+        parts.append(f"{counted(n_maps, 'map')} of a screen{sounds}")
+    return f"{'; '.join(parts)}." if parts else ""

@@ -20,7 +20,7 @@ from models.blocks import RecordingBlocks
 from models.errors import BushingNoiseError, ParameterError
 from models.recording import Recording
 from models.show import short_repr
-from noise.audio.sound import LOWEST_HEARD, audible
+from noise.audio.sound import LOWEST_AUDIBLE_RATE, audible
 from noise.base.progress import readable, track
 from noise.base.tables import TABLE_ENDINGS, table_columns
 from noise.classifier import Classifier, load_classifier
@@ -140,11 +140,11 @@ def sort_inputs(paths: Iterable[Path]) -> Inputs:
     kinds: dict[str, list[Path]] = {kind: [] for kind in ("table", *_KINDS)}
     recordings: dict[Path, tuple[Path, str]] = {}
     for path in paths:
-        found = find_recordings(path)  # complains of what is not there
+        inside_path = find_recordings(path)  # complains of what is not there
         if path.is_dir():
             for inside, file in _inside(path):
                 kinds[inside].append(file)
-            recordings |= {file.resolve(): (file, name) for file, name in _originals(found)}
+            recordings |= {file.resolve(): (file, name) for file, name in _originals(inside_path)}
             continue
         if _is_sidecar(path):
             continue
@@ -155,7 +155,7 @@ def sort_inputs(paths: Iterable[Path]) -> Inputs:
             kinds[kind].append(path)
     tables, refused = _read_tables(kinds["table"])
     inputs = Inputs(
-        told_apart(list(recordings.values())),
+        unique_names(list(recordings.values())),
         tuple(tables),
         _each_once(kinds["screen"]),
         _each_once(kinds["diagnosis"]),
@@ -198,39 +198,39 @@ def _inside(folder: Path) -> Iterator[tuple[str, Path]]:
                 yield "table", path
 
 
-def _originals(found: Sequence[tuple[Path, str]]) -> Iterator[tuple[Path, str]]:
+def _originals(files: Sequence[tuple[Path, str]]) -> Iterator[tuple[Path, str]]:
     """Leave out ``audio/run07.wav`` beside ``recordings/run07.wav``: the same made to be heard."""
-    there = {path.resolve() for path, _ in found}
-    for path, name in found:
+    there = {path.resolve() for path, _ in files}
+    for path, name in files:
         folder = path.parent.resolve()
         original = folder.parent / "recordings" / path.name
         if not (folder.name == "audio" and original.resolve() in there):
             yield path, name
 
 
-def told_apart(found: list[tuple[Path, str]]) -> tuple[tuple[Path, str], ...]:
+def unique_names(files: list[tuple[Path, str]]) -> tuple[tuple[Path, str], ...]:
     """Name the folder above as well where two recordings have the same name.
 
     Parameters
     ----------
-    found : list of (Path, str)
+    files : list of (Path, str)
         Recordings and their names.
 
     Examples
     --------
     >>> from pathlib import Path
-    >>> named = told_apart([(Path("/a/run.wav"), "run.wav"), (Path("/b/run.wav"), "run.wav")])
+    >>> named = unique_names([(Path("/a/run.wav"), "run.wav"), (Path("/b/run.wav"), "run.wav")])
     >>> [name for _, name in named]
     ['a/run.wav', 'b/run.wav']
     """
     for _ in range(_MOST_FOLDERS):
-        counts = Counter(name for _, name in found)
+        counts = Counter(name for _, name in files)
         if max(counts.values(), default=0) < 2:
             break
-        found = [
-            (path, _with_folder(path, name) if counts[name] > 1 else name) for path, name in found
+        files = [
+            (path, _with_folder(path, name) if counts[name] > 1 else name) for path, name in files
         ]
-    return tuple(found)
+    return tuple(files)
 
 
 def _with_folder(path: Path, name: str) -> str:
@@ -289,8 +289,8 @@ def recorded_entries(
     files = list(inputs.recordings)
     known = {path.resolve() for path, _ in files}
     named = _named_by_tables(inputs.tables, [path for path, _ in files])
-    new = [found for found in named if found[0].resolve() not in known]
-    files = list(told_apart([*files, *new]))
+    new = [entry for entry in named if entry[0].resolve() not in known]
+    files = list(unique_names([*files, *new]))
     needs = classify and any(not _labelled(path, inputs.tables) for path, _ in files)
     classifier = load_classifier() if needs else None
     # What could never fit is not read at all.
@@ -299,13 +299,13 @@ def recorded_entries(
     )
     entries: list[Entry] = []
     for path, name in track(files, "reading"):
-        found = _read_entry(
+        entry = _read_entry(
             path, name, inputs.tables, classifier, longest=longest, full_scale=full_scale
         )
-        if isinstance(found, Refusal):
-            refused.append(found)
+        if isinstance(entry, Refusal):
+            refused.append(entry)
         else:
-            entries.append(found)
+            entries.append(entry)
     return entries + _missing(inputs.tables, [path for path, _ in files])
 
 
@@ -315,7 +315,7 @@ def _labelled(path: Path, tables: Sequence[LabelTable]) -> bool:
 
 def _named_by_tables(tables: Sequence[LabelTable], given: Sequence[Path]) -> list[tuple[Path, str]]:
     """Find recordings that a table names beside or below its own folder, and that are not given."""
-    found: dict[Path, tuple[Path, str]] = {}
+    files: dict[Path, tuple[Path, str]] = {}
     for table in tables:
         there = _files_of(table, given)
         for name in dict.fromkeys(str(row["file"]) for row in table.rows):
@@ -323,9 +323,9 @@ def _named_by_tables(tables: Sequence[LabelTable], given: Sequence[Path]) -> lis
                 continue
             for path in (table.path.parent / name, *_below(table.path.parent, name)):
                 if is_file(path):
-                    found.setdefault(path.resolve(), (path, name))
+                    files.setdefault(path.resolve(), (path, name))
                     break
-    return list(found.values())
+    return list(files.values())
 
 
 def _files_of(table: LabelTable, recordings: Sequence[Path]) -> set[str]:
@@ -392,8 +392,8 @@ def _read_entry(
                 rows = tuple(label_rows(name, blocks, label_recording(blocks, classifier)))
             duration = blocks.n_samples / blocks.rate
             offset = stretch_start(rows, duration, longest)
-            heard, why = _heard(blocks, offset, longest)
-            sound, levels = (None, None) if heard is None else _sound(heard)
+            excerpt, why = _excerpt(blocks, offset, longest)
+            sound, levels = (None, None) if excerpt is None else _sound(excerpt)
     except BushingNoiseError as error:
         return Refusal.of(path, error)
     except OSError as error:  # it was there when the folder was searched
@@ -405,20 +405,22 @@ def _read_entry(
     )  # fmt: skip
 
 
-def _heard(blocks: RecordingBlocks, offset: float, longest: float) -> tuple[Recording | None, str]:
+def _excerpt(
+    blocks: RecordingBlocks, offset: float, longest: float
+) -> tuple[Recording | None, str]:
     """Cut out what is heard; None, and why, where nothing is."""
     row = blocks.first("pressure")
     if row is None:
         return None, "no sound pressure to be heard"
-    if blocks.rate < LOWEST_HEARD:
+    if blocks.rate < LOWEST_AUDIBLE_RATE:
         return None, f"sampled at {blocks.rate:g} Hz, so nothing can be heard"
     first = round(offset * blocks.rate)
     last = min(blocks.n_samples, first + round(longest * blocks.rate))
     others = sum(channel.kind == "pressure" for channel in blocks.channels) - 1
-    heard = blocks.track(row).cut(first, last)
-    return heard, f"1 of {others + 1} channels is heard" if others else ""
+    excerpt = blocks.track(row).cut(first, last)
+    return excerpt, f"1 of {others + 1} channels is heard" if others else ""
 
 
-def _sound(heard: Recording) -> tuple[NDArray[np.float32], FastLevels]:
+def _sound(excerpt: Recording) -> tuple[NDArray[np.float32], FastLevels]:
     """Return the sound at the page's rate, and its level over time as the recording has it."""
-    return audible(heard, RATE).astype(np.float32), recorded_levels(heard)
+    return audible(excerpt, RATE).astype(np.float32), recorded_levels(excerpt)

@@ -68,11 +68,11 @@ class ScreenPoint(NamedTuple):
     @property
     def words(self) -> str:
         """What is there, in words."""
-        told = [f"{self.speed:.3g} rad/s, {self.interference:.3g} mm: {self.label}"]
-        told += [self.regime.replace("_", " ")] if self.regime else []
-        told += [f"{self.level:.0f} dB(A)"] if self.level is not None else []
-        told += [f"N5 {self.loudness:.3g} sone"] if self.loudness is not None else []
-        return ", ".join(told)
+        parts = [f"{self.speed:.3g} rad/s, {self.interference:.3g} mm: {self.label}"]
+        parts += [self.regime.replace("_", " ")] if self.regime else []
+        parts += [f"{self.level:.0f} dB(A)"] if self.level is not None else []
+        parts += [f"N5 {self.loudness:.3g} sone"] if self.loudness is not None else []
+        return ", ".join(parts)
 
 
 @dataclass(frozen=True)
@@ -104,11 +104,11 @@ class ScreenMap:
     @property
     def where(self) -> str:
         """What it has in common with the maps of other designs."""
-        told = [self.environment] if self.environment else []
-        told += [self.motion] if self.motion not in ("", "steady") else []
-        told += [f"{self.temperature:g} °C"] if self.temperature is not None else []
-        told += [] if self.support_stiffness is None else [support_words(self.support_stiffness)]
-        return ", ".join(told)
+        parts = [self.environment] if self.environment else []
+        parts += [self.motion] if self.motion not in ("", "steady") else []
+        parts += [f"{self.temperature:g} °C"] if self.temperature is not None else []
+        parts += [] if self.support_stiffness is None else [support_words(self.support_stiffness)]
+        return ", ".join(parts)
 
 
 class SharedPoint(NamedTuple):
@@ -142,14 +142,14 @@ def shared_points(maps: Sequence[ScreenMap]) -> list[SharedPoint]:
     >>> [one.labels for one in shared_points([old, new])]
     [('creak', 'none')]
     """
-    found = [{(p.speed, p.interference): p for p in one.points} for one in maps]
+    by_place = [{(p.speed, p.interference): p for p in one.points} for one in maps]
     return [
-        SharedPoint(*at, tuple(of.get(at) for of in found))
-        for at in dict.fromkeys(at for of in found for at in of)
+        SharedPoint(*at, tuple(of.get(at) for of in by_place))
+        for at in dict.fromkeys(at for of in by_place for at in of)
     ]
 
 
-def screen_maps(found: Screening) -> list[ScreenMap]:
+def screen_maps(screening: Screening) -> list[ScreenMap]:
     """Cut the maps of a screening by temperature and support.
 
     Examples
@@ -161,7 +161,7 @@ def screen_maps(found: Screening) -> list[ScreenMap]:
     ['PDMS, dry, 23 °C, 2214 Nm/rad', 'PDMS, dry, 23 °C, clamp fixed']
     """
     maps = []
-    for one in found.maps:
+    for one in screening.maps:
         grid = one.grid
         for t, k in np.ndindex(one.label.shape[:2]):
             points = tuple(
@@ -269,7 +269,7 @@ def chosen_points(points: Sequence[SharedPoint], most: int) -> list[SharedPoint]
             (of for of in counts if limits[of]),
             key=lambda of: (not shares[of], counts[of] / (shares[of] or 1), of),
         )
-        own = np.array([i for i, found in enumerate(labels) if found == of])
+        own = np.array([i for i, label in enumerate(labels) if label == of])
         own = own[certain[own]] if certain[own].any() else own
         distance = apart(of, own)
         if shares[of] >= limits[of] or distance.max() <= _NEAR:

@@ -37,7 +37,7 @@ RANKING = (
 )  # fmt: skip
 
 
-def ranking_rows(found: Screening) -> list[list[b.Cell | str]]:
+def ranking_rows(screening: Screening) -> list[list[b.Cell | str]]:
     """Return the rows of `RANKING`, the quietest design first.
 
     Examples
@@ -49,10 +49,10 @@ def ranking_rows(found: Screening) -> list[list[b.Cell | str]]:
     >>> rank, design.text, noise.labels, mean, loudest
     ('1', 'PDMS', (('none', '100%'),), '0 sone', 'quiet')
     """
-    return [_row(one, found) for one in found.standings]
+    return [_row(one, screening) for one in screening.standings]
 
 
-def _row(one: Standing, found: Screening) -> list[b.Cell | str]:
+def _row(one: Standing, screening: Screening) -> list[b.Cell | str]:
     loudest = "quiet" if one.rank is not None else ""
     if math.isfinite(one.loudest_level) and not one.never_slips:
         loudest = f"{one.loudest_level:.0f} dB(A)"
@@ -62,7 +62,7 @@ def _row(one: Standing, found: Screening) -> list[b.Cell | str]:
         b.Bar(100.0 * begin, 100.0 * share, f"filled {name} {LABEL_LOOKS[name].pattern}")
         for begin, (name, share) in zip(ends, shares.items(), strict=False)
     ]
-    details = () if one.never_slips else detail_lines(one, found.map_of(one))
+    details = () if one.never_slips else detail_lines(one, screening.map_of(one))
     return [
         "\N{EN DASH}" if one.rank is None else str(one.rank),
         b.Cell(one.design, standing_place(one)),
@@ -84,7 +84,7 @@ def _margin(one: Standing) -> str:
 
 def write_screening(
     path: Path,
-    found: Screening,
+    screening: Screening,
     *,
     sounds: int = 24,
     megabytes: float = 10.0,
@@ -96,7 +96,7 @@ def write_screening(
     Parameters
     ----------
     path : Path
-    found : Screening
+    screening : Screening
     sounds : int
         How many are simulated at most, of all designs together; fewer where they do not fit.
     megabytes : float
@@ -123,9 +123,9 @@ def write_screening(
     ...     "quiet" in (Path(folder) / "report.html").read_text(encoding="utf-8")
     True
     """
-    rigs = {one.name: one.rig for one in found.designs}
-    maps = screen_maps(found)
-    held = {one.design: one.never_slips for one in found.standings if one.rank is None}
+    rigs = {one.name: one.rig for one in screening.designs}
+    maps = screen_maps(screening)
+    held = {one.design: one.never_slips for one in screening.standings if one.rank is None}
     # A contact that is wound up without end would set the gain of all others.
     laid = [
         held.get(one.design) or in_environment(rigs[one.design], environment(one.environment))
@@ -133,22 +133,25 @@ def write_screening(
     ]
     room = 1e6 * megabytes - PAGE_BYTES
     each = CARD_BYTES + SHORTEST * BYTES_A_SECOND
-    compared, heard = compare_designs(
+    compared, entries = compare_designs(
         maps, laid, number=min(sounds, int(room / each)), seed=seed, workers=workers,
-        pair=_pair(found),
+        pair=_pair(screening),
     )  # fmt: skip
-    gain = common_gain(heard.values())
-    left = max(room - CARD_BYTES * len(heard) - compared.weight, each * len(heard))
-    clips, shortened = make_clips(heard, gain, budget=left, dither=np.random.default_rng(seed))
-    refused = [*found.refused, *((f"{name}, in part", reason) for name, reason in found.failed)]
-    first, *lines = conditions_lines(found)
+    gain = common_gain(entries.values())
+    left = max(room - CARD_BYTES * len(entries) - compared.weight, each * len(entries))
+    clips, shortened = make_clips(entries, gain, budget=left, dither=np.random.default_rng(seed))
+    refused = [
+        *screening.refused,
+        *((f"{name}, in part", reason) for name, reason in screening.failed),
+    ]
+    first, *lines = conditions_lines(screening)
     compared_at = [f"Compared: {first}.", *(f"{line[0].upper()}{line[1:]}." for line in lines)]
     several = ", and what differs" if len(compared.names) > 1 else ""
     html = page_html(
         "screening",
-        _title(found),
+        _title(screening),
         [
-            b.Text(ranking_words(found.standings), "summary"),
+            b.Text(ranking_words(screening.standings), "summary"),
             b.Sounds(gain.sentences, MAP_LABELS),
             shortened_text(shortened),
         ],
@@ -158,39 +161,39 @@ def write_screening(
                 "Ranking",
                 [
                     b.Text(" ".join([*compared_at, f"{MARGIN_RULE}."]), "soft"),
-                    b.Table(RANKING, ranking_rows(found), head=1, style="ranking"),
+                    b.Table(RANKING, ranking_rows(screening), head=1, style="ranking"),
                 ],
             ),
             b.Section(
                 f"Which noise where{several}",
-                [b.Text(_HEARD if clips else "", "soft aloud"), b.Other("designs", compared)],
+                [b.Text(_SOUNDS if clips else "", "soft aloud"), b.Other("designs", compared)],
             ),
         ],
-        footer=f"Screened in {found.seconds + found.statistics_seconds:.1f} s. Labels are those of "
-        "bushing-noise label, levels without room and microphone.",
-        entries=heard,
+        footer=f"Screened in {screening.seconds + screening.statistics_seconds:.1f} s. Labels are "
+        "those of bushing-noise label, levels without room and microphone.",
+        entries=entries,
         clips=clips,
-        without_card=heard,
+        without_card=entries,
     )
     write_page(path, html)
 
 
-_HEARD = (
+_SOUNDS = (
     "Sounds, all simulated with one seed, are at the spots: where each noise of each design is "
     "loudest, where levels differ most, and amid the regions of each combination of noises. A "
     "click there plays it; A and B run in step, and the keys A and B change over."
 )
 
 
-def _pair(found: Screening) -> tuple[str, str]:
+def _pair(screening: Screening) -> tuple[str, str]:
     """Compare the design that was named first with the best of the others."""
-    first = found.maps[0].design
-    others = [one.design for one in found.standings if one.design != first]
+    first = screening.maps[0].design
+    others = [one.design for one in screening.standings if one.design != first]
     return first, (others or [first])[0]
 
 
-def _title(found: Screening) -> str:
-    names = list(dict.fromkeys(one.design for one in found.maps))
+def _title(screening: Screening) -> str:
+    names = list(dict.fromkeys(one.design for one in screening.maps))
     if len(names) <= 2:
         return f"Screen of {' and '.join(names)}"
     return f"Screen of {counted(len(names), 'design')}"

@@ -92,7 +92,7 @@ def plot_conditions(places: Sequence[Place], *, title: str) -> Figure:
 def _along(ranges: Iterable[Range | None]) -> list[Range | None]:
     """Return the different ones in rising order, what is not known last."""
     different = set(ranges)
-    known = sorted(found for found in different if found is not None)
+    known = sorted(span for span in different if span is not None)
     return [*known, *([None] if None in different else [])]
 
 
@@ -127,11 +127,11 @@ def _draw(axes: Axes, place: Place, at: tuple[int, int], row_height: float) -> N
 def _label_axes(axes: Axes, speeds: list[Range | None], fits: list[Range | None]) -> None:
     axes.set_xlim(-0.6, max(len(speeds), _FEWEST) - 0.4)
     axes.set_ylim(-0.6, len(fits) - 0.4)
-    axes.set_xticks(range(len(speeds)), [_value(found) for found in speeds])
-    axes.set_yticks(range(len(fits)), [_value(found) for found in fits])
+    axes.set_xticks(range(len(speeds)), [_value(span) for span in speeds])
+    axes.set_yticks(range(len(fits)), [_value(span) for span in fits])
     axes.tick_params(length=0)
     axes.grid(visible=False)
 
 
-def _value(found: Range | None) -> str:
-    return "?" if found is None else f"{found.middle:.3g}"
+def _value(span: Range | None) -> str:
+    return "?" if span is None else f"{span.middle:.3g}"

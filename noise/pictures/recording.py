@@ -221,7 +221,7 @@ def recorded_orders(recording: Recording | RecordingBlocks) -> OrderMap | None:
     if fastest <= max(_RUN_UP * slowest, 0.05):
         return None
     try:
-        found = order_map(
+        orders = order_map(
             reader_of(recording, row), recording.n_samples, recording.rate, speed,
             recording.rate,
             reference=_reference(recording),
@@ -229,7 +229,7 @@ def recorded_orders(recording: Recording | RecordingBlocks) -> OrderMap | None:
     except ParameterError:  # too short, or what a sensor gives that fails
         return None
     # A fast swing is steady only where it is fastest.
-    return found if found.speed_edges[-1] > _RUN_UP * found.speed_edges[0] else None
+    return orders if orders.speed_edges[-1] > _RUN_UP * orders.speed_edges[0] else None
 
 
 _WITH_ORDERS = ("pressure", "torque", "acceleration")

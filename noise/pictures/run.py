@@ -95,8 +95,8 @@ def _cycles(motion: Motion) -> float | None:
     """Slips a second, or periods of the torque [Hz]; None where it does not oscillate."""
     if motion.torque.size < _LEAST_SAMPLES or not oscillates(motion.torque):
         return None
-    found = repetition_rate(motion_slips(motion), motion.torque, motion.rate)
-    return None if math.isnan(found) else found
+    repetition = repetition_rate(motion_slips(motion), motion.torque, motion.rate)
+    return None if math.isnan(repetition) else repetition
 
 
 def oscillates(torque: NDArray[np.floating]) -> bool:

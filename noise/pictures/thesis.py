@@ -211,7 +211,7 @@ def torque_spectra(number: str, shown: Runs) -> Figure:
 
 def sweep_picture(name: str, shown: Swept) -> Figure:
     """Draw mean torque and slip frequency over speed."""
-    found = sweep(
+    swept = sweep(
         rig_of(shown.material),
         np.geomspace(*shown.speeds, _STEPS),
         1e-3 * np.array(shown.fits)[:, np.newaxis, np.newaxis],
@@ -223,7 +223,7 @@ def sweep_picture(name: str, shown: Swept) -> Figure:
         for axes, feature in zip(
             figure.subplots(2, 1, sharex=True), ("torque_mean", "slip_frequency"), strict=True
         ):
-            found.plot(feature, axes)
+            swept.plot(feature, axes)
             axes.set_ylim(bottom=0.0)
     return figure
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies as st
 
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.audio.sound import heard, in_band
+from noise.audio.sound import in_band, pressure_recording
 from noise.cli import main
 from noise.recordings import write_recording
 
@@ -50,7 +50,7 @@ def test_a_slip_stays_where_it_was():
 def test_a_frequency_beyond_the_recording_is_refused_by_its_name():
     hiss = Recording(np.zeros((1, 100)), 8000.0, (Channel("pressure"),), name="run07")
     with pytest.raises(ParameterError, match=r"run07: a filter at 4000 Hz .* stay below 4000 Hz"):
-        heard(hiss, (200.0, 4000.0))
+        pressure_recording(hiss, (200.0, 4000.0))
 
 
 @pytest.fixture
