@@ -161,14 +161,14 @@ class Recording:
         return row
 
     def plot(self, channel: str | None = None, ax: Axes | None = None) -> Axes:
-        """Draw a channel over time.
+        """Plot a channel over time.
 
         Parameters
         ----------
         channel : str, optional
-            By default the first that is sound pressure, else the first.
+            Name of the channel; by default the first of sound pressure, else the first.
         ax : matplotlib.axes.Axes, optional
-            Where to draw; by default a new figure.
+            Axes to draw into; by default a new figure.
 
         Returns
         -------

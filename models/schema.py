@@ -21,7 +21,7 @@ _Kind = TypeVar("_Kind")
 
 
 def did_you_mean(name: str, names: Iterable[str]) -> str:
-    """Return a question for the nearest names name, empty if none is near.
+    """Return a question for the nearest name, empty if none is near.
 
     Examples
     --------

@@ -235,7 +235,7 @@ def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
     signal : ndarray, shape (n,)
         In any [unit].
     factor : int
-        Of the rates; 1 leaves the signal as it is.
+        Ratio of the rates; 1 leaves the signal unchanged.
 
     Returns
     -------

@@ -162,38 +162,14 @@ def forward(signal: NDArray[np.float64], rate: float) -> Transform:
     3840
     """
     n = signal.size
-    fade = edge_fade(n, rate)
-    lead = fade.size
+    lead = min(int(_FADE_SHARE * n), round(_FADE * rate))
+    fade = np.sin(0.5 * np.pi * (np.arange(lead) + 0.5) / lead) ** 2
     length = int(fft.next_fast_len(n, real=True))
     x = np.zeros(length)
     x[:n] = signal
     x[:lead] *= fade
     x[n - lead : n] *= fade[::-1]
     return Transform(fft.rfft(x), length, lead, n - 2 * lead, rate)
-
-
-def edge_fade(n_samples: int, rate: float) -> NDArray[np.float64]:
-    """Return the gain of the fade-in of a signal; its fade-out is the reverse.
-
-    Parameters
-    ----------
-    n_samples : int
-        Samples of the signal.
-    rate : float
-        Sampling rate [Hz].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [-]
-
-    Examples
-    --------
-    >>> edge_fade(4800, 48e3).size, edge_fade(48000, 48e3).size
-    (480, 960)
-    """
-    lead = min(int(_FADE_SHARE * n_samples), round(_FADE * rate))
-    return np.asarray(np.sin(0.5 * np.pi * (np.arange(lead) + 0.5) / lead) ** 2)
 
 
 def band_signal(transform: Transform, low: float, high: float) -> tuple[NDArray[np.float64], float]:

@@ -1,1 +1,1 @@
-"""From forces to sound pressure and sound power."""
+"""Radiation: from forces on plate and beams to sound pressure and sound power."""

@@ -137,37 +137,18 @@ def cubic_weights(f: NDArray[np.float64]) -> NDArray[np.float64]:
     )
 
 
-def rectangle_integral(
-    length: float, width: float, microphone: tuple[float, float, float], rate: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], RayleighIntegral]:
-    """Return Rayleigh's integral over a rectangle about the origin.
+def element_middles(length: float) -> NDArray[np.float64]:
+    """Return the middles of surface elements along a side about the origin [m], shape (n,).
 
     Parameters
     ----------
-    length, width : float
-        Along x and y [m].
-    microphone, rate
-        As for `rayleigh_integral`.
-
-    Returns
-    -------
-    x, y : ndarray, shapes (n_x,) and (n_y,)
-        Coordinates of the elements' middles [m].
-    integral : RayleighIntegral
-        Integral over n_x * n_y elements, y varying fastest.
+    length : float
+        Length of the side [m].
 
     Examples
     --------
-    >>> x, y, integral = rectangle_integral(0.3, 0.2, (0.0, 0.0, 1.0), 48e3)
-    >>> x.size, y.size, integral.matrix.shape[1]
-    (100, 67, 6700)
+    >>> element_middles(6e-3)
+    array([-0.0015,  0.0015])
     """
-    x, y = _middles(length), _middles(width)
-    grid = np.meshgrid(x, y, indexing="ij")
-    area = length * width / (x.size * y.size)
-    return x, y, rayleigh_integral(grid[0].ravel(), grid[1].ravel(), area, microphone, rate)
-
-
-def _middles(length: float) -> NDArray[np.float64]:
     n = int(np.ceil(length / GRID_STEP))
     return np.asarray((np.arange(n, dtype=np.float64) + 0.5) * (length / n) - length / 2)

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models.bench import Microphone, Plate
-from models.radiation.rayleigh import rectangle_integral
+from models.radiation.rayleigh import element_middles, rayleigh_integral
 from models.show import short_repr
 from models.structure.modal import ModalModel, add_ringing
 
@@ -53,50 +53,6 @@ class SineBasis:
         half = wavenumber[..., None] * (self.length / (2 * np.pi))
         near, far = np.sinc(m / 2 - half), np.sinc(m / 2 + half)
         return np.asarray(sign * self.length / 2 * np.where(even, near + far, near - far))
-
-
-def supported_modes(
-    sides: tuple[float, float], stiffness_per_mass: float, highest_frequency: float
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return all modes of a simply supported plate up to a frequency.
-
-    Parameters
-    ----------
-    sides : tuple of 2 floats
-        Length and width [m].
-    stiffness_per_mass : float
-        D / (rho h), bending stiffness over mass per area [m4/s2].
-    highest_frequency : float
-        [Hz]
-
-    Returns
-    -------
-    frequencies : ndarray, shape (n_modes,)
-        Rising [Hz].
-    m, n : ndarray, shape (n_modes,), int
-        Half-waves along length and width.
-
-    Notes
-    -----
-    f = pi/2 sqrt(D / (rho h)) ((m/a)^2 + (n/b)^2); A. W. Leissa, *Vibration of Plates*,
-    NASA SP-160 (1969), section 4.1.
-
-    Examples
-    --------
-    >>> frequencies, m, n = supported_modes((1.0, 1.0), 1.0, 10.0)
-    >>> (2 * np.pi * frequencies / np.pi**2).round(12), m, n
-    (array([2., 5., 5.]), array([1, 2, 1]), array([1, 1, 2]))
-    """
-    scale = np.pi / 2 * np.sqrt(stiffness_per_mass)
-    largest = np.sqrt(highest_frequency / scale)
-    m, n = np.meshgrid(
-        np.arange(1, int(largest * sides[0]) + 1), np.arange(1, int(largest * sides[1]) + 1)
-    )
-    frequencies = scale * ((m / sides[0]) ** 2 + (n / sides[1]) ** 2)
-    below = frequencies <= highest_frequency
-    m, n, frequencies = m[below], n[below], frequencies[below]
-    order = np.argsort(frequencies, kind="stable")
-    return frequencies[order], m[order], n[order]
 
 
 MODES_AT_ONCE = 32
@@ -183,6 +139,11 @@ def plate_modes(plate: Plate, highest_frequency: float) -> PlateModes:
     -------
     PlateModes
 
+    Notes
+    -----
+    f = pi/2 sqrt(D / (rho h)) ((m/a)^2 + (n/b)^2); A. W. Leissa, *Vibration of Plates*,
+    NASA SP-160 (1969), section 4.1.
+
     Examples
     --------
     >>> from models.bench import Plate
@@ -191,8 +152,14 @@ def plate_modes(plate: Plate, highest_frequency: float) -> PlateModes:
     >>> modes.frequencies[:3].round(1), modes.frequencies.size
     (array([ 78.9, 151.8, 242.8]), 323)
     """
-    sides, stiffness = (plate.length, plate.width), plate.stiffness_per_mass
-    frequencies, m, n = supported_modes(sides, stiffness, highest_frequency)
+    sides, scale = (plate.length, plate.width), np.pi / 2 * np.sqrt(plate.stiffness_per_mass)
+    largest = np.sqrt(highest_frequency / scale)
+    m, n = np.meshgrid(*(np.arange(1, int(largest * side) + 1) for side in sides))
+    frequencies = scale * ((m / sides[0]) ** 2 + (n / sides[1]) ** 2)
+    below = frequencies <= highest_frequency
+    m, n, frequencies = m[below], n[below], frequencies[below]
+    order = np.argsort(frequencies, kind="stable")
+    frequencies, m, n = frequencies[order], m[order], n[order]
     along, across = (
         SineBasis(side, int(count.max(initial=1)))
         for side, count in zip(sides, (m, n), strict=True)
@@ -288,7 +255,11 @@ def _mode_taps(
     modes: PlateModes, position: tuple[float, float, float], rate: float
 ) -> tuple[NDArray[np.float64], int]:
     """Return Rayleigh's filters of all modes, shape (n_taps, n_modes), and their common delay."""
-    x, y, integral = rectangle_integral(modes.plate.length, modes.plate.width, position, rate)
+    length, width = modes.plate.length, modes.plate.width
+    x, y = element_middles(length), element_middles(width)
+    grid = np.meshgrid(x, y, indexing="ij")
+    area = length * width / (x.size * y.size)
+    integral = rayleigh_integral(grid[0].ravel(), grid[1].ravel(), area, position, rate)
     parts = []
     for first in range(0, modes.frequencies.size, MODES_AT_ONCE):
         shapes = modes.on_grid(x, y, slice(first, first + MODES_AT_ONCE))

@@ -370,7 +370,7 @@ def _read_uff(path: Path, input_unit: str, output_unit: str) -> TransferFunction
         raise ParameterError(f"{path}: function {response.name!r} has unit {response.unclear}")
     if not response.unit or not response.denominator_unit:
         warnings.warn(
-            f"{path}: does not state all units; what is missing is taken for {output_unit} per "
+            f"{path}: does not state all units; missing ones are taken as {output_unit} per "
             f"{input_unit}",
             stacklevel=3,
         )

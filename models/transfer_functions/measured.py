@@ -204,9 +204,9 @@ def measured_impulse_response(
     wanted = min(BAND * rate, HIGHEST_PLATE_FREQUENCY)
     if last < wanted:
         warnings.warn(
-            f"{transfer.name}: measured from {first:.5g} to {last:.5g} Hz; what lies above, up to "
-            f"{wanted:.5g} Hz, is without its modes in the simulated "
-            f"{'sound' if transfer.output_unit == 'Pa' else 'acceleration'}",
+            f"{transfer.name}: measured from {first:.5g} to {last:.5g} Hz; above, up to "
+            f"{wanted:.5g} Hz, the simulated "
+            f"{'sound' if transfer.output_unit == 'Pa' else 'acceleration'} has no resonances",
             stacklevel=2,
         )
     trusted = fill_between_lines(

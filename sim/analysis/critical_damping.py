@@ -11,8 +11,8 @@ from dataclasses import replace
 from models.errors import ParameterError
 from models.rig import Fit, Rig
 from models.schema import declared
-from sim.analysis.critical_speeds import regime_at
-from sim.analysis.regime import Regime
+from sim.analysis.critical_speeds import motion_from_rest
+from sim.analysis.regime import Regime, friction_regime
 
 _LEAST = declared(Fit)["damping"].value.low
 """Smallest damping of a fit [Nm s/rad]."""
@@ -88,10 +88,10 @@ def critical_damping(
     """
 
     def sticks(damping: float) -> bool:
-        regime = regime_at(
+        motion = motion_from_rest(
             with_damping(rig, damping), speed, interference, support_stiffness, seconds=seconds
         )
-        return regime is Regime.STICK_SLIP
+        return friction_regime(motion) is Regime.STICK_SLIP
 
     return largest_sticking(sticks, highest, tolerance)
 

@@ -86,7 +86,8 @@ def critical_speeds(
     _check(speeds)
     v_crit2 = 0.0
     for speed in reversed(speeds):
-        regime = regime_at(rig, speed, interference, support_stiffness, seconds=seconds)
+        motion = motion_from_rest(rig, speed, interference, support_stiffness, seconds=seconds)
+        regime = friction_regime(motion)
         if regime is Regime.STEADY_SLIDING:
             continue
         last = math.inf if speed == speeds[-1] else speed
@@ -94,39 +95,6 @@ def critical_speeds(
         if regime is Regime.STICK_SLIP:
             return CriticalSpeeds(last, v_crit2)
     return CriticalSpeeds(0.0, v_crit2)
-
-
-def regime_at(
-    rig: Rig,
-    speed: float,
-    interference: float,
-    support_stiffness: float,
-    *,
-    seconds: float = _SECONDS,
-) -> Regime:
-    """Return the regime that a rig reaches from rest.
-
-    Parameters
-    ----------
-    rig : Rig
-    speed : float
-        Speed of the shaft [rad/s].
-    interference : float
-        [m]
-    support_stiffness : float
-        [Nm/rad]
-    seconds : float
-        Length of the run, of which the last half is judged [s].
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> regime_at(load_material_rig("fluorocarbon-thesis"), 1.0, 0.279e-3, 2214.0).value
-    'stick-slip'
-    """
-    return friction_regime(
-        motion_from_rest(rig, speed, interference, support_stiffness, seconds=seconds)
-    )
 
 
 def motion_from_rest(
@@ -139,7 +107,17 @@ def motion_from_rest(
 ) -> Motion:
     """Simulate the constant version of a rig from rest at constant speed.
 
-    Parameters, with their units, and errors are as for `regime_at`.
+    Parameters
+    ----------
+    rig : Rig
+    speed : float
+        Speed of the shaft [rad/s].
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]
+    seconds : float
+        Length of the run [s].
 
     Returns
     -------

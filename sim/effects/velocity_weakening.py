@@ -1,4 +1,4 @@
-r"""Kinetic torque that falls with sliding speed: what sustains squawk and squeal.
+r"""Kinetic torque that falls with sliding speed, which sustains squawk and squeal.
 
 .. math::
     T_{kin}(v) = T_{kin} \, [1 - s f(x)], \quad x = |v| / v_w, \qquad

@@ -22,8 +22,8 @@ from noise.screening.design import Use
 from noise.screening.point import evaluate_point
 from noise.screening.screen import screen
 from noise.screening.vibration import Condition
-from sim.analysis.critical_speeds import regime_at
-from sim.analysis.regime import LEAST_OSCILLATION
+from sim.analysis.critical_speeds import motion_from_rest
+from sim.analysis.regime import LEAST_OSCILLATION, friction_regime
 from sim.bushing import lumped_bushing
 from sim.friction import friction_law
 from sim.parameters import resolve
@@ -89,7 +89,8 @@ def main() -> None:
         start = time.process_time()
         evaluate_point(RIG, Condition(speed, *where))
         own += time.process_time() - start
-        alike += vibrates == (regime_at(RIG, speed, *where, seconds=SECONDS) != "steady sliding")
+        regime = friction_regime(motion_from_rest(RIG, speed, *where, seconds=SECONDS))
+        alike += vibrates == (regime != "steady sliding")
     print(f"solve_ivp, {sample} conditions: {looped / sample:.2f} s each, {alike} regimes alike")
     print(f"  a point with its sound and label: {own / sample:.3f} s")
     whole = looped / sample * found.maps[0].label.size

@@ -72,7 +72,7 @@ def test_another_support_stays_modelled(tmp_path, modelled):
 
 def test_a_response_that_ends_below_what_is_modelled_says_what_is_missing(tmp_path, modelled):
     rig = rig_with(tmp_path, modelled, f=F[F <= 8000])
-    with pytest.warns(UserWarning, match="from 20 to 8000 Hz; what lies above, up to 16000 Hz"):
+    with pytest.warns(UserWarning, match="from 20 to 8000 Hz; above, up to 16000 Hz"):
         impulse_responses(rig, FIT, 2214.0, RATE, seconds=0.3)
 
 

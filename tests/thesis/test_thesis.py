@@ -21,8 +21,8 @@ from noise.thesis.heat import RUBBER, temperature_rise
 from noise.thesis.repetition import repetition_rate
 from noise.thesis.table import reasons
 from sim.analysis.critical_damping import critical_damping
-from sim.analysis.critical_speeds import regime_at
-from sim.analysis.regime import Regime
+from sim.analysis.critical_speeds import motion_from_rest
+from sim.analysis.regime import Regime, friction_regime
 from sim.analysis.slips import find_slips
 
 PAGE = Path(__file__).parents[1] / "thesis.md"
@@ -276,7 +276,8 @@ def test_a_folder_in_the_place_of_the_page_is_refused_before_the_work(tmp_path, 
 
 def test_beyond_the_end_of_stick_slip_there_is_an_island_of_it():
     speeds = np.arange(3.0, 6.1, 0.25).tolist()
-    sticks = [v for v in speeds if regime_at(THESIS, v, 0.279e-3, 2214.0) is Regime.STICK_SLIP]
+    motions = {v: motion_from_rest(THESIS, v, 0.279e-3, 2214.0) for v in speeds}
+    sticks = [v for v in speeds if friction_regime(motions[v]) is Regime.STICK_SLIP]
     assert sticks == [3.0, 3.25, 3.5, 4.75, 5.0, 5.25, 5.5]
 
 
