@@ -51,7 +51,7 @@ def use_remarks(
     >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon")
     >>> use_remarks(rig, speed=[15.0], interference=[0.279e-3], support_stiffness=[2214.0])
-    ['speed 15 rad/s is beyond 13, the fastest that the numbers of fluorocarbon were fitted at']
+    ['speed 15 rad/s is above 13 rad/s, the highest speed to which fluorocarbon was fitted']
     """
     finite = [stiffness for stiffness in support_stiffness if math.isfinite(stiffness)]
     speed_remark = _speed_remark(rig, speed)
@@ -74,8 +74,8 @@ def _speed_remark(rig: Rig, speeds: Sequence[float]) -> str:
     if fastest <= rig.fastest_fitted * (1.0 + 1e-9):
         return ""
     return (
-        f"speed {fastest:g} rad/s is beyond {rig.fastest_fitted:.4g}, the fastest that the "
-        f"numbers of {rig.material} were fitted at"
+        f"speed {fastest:g} rad/s is above {rig.fastest_fitted:.4g} rad/s, the highest speed to "
+        f"which {rig.material} was fitted"
     )
 
 
@@ -222,15 +222,15 @@ def sensor_remarks(sensors: Sensors, rate: float) -> list[str]:
     lines = []
     if sensors.noise_from_recordings:
         lines.append(
-            'noise = "from recordings" is estimated where recordings are compared; here, without '
-            "any, the noise of good sensors is used"
+            'noise = "from recordings" needs recordings to compare with; here the noise of good '
+            "sensors is used"
         )
     corners = (sensor.antialias for sensor in sensors.by_kind.values())
     high = sorted({corner for corner in corners if corner is not None and corner > 0.5 * rate})
     if high:
         lines.append(
             f"antialias_hz = {high[0]:g} lies above half the sampling rate, {0.5 * rate:g} Hz; "
-            "what such a filter would let through and fold back is left out"
+            "the aliasing that such a filter allows is not simulated"
         )
     return lines
 

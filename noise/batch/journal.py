@@ -65,8 +65,8 @@ class Journal:
         if previous == call and not fresh:
             return
         if previous is not None and not fresh and self._path is not None and len(self):
-            why = "with other options" if previous[0] == RESULTS_VERSION else "by another version"
-            note(f"{self._path}: holds results that were made {why}; all is done again")
+            why = "other options" if previous[0] == RESULTS_VERSION else "another program version"
+            note(f"{self._path}: holds results of {why}; everything is computed again")
         with self._database:
             self._database.execute("delete from call")
             self._database.execute("delete from result")
@@ -273,7 +273,7 @@ def _opened(target: Path, identity: str, *, fresh: bool = False) -> Iterator[Jou
                 if isinstance(error, sqlite3.OperationalError):
                     raise
                 path.unlink()
-                note(f"{path}: is damaged or of an earlier program; all is done again")
+                note(f"{path}: is damaged or of an earlier program; everything is computed again")
                 journal = Journal(path)
                 journal.begin(identity)
         except sqlite3.Error as error:

@@ -100,7 +100,7 @@ def run(options: Namespace) -> int:
         )  # fmt: skip
         modes = _trusted(modes, transfer, hits, options.coherence).without_window(rate)
         count = counted(modes.frequency.size, "mode")
-        say(f"{count}, sought from {low:.5g} to {high:.5g} Hz")
+        say(f"{count} between {low:.5g} and {high:.5g} Hz")
     _write(options, transfer, modes)
     return 1 if refused else 0
 
@@ -116,7 +116,7 @@ def _check(options: Namespace) -> None:
         check_table_path(options.modes)
         check_target(options.modes)
     elif options.band is not None:
-        raise ParameterError("--band is given without --modes, for which it is")
+        raise ParameterError("--band needs --modes")
 
 
 def _read(options: Namespace) -> tuple[list[Hit], str, int]:
@@ -197,7 +197,7 @@ def _trusted(modes: Modes, transfer: TransferFunction, hits: list[Hit], least: f
     excited = ~force_nulls(hits, modes.frequency, modes.damping_ratio * modes.frequency)
     for trusted, reason in (
         (coherent, f"the coherence is below {least:g}"),
-        (excited | ~coherent, "the force has next to nothing"),
+        (excited | ~coherent, "the force has almost no power"),
     ):
         if left_out := int((~trusted).sum()):
             note(f"{counted(left_out, 'mode')} left out, where {reason}")

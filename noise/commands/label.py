@@ -93,9 +93,9 @@ def _note_false_names(work: Labelling) -> None:
         return
     rate = counts[nearest]
     note(
-        f"at a sensitivity of {float(nearest):g} real sounds that are no noise and may be heard "
-        f"there got {rate['an_hour']:.0f} false names an hour ({rate['low']:.0f} to "
-        f"{rate['high']:.0f} at 95 %: {rate['names']} in {rate['hours']:g} h)"
+        f"at a sensitivity of {float(nearest):g}, real background sounds of these surroundings got "
+        f"{rate['an_hour']:.0f} false names per hour ({rate['low']:.0f} to {rate['high']:.0f} at "
+        f"95 %: {rate['names']} in {rate['hours']:g} h)"
     )
 
 
@@ -119,7 +119,7 @@ def _note_speeds(rows: list[dict[str, object]]) -> None:
     if names:
         name, remark = next(iter(names.items()))
         others = (
-            f"; so it is in {len(names) - 1} more, see the column note" if len(names) > 1 else ""
+            f"; the same in {len(names) - 1} more, see the column note" if len(names) > 1 else ""
         )
         note(f"{name}: {remark}{others}")
 

@@ -88,7 +88,9 @@ def _run_suspension(options: Namespace, path: Path) -> int:
     """Simulate a car's stabilizer bar in two bushings."""
     for option, value in (("--plot", options.plot), ("--sound-power", options.sound_power)):
         if value is not None:
-            raise ParameterError(f"{option} is of the rig; --rig {options.rig} is a suspension")
+            raise ParameterError(
+                f"{option} is for the rig only; --rig {options.rig} is a suspension"
+            )
     from models.suspension import load_suspension
 
     with naming("--rig: "):

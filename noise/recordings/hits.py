@@ -163,7 +163,7 @@ def _table(path: Path) -> tuple[NDArray[np.float64], str]:
     if values.ndim != 2 or len(_ROLES) not in values.shape:
         raise RecordingError(
             f"{path}: has shape {np.shape(values)}, expected three rows or columns: time, force, "
-            "response; where commas part columns, a number has a decimal point"
+            "response; between commas, numbers need a decimal point"
         )
     if values.dtype.kind not in "iuf":
         raise RecordingError(f"{path}: holds {values.dtype}, expected real numbers")

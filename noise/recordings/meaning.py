@@ -147,7 +147,7 @@ def _by_track(
     if len(values) != n_tracks:
         raise RecordingError(
             f"{path}: has {n_tracks} tracks, and full scale is given for {len(values)}; record the "
-            "calibrator on as many, or on one for all"
+            "calibrator on all tracks, or on one"
         )
     return values
 
@@ -215,8 +215,8 @@ def _interpret(
                 pairs.append((replace(channel, full_scale=option), None))
                 continue
             notes.append(
-                f"{channel.name} is in {channel.unit} already; what full scale is worth "
-                "(--full-scale, --calibrator) is not used"
+                f"{channel.name} is in {channel.unit} already; the value of full scale "
+                "(--full-scale, --calibrator) is ignored"
             )
         metered = stated.value if stated and stated.kind == channel.kind else None
         value = scale or (1.0 if in_units else metered) if in_unit else None

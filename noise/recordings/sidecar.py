@@ -233,8 +233,8 @@ def sidecar_of(recording: Path) -> Sidecar:
     if sidecar.checksum and sidecar.checksum != _checksum(recording, recording.stat().st_mtime_ns):
         raise RecordingError(
             f"{path}: was written with other samples than those of {recording.name} (an "
-            f"interrupted call, or {recording.name} was changed); write both again, or take "
-            f"{_CHECKSUM} out of it if it is right"
+            f"interrupted call, or {recording.name} was changed); write both again, or remove "
+            f"{_CHECKSUM} if the sidecar is right"
         )
     return sidecar
 
@@ -280,8 +280,8 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
         raise RecordingError(f"{where}: is no JSON ({one_line(error)})") from None
     if not _is_sidecar(content):
         return Sidecar(
-            note="the JSON file beside it is of another program, as it names no channels and no "
-            "conditions; passed over"
+            note="the JSON file beside it belongs to another program, as it names no channels and "
+            "no conditions; it is ignored"
         )
     with naming("", RecordingError):
         return _read(Sidecar, content, where)

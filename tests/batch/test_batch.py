@@ -98,7 +98,7 @@ def test_a_journal_that_is_none_begins_again_with_a_note(work, jobs, tmp_path, c
     table = tmp_path / "t.csv"
     journal_path(table).write_bytes(content)
     assert keep(table, work, jobs) == [None] * 6
-    assert "all is done again" in capsys.readouterr().err
+    assert "everything is computed again" in capsys.readouterr().err
     assert [done is None for done in keep(table, work, jobs)] == [False, True, *[False] * 4]
 
 
@@ -187,7 +187,7 @@ def test_what_is_kept_is_there_until_the_call_has_come_to_its_end(tmp_path, caps
     with pytest.raises(KeyboardInterrupt):
         call(target, "one", KeyboardInterrupt())
     assert call(target, "another") is None
-    assert "made with other options" in capsys.readouterr().err
+    assert "holds results of other options" in capsys.readouterr().err
 
 
 def test_results_of_another_version_are_not_used_and_a_line_says_so(tmp_path, monkeypatch, capsys):
@@ -195,7 +195,7 @@ def test_results_of_another_version_are_not_used_and_a_line_says_so(tmp_path, mo
         call(tmp_path / "set", "same", KeyboardInterrupt())
     monkeypatch.setattr("noise.batch.journal.RESULTS_VERSION", 2)
     assert call(tmp_path / "set", "same") is None
-    assert "made by another version; all is done again" in capsys.readouterr().err
+    assert "another program version; everything is computed again" in capsys.readouterr().err
 
 
 def test_a_call_that_is_refused_before_it_has_results_leaves_nothing(tmp_path):

@@ -107,7 +107,7 @@ SIMULATE = [
     ("--speed 1 --sound-power power.ods", "tables end in .csv, .xlsx, .jsonl or .parquet"),
     ("--speed 1 --sound-power p.csv --seconds 0.1", "--seconds 0.1 is too short"),
     ("--speed 1 --sound-power p.csv --seconds 61", "takes the whole run in memory"),
-    ("--rig suspension --oscillate 6,2 --plot x.png", "--plot is of the rig"),
+    ("--rig suspension --oscillate 6,2 --plot x.png", "--plot is for the rig only"),
     ("--sped 5", "--sped"),
     ("--speed letters.csv", "--speed letters.csv: column 2 is 'x' in line 2, expected a number"),
     ("--speed hours.csv", "has the columns hour, speed, expected time_s and speed_rad_s"),
@@ -190,7 +190,7 @@ CALLS = {
         ("rows.npy --arm 0", "--arm is '0', expected a number above 0"),
         ("rows.npy --estimator H3", "--estimator is 'H3', expected H1, H2 or Hv"),
         ("rows.npy --band 5..2 --modes m.csv", "--band is '5..2'"),
-        ("rows.npy --band 2..5", "--band is given without --modes"),
+        ("rows.npy --band 2..5", "--band needs --modes"),
         ("rows.npy --response sound", "--response is 'sound'"),
     ],
     "diagnose": [

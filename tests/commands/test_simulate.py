@@ -129,7 +129,7 @@ def test_a_rig_file_names_its_material_fit_and_effects_itself(call, tmp_path):
         (("--support-stiffness", "3e5"), "support_stiffness_Nm_rad = 300000 is outside the usual"),
         (("--change", "critical_torque=x1000"), "outside the usual 0.3 to 500 Nm (is it in Nmm?)"),
         (("--change", "critical_torque=x9999"), "nothing slips in this run"),
-        (("--speed", "30"), "speed 30 rad/s is beyond 13, the fastest that the numbers of fluoro"),
+        (("--speed", "30"), "speed 30 rad/s is above 13 rad/s, the highest speed to which fluoro"),
     ],
 )  # fmt: skip
 def test_what_is_odd_is_told_in_one_line_and_kept(tmp_path, capsys, given, cause):

@@ -88,7 +88,7 @@ OF_OTHERS = [
 def test_a_file_of_another_program_is_passed_over_with_a_note(tmp_path, content):
     text = content if isinstance(content, str) else json.dumps(content)
     found = parse_sidecar(text, "run07.json")
-    assert "is of another program" in found.note
+    assert "belongs to another program" in found.note
     assert replace(found, note="") == Sidecar()
     path = tmp_path / "run07.wav"
     soundfile.write(path, np.full(480, 0.5), 48_000)
@@ -277,7 +277,7 @@ def test_a_sidecar_without_a_checksum_stays_valid_for_any_samples(torque):
     sidecar = torque.with_suffix(".json")
     content = json.loads(sidecar.read_text())
     soundfile.write(torque, np.ones(960), 48_000, subtype="FLOAT")
-    with pytest.raises(RecordingError, match="take wav_crc32 out of it if it is right"):
+    with pytest.raises(RecordingError, match="remove wav_crc32 if the sidecar is right"):
         read_recording(torque)
     del content["wav_crc32"]
     sidecar.write_text(json.dumps(content))
