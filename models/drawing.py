@@ -59,6 +59,9 @@ _COLUMNS = 1200
 _TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 10e3, 15e3, 20e3, 50e3, 100e3, 200e3)
 """Ticks of a frequency axis [Hz]."""
 
+_SMALLEST = 1e-60
+"""Relative density that replaces zero."""
+
 
 @contextmanager
 def styled() -> Iterator[None]:
@@ -151,6 +154,17 @@ def padded(low: float, high: float, least: float) -> tuple[float, float]:
     """
     middle, half = (low + high) / 2.0, max(high - low, least) / 2.0
     return middle - 1.08 * half, middle + 1.08 * half
+
+
+def levels(density: NDArray[np.float64], reference: float) -> NDArray[np.float64]:
+    """Return the levels of a spectral density [unit^2/Hz] in dB re (`reference` [unit])^2/Hz.
+
+    Examples
+    --------
+    >>> levels(np.array([1.0, 0.01]), 1.0).tolist()
+    [0.0, -20.0]
+    """
+    return np.asarray(10.0 * np.log10(np.maximum(density / reference**2, _SMALLEST)))
 
 
 def frequency_axis(axes: Axes, low: float, high: float) -> None:
