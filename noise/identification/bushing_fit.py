@@ -1,4 +1,4 @@
-"""Stiffness, inertias and damping from one recording, whatever the law of friction.
+"""Fit of stiffness, inertias and damping to one recording, independent of the law of friction.
 
 Two things hold for any law in which a contact sticks. While it sticks, the surface turns with the
 shaft: the torque rises by k_EFF times the speed (Figures 5.25 and 5.26), and what the clamp rings
@@ -36,19 +36,19 @@ if TYPE_CHECKING:
 
 
 LIMIT = 8000.0
-"""Highest frequency kept [Hz], at most 0.3 of the rate; the flank ends a third above; assumed."""
+"""Corner of the low-pass filter [Hz], at most 0.3 of the rate; it ends a third above; assumed."""
 
 _NOISE_ALONE = 0.85
-"""Share of the highest frequency from which there is nothing but the cell's noise; assumed."""
+"""Share of the Nyquist frequency above which the spectrum is noise of the cell alone; assumed."""
 
 _SMOOTHED = 150.0
-"""Width over which a spectrum is smoothed to be told from noise [Hz]; assumed."""
+"""Bandwidth over which the power spectrum is smoothed [Hz]; assumed."""
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """Contact over time; arrays of shape (n,).
+    """Torque and sliding speed of the contact over time.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Contact:
 @short_repr
 @dataclass(frozen=True, eq=False)
 class TorqueSpectrum:
-    """A torque ready for reconstruction.
+    """Low-pass filtered torque of a recording in the frequency domain.
 
     Parameters
     ----------
@@ -75,13 +75,13 @@ class TorqueSpectrum:
         i omega [rad/s]
     n : int
         Samples of the transform.
-    kept : slice
-        Samples that count.
+    used : slice
+        Samples of the transform that belong to the recording.
     mean : float
         Of the torque [Nm].
-    torque : ndarray, shape (n_kept,)
+    torque : ndarray, shape (n_used,)
         Band-limited [Nm].
-    shaft_speed : ndarray, shape (n_kept,)
+    shaft_speed : ndarray, shape (n_used,)
         [rad/s]
     rate : float
         [Hz]
@@ -90,14 +90,14 @@ class TorqueSpectrum:
     spectrum: NDArray[np.complex128]
     s: NDArray[np.complex128]
     n: int
-    kept: slice
+    used: slice
     mean: float
     torque: Array
     shaft_speed: Array
     rate: float
 
     def contact(self, bushing: LumpedBushing) -> Contact:
-        """Rebuild the contact for a guess of the bushing."""
+        """Return the contact that a bushing implies."""
         twist, clamp = self._angles(bushing)
         turning = (twist + clamp) * self.s
         acceleration = self._in_time(turning * self.s)
@@ -107,11 +107,11 @@ class TorqueSpectrum:
         )
 
     def states(self, bushing: LumpedBushing) -> Array:
-        """Rebuild the motion for a guess of the bushing.
+        """Return the motion that a bushing implies.
 
         Returns
         -------
-        ndarray, shape (4, n_kept)
+        ndarray, shape (4, n_used)
             theta1 [rad], theta1' [rad/s], theta2, theta2', as of the torque's mean at rest.
         """
         twist, clamp = self._angles(bushing)
@@ -127,7 +127,7 @@ class TorqueSpectrum:
     def _angles(
         self, bushing: LumpedBushing
     ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Spectra of the elastomer's twist and of the clamp's angle."""
+        """Return the spectra of the elastomer's twist and of the clamp's angle."""
         s = self.s
         twist = self.spectrum / (bushing.elastomer_stiffness + bushing.elastomer_damping * s)
         if bushing.clamp_is_fixed:
@@ -138,17 +138,17 @@ class TorqueSpectrum:
         return twist, clamp
 
     def _in_time(self, spectrum: NDArray[np.complex128]) -> Array:
-        return np.asarray(irfft(spectrum, self.n)[self.kept])
+        return np.asarray(irfft(spectrum, self.n)[self.used])
 
 
 def torque_spectrum(measured: Measured, seconds: float | None = None) -> TorqueSpectrum:
-    """Prepare a recording.
+    """Return the low-pass filtered spectrum of a recording's torque.
 
     Parameters
     ----------
     measured : Measured
     seconds : float, optional
-        How much of it is looked at [s]; by default all.
+        Length of the part to use [s]; by default all.
 
     Returns
     -------
@@ -166,17 +166,17 @@ def torque_spectrum(measured: Measured, seconds: float | None = None) -> TorqueS
     x = np.clip((frequency - low) / (low / 3.0), 0.0, 1.0)
     lines = rfft(closed)
     spectrum = lines * _above_noise(lines, frequency) * (0.5 + 0.5 * np.cos(np.pi * x))
-    kept = slice(round(LEAD * rate), n - round(TAIL * rate))
+    used = slice(round(LEAD * rate), n - round(TAIL * rate))
     return TorqueSpectrum(
-        spectrum, 2j * np.pi * frequency, closed.size, kept, mean,
-        np.asarray(irfft(spectrum, closed.size)[kept]) + mean, measured.shaft_speed[kept], rate,
+        spectrum, 2j * np.pi * frequency, closed.size, used, mean,
+        np.asarray(irfft(spectrum, closed.size)[used]) + mean, measured.shaft_speed[used], rate,
     )  # fmt: skip
 
 
 def _above_noise(lines: NDArray[np.complex128], frequency: Array) -> Array:
-    """Share of each line that is no noise of the cell (Wiener 1949), which is taken for white.
+    """Return the Wiener filter against white noise of the cell (Wiener 1949).
 
-    What differentiation would make of it looks like sliding where the contact sticks.
+    Differentiated noise would look like sliding where the contact sticks.
     """
     power = np.abs(lines) ** 2
     noise = float(np.mean(power[frequency > _NOISE_ALONE * frequency[-1]]))
@@ -186,49 +186,49 @@ def _above_noise(lines: NDArray[np.complex128], frequency: Array) -> Array:
 
 
 _GUARD = 0.8e-4
-"""Left out on either side of where stick or slip ends [s]: the band limit smears it; assumed."""
+"""Margin at both ends of stick and slip [s], which the low-pass filter smears; assumed."""
 
 _STUCK, _SLIDING = 0.25, 1.0
-"""Sliding speeds over the shaft's below which a contact sticks, and above which it slides;
-assumed."""
+"""Sliding speeds over the shaft's speed: a contact sticks below the first and slides above the
+second; assumed."""
 
 _LEAST = 60
-"""Samples of a phase without which it says nothing; assumed."""
+"""Fewest samples of a phase that is used; assumed."""
 
 _THINNED = 6000
-"""Samples of a phase that a fit looks at."""
+"""Most samples of a phase that a fit uses."""
 
 _STIFFNESSES = tuple(np.geomspace(0.3, 3.0, 15).tolist())
 _INERTIAS = tuple(np.geomspace(0.4, 2.5, 15).tolist())
-"""Factors that are tried on the stiffness read off the slope, and on inertias not known."""
+"""Grid of factors on the stiffness of the slope, and on unknown inertias."""
 
 _DAMPINGS = (0.06, 0.09, 0.14)
-"""Tried with each stiffness [Nm s/rad] (Table 5.5 and about it)."""
+"""Grid of dampings [Nm s/rad] (about those of Table 5.5)."""
 
 _RISES = (4e-4, 1e-3, 2e-3, 4e-3, 8e-3)
-"""Over which a rise of the torque is looked for [s]; assumed."""
+"""Time steps over which the slope of the torque is taken [s]; assumed."""
 
 _WELL_KNOWN = 0.1
-"""Relative error of the inertias up to which no others are tried [-]; assumed."""
+"""Relative error of the inertias above which they are searched on a grid [-]; assumed."""
 
 _EXCERPT = 0.3
-"""Looked at meanwhile [s]."""
+"""Part of the recording for the grid search [s]."""
 
 _ROUNDS = 3
 _BEND = 2.5
-"""Residuals beyond so many standard deviations count linearly; assumed."""
+"""Threshold of Huber's loss in standard deviations; assumed."""
 
 
 @dataclass(frozen=True)
 class Known:
-    """What is known before anything is recorded.
+    """Prior knowledge of a rig's inertias and of how its damping is shared.
 
     Parameters
     ----------
     elastomer_inertia, clamp_inertia : float
         [kg m2]
     inertia_error : float
-        Relative standard deviation of both [-]; large where nothing is known.
+        Relative standard deviation of both [-]; large if they are unknown.
     damping_share : float
         Share of the damping that acts in the elastomer [-].
     share_error : float
@@ -243,7 +243,7 @@ class Known:
 
 
 class Phases(NamedTuple):
-    """Where a contact sticks and slides; boolean arrays of shape (n,), transitions in neither."""
+    """Masks of stick and slip, boolean arrays of shape (n,); transitions are in neither."""
 
     stuck: NDArray[np.bool_]
     sliding: NDArray[np.bool_]
@@ -252,7 +252,7 @@ class Phases(NamedTuple):
 @short_repr
 @dataclass(frozen=True, eq=False)
 class BushingFit:
-    """What one recording says of the bushing.
+    """Bushing fitted to one recording.
 
     Parameters
     ----------
@@ -265,25 +265,25 @@ class BushingFit:
 
     @property
     def damping(self) -> float:
-        """Of elastomer and beams together [Nm s/rad]."""
+        """Damping of elastomer and beams together [Nm s/rad]."""
         return self.bushing.elastomer_damping + self.bushing.support_damping
 
     @cached_property
     def contact(self) -> Contact:
-        """The contact as this bushing has it."""
+        """Contact that this bushing implies."""
         return self.spectrum.contact(self.bushing)
 
     @cached_property
     def phases(self) -> Phases:
-        """When it sticks and slides."""
+        """Masks of stick and slip."""
         return _phases(self.contact, self.spectrum)
 
 
 def _phases(contact: Contact, spectrum: TorqueSpectrum) -> Phases:
-    """Tell stick from slip by the sliding speed."""
+    """Return the masks of stick and slip from the sliding speed."""
     guard = np.ones(2 * max(1, round(_GUARD * spectrum.rate)) + 1)
     v = contact.sliding_speed
-    # what the cell's noise makes of a standing contact
+    # apparent sliding speed of a sticking contact: noise of the cell
     noise = 1.4826 * float(np.median(np.abs(np.diff(v)))) / math.sqrt(2.0)
     stuck = np.abs(v) < _STUCK * spectrum.shaft_speed + 3.0 * noise
     sliding = v > _SLIDING * spectrum.shaft_speed + 3.0 * noise
@@ -291,7 +291,7 @@ def _phases(contact: Contact, spectrum: TorqueSpectrum) -> Phases:
 
 
 def fit_bushing(measured: Measured, known: Known) -> BushingFit:
-    """Fit one recording.
+    """Fit the bushing to one recording.
 
     Parameters
     ----------
@@ -319,7 +319,7 @@ def _bushing(values: Array, support: float, known: Known) -> LumpedBushing:
 
 
 def _static_stiffness(spectrum: TorqueSpectrum, support: float, step: int) -> float:
-    """k_E from how steeply the torque rises over so many samples, by the shaft's speed."""
+    """Return the elastomer's stiffness from the slope of the torque over `step` samples."""
     slope = (spectrum.torque[step:] - spectrum.torque[:-step]) * spectrum.rate / step
     slope = slope / spectrum.shaft_speed[step:]
     rising = slope[slope > 0.25 * np.quantile(slope, 0.9)]
@@ -329,10 +329,10 @@ def _static_stiffness(spectrum: TorqueSpectrum, support: float, step: int) -> fl
 
 
 def _start(measured: Measured, known: Known) -> Array:
-    """Try stiffness and damping, and inertias where they are not known, on a coarse grid."""
+    """Return the best stiffness, damping and (if unknown) inertias on a coarse grid."""
     support = measured.condition.support_stiffness
     spectrum = torque_spectrum(measured, _EXCERPT)
-    # over a short step the clamp's ringing in a long stick hides the rise, a long one holds slips
+    # over a short step ringing of the clamp hides the slope; a long step contains slips
     steps = {max(1, round(seconds * spectrum.rate)) for seconds in _RISES}
     slopes = [_static_stiffness(spectrum, support, step) for step in steps]
     low, high = _STIFFNESSES[0] * min(slopes), _STIFFNESSES[-1] * max(slopes)
@@ -351,25 +351,27 @@ def _start(measured: Measured, known: Known) -> Array:
     ])  # fmt: skip
 
 
-def _likeliest(spectrum: TorqueSpectrum, support: float, known: Known, tried: list[Array]) -> Array:
-    costs = [_implausibility(spectrum, _bushing(values, support, known)) for values in tried]
-    return tried[int(np.argmin(costs))]
+def _likeliest(
+    spectrum: TorqueSpectrum, support: float, known: Known, guesses: list[Array]
+) -> Array:
+    costs = [_implausibility(spectrum, _bushing(values, support, known)) for values in guesses]
+    return guesses[int(np.argmin(costs))]
 
 
 def _implausibility(spectrum: TorqueSpectrum, bushing: LumpedBushing) -> float:
-    """How little of the time a guess lets the contact stick, and how much it slides backwards."""
+    """Return how much of the time the contact slides, plus how far it slides backwards."""
     ratio = spectrum.contact(bushing).sliding_speed / spectrum.shaft_speed
     away = (ratio / _STUCK) ** 2
     return float(np.mean(away / (1.0 + away)) + np.mean(np.clip(-ratio, 0.0, 2.0)))
 
 
 def _thin(mask: NDArray[np.bool_]) -> NDArray[np.int64]:
-    found = np.flatnonzero(mask)
-    return found[:: max(1, math.ceil(found.size / _THINNED))]
+    inside = np.flatnonzero(mask)
+    return inside[:: max(1, math.ceil(inside.size / _THINNED))]
 
 
 def _refined(spectrum: TorqueSpectrum, support: float, known: Known, start: Array) -> Array:
-    """One round of least squares with phases as the start has them."""
+    """Refine the values by least squares, with the phases that they imply."""
     phases = _phases(spectrum.contact(_bushing(start, support, known)), spectrum)
     stuck, sliding = _thin(phases.stuck), _thin(phases.sliding)
     prior = np.log([1.0, 1.0, known.elastomer_inertia, known.clamp_inertia])
@@ -377,11 +379,11 @@ def _refined(spectrum: TorqueSpectrum, support: float, known: Known, start: Arra
     width = np.array([0.5, 1.0, known.inertia_error, known.inertia_error])
 
     def parts(values: Array) -> tuple[Array, Array]:
-        found = spectrum.contact(_bushing(values, support, known))
-        in_stick = found.sliding_speed[stuck] if stuck.size > _LEAST else np.zeros(0)
+        contact = spectrum.contact(_bushing(values, support, known))
+        in_stick = contact.sliding_speed[stuck] if stuck.size > _LEAST else np.zeros(0)
         in_slip = np.zeros(0)
         if sliding.size > _LEAST:
-            v, torque = found.sliding_speed[sliding], found.torque[sliding]
+            v, torque = contact.sliding_speed[sliding], contact.torque[sliding]
             x = np.log1p(np.maximum(v, 0.0))
             x = x - x.mean()
             spread = float(x @ x) + 1e-12
@@ -394,7 +396,7 @@ def _refined(spectrum: TorqueSpectrum, support: float, known: Known, start: Arra
     first, second = parts(start)
     scale_v = sigma(first, 0.01 * float(np.mean(spectrum.shaft_speed)))
     scale_t = sigma(second, 2e-3 * float(np.mean(np.abs(spectrum.torque))))
-    # neighbouring samples say the same: so many a millisecond count
+    # neighbouring samples are correlated: each millisecond counts as one observation
     count = 1e-3 * spectrum.rate
 
     def weight(rest: Array, mask: NDArray[np.bool_]) -> float:
@@ -413,7 +415,7 @@ def _refined(spectrum: TorqueSpectrum, support: float, known: Known, start: Arra
 
 
 def _bent(x: Array) -> Array:
-    """Residuals whose squares are Huber's."""
+    """Return residuals whose squares are Huber's loss."""
     size = np.abs(x)
     large = np.sign(x) * np.sqrt(_BEND * np.maximum(2.0 * size - _BEND, 0.0))
     return np.asarray(np.where(size <= _BEND, x, large))

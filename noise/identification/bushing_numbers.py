@@ -1,7 +1,4 @@
-"""Numbers of the rig, each with its 90 % interval, and the recordings read by them.
-
-Levels of the torque in a recording are what breaks the contact, and what it slides at.
-"""
+"""Numbers of the rig with 90 % intervals, and torque levels of its recordings."""
 
 from __future__ import annotations
 
@@ -25,10 +22,10 @@ from sim.effects import EFFECTS
 from sim.friction import friction_law
 
 _FAST = 0.6
-"""Share of the fastest sliding from which the contact counts as sliding fast; assumed."""
+"""Share of the fastest sliding speed above which the contact slides fast; assumed."""
 
 _SLOW = 0.6
-"""Sliding speed over the shaft's below which it has been slow; assumed."""
+"""Sliding speed over the shaft's speed below which the contact is slow; assumed."""
 
 _LEAST_SAMPLES = 20
 
@@ -44,7 +41,7 @@ class Levels:
     critical, kinetic : float
         Median of the highest torque of each cycle, and torque of the contact in fast sliding [Nm].
     slips : int
-        Cycles that were seen.
+        Number of slips.
     """
 
     mean: float
@@ -54,7 +51,7 @@ class Levels:
 
 
 def torque_levels(fit: BushingFit) -> Levels:
-    """Read the levels off a recording that has been fitted.
+    """Return the torque levels of a fitted recording.
 
     Parameters
     ----------
@@ -63,7 +60,7 @@ def torque_levels(fit: BushingFit) -> Levels:
     Returns
     -------
     Levels
-        Where nothing sticks, critical and kinetic torque are the mean torque of the contact.
+        If nothing sticks, critical and kinetic torque are the mean torque of the contact.
     """
     torque, contact = fit.spectrum.torque, fit.contact
     v = contact.sliding_speed
@@ -94,17 +91,16 @@ _OF_THE_LAW = {
     "clamp_inertia": (0.02, 0.01),
     "elastomer_damping_share": (0.2, 0.1),
 }
-"""Relative standard error that all recordings share, from a law that is never quite the real one,
-of one whose contact creeps and of one that truly sticks [-]; from 26 development rigs of
-`tests.blind.identify`, seed 1."""
+"""Relative systematic error, because no law is exact, of a law whose contact creeps and of one that
+truly sticks [-]; from 26 development rigs of `tests.blind.identify`, seed 1."""
 
 _TORQUE_SCATTER, _TORQUE_SHARED = 0.018, 0.003
-"""Of a level: from recording to recording at one speed, and by the band limit [-]; from the same
-26 rigs."""
+"""Relative scatter of a level between recordings at one speed, and its systematic error by the
+low-pass filter [-]; from the same 26 rigs."""
 
 
 def read_again(recordings: Sequence[RecordingFit], fit: LawFit) -> list[RecordingFit]:
-    """Read recordings once more, with the bushing that the law's fit gave each.
+    """Return the recordings with the bushings that the fit of the law gave them.
 
     Parameters
     ----------
@@ -114,7 +110,7 @@ def read_again(recordings: Sequence[RecordingFit], fit: LawFit) -> list[Recordin
     Returns
     -------
     list of RecordingFit
-        Those that the law was not fitted to are left as they are.
+        Recordings that the law was not fitted to are unchanged.
     """
     model, own = fit.model, {}
     for subject, numbers, torque in zip(
@@ -170,13 +166,13 @@ def _of_fit(fit: LawFit, name: str) -> list[Number]:
 
 
 def _number(name: str, unit: str, value: float, error: float, n: int, *at: float | None) -> Number:
-    """Return a number with the interval that its relative standard error makes."""
+    """Return a number with the 90 % interval of its relative standard error."""
     away = math.exp(SURE_90 * error)
     return Number(name, unit, value, value / away, value * away, n, *at)
 
 
 def _levels(recordings: Sequence[RecordingFit]) -> list[Number]:
-    """Return levels of the torque in these recordings, their mean."""
+    """Return the mean torque levels of the recordings by interference."""
     numbers = []
     for name in ("critical_torque", "kinetic_torque"):
         groups: dict[float, list[float]] = defaultdict(list)
@@ -185,7 +181,7 @@ def _levels(recordings: Sequence[RecordingFit]) -> list[Number]:
                 level = getattr(one.levels, name.removesuffix("_torque"))
                 groups[one.measured.condition.interference].append(level)
         for at, values in sorted(groups.items()):
-            # levels that change with speed do so for a reason: their mean is no less sure
+            # levels that change with speed make their mean no less certain
             value, n = float(np.exp(np.mean(np.log(values)))), len(values)
             error = math.hypot(_TORQUE_SCATTER / math.sqrt(n), _TORQUE_SHARED)
             numbers.append(_number(name, UNITS[name], value, error, n, at))
@@ -193,14 +189,14 @@ def _levels(recordings: Sequence[RecordingFit]) -> list[Number]:
 
 
 def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
-    """Return torques as the law means them, and the law's own parameters.
+    """Return the torques and parameters of the friction law.
 
     Parameters
     ----------
     fit : LawFit
         To all recordings.
     rig : Rig
-        Identified by it.
+        Rig identified by the fit.
     """
     model, spread = fit.model, np.sqrt(np.diag(fit.covariance))
     error = {group: float(spread[model.n_local + g]) for g, group in enumerate(model.groups)}
@@ -225,4 +221,4 @@ def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
 
 
 _UNKNOWN = 2.0
-"""Relative standard error beyond which a number of the law is as good as unknown [-]."""
+"""Largest relative standard error that is stated for a number of the law [-]."""

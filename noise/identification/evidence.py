@@ -1,7 +1,7 @@
-"""Evidence of a rig's numbers from elsewhere than stick-slip, and how it joins them.
+"""Numbers of a rig from static tests and ring-downs, combined with those of stick-slip.
 
-Static tests state the elastomer's stiffness, ring-downs damping and the clamp's inertia. Each is
-weighted by how sure it is (inverse variances of logarithms).
+Static tests give the stiffness of the elastomer, ring-downs the damping and the inertia of the
+clamp. They are combined with weights that are inverse variances of the logarithms.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from noise.identification.outcome import UNITS, Number
 from noise.identification.static_test import StaticTest
 
 _USUAL_SCATTER = 0.02
-"""Relative standard deviation of a bushing's numbers from run to run; assumed, as wherever repeats
-are simulated."""
+"""Relative standard deviation of a bushing's numbers from run to run; assumed, as for simulated
+repeats."""
 
 _DEGREES = 4.0
-"""So many differences the usual scatter counts as; assumed."""
+"""Degrees of freedom of the usual scatter; assumed."""
 
 _SUPPORT_ERROR = 0.01
-"""Relative standard error of a support's stiffness as stated [-]; assumed."""
+"""Relative standard error of a stated support stiffness [-]; assumed."""
 
 _Place = tuple[str, float | None, float | None]
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """A number of the rig from one source.
+    """Number of the rig from one source.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Evidence:
 
 
 def elastomer_stiffness(effective: float, support_stiffness: float) -> tuple[float, float]:
-    """Stiffness of the elastomer behind an effective one, (3.1) with its sign put right.
+    """Return the elastomer's stiffness from that of elastomer and support in series, (3.1).
 
     Parameters
     ----------
@@ -70,9 +70,9 @@ def elastomer_stiffness(effective: float, support_stiffness: float) -> tuple[flo
     Returns
     -------
     stiffness : float
-        [Nm/rad]; infinite where the supports alone are softer.
+        [Nm/rad]; infinite if the support alone is softer than both.
     gain : float
-        By which a relative error of the effective stiffness grows [-].
+        Factor from the relative error of the effective stiffness to its own [-].
 
     Examples
     --------
@@ -86,7 +86,7 @@ def elastomer_stiffness(effective: float, support_stiffness: float) -> tuple[flo
 
 
 def with_evidence(numbers: Sequence[Number], evidence: Iterable[Evidence]) -> list[Number]:
-    """Let evidence join numbers of the same name and place, and add those that are new.
+    """Combine numbers with evidence of the same name and place, and append the other evidence.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def with_evidence(numbers: Sequence[Number], evidence: Iterable[Evidence]) -> li
 
 
 def _alone(place: _Place, group: Sequence[Evidence]) -> Number:
-    """Put together the evidence of one number; runs scatter as usual, and as these do."""
+    """Return the weighted mean of evidence, with Student's interval of its scatter."""
     from scipy.stats import t as student
 
     x, error = np.log([one.value for one in group]), np.array([one.error for one in group])
@@ -139,7 +139,7 @@ def _joined(one: Number, other: Number) -> Number:
         w * math.log(n.value) for w, n in zip(weights, (one, other), strict=True)
     ) / sum(weights)  # fmt: skip
     error = math.sqrt(1.0 / sum(weights))
-    # two that contradict each other are less sure than either says
+    # a contradiction widens the interval
     apart = math.log(one.value / other.value)
     error *= max(1.0, abs(apart) / (SURE_90 * math.sqrt(1.0 / weights[0] + 1.0 / weights[1])))
     low, high = (math.exp(centre + side * SURE_90 * error) for side in (-1.0, 1.0))
@@ -152,27 +152,27 @@ def _joined(one: Number, other: Number) -> Number:
 def static_evidence(
     tests: Sequence[StaticTest], known: Known, *, sticks: bool = False
 ) -> tuple[Evidence, ...]:
-    """Return what static tests and ring-downs say of the rig.
+    """Return the numbers of the rig that static tests and ring-downs give.
 
     Parameters
     ----------
     tests : sequence of StaticTest
     known : Known
-        The clamp's inertia as it is known, and how the damping is shared.
+        Prior inertia of the clamp, and how the damping is shared.
     sticks : bool
-        Whether the contact is known to stick truly; otherwise what yields is taken to be its.
+        Whether the contact is known to stick; otherwise hysteresis is taken to be its yielding.
 
     Returns
     -------
     tuple of Evidence
-        Stiffness of the elastomer by interference; damping and the clamp's inertia where it rings.
+        Stiffness of the elastomer by interference; damping and inertia of the clamp of ring-downs.
     """
     evidence, yields = [], {}
     parted = {one.interference for one in tests if not one.elastic}
     for one in tests:
         own = sticks or one.elastic
         if one.elastic and one.branches == 1 and one.interference in parted and not sticks:
-            continue  # without unloading it could not tell
+            continue  # without unloading, hysteresis does not show
         effective = one.effective_stiffness if own else one.held_stiffness
         value, gain = elastomer_stiffness(effective, one.support_stiffness)
         if math.isinf(value):
@@ -197,7 +197,7 @@ def static_evidence(
 def _of_ring_down(
     test: StaticTest, stiffness: Sequence[Evidence], yields: float, known: Known
 ) -> tuple[Evidence, Evidence]:
-    """Return what a ring-down says of the clamp's inertia and of the damping.
+    """Return the clamp's inertia and the damping from a ring-down.
 
     `yields` is the stiffness of elastomer and contact in series over that of the elastomer [-].
     """
@@ -212,7 +212,7 @@ def _of_ring_down(
     inertia = math.exp(
         (weights[0] * math.log(by_ring) + weights[1] * math.log(known.clamp_inertia)) / sum(weights)
     )
-    # the elastomer twists by less than the clamp turns where the contact yields
+    # the elastomer twists by less than the clamp turns if the contact yields
     acting = 1.0 - known.damping_share + known.damping_share * yields**2
     damping_error = math.hypot(ring.decay_error, math.sqrt(1.0 / sum(weights)))
     damping = 2.0 * inertia * ring.decay / acting

@@ -1,7 +1,7 @@
-"""From recordings to a rig: single recordings first, all of them together, the law of friction.
+"""Identification of a rig: single recordings, then all of them together with the law of friction.
 
-An identification changes bushing and contact; clamp, beams and plate stay those that are known, the
-shipped bench's where nothing is. How far off these are a diagnosis tells.
+It determines bushing and contact. Clamp, beams and plate stay those of the known rig, by default of
+the shipped bench; `noise.diagnose` shows how far off they are.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from noise.identification.static_test import StaticTest
 
 
 class NothingSlipsError(ParameterError):
-    """The recordings are sound, but hold too few slips to identify a rig from."""
+    """Error of recordings that are valid but have too few slips."""
 
 
 def identify_rig(
@@ -48,15 +48,15 @@ def identify_rig(
     *,
     progress: Callable[[str], None] | None = None,
 ) -> Identification:
-    """Identify a rig.
+    """Identify a rig from measurements.
 
     Parameters
     ----------
     measurements : Measurements
     beforehand : Beforehand
-        What is known of it.
+        Prior knowledge of the rig.
     progress : callable, optional
-        Told what is being done, and the first numbers.
+        Called with each step and the first numbers.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def identify_rig(
     Raises
     ------
     ParameterError
-        No recording can be used, or nothing slips in any recording, so that no torque can be told.
+        No recording can be used, or nothing slips in any of them.
     """
     started = time.perf_counter()
     if not measurements.used and measurements.static:
@@ -95,7 +95,7 @@ def identify_rig(
             "no recording shows enough slips one like the other to tell a law; record longer, at "
             "one steady speed"
         )
-    # what truly sticks tells its stiffness itself; what yields looks softer than it is
+    # a contact that yields makes the elastomer look softer
     evidence = {sticks: static_evidence(static, known, sticks=sticks) for sticks in (True, False)}
     fit, scores, held_out = choose_law(known, subjects, tell, evidence)
     model = fit.model
@@ -110,7 +110,7 @@ def identify_rig(
     fitted = fitted_evidence(model)
     rest = [one for one in model.evidence if one not in fitted]
     numbers = with_evidence(bushing_numbers(recordings, fit), rest)
-    assumed, not_found = _assumed(beforehand, recordings)
+    assumed, undetermined = _assumed(beforehand, recordings)
     return Identification(
         rig_toml=rig_text(rig, (_HEAD, f"{_structure(beforehand)}."), beforehand.structure),
         numbers=(*numbers, *law_numbers(fit, rig)),
@@ -118,7 +118,7 @@ def identify_rig(
         law=model.candidate.name,
         recordings=tuple(recordings),
         assumed=assumed,
-        not_found=not_found,
+        not_found=undetermined,
         notes=(
             *remarks(rig),
             *_notes(model.candidate, scores, held_out),
@@ -141,9 +141,9 @@ def identify(
     Parameters
     ----------
     data : path or sequence of paths
-        Recordings of torque and angle, or folders of them.
+        Recordings of torque and angle, or folders with such recordings.
     rig : path, optional
-        Rig file that states what is known, the two inertias above all.
+        Rig file with known numbers, above all the two inertias.
 
     Returns
     -------
@@ -169,12 +169,12 @@ def identify(
 
 
 def identification_json(data: Path, rig: Path) -> dict[str, Any]:
-    """Identify a folder's rig; return what ``identification.json`` holds."""
+    """Return the content of ``identification.json`` for a folder."""
     return as_json(identify(data, rig))
 
 
 def _by_static_tests(measurements: Measurements, beforehand: Beforehand) -> Identification:
-    """Put into the known rig what static tests and ring-downs alone tell of it."""
+    """Return the known rig with the numbers that static tests and ring-downs alone give."""
     rig, static = beforehand.rig, measurements.static
     numbers = with_evidence([], static_evidence(static, beforehand.known))
     fits = []
@@ -239,7 +239,7 @@ def _notes(
 
 
 def _moved_inertias(beforehand: Beforehand, rig: Rig) -> list[str]:
-    """Say of inertias that were stated that the fit has moved them, and how far."""
+    """Return a note on how far the fit moved stated inertias."""
     if not beforehand.inertias_stated:
         return []
     pairs = [(beforehand.rig.elastomer_inertia, rig.elastomer_inertia, "elastomer_inertia_kgm2"),
@@ -252,16 +252,16 @@ def _moved_inertias(beforehand: Beforehand, rig: Rig) -> list[str]:
 
 
 _RIVALS = 1.2
-"""Laws that miss at most so many times what the best one does are named beside it; assumed."""
+"""Ratio to the smallest misfit up to which a law is named beside the chosen one; assumed."""
 
 _MISSED = 0.2
-"""Share of the oscillation from which no law is said to describe the recordings; assumed."""
+"""Share of the oscillation missed above which no law describes the recordings; assumed."""
 
 _HEAD = "Identified from recordings; intervals and what is assumed are in identification.json."
 
 
 def _static_notes(tests: Sequence[StaticTest]) -> list[str]:
-    """Say of static tests that are not elastic what was taken off."""
+    """Return a note on each static test that is not elastic."""
     return [
         f"{one.name}: loading and unloading part, by {100.0 * one.parting:.1f} % of the angle, so "
         f"not all is elastic; with what yields in the contact the slope is "
@@ -275,7 +275,7 @@ def _static_notes(tests: Sequence[StaticTest]) -> list[str]:
 def _dependence(
     rig: Rig, recordings: Sequence[RecordingFit], material: str
 ) -> TemperatureDependence | None:
-    """Return how the known rig depends on temperature, for numbers found at that of the runs."""
+    """Return the known rig's dependence on temperature, relative to that of the recordings."""
     stated = [one.measured.condition.temperature for one in recordings]
     known = [value for value in stated if value is not None]
     if rig.temperature is None or rig.material != material:
@@ -290,7 +290,7 @@ def _structure(beforehand: Beforehand) -> str:
 
 def _sentence(one: RecordingFit) -> str:
     fit, levels = one.fit, one.levels
-    if not levels.slips:  # nothing winds the elastomer up, so nothing tells how stiff it is
+    if not levels.slips:  # without stick the stiffness is unknown
         return f"{one.measured.name}: mean torque {levels.mean:.3g} Nm, no slips"
     return (
         f"{one.measured.name}: elastomer {fit.bushing.elastomer_stiffness:.4g} Nm/rad, "
@@ -302,7 +302,7 @@ def _sentence(one: RecordingFit) -> str:
 def _assumed(
     beforehand: Beforehand, recordings: Sequence[RecordingFit]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    assumed, not_found = [], []
+    assumed, undetermined = [], []
     flexible = any(not one.fit.bushing.clamp_is_fixed for one in recordings)
     if "elastomer_damping_share" not in beforehand.stated and not flexible:
         assumed.append(
@@ -317,9 +317,9 @@ def _assumed(
             "elastomer_inertia_kgm2 and clamp_inertia_kgm2 in --rig"
         )
     if not flexible:
-        not_found.append("clamp inertia: all recordings were made with the clamp fixed")
+        undetermined.append("clamp inertia: all recordings were made with the clamp fixed")
     slipping = {one.measured.condition.interference for one in recordings if one.levels.slips}
-    not_found += [
+    undetermined += [
         f"anything at {1e3 * interference:g} mm: nothing slips there; record slower rotation"
         for interference in sorted(
             {one.measured.condition.interference for one in recordings} - slipping
@@ -327,5 +327,5 @@ def _assumed(
     ]
     steady = [one.measured.name for one in recordings if not one.levels.slips]
     if steady:
-        not_found.append(f"critical torque from {', '.join(steady)}: nothing slips there")
-    return tuple(assumed), tuple(not_found)
+        undetermined.append(f"critical torque from {', '.join(steady)}: nothing slips there")
+    return tuple(assumed), tuple(undetermined)

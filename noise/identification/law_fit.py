@@ -1,8 +1,8 @@
-"""Laws of friction fitted to what recordings do next, and the simplest that does as well as any.
+"""Fit of all friction laws to recordings, and choice of the simplest that predicts well.
 
-A search begins at many places with few excerpts, each recording by itself, and ends with all of
-them and one rig about which the recordings scatter. Laws are compared on whole conditions that are
-left out: what counts is how much of their oscillation a law predicts, cycle by cycle.
+A search starts from many points with few excerpts, each recording by itself, and ends with all
+excerpts and one rig about which the recordings scatter. Laws are compared by the share of the
+oscillation, cycle by cycle, that they fail to predict in held-out conditions.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ from noise.identification.misfit import Misfit
 from noise.identification.outcome import LawScore
 
 _STUCK, _ELASTIC = (0.95, 1.0, 1.05), (0.85, 1.1, 1.5)
-"""Factors on stiffness that are tried; an elastic contact hides some of the elastomer's [-];
+"""Factors on the stiffness of starts; an elastic contact hides some of the elastomer's [-];
 assumed."""
 
 _DAMPED = (0.55, 1.1)
-"""And on damping [-]; assumed."""
+"""Factors on the damping of starts [-]; assumed."""
 
 _SHARED = (1.0, 0.45)
-"""And on the elastomer's share of it, where that is not known [-]; assumed."""
+"""Factors on the elastomer's share of the damping, if that is unknown [-]; assumed."""
 
 
 def starts(model: LawModel) -> Iterator[tuple[Array, list[Array]]]:
-    """Give places to begin at.
+    """Yield the starts of a search.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def starts(model: LawModel) -> Iterator[tuple[Array, list[Array]]]:
     law : ndarray, shape (n_law,)
         The law's own parameters [-].
     local : list of ndarray, shape (n_recordings, 7)
-        Numbers of the recordings that go with it; each recording may take another [-].
+        Choices of the numbers of the recordings [-].
     """
     own = np.stack([one.start for one in model.subjects])
     sticks = model.candidate.sticks
@@ -62,7 +62,7 @@ def starts(model: LawModel) -> Iterator[tuple[Array, list[Array]]]:
     ))  # fmt: skip
     for chosen in itertools.product(*(some for _, _, some in model.candidate.free.values())):
         begun = own.copy()
-        if "share" in model.candidate.free:  # a torque that fades with speed replaces the step
+        if "share" in model.candidate.free:  # weakening with speed replaces the step
             share = chosen[list(model.candidate.free).index("share")]
             begun[:, 1] -= math.log(1.0 - share)
         yield (
@@ -75,23 +75,23 @@ def starts(model: LawModel) -> Iterator[tuple[Array, list[Array]]]:
 
 
 _FEW = 3
-"""Excerpts of each recording while places to begin at are compared."""
+"""Excerpts of each recording for the comparison of starts."""
 
-_TRIED, _SEARCHED = 3, 2
-"""Places from which is searched roughly, and then to the end."""
+_SKETCHED, _SEARCHED = 3, 2
+"""Starts that are searched roughly, and those that are then searched to the end."""
 
 _LOOSE = 4.0
-"""Meanwhile recordings may differ by so many times what they do; assumed."""
+"""Factor on the scatter of recordings in the rough search; assumed."""
 
 _TIGHTENED = (2.0, 1.0)
-"""And so many times in the end; assumed."""
+"""Factors on it in the final searches; assumed."""
 
 _ITERATIONS = {"sketch": 6, "hopeless": 3, "fit": 20}
 
 
 @dataclass(frozen=True, eq=False)
 class Sketch:
-    """A law roughly fitted to few excerpts.
+    """Rough fit of a law to few excerpts.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class Sketch:
 
 @dataclass(frozen=True, eq=False)
 class LawFit:
-    """A law fitted to recordings.
+    """Fit of a law to recordings.
 
     Parameters
     ----------
@@ -132,13 +132,13 @@ class LawFit:
 
 
 def sketch_law(model: LawModel, earlier: Sequence[Sketch] = ()) -> Sketch:
-    """Fit a law roughly, from the best of its starts.
+    """Fit a law roughly to few excerpts, from the best of its starts.
 
     Parameters
     ----------
     model : LawModel
     earlier : sequence of Sketch
-        Of other laws to the same recordings, whose numbers are tried as well.
+        Rough fits of other laws to the same recordings, as further starts.
 
     Returns
     -------
@@ -150,7 +150,7 @@ def sketch_law(model: LawModel, earlier: Sequence[Sketch] = ()) -> Sketch:
     begun = []
     for law, choices in starts(few):
         misfit = Misfit(few, few.vector(choices[0], law), loose=_LOOSE)
-        # each recording takes what suits it best
+        # each recording takes its best choice
         costs = [misfit.by_recording(few.vector(local, law)) for local in choices]
         best = np.argmin(costs, axis=0)
         local = np.stack([choices[c][r] for r, c in enumerate(best)])
@@ -162,7 +162,7 @@ def sketch_law(model: LawModel, earlier: Sequence[Sketch] = ()) -> Sketch:
         begun.append((float(np.sum(cost)), start))
     begun.sort(key=lambda start: start[0])
     sketches = []
-    for _, start in begun[:_TRIED]:
+    for _, start in begun[:_SKETCHED]:
         misfit = Misfit(few, start, loose=_LOOSE)
         vector, *_ = misfit.search(start, _ITERATIONS["sketch"])
         sketches.append((float(np.mean(misfit.by_recording(vector))), vector))
@@ -176,9 +176,9 @@ def fit_law(sketch: Sketch, *, hopeless: bool = False) -> LawFit:
     Parameters
     ----------
     sketch : Sketch
-        Where to begin.
+        Start of the search.
     hopeless : bool
-        Then it is not searched to the end.
+        Whether the search stops early.
 
     Returns
     -------
@@ -202,7 +202,7 @@ def _fitted(
     free: NDArray[np.bool_] | None = None,
     loose: float = 1.0,
 ) -> LawFit:
-    """Fit the free numbers of a law, the others being known."""
+    """Return the fit of the free numbers of a law."""
     misfit = Misfit(model, start, loose=loose)
     vector, away, normal = misfit.search(start, iterations, free)
     covariance = np.asarray(np.linalg.pinv(normal), np.float64)
@@ -210,22 +210,22 @@ def _fitted(
 
 
 MARGIN = 1.09
-"""A simpler law may miss so many times as much for each number that it has less; assumed."""
+"""Factor by which a law may miss more for each parameter that it has less; assumed."""
 
 _LEAST = 0.005
-"""Share of the oscillation that any law may miss: what a cell and a start leave; assumed."""
+"""Share of the oscillation that noise and transients make any law miss; assumed."""
 
 _NOT_WORTH_IT = 3.0
-"""A law that misses so many times as much at first is not searched to the end; assumed."""
+"""Ratio to the best rough fit above which a law is not searched to the end; assumed."""
 
 
 def left_out(recordings: Sequence[Measured]) -> list[int]:
-    """Choose recordings to leave out: whole conditions, about a third, no interference altogether.
+    """Return the recordings to hold out: whole conditions, a third at most, no whole interference.
 
     Returns
     -------
     list of int
-        None of them where there are fewer than three conditions.
+        Empty if there are fewer than three conditions.
     """
     by_condition: dict[tuple[float, float, float], list[int]] = {}
     for i, one in enumerate(recordings):
@@ -250,7 +250,7 @@ def choose_law(
     progress: Callable[[str], None],
     evidence: Mapping[bool, tuple[Evidence, ...]],
 ) -> tuple[LawFit, tuple[LawScore, ...], tuple[str, ...]]:
-    """Fit all laws and choose.
+    """Fit all laws and choose one.
 
     Parameters
     ----------
@@ -258,18 +258,18 @@ def choose_law(
     subjects : sequence of Subject
         Recordings that slip.
     progress : callable
-        Told what is being done.
+        Called with each step.
     evidence : mapping of bool to tuple of Evidence
-        Of the rig's numbers from elsewhere than stick-slip, by whether a law truly sticks.
+        Numbers from static tests, by whether a law truly sticks.
 
     Returns
     -------
     fit : LawFit
-        Of the law that was chosen, to all recordings.
+        Fit of the chosen law to all recordings.
     scores : tuple of LawScore
         Best first.
     held_out : tuple of str
-        Recordings that the laws were compared on.
+        Held-out recordings.
     """
     recordings = [one.measured for one in subjects]
     held = left_out(recordings)
@@ -307,7 +307,7 @@ def _mean(shares: Array) -> float:
 
 
 def _simplest(scores: Sequence[LawScore]) -> str:
-    """Name the simplest law that predicts nearly as much as the best."""
+    """Return the simplest law that predicts nearly as well as the best."""
     best = scores[0]
     missed = {score.law: score.missed for score in scores}
     numbers = {candidate.name: candidate.n_parameters for candidate in CANDIDATES}
@@ -321,7 +321,7 @@ def _simplest(scores: Sequence[LawScore]) -> str:
 def _with_held(
     fit: LawFit, subjects: Sequence[Subject], trained: Sequence[int], held: Sequence[int]
 ) -> LawFit:
-    """Let recordings left out have numbers of their own about the rig that the others gave."""
+    """Fit the numbers of held-out recordings, the rig being that of the others."""
     if not held:
         return fit
     model = replace(fit.model, subjects=tuple(subjects))

@@ -1,8 +1,7 @@
-"""Laws of friction as a fit searches them: numbers of each recording, of the rig, of the law.
+"""Hierarchical model of a friction law: numbers of each recording, of the rig and of the law.
 
-All are logarithms. A rig is never quite the same twice: each recording has a bushing and torques of
-its own, which scatter about those of the rig, and these are what is to be determined. What
-recordings scatter by is known beforehand.
+All are logarithms. No two runs of a rig are alike: each recording has a bushing and torques of its
+own, which scatter about those of the rig by a known amount. Those of the rig are to be determined.
 """
 
 from __future__ import annotations
@@ -30,51 +29,49 @@ from sim.friction import friction_law
 from sim.parameters import resolve
 
 _SCATTER = np.array([0.025, 0.025, 0.03, 0.03, 0.02, 0.008, 0.01])
-"""By which they scatter about the rig's [-]; a support's counts as its clamp's inertia;
-assumed."""
+"""Scatter of the numbers `LOCAL` of recordings about those of the rig [-]; that of a support counts
+as inertia of its clamp; assumed."""
 
 _MEAN_WIDTH = np.array([0.6, 0.3, 1.0, 0.6])
-"""Relative standard deviation of the rig's about what is usual, or where a search begins [-];
-assumed."""
+"""Prior relative standard deviation of the first four numbers of the rig [-]; assumed."""
 
 _USUAL_DAMPING = 0.09
-"""[Nm s/rad] (Table 5.5)"""
+"""Prior damping [Nm s/rad] (Table 5.5)."""
 
 SHARE_ASSUMED = 0.02
-"""Relative standard error of a share that the recordings cannot tell; assumed."""
+"""Relative standard error of a damping share that recordings cannot determine; assumed."""
 
 
 LOCAL = (
     "elastomer_stiffness", "kinetic_torque", "drop", "damping", "elastomer_inertia",
     "clamp_inertia", "elastomer_damping_share",
 )  # fmt: skip
-"""Numbers that each recording has of its own; the drop is from critical to kinetic torque."""
+"""Numbers of each recording; the drop is from critical to kinetic torque."""
 
 _LEAST_DROP = 0.004
-"""Over the kinetic torque; equal torques make a weakening contact chatter; assumed."""
+"""Smallest drop over the kinetic torque: with none a weakening contact chatters; assumed."""
 
 _LARGEST_SHARE = 0.97
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A law to be tried.
+    """Friction law that is fitted.
 
     Parameters
     ----------
     name, words : str
-        In tables, and on pages.
+        Name in tables, and description on pages.
     law : str
         Of `sim.friction`.
     effect : str, optional
-        Of `sim.effects`; then it is what the searched parameters belong to.
+        Of `sim.effects`; the searched parameters then belong to it.
     free : mapping of str to (float, float, sequence of float)
-        Parameters that are searched: lowest, highest and some starts [the law's units].
+        Searched parameters: lower bound, upper bound and starts [the law's units].
     fixed : mapping of str to float
-        Others that differ from the law's own [the law's units].
+        Fixed parameters that differ from the law's defaults [the law's units].
     drops : sequence of float
-        What the critical torque exceeds the kinetic one by where a search begins, over what the
-        levels differ by [-].
+        Starts of the drop, over the difference of the torque levels [-].
     """
 
     name: str
@@ -87,12 +84,12 @@ class Candidate:
 
     @property
     def sticks(self) -> bool:
-        """Whether its contact truly sticks."""
+        """Whether the contact truly sticks."""
         return self.law == "coulomb"
 
     @property
     def n_parameters(self) -> int:
-        """Numbers that it has beyond the two torques of each fit."""
+        """Number of searched parameters."""
         return len(self.free)
 
 
@@ -100,24 +97,23 @@ CANDIDATES = tuple(
     Candidate(name, **row)
     for name, row in packaged_toml("noise.identification", "candidates.toml").items()
 )
-"""By rising number of parameters."""
+"""Friction laws that are fitted, by rising number of parameters."""
 
 
 _LEAST_START = 0.05
-"""What the critical torque exceeds the kinetic one by where a search begins, at least [-];
-assumed."""
+"""Smallest drop over the kinetic torque at the start of a search [-]; assumed."""
 
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A recording that laws are fitted to.
+    """Recording that laws are fitted to.
 
     Parameters
     ----------
     measured : Measured
     excerpts : Excerpts
     start : ndarray, shape (7,)
-        Where a search begins: logarithms of `noise.identification.law_model.LOCAL` [-].
+        Start of a search: logarithms of `noise.identification.law_model.LOCAL` [-].
     """
 
     measured: Measured
@@ -126,7 +122,7 @@ class Subject:
 
     @property
     def interference(self) -> float:
-        """Fit [m]."""
+        """Interference [m]."""
         return self.measured.condition.interference
 
     @property
@@ -136,7 +132,7 @@ class Subject:
 
 
 def subjects_of(recordings: Sequence[RecordingFit], known: Known) -> list[Subject]:
-    """Make subjects of the recordings that slip, each begun at the median of its interference.
+    """Return the recordings that slip, with starts at the medians of their interference.
 
     Parameters
     ----------
@@ -171,9 +167,9 @@ def subjects_of(recordings: Sequence[RecordingFit], known: Known) -> list[Subjec
 
 @dataclass(frozen=True, eq=False)
 class LawModel:
-    """A law and recordings.
+    """Model of recordings by a friction law.
 
-    The vector holds `LOCAL` of each recording, then the means of all groups, then the law's own
+    Its vector holds `LOCAL` of each recording, then the means of all groups, then the law's own
     parameters.
 
     Parameters
@@ -182,7 +178,7 @@ class LawModel:
     subjects : tuple of Subject
     known : Known
     evidence : tuple of Evidence
-        Of the rig's numbers from elsewhere than stick-slip.
+        Numbers of the rig from static tests.
     """
 
     candidate: Candidate
@@ -192,14 +188,14 @@ class LawModel:
 
     @cached_property
     def groups(self) -> tuple[tuple[int, object], ...]:
-        """Place in `LOCAL` and key of each group of recordings that share a mean."""
+        """Groups of recordings that share a mean: place in `LOCAL`, and key."""
         return tuple(dict.fromkeys(
             (i, key) for one in self.subjects for i, key in enumerate(_keys(one))
         ))  # fmt: skip
 
     @cached_property
     def group_of(self) -> NDArray[np.int64]:
-        """Group of each number of each recording, shape (n_recordings, 7)."""
+        """Index of the group of each number of each recording, shape (n_recordings, 7)."""
         return np.array([
             [self.groups.index((i, key)) for i, key in enumerate(_keys(one))]
             for one in self.subjects
@@ -207,31 +203,31 @@ class LawModel:
 
     @property
     def n_local(self) -> int:
-        """Numbers of the recordings' own."""
+        """Length of the vector's part of single recordings."""
         return len(LOCAL) * len(self.subjects)
 
     @property
     def n_common(self) -> int:
-        """Numbers that any law has."""
+        """Length of the vector without the law's parameters."""
         return self.n_local + len(self.groups)
 
     def local(self, x: Array) -> Array:
-        """Numbers of the recordings' own, shape (n_recordings, 7), of a vector of shape (n,)."""
+        """Return the numbers of recordings, shape (n_recordings, 7), of a vector, shape (n,)."""
         return x[: self.n_local].reshape(-1, len(LOCAL))
 
     def means(self, x: Array) -> Array:
-        """Means of the groups, shape (n_groups,), of a vector of shape (n,)."""
+        """Return the means of the groups, shape (n_groups,), of a vector, shape (n,)."""
         return x[self.n_local : self.n_common]
 
     def vector(self, local: Array, law: Array) -> Array:
-        """Put a vector together, each group with the median of its recordings.
+        """Return a vector in which each group has the median of its recordings.
 
         Parameters
         ----------
         local : ndarray, shape (n_recordings, 7)
             Logarithms of `LOCAL` [-].
         law : ndarray, shape (n_law,)
-            Of the law's own parameters [-].
+            Logarithms of the law's parameters [-].
 
         Returns
         -------
@@ -243,7 +239,7 @@ class LawModel:
         return np.concatenate([flat, means, law])
 
     def law_like(self, other: LawModel, x: Array) -> Array:
-        """Take the law's own parameters from another law's vector, as far as both have them.
+        """Return the law's parameters with those that another law's vector has, too.
 
         Parameters
         ----------
@@ -263,7 +259,7 @@ class LawModel:
         ])  # fmt: skip
 
     def limits(self, start: Array) -> tuple[Array, Array]:
-        """Return the lowest and highest vectors, shape (n,)."""
+        """Return the bounds of a search from a vector, shape (n,)."""
         low = np.log([low for low, _, _ in self.candidate.free.values()])
         high = np.log([high for _, high, _ in self.candidate.free.values()])
         common = start[: self.n_common]
@@ -274,7 +270,7 @@ class LawModel:
         return np.concatenate([common - width, low]), np.concatenate([common + width, high])
 
     def specs(self, x: Array) -> tuple[LawSpec, tuple[LawSpec, ...]]:
-        """Return law and effects at a vector, shape (n,)."""
+        """Return law and effects of a vector, shape (n,)."""
         own = np.exp(x[self.n_common :]).tolist()
         values = {**self.candidate.fixed, **dict(zip(self.candidate.free, own, strict=True))}
         if self.candidate.effect is None:
@@ -282,12 +278,12 @@ class LawModel:
         return LawSpec(self.candidate.law), (LawSpec(self.candidate.effect, values),)
 
     def predicted(self, x: Array) -> list[Array | None]:
-        """Return the predicted excerpts of each recording at a vector, shape (n,).
+        """Return the predicted excerpts of each recording for a vector, shape (n,).
 
         Returns
         -------
         list of ndarray, shape (n_excerpts, length)
-            Torque of the cell [Nm]; None where it cannot be solved.
+            Torque of the cell [Nm]; None if it cannot be solved.
         """
         friction = friction_of(*self.specs(x))
         torques: list[Array | None] = []
@@ -301,7 +297,7 @@ class LawModel:
         return torques
 
     def bushing(self, own: Sequence[float], one: Subject) -> LumpedBushing:
-        """Bushing of a recording by its numbers, as `LOCAL` has them [SI units]."""
+        """Return the bushing of a recording from its numbers `LOCAL` [SI units]."""
         stiffness, _, _, damping, inertia, clamp, share = own
         share = min(share, _LARGEST_SHARE)
         return LumpedBushing(
@@ -309,9 +305,9 @@ class LawModel:
         )
 
     def extended(self, part: LawModel, x: Array, places: Sequence[int]) -> Array:
-        """Take over the vector of a model of some recordings, at these places among all.
+        """Return the vector of all recordings from that of a model of some.
 
-        The others begin at the means, or where they are by themselves if there is none.
+        The others start at the means, or at their own numbers without one.
 
         Parameters
         ----------
@@ -335,7 +331,7 @@ class LawModel:
         return np.concatenate([local.ravel(), means, x[part.n_common :]])
 
     def rig(self, x: Array, base: Rig, material: str) -> Rig:
-        """Return the rig at a vector, shape (n,); damping where nothing slid is the support's."""
+        """Return the rig of a vector, shape (n,); damping without a recording is the support's."""
         values = dict(zip(self.groups, np.exp(self.means(x)).tolist(), strict=True))
         cells = {
             (one.interference, one.support): values[3, (one.interference, one.support)]
@@ -368,16 +364,16 @@ class LawModel:
 
 
 def _keys(one: Subject) -> tuple[object, ...]:
-    """Say what each number of `LOCAL` of a recording shares its mean with."""
+    """Return the key by which each number of `LOCAL` of a recording shares a mean."""
     fit = one.interference
     return fit, fit, fit, (fit, one.support), None, None, None
 
 
 def share_error(model: LawModel) -> float:
-    """Relative standard error of the elastomer's share of the damping beforehand [-].
+    """Return the prior relative standard error of the elastomer's share of the damping [-].
 
-    What rings while the contact sticks tells all of it, while it slides the elastomer's; a
-    clamp that is bolted down only this.
+    Ringing in stick determines all of the damping, ringing in slip the elastomer's; with the clamp
+    bolted down only the latter is there.
 
     Parameters
     ----------
@@ -389,7 +385,7 @@ def share_error(model: LawModel) -> float:
 
 
 def fitted_evidence(model: LawModel) -> dict[Evidence, int]:
-    """Return the group that each piece of evidence speaks of, where the fit has one.
+    """Return the group of each piece of evidence that the fit uses.
 
     Parameters
     ----------
@@ -398,7 +394,7 @@ def fitted_evidence(model: LawModel) -> dict[Evidence, int]:
     Returns
     -------
     dict of Evidence to int
-        Torques are left out: those that a table states are levels, a law's are not.
+        Without torques: evidence of them is of levels, not of the law's.
     """
     places = {group: g for g, group in enumerate(model.groups)}
     groups = {}
@@ -414,13 +410,13 @@ def fitted_evidence(model: LawModel) -> dict[Evidence, int]:
 
 
 def priors(model: LawModel, loose: float = 1.0) -> tuple[Array, Array]:
-    """Return what is known of a vector x: matrix @ x - target is away by one each.
+    """Return the prior of a vector x: each row of matrix @ x - target has unit variance.
 
     Parameters
     ----------
     model : LawModel
     loose : float
-        Factor on what recordings may differ by [-].
+        Factor on the scatter of recordings [-].
 
     Returns
     -------

@@ -1,6 +1,6 @@
-"""Recordings that a rig can be identified from: torque, the shaft's angle, and what is stated.
+"""Recordings of torque and shaft angle for an identification, and prior knowledge of the rig.
 
-What is known of a rig beforehand are the keys that its file really has.
+Prior knowledge is what the rig file states itself, without defaults.
 """
 
 from __future__ import annotations
@@ -30,25 +30,25 @@ from noise.recordings import find_recordings, read_recording
 from noise.recordings.rotation import as_logged
 
 _STATED_ERROR = 0.02
-"""Relative standard error of what is stated: what bushings scatter by; assumed."""
+"""Relative standard error of a stated number: the scatter of bushings; assumed."""
 
 _GUESSED_ERROR = 0.5
-"""And of one that is not; assumed."""
+"""Relative standard error of a number that is not stated; assumed."""
 
 
 @dataclass(frozen=True)
 class Beforehand:
-    """What is known beforehand.
+    """Prior knowledge of a rig.
 
     Parameters
     ----------
     rig : Rig
-        Of the file, the shipped bench where it says nothing.
+        Rig of the file, with the shipped bench as default.
     known : Known
     stated : frozenset of str
-        Keys that the file has, or one that it builds on.
+        Keys of the file and of files that it is based on.
     structure : str, optional
-        The file, where it may have a structure of its own.
+        Rig file, if it may have a structure of its own.
     """
 
     rig: Rig
@@ -58,19 +58,19 @@ class Beforehand:
 
     @property
     def inertias_stated(self) -> bool:
-        """Whether both inertias are."""
+        """Whether both inertias are stated."""
         return {"elastomer_inertia_kgm2", "clamp_inertia_kgm2"} <= self.stated
 
 
 def known_beforehand(
     path: Path | None, change: Mapping[str, str | float] | None = None
 ) -> Beforehand:
-    """Read a rig file for what it states.
+    """Read the prior knowledge in a rig file.
 
     Parameters
     ----------
     path : Path, optional
-        Without one, nothing is known but what the recordings' sidecars say.
+        Without one, only the sidecars of the recordings count.
     change : mapping of str to str or float, optional
         As ``[change]`` of the file.
 
@@ -111,7 +111,7 @@ _STRUCTURE = {"base", "beams", "plate", "microphone", "measured_response"}
 
 
 def _stated(content: Mapping[str, Any], folder: Path) -> set[str]:
-    """Keys of a file, of its changes, and of the files below it."""
+    """Return the keys of a file, of its changes, and of the files that it is based on."""
     changed = {
         f"{key}_kgm2" if key.endswith("inertia") else key for key in content.get("change", {})
     }
@@ -123,33 +123,32 @@ def _stated(content: Mapping[str, Any], folder: Path) -> set[str]:
 
 
 SHORTEST = LEAD + TAIL + 0.1
-"""Shorter recordings show too few cycles [s]; assumed."""
+"""Shortest usable recording [s]: shorter ones have too few cycles; assumed."""
 
 LEAST_TURN = 0.02
-"""Angle by which the shaft has to turn [rad]; less is no rotation, or degrees taken for radians;
-assumed."""
+"""Smallest rotation of the shaft [rad]: less is rest, or degrees declared as radians; assumed."""
 
 _SPEED_BAND = 25.0
-"""Up to which the shaft's speed is followed [Hz]; an encoder's noise lies above; assumed."""
+"""Corner of the low-pass filter of the shaft's speed [Hz], below an encoder's noise; assumed."""
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A recording as the identification reads it.
+    """Recording prepared for an identification.
 
     Parameters
     ----------
     name : str
-        Of the file.
+        Name of the file.
     recording : Recording
-        Whose condition is known.
+        With a known condition.
     torque : ndarray, shape (n,)
         Of the cell, positive along the rotation [Nm].
     shaft_speed : ndarray, shape (n,)
         Positive [rad/s].
     logged_speed : float, optional
-        As it was set [rad/s].
+        Set speed in the sidecar [rad/s].
     """
 
     name: str
@@ -160,14 +159,14 @@ class Measured:
 
     @property
     def condition(self) -> KnownCondition:
-        """What was set."""
+        """Known condition."""
         condition = self.recording.condition
         assert isinstance(condition, KnownCondition)  # `measured` made it so
         return condition
 
     @property
     def written_speed(self) -> float:
-        """Speed as files give it: as it was logged, where the shaft turned so [rad/s]."""
+        """Speed for files: the logged one if the shaft turned at it [rad/s]."""
         return as_logged(self.condition.speed, self.logged_speed)
 
     @property
@@ -178,16 +177,16 @@ class Measured:
 
 @dataclass(frozen=True, eq=False)
 class Measurements:
-    """What a folder holds.
+    """Recordings of a folder by use.
 
     Parameters
     ----------
     used : tuple of Measured
-        Rotation, with stick and slip.
+        Recordings of rotation.
     refused : tuple of (str, str)
-        Name and reason of what was left out.
+        Name and reason of each recording that is left out.
     static : tuple of StaticTest
-        Slow motion below any slip.
+        Recordings of slow motion below any slip.
     """
 
     used: tuple[Measured, ...]
@@ -209,7 +208,7 @@ def read_measurements(
     Returns
     -------
     Measurements
-        What cannot be used is among ``refused``.
+        Unusable recordings are in ``refused``.
 
     Raises
     ------
@@ -233,7 +232,7 @@ def read_measurements(
 
 
 def _static(recording: Recording, name: str) -> StaticTest | None:
-    """Read a recording as a static test, where it is one."""
+    """Return a recording as a static test; None if it is none."""
     rows = [recording.first(kind) for kind in ("torque", "angle")]
     if not recording.calibrated or rows[0] is None or rows[1] is None:
         return None
@@ -244,13 +243,13 @@ def _static(recording: Recording, name: str) -> StaticTest | None:
 
 
 def measured(recording: Recording, name: str) -> Measured:
-    """Return a recording as the identification reads it.
+    """Prepare a recording for an identification.
 
     Parameters
     ----------
     recording : Recording
     name : str
-        Of its file.
+        Name of its file.
 
     Returns
     -------
@@ -259,7 +258,7 @@ def measured(recording: Recording, name: str) -> Measured:
     Raises
     ------
     ParameterError
-        What it lacks.
+        The recording lacks something, as the message says.
     """
     refuse_unusable(recording, SHORTEST)
     rows = {kind: recording.first(kind) for kind in ("torque", "angle", "speed")}
@@ -290,7 +289,9 @@ def measured(recording: Recording, name: str) -> Measured:
     if stated and (words := speed_words(abs(mean) / stated, stated)):
         raise ParameterError(words)
     speed = np.abs(speed)
-    if float(np.mean(torque)) < 0.0:  # the shaft turned backwards, or the cell counts so
+    if (
+        float(np.mean(torque)) < 0.0
+    ):  # the shaft turned backwards, or the sign of the cell is reversed
         torque = -torque
     if float(np.ptp(torque)) == 0.0:
         raise ParameterError("has a torque that never changes; is the cell connected?")
@@ -305,7 +306,7 @@ def measured(recording: Recording, name: str) -> Measured:
 
 
 def shaft_speed(angle: Array, rate: float) -> Array:
-    """Speed of the shaft from its angle, as far as it changes slowly.
+    """Return the low-pass filtered speed of the shaft from its angle.
 
     Parameters
     ----------
@@ -329,6 +330,6 @@ def shaft_speed(angle: Array, rate: float) -> Array:
     course = np.polynomial.Polynomial.fit(t, angle, 3)
     rest = closed_loop(angle - course(t), rate)
     frequency = rfftfreq(rest.size, 1.0 / rate)
-    kept = 1.0 / (1.0 + (frequency / _SPEED_BAND) ** 4)
-    slow = irfft(rfft(rest) * kept * 2j * np.pi * frequency, rest.size)[: angle.size]
+    low_pass = 1.0 / (1.0 + (frequency / _SPEED_BAND) ** 4)
+    slow = irfft(rfft(rest) * low_pass * 2j * np.pi * frequency, rest.size)[: angle.size]
     return np.asarray(course.deriv()(t) + slow)

@@ -1,8 +1,8 @@
-"""Misfit of a law to excerpts of recordings, and the search for its smallest.
+"""Misfit of a law to excerpts of recordings, and its minimisation.
 
-A fit is least squares over excerpts of a cycle or two. Begun where the recording shows what it
-does, a model's torque depends smoothly on its numbers, so the slopes come from small steps and the
-search is that of Levenberg (1944) and Marquardt (1963).
+A fit is least squares over excerpts of a cycle or two. From a known start, the predicted torque is
+a smooth function of the numbers; so derivatives are finite differences, and the search is that of
+Levenberg (1944) and Marquardt (1963).
 """
 
 from __future__ import annotations
@@ -14,41 +14,41 @@ from noise.base.arrays import Array
 from noise.identification.law_model import LOCAL, LawModel, priors
 
 _STEP = 3e-4
-"""Of the logarithms, for slopes."""
+"""Step of the logarithms for finite differences."""
 
 _BEND = 2.5
-"""Deviations beyond so many times their usual size count linearly; assumed."""
+"""Threshold of Huber's loss over the usual size of deviations; assumed."""
 
 _COUNT = 5e-4
-"""Neighbouring samples err alike: so long a time counts as one observation [s]; assumed."""
+"""Correlation time of errors: so long a time counts as one observation [s]; assumed."""
 
 _HOPELESS = 300.0
 _FAR = 60.0
-"""Deviations beyond which one is as bad as the other; assumed."""
+"""Bounds of deviations, in a fit and in the comparison of starts; assumed."""
 
 _ENOUGH = 4e-3
-"""Relative gain of an iteration below which it is the last; assumed."""
+"""Relative gain of an iteration below which the search ends; assumed."""
 
 _TURNS = 4
-"""Shorter steps tried in an iteration."""
+"""Most attempts with shorter steps in an iteration."""
 
 _LONGEST_STEP = 0.5
-"""Of a logarithm in one iteration; assumed."""
+"""Longest step of a logarithm in one iteration; assumed."""
 
 
 class Misfit:
     """Misfit of a model as a function of its vector of logarithms.
 
-    Deviations are in what a good model may miss a recording by, an array of shape (n_samples,) a
-    recording [-].
+    Deviations are relative to the expected error of a good model, an array of shape (n_samples,)
+    for each recording [-].
 
     Parameters
     ----------
     model : LawModel
     start : ndarray, shape (n,)
-        About which it is searched, logarithms [-].
+        Centre of the search, logarithms [-].
     loose : float
-        Factor on what recordings may differ by [-].
+        Factor on the scatter of recordings [-].
     """
 
     def __init__(self, model: LawModel, start: Array, *, loose: float = 1.0) -> None:
@@ -61,7 +61,7 @@ class Misfit:
         ]
 
     def deviations(self, x: Array) -> list[Array]:
-        """Return how far each recording is from what a vector, shape (n,), predicts."""
+        """Return the deviations of the recordings for a vector, shape (n,)."""
         deviations = []
         for one, torque in zip(self._model.subjects, self._model.predicted(x), strict=True):
             e = one.excerpts
@@ -73,11 +73,11 @@ class Misfit:
         return deviations
 
     def by_recording(self, x: Array) -> Array:
-        """Return the mean size of each recording's deviations at a vector, large ones cut."""
+        """Return the mean size of each recording's deviations for a vector, large ones clipped."""
         return np.array([np.mean(np.minimum(np.abs(one), _FAR)) for one in self.deviations(x)])
 
     def missed(self, deviations: list[Array]) -> Array:
-        """Return the share of each recording's oscillation that its median excerpt misses [-]."""
+        """Return the share of the oscillation missed in each recording's median excerpt [-]."""
         shares = []
         for one, away in zip(self._model.subjects, deviations, strict=True):
             e = one.excerpts
@@ -86,7 +86,7 @@ class Misfit:
         return np.array(shares)
 
     def cost(self, x: Array, deviations: list[Array], usual: float = 1.0) -> float:
-        """Return the sum of squares, of Huber's kind, about the usual size of deviations."""
+        """Return Huber's loss of deviations over their usual size, plus that of the prior."""
         size = np.abs(np.concatenate(deviations)) / usual
         bent = np.where(size <= _BEND, size**2, _BEND * (2.0 * size - _BEND))
         prior = self._matrix @ x - self._target
@@ -95,30 +95,30 @@ class Misfit:
     def search(
         self, x: Array, iterations: int, free: NDArray[np.bool_] | None = None
     ) -> tuple[Array, list[Array], Array]:
-        """Search the smallest cost.
+        """Minimise the cost.
 
         Parameters
         ----------
         x : ndarray, shape (n,)
-            Where to begin, logarithms [-].
+            Start, logarithms [-].
         iterations : int
-            At most.
+            Most iterations.
         free : ndarray of bool, shape (n,), optional
-            Which numbers move; by default all.
+            Numbers that move; by default all.
 
         Returns
         -------
         vector : ndarray, shape (n,)
             [-]
         deviations : list of ndarray
-            There [-].
+            Deviations for that vector [-].
         curvature : ndarray, shape (n, n)
             Of the cost [-].
         """
         free = np.ones(x.size, dtype=bool) if free is None else free
         away, damping, normal = self.deviations(x), 1e-3, np.eye(x.size)
         for _ in range(iterations):
-            # the usual size of deviations, 1 where the model is good
+            # usual size of deviations, 1 for a good model
             usual = max(1.0, 1.4826 * float(np.median(np.abs(np.concatenate(away)))))
             normal, slope = self._curvature(x, away, usual, free)
             before = self.cost(x, away, usual)
@@ -156,7 +156,7 @@ class Misfit:
         return normal, slope
 
     def _slopes(self, x: Array, away: list[Array], free: NDArray[np.bool_]) -> list[Array]:
-        """Slopes of each recording's deviations: a number of its own is moved in all at once."""
+        """Return derivatives of the deviations; numbers of all recordings are moved together."""
         model = self._model
         slopes = [np.zeros((one.size, x.size)) for one in away]
         places = [slice(i, model.n_local, len(LOCAL)) for i in range(len(LOCAL))]

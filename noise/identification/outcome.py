@@ -1,4 +1,4 @@
-"""What an identification comes to, and the shape of ``identification.json``."""
+"""Result of an identification, and its form in ``identification.json``."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ UNITS = {
     "clamp_inertia": "kg m2",
     "elastomer_damping_share": "",
 }
-"""Of the numbers that a rig has."""
+"""Units of the numbers of a rig."""
 
 
 @dataclass(frozen=True)
 class Number:
-    """A number of the rig with its 90 % interval.
+    """Number of a rig with its 90 % interval.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Number:
     value, low, high : float
         [as `unit` says]
     n_recordings : int
-        It comes from.
+        Number of recordings that it comes from.
     interference : float, optional
         [m]
     support_stiffness : float, optional
@@ -61,17 +61,17 @@ class Number:
 @short_repr
 @dataclass(frozen=True)
 class LawScore:
-    """A law of friction that was tried.
+    """Misfit of a friction law.
 
     Parameters
     ----------
     law : str
         Of `noise.identification.law_model`.
     held_out : float
-        Share of the oscillation that it does not predict over a cycle or two, of recordings that
-        its fit has not used [-].
+        Share of the oscillation over a cycle or two that it fails to predict in held-out
+        recordings [-].
     trained, missed : float
-        The same of those that it has used, and of all [-].
+        The same of recordings that it was fitted to, and of all [-].
     parameters : mapping of str to float
         [units of the law's file]
     """
@@ -86,7 +86,7 @@ class LawScore:
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Forecast:
-    """What the law predicts of an excerpt of a recording.
+    """Recorded and predicted torque of an excerpt.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class Forecast:
 @short_repr
 @dataclass(frozen=True, eq=False)
 class RecordingFit:
-    """One recording with its own bushing and torque levels.
+    """Recording with its bushing and torque levels.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ class RecordingFit:
     fit : BushingFit
     levels : Levels
     forecast : Forecast, optional
-        Where the law was fitted to it.
+        Present if the law was fitted to it.
     """
 
     measured: Measured
@@ -130,7 +130,7 @@ _NUMBER_COLUMNS = (
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Identification:
-    """An identified rig.
+    """Identified rig.
 
     Parameters
     ----------
@@ -140,20 +140,20 @@ class Identification:
     laws : tuple of LawScore
         Best first.
     law : str
-        The one that was chosen.
+        Name of the chosen law.
     recordings : tuple of RecordingFit
     assumed, not_found, notes : tuple of str
-        What the rig file assumes, what these recordings could not tell, what else to know.
+        Assumptions of the rig file, numbers that these recordings do not determine, and notes.
     refused : tuple of (str, str)
-        Recordings left out, with the reason.
+        Recordings that are left out, with the reason.
     held_out : tuple of str
         Recordings that the laws were compared on.
     margin : float
-        Factor by which a simpler law may be worse and is still chosen.
+        Factor by which a simpler law may miss more and is still chosen.
     static : tuple of StaticTest
-        Slow motion below any slip, and what rings when the shaft is held.
+        Static tests, with ring-downs.
     seconds : float
-        It took [s].
+        Time taken [s].
 
     Examples
     --------
@@ -212,7 +212,7 @@ class Identification:
 
 
 def as_json(result: Identification) -> dict[str, Any]:
-    """Return what ``identification.json`` holds."""
+    """Return the content of ``identification.json``."""
     return {
         "law": result.law,
         "numbers": [_number(one) for one in result.numbers],
@@ -230,14 +230,14 @@ def as_json(result: Identification) -> dict[str, Any]:
 
 
 def _rounded(value: Any) -> Any:
-    """Round numbers of plain data to five digits."""
+    """Return plain data with numbers rounded to five digits."""
     if isinstance(value, Mapping):
         return {key: _rounded(one) for key, one in value.items()}
     return float(f"{value:.5g}") if isinstance(value, float) else value
 
 
 def _place(one: Number | StaticTest | KnownCondition) -> dict[str, Any]:
-    """Interference and support of what has them."""
+    """Return interference and support, if there are any."""
     row: dict[str, Any] = {}
     if one.interference is not None:
         row["interference_mm"] = 1e3 * one.interference

@@ -1,8 +1,8 @@
-"""Torque that a law of friction predicts of excerpts of a recording.
+"""Prediction of the torque in excerpts of a recording by a friction law.
 
-Stick-slip is chaotic over many cycles but not within one. So a model begins where a recording
-shows what it does, and predicts a cycle or two. In the midst of a slip a contact has forgotten
-what it did before, and stick, break and slip are still to come.
+Stick-slip is chaotic over many cycles but not within one. So a prediction starts from the recorded
+state and covers a cycle or two. It starts in the middle of a slip, where the contact has lost its
+memory, and contains the following stick, break and slip.
 """
 
 from __future__ import annotations
@@ -31,44 +31,43 @@ from sim.parameters import resolve
 from sim.solvers.contact_solver import ContactRun, Hook
 
 _LOOKED_AT = 0.42
-"""Of a recording; what a transform of it costs [s]; assumed."""
+"""Length of the part of a recording that excerpts come from [s]; assumed."""
 
 _PREDICTED = 0.05
-"""Of a recording, all excerpts together [s]; assumed."""
+"""Length of all excerpts together [s]; assumed."""
 
 _CYCLES = 1.5
 _SHORTEST, _LONGEST = 3e-3, 24e-3
-"""An excerpt lasts so many cycles, but no less and no longer [s]; assumed."""
+"""Length of an excerpt in cycles, and its bounds [s]; assumed."""
 
 _MOST = 10
 _CLAMP_RINGS = 0.06
-"""What the clamp did before the recording is felt so long beyond what is left out of it [s];
-assumed."""
+"""Decay time of the clamp's initial ringing beyond the part that is left out [s]; assumed."""
 
 _RUN_IN = 9e-3
-"""Angle by which a contact has slid before an excerpt, to forget what it was [rad]; assumed."""
+"""Sliding angle before an excerpt, after which a contact has no memory [rad]; assumed."""
 
 _LONGEST_RUN_IN = 12e-3
-"""[s]"""
+"""Longest time of that sliding [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Excerpts:
-    """Excerpts of one recording.
+    """Excerpts of a recording.
 
     Parameters
     ----------
     spectrum : TorqueSpectrum
     starts : ndarray of int, shape (n_excerpts,)
-        Samples of `spectrum` at which they begin.
+        First samples, in `spectrum`.
     length : int
-        Of each [samples].
+        Length of each [samples].
     run_in : int
-        Before each [samples].
+        Length before each [samples].
     torque : ndarray, shape (n_excerpts, length)
-        As recorded [Nm].
+        Recorded torque [Nm].
     scale : ndarray, shape (n_excerpts, length)
-        By what a good model may miss it [Nm].
+        Expected error of a good model [Nm].
     """
 
     spectrum: TorqueSpectrum
@@ -84,7 +83,7 @@ class Excerpts:
         return self.spectrum.rate
 
     def some(self, n: int) -> Excerpts:
-        """Return `n` of them at most, evenly chosen."""
+        """Return at most `n` of the excerpts, evenly spaced."""
         size = self.starts.size
         chosen = np.unique(np.linspace(0, size - 1, min(n, size)).round().astype(int))
         return replace(
@@ -93,10 +92,10 @@ class Excerpts:
 
 
 _LEVEL = 2e-3
-"""Share of the mean torque that a model may miss a torque by; assumed."""
+"""Expected error of the torque, over its mean; assumed."""
 
 _JITTER = 8e-6
-"""And the time by which it may be early or late [s]; assumed."""
+"""Expected error of the time [s]; assumed."""
 
 
 def excerpts_of(measured: Measured, bushing: LumpedBushing) -> Excerpts | None:
@@ -106,12 +105,12 @@ def excerpts_of(measured: Measured, bushing: LumpedBushing) -> Excerpts | None:
     ----------
     measured : Measured
     bushing : LumpedBushing
-        A guess; it tells where the contact slides fastest.
+        Estimate, to locate the fastest sliding.
 
     Returns
     -------
     Excerpts or None
-        None where nothing slips.
+        None if there are too few slips.
     """
     spectrum = torque_spectrum(measured, _LOOKED_AT)
     rate, n = spectrum.rate, spectrum.torque.size
@@ -135,21 +134,23 @@ def excerpts_of(measured: Measured, bushing: LumpedBushing) -> Excerpts | None:
     wanted = min(_MOST, max(3, math.ceil(_PREDICTED * rate / length)))
     starts = np.unique(peaks[np.linspace(0, peaks.size - 1, wanted).round().astype(int)])
     inside = starts[:, None] + np.arange(length)
-    kept = spectrum.kept.start
+    first = spectrum.used.start
     slope = np.abs(np.gradient(spectrum.torque) * rate)
     scale = np.hypot(_LEVEL * spectrum.mean, _JITTER * slope)
-    return Excerpts(spectrum, starts, length, run_in, measured.torque[kept:][inside], scale[inside])
+    return Excerpts(
+        spectrum, starts, length, run_in, measured.torque[first:][inside], scale[inside]
+    )
 
 
 _TOLERANCE = 1e-6
-"""Of the solver, over one cycle."""
+"""Tolerance of the solver over one cycle."""
 
 _SUBSTEPS = 12
-"""Between two samples, of a contact that is driven: it settles within microseconds."""
+"""Steps between two samples of a driven contact, which settles within microseconds."""
 
 
 class Friction(NamedTuple):
-    """A law of friction ready to be solved."""
+    """Friction law with its coefficients and the effects on the contact."""
 
     law: FrictionLaw
     coefficients: Array
@@ -157,7 +158,7 @@ class Friction(NamedTuple):
 
 
 def friction_of(law: LawSpec, effects: tuple[LawSpec, ...] = ()) -> Friction:
-    """Prepare a law and the effects that act on the contact.
+    """Return a friction law with the effects that act on the contact.
 
     Raises
     ------
@@ -172,7 +173,7 @@ def friction_of(law: LawSpec, effects: tuple[LawSpec, ...] = ()) -> Friction:
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _driven(law, speed, step, substeps, c, contact, state) -> None:  # type: ignore[no-untyped-def] # noqa: ANN001
-    """Carry the inner state of a contact through sliding that is known (Heun's method)."""
+    """Integrate the inner state of a contact over a given sliding speed (Heun's method)."""
     first, second, guess = np.zeros_like(state), np.zeros_like(state), np.zeros_like(state)
     h = step / substeps
     for i in range(speed.size - 1):
@@ -198,7 +199,7 @@ def predicted_torque(
     bushing : LumpedBushing
     friction : Friction
     critical, kinetic : float
-        Torques as the law means them [Nm].
+        Torques of the law [Nm].
 
     Returns
     -------
@@ -239,9 +240,9 @@ def _begun(
     excerpts: Excerpts, stiffness: float, damping: float, support: float, support_damping: float,
     clamp_inertia: float,
 ) -> tuple[Array, Array, Array]:  # fmt: skip
-    """Motion where each excerpt begins, sliding speed before it, and the shaft's speed in it.
+    """Return the initial motion of each excerpt, sliding speed before and shaft speed in it.
 
-    Kept, since a search moves the bushing less often than the rest.
+    Cached, since a search moves the bushing less often than the rest.
     """
     spectrum = excerpts.spectrum
     bushing = LumpedBushing(1.0, clamp_inertia, stiffness, support, damping, support_damping)

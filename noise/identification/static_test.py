@@ -1,4 +1,4 @@
-r"""A static test: torque over angle at slow motion below any slip (3.3.3, Figures 5.25 and 5.26).
+r"""Static tests: torque over angle at slow motion below any slip (3.3.3, Figures 5.25 and 5.26).
 
 While the contact holds, angle and torque go together by the compliance of elastomer and beams,
 1/k_EFF. A contact that yields before it slides adds to it: loading and unloading then part, the
@@ -7,8 +7,8 @@ angle running ahead by
 .. math:: -(s S / K) \ln(1 - s T / S), \qquad s = \pm 1
 
 for shear stiffness K and strength S of the contact (Dahl 1968). So one regression of the angle
-tells the compliance at no torque, and whether loading and unloading part; where they do, the
-average over strengths, each by how well it fits, tells how much of the compliance is the contact's.
+gives the compliance at zero torque and shows whether loading and unloading part. If they do, the
+likelihood-weighted average over strengths gives the contact's share of the compliance.
 
 With the shaft held the clamp rings on beams and elastomer together,
 J_C x'' + (c_E + c_B) x' + (k_E + k_B) x = 0, and the torque of the cell with it (5.3 to 5.7).
@@ -31,37 +31,37 @@ from models.show import short_repr
 from noise.base.arrays import Array
 
 _BAND = 60.0, 2000.0
-"""In which it is sought [Hz]; assumed."""
+"""Frequency band of ring-downs [Hz]; assumed."""
 
 _STILL = 3e-3
-"""Angle by which a held shaft may move, over the range of the recording [-]; assumed."""
+"""Largest movement of a held shaft, over the range of the angle [-]; assumed."""
 
 _LEAST_RATE = 4e3
 _LEAST, _LOOKED_AT = 0.02, 0.06
-"""Of a held stretch [s]; assumed."""
+"""Shortest and longest part of a ring-down that is used [s]; assumed."""
 
 _SETTLED = 1e-3
-"""Left out after the shaft stops [s]; assumed."""
+"""Time after the shaft stops that is left out [s]; assumed."""
 
 _CLEAR = 0.1
-"""Share of the band's power that a ring-down explains; assumed."""
+"""Least share of the power that a ring-down explains; assumed."""
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class RingDown:
-    """Free decay of the torque.
+    """Free decay of the torque while the shaft is held.
 
     Parameters
     ----------
     frequency : float
-        Of the undamped mode [Hz].
+        Frequency of the undamped mode [Hz].
     decay : float
-        Rate at which the amplitude falls [1/s].
+        Decay rate of the amplitude [1/s].
     frequency_error, decay_error : float
         Relative standard errors [-].
     time, torque, fitted : ndarray, shape (n,)
-        [s], and what is left of the torque without its slow part [Nm].
+        Time [s]; torque without its trend, and as fitted [Nm].
     """
 
     frequency: float
@@ -74,7 +74,7 @@ class RingDown:
 
 
 def find_ring_down(torque: Array, angle: Array, rate: float) -> RingDown | None:
-    """Find and fit the ring-down after the shaft's last motion.
+    """Fit the ring-down after the shaft's last motion.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def find_ring_down(torque: Array, angle: Array, rate: float) -> RingDown | None:
     Returns
     -------
     RingDown or None
-        None where the shaft is not held at the end, or nothing rings.
+        None if the shaft is not held at the end, or nothing rings.
 
     Examples
     --------
@@ -103,7 +103,7 @@ def find_ring_down(torque: Array, angle: Array, rate: float) -> RingDown | None:
         return None
     rest = float(np.median(angle[-max(10, angle.size // 100) :]))
     away = np.abs(uniform_filter1d(angle - rest, max(1, round(_SETTLED * rate))))
-    # an encoder's noise is less than what a shaft that still moves goes
+    # steps of an encoder's noise are smaller than those of a moving shaft
     noise = 1.4826 * float(np.median(np.abs(np.diff(angle)))) * 4.0
     moving = np.flatnonzero(away > max(_STILL * float(np.ptp(angle)), noise))
     begin = (int(moving[-1]) + 1 if moving.size else 0) + round(_SETTLED * rate)
@@ -145,37 +145,36 @@ def find_ring_down(torque: Array, angle: Array, rate: float) -> RingDown | None:
 
 
 _POINTS = 4000
-"""Averages of neighbouring samples that are looked at, at most."""
+"""Most points that are used, each an average of neighbouring samples."""
 
 _SMOOTH = 200
-"""Over so many a record the angle is smoothed to tell which way it goes; assumed."""
+"""Ratio of the record to the width over which the angle is smoothed; assumed."""
 
 _RESTING = 0.08
-"""Of the fastest motion; slower counts as rest, at which nothing is learned."""
+"""Share of the fastest motion below which the shaft is at rest and samples are left out."""
 
 _FEWEST = 30
 _EXPLAINED = 0.98
-"""Share of the angle's variance that a static test explains; slips leave more; assumed."""
+"""Least explained share of the angle's variance; slips leave more; assumed."""
 
 _STRENGTHS = np.geomspace(1.03, 12.0, 40)
-"""Strengths of the contact that are tried, over the highest torque."""
+"""Grid of strengths of the contact, over the highest torque."""
 
 _SURE = 10.0
-"""Fall of the log-likelihood, doubled, from which loading and unloading are said to part; a
-chi-square of one degree is above it once in 640; assumed."""
+"""Twice the gain of log-likelihood above which loading and unloading part: a chi-square of one
+degree exceeds it once in 640; assumed."""
 
 _LEAST_PARTING = 0.004
-"""Of the angle's range [-]; less is called elastic whatever the statistics; assumed."""
+"""Least parting, over the range of the angle [-]; less counts as elastic; assumed."""
 
 _LEAST_ERROR = 0.002
-"""Relative standard error that no regression goes below: nobody's encoder is better [-];
-assumed."""
+"""Relative standard error by the encoder [-]; assumed."""
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class StaticTest:
-    """What a static test says.
+    """Result of a static test.
 
     Parameters
     ----------
@@ -186,22 +185,21 @@ class StaticTest:
     support_stiffness : float
         [Nm/rad]
     effective_stiffness : float
-        At no torque: elastomer, beams and what yields of the contact in series [Nm/rad].
+        At zero torque: elastomer, beams and yielding contact in series [Nm/rad].
     error : float
         Its relative standard error [-].
     elastic : bool
         Whether loading and unloading are one line.
     parting : float
-        By how much they are not: share of the angle that the contact adds at the highest torque
-        [-].
+        Share of the angle that the yielding contact adds at the highest torque [-].
     held_stiffness, held_error : float
-        The same without what yields of the contact [Nm/rad], and its relative standard error [-].
+        Stiffness without the yielding contact [Nm/rad], and its relative standard error [-].
     branches : int
-        Runs in one direction.
+        Number of runs in one direction.
     angle, torque, fitted_angle : ndarray, shape (n,)
-        What was looked at [rad], [Nm], and the angle as regressed [rad].
+        Points used [rad], [Nm], and the angle of the regression [rad].
     ring_down : RingDown, optional
-        What rings after the shaft is held.
+        Ring-down after the shaft stops.
     """
 
     name: str
@@ -224,7 +222,7 @@ def static_test(
     torque: Array, angle: Array, rate: float, condition: Condition,
     name: str,
 ) -> StaticTest | None:  # fmt: skip
-    """Read a recording as a static test.
+    """Evaluate a recording as a static test.
 
     Parameters
     ----------
@@ -241,12 +239,12 @@ def static_test(
     Returns
     -------
     StaticTest or None
-        None where torque and angle do not go together: something slips, or nothing moves.
+        None if torque and angle are not proportional: something slips, or nothing moves.
 
     Raises
     ------
     ParameterError
-        It is one, but states no interference or support.
+        It is a static test but states no interference or support.
 
     Examples
     --------
@@ -273,7 +271,7 @@ def static_test(
         return None
     _, branch = np.unique(branch[used], return_inverse=True)
     t, a, way = t[used], a[used], way[used]
-    if np.corrcoef(t, a)[0, 1] < 0.0:  # the cell counts against the encoder
+    if np.corrcoef(t, a)[0, 1] < 0.0:  # cell and encoder have opposite signs
         t = -t
     regression = _regression(t, a, way, branch)
     if regression is None:
@@ -291,28 +289,28 @@ def static_test(
 
 
 class _Fit(NamedTuple):
-    """Least squares of the angle: coefficients, squares left, their covariance, fitted angle."""
+    """Regression of the angle: coefficients, squared residuals, covariance, fitted angle, reach."""
 
     x: Array
     left: float
     covariance: Array
     fitted: Array
-    reach: float = 0.0  # what the contact runs ahead by
+    reach: float
 
 
 def _regression(
     t: Array, a: Array, way: Array, branch: NDArray[np.intp]
 ) -> tuple[float, tuple[float, float], tuple[float, float] | None, Array] | None:
-    """Regress the angle on torque and on what a contact that yields runs ahead by.
+    """Regress the angle on the torque and on the yielding of a contact.
 
     Returns
     -------
     parting, slope, held, fitted
-        Share of the angle that the contact adds [-]; compliance and its relative error, with what
-        yields and without it, None where all is elastic [rad/Nm]; fitted angle [rad]. None where
-        torque and angle do not go together.
+        Share of the angle that the contact adds [-]; compliance [rad/Nm] and its relative error,
+        with the contact and without it (None if all is elastic); fitted angle [rad]. None if torque
+        and angle are not proportional.
     """
-    # each run begins at an angle of its own, which drift and what yielded before decide
+    # each run has an offset of its own, from drift and earlier yielding
     own = np.eye(int(branch.max()) + 1)[branch]
     rest, highest = a - a.mean(), float(np.abs(t).max())
 

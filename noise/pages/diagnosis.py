@@ -417,10 +417,11 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
         words = f"Refitted parameters explain {share} of the deviation beyond that of repeats."
     elif before - floor < CLOSABLE:
         words = words or "On these recordings the gap is hardly larger than that of repeats."
-    names = diagnosis.held_out
+    held_out = diagnosis.held_out
     of, unseen = "all recordings", "recordings that no fit has seen"
-    if names:
-        of = f"{len(names)} {unseen}" if len(names) > 6 else f"{unseen}: {', '.join(names)}"
+    if held_out:
+        listed = f"{unseen}: {', '.join(held_out)}"
+        of = listed if len(held_out) <= 6 else f"{len(held_out)} {unseen}"
     return [
         b.Table(
             ("Model", f"Gap; the line is that of repeats, {floor:.2f}"), rows, style="waterfall"
