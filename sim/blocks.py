@@ -46,9 +46,9 @@ from sim.effects.effect import (
 )
 from sim.filters import Convolution, fade_in
 from sim.motion import Motion, MotionSolver, lookahead_samples, unusual_values_first
-from sim.plan import SIMULATION, Plan, plan_run
+from sim.plan import SIMULATION, Plan, Setting, plan_run
 from sim.run import pulse_force, sensor_channels
-from sim.shaft import ShaftMotion
+from sim.shaft import ShaftMotion, shaft_motion
 from sim.temperature import at_temperature
 
 KINDS = ("torque", "acceleration", "pressure", "angle")
@@ -65,35 +65,6 @@ _HISTORY = 0.2
 
 _LONGEST_RESPONSE = 3.0
 """Longest impulse response from torque to sound [s]."""
-
-
-@dataclass(frozen=True)
-class Setting:
-    """Rig, drive and condition: everything that can be changed during a run.
-
-    Parameters
-    ----------
-    rig : Rig
-    shaft : ShaftMotion
-        A motion that can be compared by ``==``. Its clock continues where only its numbers change,
-        and restarts where its class changes.
-    interference : float
-        [m]
-    support_stiffness : float
-        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
-    temperature : float
-        [degree Celsius]
-    """
-
-    rig: Rig
-    shaft: ShaftMotion
-    interference: float
-    support_stiffness: float
-    temperature: float = 23.0
-
-    def moves_as(self, other: Setting) -> bool:
-        """Return whether two settings differ in the motion of the shaft at most."""
-        return replace(self, shaft=other.shaft) == other
 
 
 PathsOf = Callable[[Setting], ImpulseResponses | None]
@@ -187,10 +158,10 @@ def simulate_blocks(
             f"seconds = {seconds:g} and block_seconds = {block_seconds:g} must be above 0, finite"
         )
     acquisition = acquisition or Acquisition()
+    setting = Setting(rig, shaft_motion(shaft), interference, support_stiffness, temperature)
     plan = plan_run(
-        rig, shaft, interference=interference, support_stiffness=support_stiffness,
-        temperature=temperature, seconds=min(seconds, 1.0), rate=acquisition.rate,
-        settling=settling, library=library,
+        setting, seconds=min(seconds, 1.0), rate=acquisition.rate, settling=settling,
+        library=library,
     )  # fmt: skip
     names = whole_run_effects(plan.effects)
     if names:
@@ -201,7 +172,7 @@ def simulate_blocks(
     forced = any(active.effect.force is not None for active in plan.effects)
     n_samples, watch = round(seconds * acquisition.rate), SlidingWatch()
     engine = BlockEngine(
-        Setting(rig, plan.shaft, interference, support_stiffness, temperature),
+        setting,
         acquisition=acquisition,
         n=max(2, round(block_seconds * acquisition.rate)),
         library=library,
@@ -260,6 +231,7 @@ class BlockEngine:
     Examples
     --------
     >>> from models.rig_file import load_material_rig
+    >>> from sim.plan import Setting
     >>> from sim.shaft import ConstantSpeed
     >>> setting = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
     >>> run = BlockEngine(setting)
@@ -450,7 +422,7 @@ class BlockEngine:
         solver.continue_from(self._solver, float(drive[0]))
         with unusual_values_first(plan.rig):
             motion = solver.advance(drive, n)
-        if not setting.moves_as(before):
+        if replace(setting, shaft=before.shaft) != before:  # more than the drive changes
             motion = _cross_faded(self._solver.advance(drive, n), motion)
         self._setting, self._plan, self._solver = setting, plan, solver
         self._drive_memories = memories
@@ -483,7 +455,7 @@ def plan_of(
 ) -> Plan:
     """Return the plan of a setting at a sampling rate [Hz], with the effects that act on blocks."""
     plan = plan_run(
-        **vars(setting), seconds=max(1.0, 2.0 / rate), rate=rate, settling=settling, library=library
+        setting, seconds=max(1.0, 2.0 / rate), rate=rate, settling=settling, library=library
     )
     effects = [active for active in plan.effects if not active.effect.needs_whole_run]
     return replace(plan, effects=effects)
@@ -510,6 +482,7 @@ def paths_key(setting: Setting) -> tuple[object, ...]:
     Examples
     --------
     >>> from models.rig_file import load_material_rig
+    >>> from sim.plan import Setting
     >>> from sim.shaft import ConstantSpeed
     >>> one = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
     >>> looser = replace(one, rig=one.rig.changed(kinetic_torque="x0.5"), shaft=ConstantSpeed(1.0))

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from numbers import Real
 
 from models.condition import Condition
 from models.errors import ParameterError
@@ -68,6 +67,31 @@ REGIME_RATE = 15e3
 the solution does not depend on it."""
 
 
+@dataclass(frozen=True)
+class Setting:
+    """Rig, drive and condition: everything that can be changed during a run.
+
+    Parameters
+    ----------
+    rig : Rig
+    shaft : ShaftMotion
+        A motion that can be compared by ``==``. Its clock continues where only its numbers change,
+        and restarts where its class changes.
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    temperature : float
+        [degree Celsius]
+    """
+
+    rig: Rig
+    shaft: ShaftMotion
+    interference: float
+    support_stiffness: float
+    temperature: float = 23.0
+
+
 @dataclass(frozen=True, eq=False)
 class Plan:
     """Inputs of one run: rig, drive, condition, active effects and sampling.
@@ -121,23 +145,20 @@ class Plan:
 
 
 def plan_run(
-    rig: Rig,
-    shaft: ShaftMotion | float,
+    setting: Setting,
     *,
-    interference: float,
-    support_stiffness: float,
-    temperature: float,
     seconds: float,
     rate: float,
-    settling: float | None,
-    library: Mapping[str, Effect] | None,
+    settling: float | None = None,
+    library: Mapping[str, Effect] | None = None,
 ) -> Plan:
     """Check the inputs of a run, and plan it.
 
     Parameters
     ----------
-    rig, shaft, interference, support_stiffness, temperature, seconds, settling, library
-        As for `simulate`.
+    setting : Setting
+    seconds, settling, library
+        As for `sim.run.simulate`.
     rate : float
         Sampling rate of the recording [Hz].
 
@@ -149,31 +170,26 @@ def plan_run(
     Raises
     ------
     ParameterError
-        If a value cannot be used, or the shaft is neither a number nor a motion.
+        If a value cannot be used.
 
     Examples
     --------
     >>> from models.rig_file import load_material_rig
-    >>> plan = plan_run(
-    ...     load_material_rig("PDMS"), 5, interference=0.279e-3, support_stiffness=2214.0,
-    ...     temperature=23.0, seconds=1.0, rate=30e3, settling=None, library=None,
-    ... )
-    >>> plan.shaft, plan.rate, plan.n_settling, plan.n_recorded
-    (ConstantSpeed(value=5.0), 90000.0, 45000, 90000)
+    >>> setting = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
+    >>> plan = plan_run(setting, seconds=1.0, rate=30e3)
+    >>> plan.rate, plan.n_settling, plan.n_recorded
+    (90000.0, 45000, 90000)
     """
-    if isinstance(shaft, Real):
-        shaft = ConstantSpeed(float(shaft))
-    if not isinstance(shaft, ShaftMotion):
-        raise ParameterError(f"shaft = {shaft!r}: give a speed in rad/s, or a motion of sim.shaft")
+    shaft, temperature = setting.shaft, setting.temperature
     if settling is None:
         settling = SIMULATION.settling if isinstance(shaft, ConstantSpeed) else 0.0
-    _check(seconds, settling, rate, interference, temperature)
-    rig = at_temperature(rig, temperature)
+    _check(setting, seconds, settling, rate)
+    rig = at_temperature(setting.rig, temperature)
     return Plan(
         rig=rig,
         shaft=shaft,
-        interference=interference,
-        support_stiffness=support_stiffness,
+        interference=setting.interference,
+        support_stiffness=setting.support_stiffness,
         effects=activated(rig.effects, library or EFFECTS),
         rate=SIMULATION.rate(rate),
         n_settling=round(settling * SIMULATION.rate(rate)),
@@ -182,9 +198,8 @@ def plan_run(
     )
 
 
-def _check(
-    seconds: float, settling: float, rate: float, interference: float, temperature: float
-) -> None:
+def _check(setting: Setting, seconds: float, settling: float, rate: float) -> None:
+    interference, temperature = setting.interference, setting.temperature
     if not (0.0 < seconds <= LONGEST_RUN and 0.0 <= settling <= LONGEST_RUN):
         raise ParameterError(
             f"seconds = {seconds:g} must be above 0, settling = {settling:g} at least 0, both at "

@@ -26,8 +26,8 @@ from sim.acquisition import Acquisition, sample
 from sim.chain import apply_chain_effects
 from sim.effects.effect import ActiveEffect, Effect, Signals
 from sim.motion import Motion, simulate_motion
-from sim.plan import SIMULATION, Plan, plan_run
-from sim.shaft import ShaftMotion
+from sim.plan import SIMULATION, Plan, Setting, plan_run
+from sim.shaft import ShaftMotion, shaft_motion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -312,16 +312,9 @@ def simulate(
     acquisition = (acquisition or Acquisition()).over(rig.sensors)
     # Two streams, so that an effect that scatters leaves the sensors' noise as it is.
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
+    setting = Setting(rig, shaft_motion(shaft), interference, support_stiffness, temperature)
     plan = plan_run(
-        rig,
-        shaft,
-        interference=interference,
-        support_stiffness=support_stiffness,
-        temperature=temperature,
-        seconds=seconds,
-        rate=acquisition.rate,
-        settling=settling,
-        library=library,
+        setting, seconds=seconds, rate=acquisition.rate, settling=settling, library=library
     )
     motion = run_motion(plan, effect_rng)
     samples, (sound,) = record_motions(

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -175,3 +176,23 @@ class LoggedSpeed:
         inside = self._speed[(self._time >= 0.0) & (self._time <= seconds)]
         ends = self.speed(np.array([0.0, seconds]))
         return float(np.abs(np.concatenate([inside, ends])).max())
+
+
+def shaft_motion(shaft: ShaftMotion | float) -> ShaftMotion:
+    """Return a motion of the shaft; a number is a constant speed [rad/s].
+
+    Raises
+    ------
+    ParameterError
+        It is neither a number nor a motion.
+
+    Examples
+    --------
+    >>> shaft_motion(5)
+    ConstantSpeed(value=5.0)
+    """
+    if isinstance(shaft, Real):
+        return ConstantSpeed(float(shaft))
+    if not isinstance(shaft, ShaftMotion):
+        raise ParameterError(f"shaft = {shaft!r}: give a speed in rad/s, or a motion of sim.shaft")
+    return shaft

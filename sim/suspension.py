@@ -36,9 +36,9 @@ from sim.effects.effect import Effect
 from sim.friction import friction_law
 from sim.motion import Motion, contact_hooks, unusual_values_first
 from sim.parameters import resolve
-from sim.plan import Plan, plan_run
+from sim.plan import Plan, Setting, plan_run
 from sim.run import record_motions
-from sim.shaft import ShaftMotion
+from sim.shaft import ShaftMotion, shaft_motion
 from sim.solvers import contact_rates as at
 from sim.solvers.contact_rates import contact_rates
 from sim.solvers.contact_solver import LONGEST_STEP, contact_record, hooks_record, n_variables
@@ -152,11 +152,9 @@ def run_suspension(
         )
     acquisition = acquisition.over(suspension.rig.sensors)
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
-    plan = plan_run(
-        suspension.rig, shaft, interference=interference, support_stiffness=support_stiffness,
-        temperature=temperature, seconds=seconds, rate=acquisition.rate, settling=None,
-        library=library,
-    )  # fmt: skip
+    drive = shaft_motion(shaft)
+    setting = Setting(suspension.rig, drive, interference, support_stiffness, temperature)
+    plan = plan_run(setting, seconds=seconds, rate=acquisition.rate, library=library)
     suspension = replace(suspension, rig=plan.rig)  # at the temperature
     motion = _simulated(suspension, plan, effect_rng)
     plate, (across, _) = plan.rig.plate, plan.rig.plate.clamp_position

@@ -22,7 +22,8 @@ from models.radiation.impulse_responses import ImpulseResponses
 from models.rig_file import load_material_rig
 from noise.app.worker_process import WorkerProcess
 from noise.batch.work import one_thread
-from sim.blocks import BlockEngine, Setting, paths_key, paths_of
+from sim.blocks import BlockEngine, paths_key, paths_of
+from sim.plan import Setting
 from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from starlette.routing import BaseRoute
 
     from noise.app.opened import Opened
-    from sim.blocks import Setting
+    from sim.plan import Setting
 
 
 _CHARTS = "noise.app.design_chart"

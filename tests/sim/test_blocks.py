@@ -18,7 +18,8 @@ from noise.commands.simulate import write_run
 from noise.recordings import read_recording
 from noise.recordings.wav import write_blocks
 from sim.acquisition import Acquisition
-from sim.blocks import BlockEngine, Setting, simulate_blocks
+from sim.blocks import BlockEngine, simulate_blocks
+from sim.plan import Setting
 from sim.run import simulate
 from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
 
