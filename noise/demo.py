@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from features.recording import recording_features
 from features.table import recording_feature_names
 from models.radiation.rig_response import impulse_responses
+from models.recording import Recording
 from models.rig_file import load_material_rig
 from models.transfer_functions.filtering import convolve
 from noise.audio.audio_file import write_audio
@@ -27,15 +27,11 @@ from noise.base.tables import write_table
 from noise.classifier import load_classifier
 from noise.labels.corrections import with_corrections
 from noise.labels.rows import label_rows
-from noise.labels.segments import file_label, label_recording
+from noise.labels.segments import Segment, file_label, label_recording
 from noise.labels.table import LabelTable
 from noise.pages.report import ReportEntry, write_report
 from noise.recordings import read_recording, write_recording
 from sim.run import simulate
-
-if TYPE_CHECKING:
-    from models.recording import Recording
-    from noise.labels.segments import Segment
 
 
 @dataclass(frozen=True)

@@ -23,23 +23,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from features.kernels.level_meter import overall_level
 from features.kernels.lines import Lines, find_lines
 from features.kernels.spectra import autospectrum
 from models.recording import REFERENCE_PRESSURE
 from sim.analysis.regime import LEAST_OSCILLATION
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from sim.motion import Motion
-    from sim.run import Run
+from sim.motion import Motion
+from sim.run import Run
 
 LEAST_LEVEL = 35.0
 """Lowest audible level in a quiet room [dB(A) re 20 uPa]."""
@@ -105,18 +99,6 @@ class NoiseCriteria:
         if self.share > 1.0:
             return "squeal"
         return "squawk" if self.stick > 1.0 else "creak"
-
-    def with_moved_bounds(self) -> Iterator[NoiseCriteria]:
-        """Yield the criteria with each bound moved down and up in turn."""
-        for step in (-_DECIBELS, _DECIBELS):
-            yield replace(self, level=self.level + step)
-            yield replace(self, blows=self.blows + step)
-            yield replace(self, second=self.second + step)
-        for factor in (1.0 - _SHARE, 1.0 / (1.0 - _SHARE)):
-            yield replace(self, swing=self.swing * factor)
-            yield replace(self, audible=self.audible * factor)
-            yield replace(self, stick=self.stick * factor)
-            yield replace(self, share=self.share * factor)
 
 
 def run_criteria(run: Run) -> NoiseCriteria:
@@ -206,7 +188,16 @@ def is_ambiguous(criteria: NoiseCriteria) -> bool:
     >>> clear.label, is_ambiguous(clear), is_ambiguous(replace(clear, second=-1.0))
     ('squeal', False, True)
     """
-    return any(other.label != criteria.label for other in criteria.with_moved_bounds())
+    moved = [
+        replace(criteria, **{name: getattr(criteria, name) + step})
+        for name in ("level", "blows", "second")
+        for step in (-_DECIBELS, _DECIBELS)
+    ] + [
+        replace(criteria, **{name: getattr(criteria, name) * factor})
+        for name in ("swing", "audible", "stick", "share")
+        for factor in (1.0 - _SHARE, 1.0 / (1.0 - _SHARE))
+    ]
+    return any(other.label != criteria.label for other in moved)
 
 
 def _second(lines: Lines) -> float:

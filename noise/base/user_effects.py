@@ -164,22 +164,24 @@ def _checked(
             raise ParameterError(
                 f"{where}: {type(error).__name__}: {one_line(error)} ({place})"
             ) from error
-        if wrong := _fault(result, like(first)):
+        if wrong := _problem(result, like(first)):
             raise ParameterError(f"{where} {wrong}")
         return result
 
     return checked
 
 
-def _fault(result: Any, like: Any) -> str:
+def _problem(result: Any, like: Any) -> str:
     """Return what is wrong with a result; empty if it has the shape and type of `like`."""
     import numpy as np
 
     if isinstance(like, dict):
         if not isinstance(result, dict) or list(result) != list(like):
             return f"must return a dict of the signals it was given: {', '.join(like)}"
-        faults = {name: _fault(result[name], signal) for name, signal in like.items()}
-        return next((f"{fault} for {name!r}" for name, fault in faults.items() if fault), "")
+        problems = {name: _problem(result[name], signal) for name, signal in like.items()}
+        return next(
+            (f"{problem} for {name!r}" for name, problem in problems.items() if problem), ""
+        )
     shape = (getattr(result if like is None else like, "size", 0),)
     if not isinstance(result, np.ndarray) or result.shape != shape:
         actual = getattr(result, "shape", type(result).__name__)

@@ -200,11 +200,11 @@ def open_journal(table: Path | None, work: Work, *, fresh: bool = False) -> Iter
     Examples
     --------
     >>> import tempfile
-    >>> from noise.commands.features import Featuring
+    >>> from noise.commands.features import FeatureExtraction
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     run = Path(folder) / "run07.wav"
     ...     run.touch()
-    ...     job, work = Job(0, run, "run07.wav"), Featuring()
+    ...     job, work = Job(0, run, "run07.wav"), FeatureExtraction()
     ...     result = JobResult([["run07.wav", *[1.5] * (len(work.columns) - 1)]], True)
     ...     with open_journal(Path(folder) / "t.csv", work) as journal:
     ...         journal.add_result(job, file_identity(run), result)

@@ -114,7 +114,7 @@ CONDITION = Group(
 )
 
 
-def given_options(options: Namespace) -> dict[str, Any]:
+def stated_options(options: Namespace) -> dict[str, Any]:
     """Return the options of a condition that the call states, by attribute."""
     values = {row.attribute: getattr(options, row.attribute) for row in CONDITION.rows}
     return {

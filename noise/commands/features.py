@@ -32,7 +32,7 @@ def run(options: Namespace) -> int:
     check_batch(options)
     from noise.batch.work import find_jobs
 
-    work = Featuring(full_scale_of(options), options.windows)
+    work = FeatureExtraction(full_scale_of(options), options.windows)
     jobs = find_jobs(options.paths)
     check_plots(options.plot, jobs)
     return run_batch(
@@ -42,7 +42,7 @@ def run(options: Namespace) -> int:
 
 
 @dataclass(frozen=True)
-class Featuring:
+class FeatureExtraction:
     """`noise.batch.work.Work` that computes the features of a recording or of its windows.
 
     Parameters

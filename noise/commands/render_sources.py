@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from models.errors import ParameterError
 from models.recording import Recording
 from noise.base.progress import note
-from noise.commands.condition import CONDITION, given_options, run_arguments, with_notes
+from noise.commands.condition import CONDITION, run_arguments, stated_options, with_notes
 from noise.commands.options import add_options, full_scale_of
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def sources_of(options: Namespace) -> list[Source]:
     ParameterError
         An input does not exist or does not go with the options.
     """
-    condition = ["--" + name.replace("_", "-") for name in given_options(options)]
+    condition = ["--" + name.replace("_", "-") for name in stated_options(options)]
     simulated = [
         text for text in options.inputs if _is_condition(text) or text.lower().endswith(".toml")
     ]
@@ -141,7 +141,7 @@ def _simulated(text: str, options: Namespace) -> Source:
         words = shlex.split(text)
     except ValueError as error:
         raise ParameterError(f"condition {text!r}: {error}") from None
-    values = given_options(parser.parse_args(words))
+    values = stated_options(parser.parse_args(words))
     name = re.sub(r"[^\w.]+", "-", text).strip("-.")
     return _source(name, _over(options, values))
 

@@ -53,7 +53,7 @@ _QUANTITIES = {
     "support_stiffness": replace(CONDITION["support_stiffness"], infinite=""),
 }
 _CHECKSUM = "wav_crc32"
-_OURS = ("channels", "conditions", "calibrated", "notes", _CHECKSUM)
+_KEYS = ("channels", "conditions", "calibrated", "notes", _CHECKSUM)
 
 
 def _name(value: Any, key: str, where: str) -> str:
@@ -149,9 +149,9 @@ def read_condition(value: Any, key: str, where: str) -> Condition:
     keys = {one.key for one in CONDITION.values()}
     for name, stated in table.items():
         if name not in keys and _stem(name) != name and isinstance(stated, int | float):
-            ours = next(one for one in keys if _stem(one) == _stem(name))
+            own_key = next(one for one in keys if _stem(one) == _stem(name))
             raise ParameterError(
-                f"{where}: {key} has {show(name)}, which is not read; state {ours}"
+                f"{where}: {key} has {show(name)}, which is not read; state {own_key}"
             )
     values: dict[str, Any] = {
         name: one.read(table[one.key], where)
@@ -296,7 +296,7 @@ def _is_sidecar(content: Any) -> bool:
     names = [one.get("name") if isinstance(one, dict) else one for one in listed]
     conditions = content.get("conditions")
     return (
-        all(key in _OURS for key in content)
+        all(key in _KEYS for key in content)
         or any(str(name).partition("_")[0] in CHANNEL_UNITS for name in names)
         or (isinstance(conditions, dict) and any(_stem(key) != key for key in conditions))
         or isinstance(content.get("calibrated"), bool)
