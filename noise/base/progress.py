@@ -192,6 +192,11 @@ class Steps:
             self._bar.update(self._started - 1 - self._bar.n)
             self.expect(self._bar.total)
 
+    def at(self, share: float) -> None:
+        """Move the bar to a share of all steps [-]."""
+        if self._bar is not None:
+            self._bar.update(int(share * (self._bar.total or 0)) - self._bar.n)
+
     def expect(self, number: int) -> None:
         """Correct the expected number of steps."""
         if self._bar is not None:
@@ -200,7 +205,7 @@ class Steps:
 
 
 @contextmanager
-def steps(doing: str, number: int) -> Iterator[Steps]:
+def steps(doing: str, number: int, unit: str = "step") -> Iterator[Steps]:
     """Show the progress of work that has few steps of different length.
 
     Parameters
@@ -209,6 +214,8 @@ def steps(doing: str, number: int) -> Iterator[Steps]:
         Name of the work, such as ``"screening"``.
     number : int
         Expected number of steps; there may be more or fewer.
+    unit : str
+        Name of a step, in the singular.
 
     Yields
     ------
@@ -226,7 +233,7 @@ def steps(doing: str, number: int) -> Iterator[Steps]:
         return
     from tqdm import tqdm
 
-    with tqdm(desc=doing, total=number, unit=" step", leave=False, file=sys.stderr) as bar:
+    with tqdm(desc=doing, total=number, unit=f" {unit}", leave=False, file=sys.stderr) as bar:
         yield Steps(bar)
 
 

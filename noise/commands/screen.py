@@ -83,12 +83,10 @@ def run(options: Namespace) -> int:
     for name in environments:
         environment(name)
     load_designs(options.designs, _change(options))  # refuses bad designs before slow imports
-    per_map = 2 if options.no_tolerances else 4  # map, advice, parts, sensitivities
-    n_steps = 1 + per_map * len(options.designs) * len(environments)
     table = None if options.out is None else options.out / "map.csv"
     with temporary_journal(table, call_identity("screening")) as journal:
-        with steps("screening", n_steps) as progress:
-            screening = _screening(options, use, environments, progress, journal)
+        with steps("screening", 100, "percent") as bar:
+            screening = _screening(options, use, environments, bar, journal)
         from noise.screening.words import summary_lines
 
         for name, reason in (*screening.refused, *screening.failed):
@@ -107,11 +105,11 @@ def _screening(
     options: Namespace,
     use: Use,
     environments: list[str],
-    progress: Steps,
+    bar: Steps,
     journal: Journal | None,
 ) -> Screening:
     """Screen the designs."""
-    progress("preparing")
+    say("preparing")
     import numpy as np
 
     from noise.screening.screen import DEFAULT_SIMULATIONS, screen
@@ -128,8 +126,9 @@ def _screening(
         simulations=None if math.isinf(simulations) else int(simulations),
         workers=options.workers,
         scheduler=options.scheduler,
-        progress=progress,
-        kept=journal,
+        progress=say,
+        advance=bar.at,
+        journal=journal,
     )
 
 

@@ -93,7 +93,7 @@ def boundary_lines(
         (names[int(along[i] > 0.0)], row, float(np.interp(0.0, *_rising(along, speed, i))))
         for names, values in kinds
         for row, along in enumerate(values)
-        for i in np.flatnonzero((along[:-1] > 0.0) != (along[1:] > 0.0))
+        for i in np.flatnonzero((along[:-1] > 0.0) != (along[1:] > 0.0)).tolist()
     ]
 
 

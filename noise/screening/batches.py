@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import astuple
+from typing import Any
 
 from joblib import Parallel, delayed, hash as digest
 
@@ -29,8 +30,13 @@ _DIED = "the workers of the cluster that simulated it died; do they have enough 
 
 
 @contextmanager
-def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Iterator[Evaluator]:
-    """Give a function that simulates batches.
+def batch_evaluator(
+    *,
+    workers: int = -1,
+    scheduler: str | None = None,
+    advance: Callable[[int], None] = lambda _: None,
+) -> Iterator[Evaluator]:
+    """Yield a function that simulates batches.
 
     Parameters
     ----------
@@ -38,6 +44,8 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
         Threads; -1 is one a core.
     scheduler : str, optional
         Address of a Dask cluster that does it instead.
+    advance : callable
+        Is called with the number of points that were simulated since.
 
     Yields
     ------
@@ -53,54 +61,42 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
     --------
     >>> from models.rig_file import load_material_rig
     >>> with batch_evaluator() as evaluate:
-    ...     [found] = evaluate(load_material_rig("PDMS"), [Condition(1.0, 3e-4, 2e3)])
-    >>> found.label
+    ...     [result] = evaluate(load_material_rig("PDMS"), [Condition(1.0, 3e-4, 2e3)])
+    >>> result.label
     'none'
     """
-    if scheduler is None:
 
-        def on_threads(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
+    def on_threads(perform: Callable[..., Any], calls: list[Any]) -> Iterator[tuple[int, Any]]:
+        work = Parallel(n_jobs=workers, prefer="threads", batch_size=1, return_as="generator")
+        with one_thread():
+            yield from enumerate(work(delayed(perform)(*call) for call in calls))
+
+    with nullcontext(on_threads) if scheduler is None else cluster(scheduler) as spread:
+
+        def evaluate(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
             rows = _rows(points)
-            with one_thread():
-                found = Parallel(n_jobs=workers, prefer="threads", batch_size=1)(
-                    delayed(evaluate_row)(rig, row) for row in rows
-                )
-            return _in_order(points, rows, found)
+            results: dict[Condition, PointResult] = {}
+            for index, row in spread(_evaluate, [(rig, row) for row in rows]):
+                if not isinstance(row, list):
+                    raise ParameterError(row or _DIED)
+                results |= zip(rows[index], row, strict=True)
+                advance(len(row))
+            return [results[at] for at in points]
 
-        yield on_threads
-        return
-    with cluster(scheduler) as spread:
-
-        def on_cluster(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
-            rows = _rows(points)
-            found = dict(spread(_evaluate_far, [(rig, row) for row in rows]))
-            values: list[list[PointResult]] = []
-            for index in range(len(rows)):
-                result = found[index]
-                if result is None or isinstance(result, str):
-                    raise ParameterError(result or _DIED)
-                values.append(result)
-            return _in_order(points, rows, values)
-
-        yield on_cluster
+        yield evaluate
 
 
-def keeping(evaluate: Evaluator, lines: Journal) -> Evaluator:
-    """Give an evaluator that keeps what it finds in a journal, and does not do it again."""
-
-    def kept(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
-        key = digest((rig, tuple(points)))
-        if (lately := lines.get(key)) is not None:
-            return [PointResult(Regime(regime), *values) for regime, *values in lately]
-        found = evaluate(rig, points)
-        lines.add(key, *([one.regime.value, *astuple(one)[1:]] for one in found))
-        return found
-
-    return kept
+def _evaluate(rig: Rig, row: list[Condition]) -> list[PointResult] | str:
+    """Return the results of a row, or why it cannot be simulated."""
+    try:
+        with one_thread():
+            return evaluate_row(rig, row)
+    except BushingNoiseError as error:
+        return str(error)
 
 
 def _rows(points: Sequence[Condition]) -> list[list[Condition]]:
-    """Points by row, which the structure follows; swings one by one."""
+    """Group points by row, which the structure follows; swings one by one."""
 
     def row(at: Condition) -> tuple[float, ...]:
         own = at.speed if at.frequency else 0.0
@@ -110,16 +106,15 @@ def _rows(points: Sequence[Condition]) -> list[list[Condition]]:
     return [list(of_row) for _, of_row in itertools.groupby(ordered, row)]
 
 
-def _in_order(
-    points: Sequence[Condition], rows: list[list[Condition]], found: list[list[PointResult]]
-) -> list[PointResult]:
-    known = dict(zip(itertools.chain(*rows), itertools.chain(*found), strict=True))
-    return [known[at] for at in points]
+def keeping(evaluate: Evaluator, lines: Journal) -> Evaluator:
+    """Return an evaluator that reads what is in a journal, and adds what it simulates."""
 
+    def journaled(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
+        key = digest((rig, tuple(points)))
+        if (stored := lines.get(key)) is not None:
+            return [PointResult(Regime(regime), *values) for regime, *values in stored]
+        results = evaluate(rig, points)
+        lines.add(key, *([one.regime.value, *astuple(one)[1:]] for one in results))
+        return results
 
-def _evaluate_far(rig: Rig, row: list[Condition]) -> list[PointResult] | str:
-    try:
-        with one_thread():
-            return evaluate_row(rig, row)
-    except BushingNoiseError as error:
-        return str(error)
+    return journaled

@@ -138,7 +138,6 @@ def robustness(
     at: Condition | None = None,
     parts: int = _PARTS,
     workers: int = -1,
-    progress: Callable[[str], None] = lambda _: None,
 ) -> Robustness:
     """Tell what a design's tolerances do.
 
@@ -155,8 +154,6 @@ def robustness(
         A power of two.
     workers : int
         Threads; -1 is one a core.
-    progress : callable
-        Is told what is being done.
 
     Returns
     -------
@@ -205,7 +202,6 @@ def robustness(
         return is_noisy(rig, [replace(own, speed=speed) for speed in tried])
 
     worst = speeds[growth(factors).argmax(axis=1)].tolist()
-    progress(f"{parts} parts of {design.name}")
     with one_thread():
         found = Parallel(n_jobs=workers, prefer="threads")(
             delayed(noisy)(row, speed) for row, speed in zip(factors, worst, strict=True)
@@ -214,7 +210,6 @@ def robustness(
     interval = stats.binomtest(k, parts).proportion_ci(0.95, method="exact")
     sensitivities: tuple[Sensitivity, ...] = ()
     if friction_law(design.rig.friction.name).torque is not None:
-        progress(f"sensitivities of {design.name}")
         sensitivities = _sensitivities(lambda rows: growth(rows.T).max(axis=1), spread, rng)
     return Robustness(
         design=design.name,

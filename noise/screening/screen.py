@@ -20,7 +20,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -221,7 +221,8 @@ def screen(
     workers: int = -1,
     scheduler: str | None = None,
     progress: Callable[[str], None] = lambda _: None,
-    kept: Journal | None = None,
+    advance: Callable[[float], None] = lambda _: None,
+    journal: Journal | None = None,
 ) -> Screening:
     """Map bushing designs over their conditions, rank them, and tell what would end their noise.
 
@@ -250,9 +251,11 @@ def screen(
     scheduler : str, optional
         Address of a Dask cluster that simulates the maps instead.
     progress : callable
-        Is told what is being done.
-    kept : Journal, optional
-        Where to keep what is simulated of the maps, and what of it is there already.
+        Is called with the name of each piece of work.
+    advance : callable
+        Is called with the share of all work that is done, about as it takes time [-].
+    journal : Journal, optional
+        Results of simulations of the maps, which are read from it and added to it.
 
     Returns
     -------
@@ -285,121 +288,142 @@ def screen(
         for name in names
         for swinging in motions
     }
+    work = _Work(advance, len(loaded) * len(grids), simulations or DEFAULT_SIMULATIONS)
     maps: list[DesignMap] = []
     notes: dict[tuple[str, str], list[str]] = {}
-    with batch_evaluator(workers=workers, scheduler=scheduler) as evaluate:
-        if kept is not None:
-            evaluate = keeping(evaluate, kept)
+    with batch_evaluator(workers=workers, scheduler=scheduler, advance=work.add) as evaluate:
+        if journal is not None:
+            evaluate = keeping(evaluate, journal)
         for name, design in loaded.items():
             try:
                 own = {(name, where): _remarks(design, where, grids, given) for where in names}
                 for text in dict.fromkeys(itertools.chain(*own.values())):
                     progress(f"{name}: {text}")
-                found: list[DesignMap] = []
+                of_design: list[DesignMap] = []
                 for (where, swinging), grid in grids.items():
                     progress(f"mapping {name}, {where}")
                     rig = in_environment(design.rig, environment(where))
-                    each = map_design(
+                    one = map_design(
                         rig, grid, evaluate, design=name, environment=where, most=simulations
                     )
                     if loudness:
                         from noise.screening.loudness import with_loudness
 
-                        each = with_loudness(each, rig)
+                        one = with_loudness(one, rig)
                     if swinging is not None and len(motions) > _ONE_SWING:
                         degrees = math.degrees(swinging.amplitude)
-                        each = replace(each, motion=f"swinging by {degrees:.4g} degrees")
-                    found.append(each)
+                        one = replace(one, motion=f"swinging by {degrees:.4g} degrees")
+                    of_design.append(one)
+                    work.map_done()
             except BushingNoiseError as error:
                 refused.append((name, str(error)))
             else:
-                maps, notes = maps + found, notes | own
+                maps, notes = maps + of_design, notes | own
     if not maps:
         raise ParameterError(refused[0][1])
     mapped = time.perf_counter()
     refuse_unlike(maps)
-    critical = [critical_points(each) for each in maps]
+    critical = [critical_points(one) for one in maps]
     standings: list[Standing] = []
     rng = rng or np.random.default_rng(0)
-    for each, points, stream in zip(maps, critical, rng.spawn(len(maps)), strict=True):
-        design = loaded[each.design]
-        design = replace(design, rig=in_environment(design.rig, environment(each.environment)))
-        one = standing_of(each, points, why_never_slipping(design.rig, each.grid))
-        told = *notes[each.design, each.environment], *filter(None, [one.never_slips])
-        one = replace(one, notes=told)
-        if each.motion == "steady" and not one.never_slips:
-            one = _advised(one, each, design, workers, progress)
+    for one, points, stream in zip(maps, critical, rng.spawn(len(maps)), strict=True):
+        design = loaded[one.design]
+        design = replace(design, rig=in_environment(design.rig, environment(one.environment)))
+        never = why_never_slipping(design.rig, one.grid)
+        standing = standing_of(one, points, never)
+        remarks = *notes[one.design, one.environment], *filter(None, [never])
+        standing = replace(standing, notes=remarks)
+        if one.motion == "steady" and not never:
+            if standing.loudest is not None:
+                progress(f"advice for {one.design}, {one.environment}")
+                standing = _attempted("advice", standing, _advised, one, design.rig, workers)
             if bool(design.tolerances) if tolerances is None else tolerances:
-                one = _with_parts(one, each, design, stream, workers, progress)
-        standings.append(one)
-    screened = {each.design: loaded[each.design] for each in maps}
+                progress(f"tolerances of {one.design}, {one.environment}")
+                standing = _attempted(
+                    "tolerances", standing, _with_parts, one, design, stream, workers
+                )
+        standings.append(standing)
+        work.add(_STATISTICS)
+    screened = {one.design: loaded[one.design] for one in maps}
     return Screening(
         designs=tuple(screened.values()),
         maps=tuple(maps),
         critical=tuple(itertools.chain(*critical)),
         standings=ranked(standings),
         refused=tuple(refused),
-        files=tuple(one for one in files if one[0] in screened),
+        files=tuple(file for file in files if file[0] in screened),
         seconds=mapped - started,
         statistics_seconds=time.perf_counter() - mapped,
     )
 
 
-def _advised(
-    one: Standing,
-    found: DesignMap,
-    design: Design,
-    workers: int,
-    progress: Callable[[str], None],
+_STATISTICS = 150
+"""Points of a map that take as long as its advice and tolerances."""
+
+
+class _Work:
+    """Share of all work that is done, counted in simulated points."""
+
+    def __init__(self, advance: Callable[[float], None], n_maps: int, of_map: int) -> None:
+        self._advance, self._of_map, self._maps, self._done = advance, of_map, 0, 0
+        self._total = n_maps * (of_map + _STATISTICS)
+
+    def add(self, points: int) -> None:
+        self._done += points
+        self._advance(min(1.0, self._done / self._total))
+
+    def map_done(self) -> None:
+        """Count a map as whole, whatever it took."""
+        self._maps += 1
+        self._done = self._maps * self._of_map
+        self.add(0)
+
+
+def _attempted(
+    what: str, standing: Standing, complete: Callable[..., Standing], *given: Any
 ) -> Standing:
-    """Add what would end the loudest noise; what fails is told."""
-    if one.loudest is None:
-        return one
-    progress(f"advice for {one.design}, {one.environment}")
+    """Return a completed standing, or one with the reason why it cannot be."""
     try:
-        others = _other_noisy(found, one.loudest)
-        offers = advise(design.rig, one.loudest, list(others), workers=workers)
-        words = advice_words(one.loudest_label, one.loudest, offers, others)
-        return replace(one, offers=offers, advice=words)
+        return complete(standing, *given)
     except _FAILURES as error:
-        return replace(one, failed=(f"advice: {error}",))
+        return replace(standing, failed=(*standing.failed, f"{what}: {error}"))
+
+
+def _advised(standing: Standing, mapped: DesignMap, rig: Rig, workers: int) -> Standing:
+    """Add the changes that end the loudest noise."""
+    assert standing.loudest is not None
+    others = _other_noisy(mapped, standing.loudest)
+    offers = advise(rig, standing.loudest, list(others), workers=workers)
+    words = advice_words(standing.loudest_label, standing.loudest, offers, others)
+    return replace(standing, offers=offers, advice=words)
 
 
 def _with_parts(
-    one: Standing,
-    found: DesignMap,
-    design: Design,
-    rng: np.random.Generator,
-    workers: int,
-    progress: Callable[[str], None],
+    standing: Standing, mapped: DesignMap, design: Design, rng: np.random.Generator, workers: int
 ) -> Standing:
-    """Add what tolerances do; what fails is told."""
-    grid, (slowest, fastest) = found.grid, found.grid.use
+    """Add what tolerances do."""
+    grid, (slowest, fastest) = mapped.grid, mapped.grid.use
     speeds = slowest or 0.02 * fastest, fastest
-    used = Use(speeds, grid.interference, grid.support_stiffness, grid.temperature)
-    design = replace(design, use=used)
-    try:
-        parts = robustness(design, rng, at=one.loudest, workers=workers, progress=progress)
-        return replace(one, robustness=parts)
-    except _FAILURES as error:
-        return replace(one, failed=(*one.failed, f"tolerances: {error}"))
+    use = Use(speeds, grid.interference, grid.support_stiffness, grid.temperature)
+    parts = robustness(replace(design, use=use), rng, at=standing.loudest, workers=workers)
+    return replace(standing, robustness=parts)
 
 
-def _other_noisy(found: DesignMap, loudest: Condition) -> dict[Condition, str]:
+def _other_noisy(mapped: DesignMap, loudest: Condition) -> dict[Condition, str]:
     """Choose some simulated noisy conditions of use from all over the map, the loudest first.
 
     The values are what is heard at each.
     """
     sound, how, level = (
-        each[..., found.grid.used] for each in (found.sound, found.how, found.level)
+        each[..., mapped.grid.used] for each in (mapped.sound, mapped.how, mapped.level)
     )
-    noisy = np.argwhere((sound != "none") & (how == SIMULATED))
-    noisy = np.array([at for at in noisy if condition_at(found.grid, at) != loudest], dtype=int)
+    noisy = np.argwhere((sound != "none") & (how == SIMULATED)).tolist()
+    noisy = [at for at in noisy if condition_at(mapped.grid, at) != loudest]
     if len(noisy) > _ELSEWHERE:
-        noisy = noisy[np.linspace(0, len(noisy) - 1, _ELSEWHERE).astype(int)]
+        noisy = [noisy[i] for i in np.linspace(0, len(noisy) - 1, _ELSEWHERE).astype(int)]
     return {
-        condition_at(found.grid, at): f"{sound[tuple(at)]}, {level[tuple(at)]:.0f} dB(A)"
-        for at in sorted(noisy.tolist(), key=lambda at: -level[tuple(at)])
+        condition_at(mapped.grid, at): f"{sound[tuple(at)]}, {level[tuple(at)]:.0f} dB(A)"
+        for at in sorted(noisy, key=lambda at: -level[tuple(at)])
     }
 
 

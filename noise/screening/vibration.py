@@ -431,8 +431,8 @@ def _followed(
         if certain is not None:
             break
     # Where sliding is unstable it may rise and fall in bursts, seconds apart.
-    late = sizes[-round(_IRREGULAR / BLOCK) :] if growth > 0.0 else sizes[-1:]
-    lasts = max(late) > 1.0 if certain is None else certain
+    last_sizes = sizes[-round(_IRREGULAR / BLOCK) :] if growth > 0.0 else sizes[-1:]
+    lasts = max(last_sizes) > 1.0 if certain is None else certain
     motion = parts[0].followed_by(*list(parts)[1:])
     return Course(lasts, len(sizes) * BLOCK, motion, solver, at.speed)
 

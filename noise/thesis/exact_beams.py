@@ -13,22 +13,21 @@ has what they leave out: the bushing's stiffness and the clamp's sideways motion
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
 
 from models.bench import Beams
 
 
 class RootMotion(Enum):
-    """How the root of a beam moves: with the clamp, which turns or shifts, or without any."""
+    """Motion of the clamp, and of the root of a beam with it: it turns or shifts."""
 
     TURNING = "turning"
     SIDEWAYS = "sideways"
-    LOOSE = "loose"
 
 
 @dataclass(frozen=True)
@@ -84,13 +83,14 @@ def boundary_conditions(
 
     Examples
     --------
-    At a natural frequency the conditions can be met without a load:
+    At a natural frequency the conditions can be met without a load; a clamp without mass that
+    cannot turn is the end of a guided cantilever:
 
     >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
-    >>> loose = ClampOnBeams(steel, 0.123, 0.0, 0.0)
-    >>> cantilever = wave_frequency(loose, np.array([1.8751]))
-    >>> conditions = boundary_conditions(loose, cantilever, RootMotion.LOOSE, 0.0)
+    >>> light = ClampOnBeams(steel, 0.123, 0.0, 0.0)
+    >>> guided = wave_frequency(light, np.array([2.36502]))
+    >>> conditions = boundary_conditions(light, guided, RootMotion.SIDEWAYS, 0.0)
     >>> bool(abs(np.linalg.det(conditions)[0]) < 1e-4)
     True
     """
@@ -106,11 +106,9 @@ def boundary_conditions(
             root[0] - beams.lever * root[1],
             dynamic * root[1] + 2.0 * stiffness * (beams.lever * root[3] - root[2]),
         ]
-    elif motion is RootMotion.SIDEWAYS:
+    else:
         dynamic = structure.lateral_stiffness - structure.clamp_mass * omega2
         at_clamp = [root[1], dynamic * root[0] + 2.0 * stiffness * root[3]]
-    else:
-        at_clamp = [root[2], root[3]]
     at_anchor = [
         end[0] - stiffness / beams.anchor_translation * end[3],
         end[1] + stiffness / beams.anchor_rotation * end[2],
@@ -212,8 +210,6 @@ def wave_frequency(structure: ClampOnBeams, wave: ArrayLike) -> NDArray[np.float
 _STEP = 0.05
 """Of wavenumber times length, in which sign changes are looked for."""
 
-_MOST_ITERATIONS = 60
-
 
 def natural_frequencies(
     structure: ClampOnBeams, highest_frequency: float, motion: RootMotion = RootMotion.TURNING
@@ -251,30 +247,13 @@ def natural_frequencies(
     grid = np.arange(_STEP, top + _STEP, _STEP)
 
     def determinant(wave: ArrayLike) -> NDArray[np.float64]:
-        boundary = boundary_conditions(structure, wave_frequency(structure, wave), motion, 0.0).real
+        frequency = wave_frequency(structure, np.atleast_1d(wave))
+        boundary = boundary_conditions(structure, frequency, motion, 0.0).real
         return np.asarray(np.linalg.det(boundary))
 
-    values = determinant(grid)
-    (below,) = np.nonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
-    roots = _roots(determinant, grid[below], grid[below + 1])
+    changes = np.flatnonzero(np.diff(np.signbit(determinant(grid))))
+    roots = [
+        brentq(lambda wave: determinant(wave)[0], grid[i], grid[i + 1], rtol=1e-12) for i in changes
+    ]
     frequencies = wave_frequency(structure, roots)
     return frequencies[frequencies <= highest_frequency]
-
-
-def _roots(
-    function: Callable[[NDArray[np.float64]], NDArray[np.float64]],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """Root between each `low` and `high`, all at once, by the Illinois form of regula falsi."""
-    at_low, at_high = function(low), function(high)
-    for _ in range(_MOST_ITERATIONS):
-        middle = high - at_high * (high - low) / (at_high - at_low)
-        at_middle = function(middle)
-        kept = np.signbit(at_middle) == np.signbit(at_high)
-        low, at_low = np.where(kept, low, high), np.where(kept, 0.5 * at_low, at_high)
-        moved = np.abs(middle - high)
-        high, at_high = middle, at_middle
-        if np.all(moved <= 1e-13 * high):
-            break
-    return high

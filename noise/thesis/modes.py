@@ -14,20 +14,19 @@ The shipped rig sounds through anchors of its own: there the first torsional mod
 model's, which leaves the clamp's inertia no choice, and the two springs are those with which the
 largest error of the four modes above it is least.
 
-The largest error matters, so the fourth power of the errors is summed. The first frequency of each
-length must be the first mode in which the clamp turns, a further one is held against the nearest
-mode of either motion, as nothing is known of its shape.
+The largest error matters, so the fit has the least sum of the errors' fourth powers. The first
+frequency of each length must be the first mode in which the clamp turns, a further one is held
+against the nearest mode of either motion, as nothing is known of its shape.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from models.bench import Beams
 from models.structure.beams import beam_structure, torsional_stiffness
@@ -96,11 +95,9 @@ def clamp_modes(beams: Beams, length: float) -> NDArray[np.float64]:
     array([ 140.,  250., 1094., 1152.])
     """
     structure = clamp_on_beams(beams, length)
-    found = [
-        natural_frequencies(structure, _HIGHEST, motion)
-        for motion in (RootMotion.TURNING, RootMotion.SIDEWAYS)
-    ]
-    return np.sort(np.concatenate(found))
+    return np.sort(
+        np.concatenate([natural_frequencies(structure, _HIGHEST, motion) for motion in RootMotion])
+    )
 
 
 def beam_modes() -> Iterator[Values]:
@@ -114,128 +111,58 @@ def beam_modes() -> Iterator[Values]:
         yield {"exact": float(mode)}
 
 
-_POWER = 4
-"""Of the relative errors that are summed."""
-
-_HEADROOM = 1.3
-"""Modes are looked for up to so many times the highest measured frequency."""
-
-_SEARCHED = {  # start, lowest and highest
-    "clamp_inertia": (5e-4, 1e-4, 3e-3),
-    "anchor_rotation": (60.0, 10.0, 1e5),
-    "anchor_translation": (5e6, 1e5, 1e9),
+FITTED = {  # clamp's inertia [kg m2]; the anchors' stiffness [Nm/rad], [N/m]
+    "turning anchors": (5.2583e-4, 154.944, math.inf),
+    "yielding anchors": (4.51605e-4, 10.0, 4.76953e6),
 }
-"""[kg m2], [Nm/rad], [N/m]"""
+"""Clamp and anchors with which the fourth powers of the errors of `MEASURED` sum to the least, by
+what a row calls them; 10 Nm/rad is the least stiffness that was allowed."""
 
-
-@dataclass(frozen=True)
-class AnchorFit:
-    """Clamp and anchors as fitted, and the mode that each measured one is held against.
-
-    Parameters
-    ----------
-    structure : ClampOnBeams
-        With the length of the first measured beams.
-    found : tuple of float
-        [Hz]
-    """
-
-    structure: ClampOnBeams
-    found: tuple[float, ...]
-
-
-def fit_anchors(
-    structure: ClampOnBeams,
-    measured: Mapping[float, Sequence[float]],
-    *,
-    free: Sequence[str] = ("clamp_inertia", "anchor_rotation", "anchor_translation"),
-) -> AnchorFit:
-    """Fit clamp and anchors to measured modes of beams of several lengths.
-
-    Parameters
-    ----------
-    structure : ClampOnBeams
-        Everything that is not free; its length is without meaning.
-    measured : mapping of float to sequence of float
-        Modes [Hz] by length of the beams [m], the first being that in which the clamp turns.
-    free : sequence of str, optional
-        Which of ``clamp_inertia``, ``anchor_rotation`` and ``anchor_translation`` are fitted.
-
-    Returns
-    -------
-    AnchorFit
-        The same at each call: the search starts at one place and is deterministic.
-
-    Examples
-    --------
-    >>> from models.bench import Beams
-    >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
-    >>> stuck = ClampOnBeams(steel, 0.123, 0.96, 1 / 1050, 6.13e5, 750.0)
-    >>> fit = fit_anchors(stuck, {0.123: [250.0], 0.092: [320.0]},
-    ...                   free=["clamp_inertia", "anchor_rotation"])
-    >>> [round(found) for found in fit.found]
-    [250, 320]
-    """
-    wanted = np.array([mode for modes in measured.values() for mode in modes])
-
-    def cost(logarithms: NDArray[np.float64]) -> float:
-        error = np.log(np.array(_nearest(_with(structure, free, logarithms), measured)) / wanted)
-        return float(np.sum(np.abs(100.0 * error) ** _POWER) ** (1.0 / _POWER))
-
-    best = minimize(
-        cost,
-        [math.log(_SEARCHED[name][0]) for name in free],
-        method="Nelder-Mead",
-        bounds=[tuple(np.log(_SEARCHED[name][1:])) for name in free],
-        options={"xatol": 1e-5, "fatol": 1e-6, "maxiter": 600},
-    )
-    fitted = replace(_with(structure, free, best.x), length=next(iter(measured)))
-    return AnchorFit(fitted, tuple(_nearest(fitted, measured)))
-
-
-def _with(
-    structure: ClampOnBeams, free: Sequence[str], logarithms: NDArray[np.float64]
-) -> ClampOnBeams:
-    values = dict(zip(free, np.exp(logarithms).tolist(), strict=True))
-    inertia = values.pop("clamp_inertia", structure.clamp_inertia)
-    return replace(structure, clamp_inertia=inertia, beams=replace(structure.beams, **values))
-
-
-def _nearest(structure: ClampOnBeams, measured: Mapping[float, Sequence[float]]) -> list[float]:
-    """Return the mode that each measured one is held against [Hz]."""
-    found = []
-    for length, modes in measured.items():
-        beams = replace(structure, length=length)
-        turning, sideways = (
-            natural_frequencies(beams, _HEADROOM * max(modes), motion)
-            for motion in (RootMotion.TURNING, RootMotion.SIDEWAYS)
-        )
-        every = np.concatenate([turning, sideways])
-        found.append(float(turning[0]))
-        found += [float(every[np.abs(np.log(every / mode)).argmin()]) for mode in modes[1:]]
-    return found
-
-
-KINDS = {
-    "turning anchors": ("clamp_inertia", "anchor_rotation"),
-    "yielding anchors": ("clamp_inertia", "anchor_rotation", "anchor_translation"),
-}
-"""What is fitted, by what a row calls it."""
-
-_MODES = {LONG: (250.0, 900.0, 4500.0, 6000.0), SHORT: (310.0, 1375.0)}
+MEASURED = {LONG: (250.0, 900.0, 4500.0, 6000.0), SHORT: (310.0, 1375.0)}
 """Measured with beams of 12.3 and 9.2 cm (5.2.2) [Hz]."""
 
 
+def nearest_modes(structure: ClampOnBeams) -> list[float]:
+    """Return the mode of a structure that each of `MEASURED` is held against [Hz].
+
+    Parameters
+    ----------
+    structure : ClampOnBeams
+        Its length is replaced by those that were measured.
+
+    Examples
+    --------
+    >>> structure = clamp_on_beams(rigidly_anchored(), 0.123)
+    >>> [round(mode) for mode in nearest_modes(structure)]
+    [250, 1094, 5844, 5878, 321, 321]
+    """
+    nearest = []
+    for support, measured in MEASURED.items():
+        beams = replace(structure, length=LENGTHS[support])
+        turning, sideways = (
+            natural_frequencies(beams, 1.3 * max(measured), motion) for motion in RootMotion
+        )
+        modes = np.concatenate([turning, sideways])
+        nearest.append(float(turning[0]))
+        nearest += [float(modes[np.abs(np.log(modes / one)).argmin()]) for one in measured[1:]]
+    return nearest
+
+
+def fitted_structure(kind: str) -> ClampOnBeams:
+    """Return clamp and beams with the anchors of one of `FITTED`; the beams are the long ones."""
+    inertia, rotation, translation = FITTED[kind]
+    beams = replace(rigidly_anchored(), anchor_rotation=rotation, anchor_translation=translation)
+    return replace(clamp_on_beams(beams, LENGTHS[LONG]), clamp_inertia=inertia)
+
+
 def fitted() -> Iterator[Values]:
-    """Modes, k_B and effective stiffness, with turning anchors and then with yielding ones."""
-    measured = {LENGTHS[support]: modes for support, modes in _MODES.items()}
-    structure = clamp_on_beams(rigidly_anchored(), LENGTHS[LONG])
-    for free in KINDS.values():
-        fit = fit_anchors(structure, measured, free=free)
-        of_beams = fit.structure.beams
-        supports = [torsional_stiffness(of_beams, length) for length in LENGTHS.values()]
+    """Compute modes, k_B and effective stiffness, with turning and then with yielding anchors."""
+    for kind in FITTED:
+        structure = fitted_structure(kind)
+        lengths = LENGTHS.values()
+        supports = [torsional_stiffness(structure.beams, length) for length in lengths]
         series = [in_series(THESIS, at, support) for at in INTERFERENCES for support in supports]
-        for exact in (*fit.found, *supports, *series):
+        for exact in (*nearest_modes(structure), *supports, *series):
             yield {"exact": exact}
 
 
@@ -248,10 +175,10 @@ def shipped() -> Iterator[Values]:
     [259, 992, 4050, 6619, 337, 1489]
     """
     rig = rig_of(CALIBRATED)
-    for support, modes in _MODES.items():
-        found = beam_structure(
+    for support, modes in MEASURED.items():
+        computed = beam_structure(
             rig.beams, support, rig.clamp_inertia, 0.01, 1.3 * max(modes)
         ).frequencies
-        nearest = (found[np.abs(np.log(found / measured)).argmin()] for measured in modes[1:])
-        for mode in (found[0], *nearest):
+        nearest = (computed[np.abs(np.log(computed / one)).argmin()] for one in modes[1:])
+        for mode in (computed[0], *nearest):
             yield {"calibrated": float(mode)}

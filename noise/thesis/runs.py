@@ -143,108 +143,71 @@ def _damped(material: str, case: Case) -> Rig:
     return with_damping(rig_of(material), case.damping)
 
 
-def _settled(run: Motion) -> Motion:
-    return run.part(run.torque.size // 4)
+Quantity = Callable[[str, Case], float]
+"""Number of a material at a case, in the unit of its row."""
 
 
-def oscillation(material: str, case: Case) -> float:
-    """Return the standard deviation of the torque over its mean [-], once the run has settled."""
-    torque = _settled(motion(material, case)).torque
-    return float(torque.std() / abs(torque.mean()))
+def _of_motion(measure: Callable[[Motion], float], *, steady: float | None = None) -> Quantity:
+    """Return a quantity of the settled motion, which is `steady` where the torque is."""
+
+    def quantity(material: str, case: Case) -> float:
+        run = motion(material, case)
+        run = run.part(run.torque.size // 4)
+        if steady is not None and _oscillation(run) <= LEAST_OSCILLATION:
+            return steady
+        return float(measure(run))
+
+    return quantity
 
 
-def _mean_torque(material: str, case: Case) -> float:
-    """Mean torque [Nm]."""
-    return float(_settled(motion(material, case)).torque.mean())
+def _oscillation(run: Motion) -> float:
+    """Return the standard deviation of the torque over its mean [-]."""
+    return float(run.torque.std() / abs(run.torque.mean()))
 
 
-def _torque_swing(material: str, case: Case) -> float:
-    """Largest less smallest torque [Nm], once the run has settled.
-
-    The thesis compares amplitudes by "analyses of the torque time traces" (5.2.1). A root mean
-    square is not read from a trace: of one amplitude, it follows the waveform, which the support
-    changes.
-    """
-    return float(np.ptp(_settled(motion(material, case)).torque))
+def _lines(run: Motion) -> Lines:
+    return find_lines(autospectrum(run.torque, RATE), low=_LINES[0], high=_LINES[1])
 
 
-def _sudden_share(material: str, case: Case) -> float:
-    """Share of the torque's falls that is sudden, once it has settled; 0 where it is steady."""
-    if oscillation(material, case) <= LEAST_OSCILLATION:
-        return 0.0
-    return _slips(material, case).sudden_share
+def _strongest_line(run: Motion) -> float:
+    """Return the frequency of the strongest line of the torque [Hz]; NaN where there is none."""
+    frequency = _lines(run).frequency
+    return float(frequency[0]) if frequency.size else math.nan
 
 
-def _slips(material: str, case: Case) -> Slips:
-    return motion_slips(_settled(motion(material, case)))
-
-
-def _lines(material: str, case: Case) -> Lines | None:
-    """Lines of the torque, where it oscillates."""
-    if oscillation(material, case) <= LEAST_OSCILLATION:
-        return None
-    torque = _settled(motion(material, case)).torque
-    return find_lines(autospectrum(torque, RATE), low=_LINES[0], high=_LINES[1])
-
-
-def _strongest_line(material: str, case: Case) -> float:
-    """Frequency of the strongest line of the torque [Hz]; NaN where there is none."""
-    lines = _lines(material, case)
-    return math.nan if lines is None or not lines.frequency.size else float(lines.frequency[0])
-
-
-def _strongest_share(material: str, case: Case) -> float:
-    """Share of the torque's power that lies in its strongest line; NaN where it is steady."""
-    lines = _lines(material, case)
-    return math.nan if lines is None else lines.strongest_share
-
-
-def _recorded(material: str, case: Case) -> Run:
-    return simulate(
-        rig_of(material), case.speed,
-        interference=case.interference, support_stiffness=case.support_stiffness,
-    )  # fmt: skip
-
-
-def _acceleration(material: str, case: Case) -> float:
-    """Root mean square of the beam's acceleration [m/s^2]."""
-    return float(np.std(_recorded(material, case).recording["acceleration"]))
-
-
-def _peak_pressure(material: str, case: Case) -> float:
-    """Largest sound pressure [Pa]."""
-    return float(np.abs(_recorded(material, case).pressure).max())
-
-
-def _slip_frequency(material: str, case: Case) -> float:
-    """Slips a second [Hz]; NaN where nothing slips."""
-    if oscillation(material, case) <= LEAST_OSCILLATION:
-        return math.nan
-    return _slips(material, case).rate
-
-
-def _cycle_frequency(material: str, case: Case) -> float:
-    """Slips a second, or periods of the torque where nothing slips [Hz]; NaN where it is steady."""
-    if oscillation(material, case) <= LEAST_OSCILLATION:
-        return math.nan
-    run = _settled(motion(material, case))
+def _cycle_frequency(run: Motion) -> float:
+    """Return slips a second, or periods of the torque where nothing slips [Hz]."""
     return repetition_rate(motion_slips(run), run.torque, run.rate)
 
 
-def _third_over_second(material: str, case: Case) -> float:
-    """Amplitude of the third harmonic of the slip frequency over that of the second [-]."""
-    slips = _slip_frequency(material, case)
+def _third_over_second(run: Motion) -> float:
+    """Return the third harmonic's amplitude of the slip frequency over the second's [-]."""
+    slips = motion_slips(run).rate
     if math.isnan(slips):
         return math.nan
-    found = autospectrum(_settled(motion(material, case)).torque, RATE)
+    spectrum = autospectrum(run.torque, RATE)
     second, third = (
-        float(found.density[np.abs(found.frequency - k * slips) < _NEAR].max()) for k in (2, 3)
+        float(spectrum.density[np.abs(spectrum.frequency - k * slips) < _NEAR].max())
+        for k in (2, 3)
     )
     return math.sqrt(third / second)
 
 
+def _recorded(measure: Callable[[Run], float]) -> Quantity:
+    """Return a quantity of a recording."""
+
+    def quantity(material: str, case: Case) -> float:
+        run = simulate(
+            rig_of(material), case.speed,
+            interference=case.interference, support_stiffness=case.support_stiffness,
+        )  # fmt: skip
+        return float(measure(run))
+
+    return quantity
+
+
 def _first_peak_speed(material: str, case: Case) -> float:
-    """Largest sliding speed of the first slip (Figure 6.7) [rad/s]."""
+    """Return the largest sliding speed of the first slip (Figure 6.7) [rad/s]."""
     run = motion(material, case)
     return _first_peak(run.stuck, run.sliding_speed)
 
@@ -260,15 +223,9 @@ def _speeds(material: str, case: Case) -> CriticalSpeeds:
     return critical_speeds(_damped(material, case), case.interference, case.support_stiffness)
 
 
-def _quasi_harmonic_range(material: str, case: Case) -> float:
-    """Range of speeds at which the torque oscillates and nothing slips [rad/s]."""
-    found = _speeds(material, case)
-    return found.v_crit2 - found.v_crit1
-
-
 @cache
 def _critical_damping(material: str, case: Case) -> float:
-    """Damping that ends stick-slip [Nm s/rad]."""
+    """Return the damping that ends stick-slip [Nm s/rad]."""
     return critical_damping(
         rig_of(material), case.speed,
         interference=case.interference, support_stiffness=case.support_stiffness,
@@ -277,33 +234,33 @@ def _critical_damping(material: str, case: Case) -> float:
 
 
 def _torsional_mode(material: str, case: Case, *, stuck: bool) -> float:
-    """First torsional mode of the lumped model (5.2.2) [Hz]."""
+    """Return the first torsional mode of the lumped model (5.2.2) [Hz]."""
     lumped = lumped_bushing(rig_of(material), case.interference, case.support_stiffness)
     return float(lumped.natural_frequencies(stuck=stuck)[0])
 
 
-def _strongest_harmonic(material: str, case: Case) -> float:
-    return _strongest_line(material, case) / _cycle_frequency(material, case)
-
-
-QUANTITIES: dict[str, Callable[[str, Case], float]] = {
-    "acceleration": _acceleration,
+QUANTITIES: dict[str, Quantity] = {
+    "acceleration": _recorded(lambda run: np.std(run.recording["acceleration"])),
     "critical_damping": _critical_damping,
-    "cycle_frequency": _cycle_frequency,
+    "cycle_frequency": _of_motion(_cycle_frequency, steady=math.nan),
     "first_peak_speed": _first_peak_speed,
-    "mean_torque": _mean_torque,
-    "oscillation": oscillation,
-    "peak_pressure": _peak_pressure,
+    "mean_torque": _of_motion(lambda run: run.torque.mean()),
+    "oscillation": _of_motion(_oscillation),
+    "peak_pressure": _recorded(lambda run: np.abs(run.pressure).max()),
     "peak_speed": lambda material, case: float(motion(material, case).sliding_speed.max()),
-    "quasi_harmonic_range": _quasi_harmonic_range,
-    "slip_frequency": _slip_frequency,
-    "slip_pattern": lambda material, case: float(_slips(material, case).pattern) or math.nan,
-    "strongest_harmonic": _strongest_harmonic,
-    "strongest_line": _strongest_line,
-    "strongest_share": _strongest_share,
-    "sudden_share": _sudden_share,
-    "third_over_second": _third_over_second,
-    "torque_swing": _torque_swing,
+    "quasi_harmonic_range": lambda *at: _speeds(*at).v_crit2 - _speeds(*at).v_crit1,
+    "slip_frequency": _of_motion(lambda run: motion_slips(run).rate, steady=math.nan),
+    "slip_pattern": _of_motion(lambda run: motion_slips(run).pattern or math.nan),
+    "strongest_harmonic": _of_motion(
+        lambda run: _strongest_line(run) / _cycle_frequency(run), steady=math.nan
+    ),
+    "strongest_line": _of_motion(_strongest_line, steady=math.nan),
+    "strongest_share": _of_motion(lambda run: _lines(run).strongest_share, steady=math.nan),
+    "sudden_share": _of_motion(lambda run: motion_slips(run).sudden_share, steady=0.0),
+    "third_over_second": _of_motion(_third_over_second, steady=math.nan),
+    # The thesis reads amplitudes from time traces (5.2.1). A root mean square is not read from
+    # one: of one amplitude it follows the waveform, which the support changes.
+    "torque_swing": _of_motion(lambda run: np.ptp(run.torque)),
     "torsional_mode_sliding": partial(_torsional_mode, stuck=False),
     "torsional_mode_stuck": partial(_torsional_mode, stuck=True),
     "v_crit1": lambda material, case: _speeds(material, case).v_crit1,
@@ -330,29 +287,32 @@ def _listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
     )
 
 
-def _listing_slip_frequency(case: Case) -> float:
-    """Slips a second of the listing [Hz]; NaN where nothing slips."""
-    return _listing_slips(case, _listing_run(case).torque, 0.25).rate
-
-
-def _listing_sudden_share(case: Case, seconds: float = _SECONDS[THESIS]) -> float:
-    """Share of the falls of the listing's torque that is sudden, in the last half of a run."""
+def _listing_slips(case: Case, settled: float, seconds: float = _SECONDS[THESIS]) -> Slips | None:
+    """Find the listing's slips after a share of its run; none where the torque is steady."""
     torque = _listing_run(case, seconds).torque
-    last = torque[torque.size // 2 :]
-    if last.std() <= LEAST_OSCILLATION * abs(last.mean()):
-        return 0.0
-    return _listing_slips(case, torque, 0.5).sudden_share
-
-
-def _listing_slips(
-    case: Case, torque: np.ndarray[tuple[int], np.dtype[np.float64]], settling: float
-) -> Slips:
+    torque = torque[round(settled * torque.size) :]
+    if torque.std() <= LEAST_OSCILLATION * abs(torque.mean()):
+        return None
     rig = rig_of(THESIS)
     stiffness = rig.fit(case.interference).elastomer_stiffness
     return find_slips(
-        torque[round(settling * torque.size) :] / stiffness, case.speed, 1.0 / STEP,
+        torque / stiffness, case.speed, 1.0 / STEP,
         own_period=2.0 * math.pi * math.sqrt(rig.elastomer_inertia / stiffness),
     )  # fmt: skip
+
+
+def _listing_sudden_share(case: Case, seconds: float = _SECONDS[THESIS]) -> float:
+    slips = _listing_slips(case, 0.5, seconds)
+    return slips.sudden_share if slips else 0.0
+
+
+def _listing_sticks(case: Case) -> bool:
+    return _listing_sudden_share(case, _SEARCHED) > LEAST_SUDDEN
+
+
+def _listing_slip_frequency(case: Case) -> float:
+    slips = _listing_slips(case, 0.25)
+    return slips.rate if slips else math.nan
 
 
 def _listing_first_peak(case: Case) -> float:
@@ -362,23 +322,18 @@ def _listing_first_peak(case: Case) -> float:
 
 @cache
 def _listing_damping(case: Case) -> float:
-    def sticks(damping: float) -> bool:
-        # Below any damping that matters; the listing takes none of zero.
-        at = replace(case, damping=max(damping, 1e-9))
-        return _listing_sudden_share(at, _SEARCHED) > LEAST_SUDDEN
-
-    return largest_sticking(sticks, _HIGHEST_DAMPING, _DAMPING_TOLERANCE)
+    # Below any damping that matters; the listing takes none of zero.
+    return largest_sticking(
+        lambda damping: _listing_sticks(replace(case, damping=max(damping, 1e-9))),
+        _HIGHEST_DAMPING,
+        _DAMPING_TOLERANCE,
+    )
 
 
 @cache
 def _listing_v_crit1(case: Case) -> float:
-    """Last speed at which the listing sticks and slips [rad/s]."""
-    at_speeds = {speed: replace(case, speed=speed) for speed in SPEEDS}
-    sticking = [
-        speed
-        for speed, at in at_speeds.items()
-        if _listing_sudden_share(at, _SEARCHED) > LEAST_SUDDEN
-    ]
+    """Return the last speed at which the listing sticks and slips [rad/s]."""
+    sticking = [speed for speed in SPEEDS if _listing_sticks(replace(case, speed=speed))]
     last = max(sticking, default=0.0)
     return math.inf if last == SPEEDS[-1] else last
 

@@ -18,6 +18,7 @@ def main() -> int:
 
     at, told = int(sys.argv[1]), Path(sys.argv[2])
     track, step, put = progress.track, progress.Steps.__call__, Path.replace
+    move = progress.Steps.at
     n = 0
 
     def moment():
@@ -35,11 +36,16 @@ def main() -> int:
         moment()
         step(*given)
 
+    def moved(*given):
+        moment()
+        move(*given)
+
     def replaced(path, target):
         moment()
         return put(path, target)
 
     progress.track, progress.Steps.__call__, Path.replace = tracked, stepped, replaced
+    progress.Steps.at = moved
     from noise.cli import main as command
 
     code = command(sys.argv[3:])
