@@ -73,13 +73,13 @@ def atomic(target: str | Path) -> Iterator[Path]:
             temporary.unlink(missing_ok=True)
 
 
-def check_target(path: Path, option: str = "--out") -> None:
+def check_target(path: Path | None, option: str = "--out") -> None:
     """Refuse an output path that cannot be created.
 
     Parameters
     ----------
-    path : Path
-        File or folder to create.
+    path : Path or None
+        File or folder to create; None is no output.
     option : str
         Command-line option that names it, for messages.
 
@@ -93,6 +93,8 @@ def check_target(path: Path, option: str = "--out") -> None:
     --------
     >>> check_target(Path("new") / "folder" / "table.csv")
     """
+    if path is None:
+        return
     _refuse_device(path, f"{option} {path}")
     place = _link_target(path, option)
     try:

@@ -44,8 +44,7 @@ BATCH = (
 def check_batch(options: Namespace) -> None:
     """Refuse unusable options of a batch before the work."""
     check_table_path(options.out)
-    if options.out is not None:
-        check_target(options.out)
+    check_target(options.out)
     if options.scheduler is not None:
         from noise.batch.cluster import check_cluster
 

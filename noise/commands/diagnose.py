@@ -33,8 +33,7 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Diagnose, write the results and print the answer."""
-    if options.out is not None:
-        check_folder(options.out, file="report.html")
+    check_folder(options.out, file="report.html")
     with steps("diagnosing", _QUICK_STEPS if options.quick else _STEPS) as progress:
         case, library, printed = _read(options, progress)
         from noise.diagnosis.diagnose import diagnose_case

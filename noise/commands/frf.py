@@ -111,11 +111,10 @@ def _check(options: Namespace) -> None:
 
     if options.out is not None:
         check_transfer_function_path(options.out)
-        check_target(options.out)
-    if options.modes is not None:
-        check_table_path(options.modes)
-        check_target(options.modes)
-    elif options.band is not None:
+    check_target(options.out)
+    check_table_path(options.modes)
+    check_target(options.modes)
+    if options.modes is None and options.band is not None:
         raise ParameterError("--band needs --modes")
 
 

@@ -24,8 +24,7 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Identify the rig and write the results."""
-    if options.out is not None:
-        check_folder(options.out, file="report.html")
+    check_folder(options.out, file="report.html")
     with steps("identifying", 1) as progress:
         identification, refused = _identification(options, progress)
         if identification is not None and options.out is not None:

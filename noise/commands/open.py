@@ -24,8 +24,7 @@ def run(options: Namespace) -> int:
     from noise.app.opened import open_paths
     from noise.app.server import serve
 
-    if options.save_to is not None:
-        check_folder(options.save_to, "--save-to")
+    check_folder(options.save_to, "--save-to")
     opened = open_paths(options.paths, options.out, options.seed, options.save_to)
 
     def ready(address: str) -> None:

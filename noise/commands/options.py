@@ -409,14 +409,18 @@ def change_table(changes: Sequence[tuple[str, str | float]]) -> dict[str, str | 
     return table
 
 
-def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None:
+def check_folder(folder: Path | None, option: str = "--out", *, file: str = "") -> None:
     """Refuse an output folder that cannot be made, or in which `file` cannot be written.
+
+    Without a folder there is nothing to check.
 
     Raises
     ------
     ParameterError
         The folder is a file or a broken link, or is not writable.
     """
+    if folder is None:
+        return
     if folder.exists() and not folder.is_dir():
         raise ParameterError(f"{option} {folder}: is a file; name a folder")
     if folder.is_symlink() and not folder.exists():

@@ -72,8 +72,7 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Screen the designs, print the ranking and write tables and pictures."""
-    if options.out is not None:
-        check_folder(options.out, file="map.csv")
+    check_folder(options.out, file="map.csv")
     from noise.batch.journal import call_identity, temporary_journal
     from noise.screening.design import load_designs
     from noise.screening.environments import environment

@@ -209,10 +209,9 @@ def _check_overwrite(out: Path) -> None:
 
 def _check(options: Namespace) -> None:
     """Refuse outputs that cannot be written, before the run."""
-    if options.out is not None:
-        check_target(options.out)
-        if not options.force:
-            _check_overwrite(options.out)
+    check_target(options.out)
+    if options.out is not None and not options.force:
+        _check_overwrite(options.out)
     if options.plot is not None:
         from noise.pictures.figure import check_picture_path
 

@@ -23,8 +23,7 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Write the table, draw the figures, or both."""
-    if options.plots is not None:
-        check_folder(options.plots, "--plots", file="figure-5.3.png")
+    check_folder(options.plots, "--plots", file="figure-5.3.png")
     if options.out is not None or options.plots is None:
         _write_table(options.out)
     if options.plots is not None:
