@@ -45,11 +45,13 @@ def computed_rows():
 # The page
 
 
+@pytest.mark.ci
 @pytest.mark.slow
 def test_the_page_is_what_the_program_writes(computed_rows):
     assert PAGE.read_text(encoding="utf-8") == page.thesis_page(computed_rows), STALE
 
 
+@pytest.mark.ci
 @pytest.mark.slow
 def test_what_was_measured_and_missed_says_why_and_nothing_else_does(computed_rows):
     missed = {(r.item, r.condition) for r in computed_rows if r.misses}
@@ -57,6 +59,7 @@ def test_what_was_measured_and_missed_says_why_and_nothing_else_does(computed_ro
     assert missed == set(reasons())
 
 
+@pytest.mark.ci
 @pytest.mark.slow
 def test_a_measured_fact_is_counted_by_what_ships(computed_rows):
     for found in computed_rows:
