@@ -157,7 +157,7 @@ def padded(low: float, high: float, least: float) -> tuple[float, float]:
 
 
 def levels(density: NDArray[np.float64], reference: float) -> NDArray[np.float64]:
-    """Return the levels of a spectral density [unit^2/Hz] in dB re (`reference` [unit])^2/Hz.
+    """Return the levels of a density, shape (n,) [unit^2/Hz], in dB re (`reference` [unit])^2/Hz.
 
     Examples
     --------

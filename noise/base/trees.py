@@ -148,7 +148,7 @@ class BoostedTrees(Trees):
     Parameters
     ----------
     roots, feature, threshold, children, missing_left : ndarray
-        See `Trees`.
+        As for `Trees`.
     classes : ndarray of int16, shape (n_trees,)
         Class of each tree.
     value : ndarray of float64, shape (n_nodes,)
@@ -196,7 +196,7 @@ class BoostedTrees(Trees):
         return scores
 
     def probabilities(self, x: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Return uncalibrated probabilities of the classes, the softmax of `scores`."""
+        """Return uncalibrated probabilities of the classes, the softmax of `scores`, same shape."""
         scores = self.scores(x)
         p = np.exp(scores - scores.max(axis=1, keepdims=True))
         return np.asarray(p / p.sum(axis=1, keepdims=True))
@@ -224,7 +224,7 @@ class QuantileForest(Trees):
     Parameters
     ----------
     roots, feature, threshold, children, missing_left : ndarray
-        See `Trees`; the left child is the next node, and thresholds have single precision.
+        As for `Trees`; the left child is the next node, and thresholds have single precision.
     values : ndarray of float16, shape (n_leaves, n_statistics)
         Order statistics of each leaf [unit of the target], in the order of the leaves.
     """

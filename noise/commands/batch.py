@@ -209,7 +209,7 @@ def draw_recordings(
     rows : sequence of mapping
         Rows of the label table.
     full_scale : float or tuple of float, optional
-        See `noise.recordings.read_recording`.
+        Pressure of a full-scale sample [Pa], as for `noise.recordings.read_recording`.
     """
     if target is None:
         return []

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def number_or_none(text: str) -> float | None:
-    """Parse a number, which may be infinite; return None for other text.
+    """Parse a number [any unit], which may be infinite; return None for other text.
 
     Examples
     --------

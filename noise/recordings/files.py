@@ -105,7 +105,7 @@ def open_blocks(
     ----------
     path : path-like
     full_scale : float or tuple of float, optional
-        See `read_recording`.
+        Pressure of a full-scale sample [Pa], as for `read_recording`.
 
     Yields
     ------

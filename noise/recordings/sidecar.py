@@ -90,7 +90,7 @@ class SidecarChannel:
     scale : float, optional
         [unit per full scale]
     position, direction : tuple of float, optional
-        See `models.recording.Channel`.
+        Position [m] and unit vector [-], as for `models.recording.Channel`.
     """
 
     name: Annotated[str, ReadBy("name", _name)]

@@ -260,7 +260,7 @@ def _header(
 def integers(
     fractions: NDArray[np.float64], bits: int, dither: np.random.Generator | None
 ) -> bytes:
-    r"""Return samples as rounded and dithered little-endian integers; see `wav_bytes`.
+    r"""Return samples, shape (n,), as rounded and dithered little-endian integers.
 
     Examples
     --------

@@ -91,7 +91,7 @@ class Row:
     kind : str
         Kind of channel; empty if only a sidecar can state it.
     value : float
-        Unit of the file in SI units.
+        Unit of the file [SI unit].
     start : float or None
         Time of the first sample [s].
     rate : float
