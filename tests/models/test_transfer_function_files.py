@@ -1,5 +1,7 @@
 """Files of response functions: what is written comes back, what cannot be used is refused."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -44,6 +46,13 @@ def test_a_response_is_read_as_it_was_written(tmp_path, ending, coherence):
         assert back.coherence is None
     else:
         np.testing.assert_allclose(back.coherence, coherence, atol=1e-9)
+
+
+def test_copies_are_alike_whether_or_not_they_were_compared():
+    response = TransferFunction(F, H, None, "N m", "Pa")
+    copied = pickle.dumps(response)
+    assert pickle.loads(copied) == response != TransferFunction(F, 2 * H, None, "N m", "Pa")
+    assert pickle.dumps(response) == copied
 
 
 @pytest.mark.parametrize("rate", [25600.0, 44100.0, 48000.0, 51200.0, 65536.0, 96000.0])
