@@ -193,7 +193,7 @@ def test_a_universal_response_that_is_another_one_is_refused(
 
 def test_a_universal_response_that_states_no_unit_is_read_with_a_warning(tmp_path):
     path = universal(tmp_path / "a.uff", "NONE", 0)
-    with pytest.warns(UserWarning, match=r"taken for m/s\^2 per N"):
+    with pytest.warns(UserWarning, match=r"taken as m/s\^2 per N"):
         read(path, "N")
 
 
