@@ -1,4 +1,4 @@
-"""``improved.toml``: the rig file of what closes a gap, in a file and in words."""
+"""``improved.toml``, the rig file that closes a gap, and its description."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def improved_sentence(improvement: Improvement) -> str:
-    """Say what an improved rig has and what it closes.
+    """Return the changes of an improved rig and the gap that it leaves.
 
     Examples
     --------
@@ -49,16 +49,16 @@ def improved_sentence(improvement: Improvement) -> str:
 def improved_commands(
     improvement: Improvement, file: Path | str, data: Sequence[Path], effects: Path | None
 ) -> list[str]:
-    """Return what to call next with a file of the improved rig.
+    """Return the commands to run next with the file of an improved rig.
 
     Parameters
     ----------
     improvement : Improvement
     file : path-like
     data : sequence of Path
-        Recordings that it was diagnosed from.
+        Diagnosed recordings.
     effects : Path, optional
-        File of the user's own effects.
+        File of user-defined effects.
 
     Examples
     --------
@@ -90,16 +90,15 @@ def improved_text(
     base: str,
     changes: Mapping[str, str | float] | None = None,
 ) -> str:
-    """Write an improved rig as a rig file.
+    """Return the rig file of an improved rig.
 
     Parameters
     ----------
     improvement : Improvement
     base : str
-        The rig that was diagnosed, as ``base`` names it.
+        Diagnosed rig, as in ``base``.
     changes : mapping of str to str or float, optional
-        What was changed about that file when it was diagnosed, as ``[change]`` takes it [unit of
-        the key].
+        Changes of that file for the diagnosis, as in ``[change]`` [unit of the key].
 
     Returns
     -------
@@ -133,7 +132,7 @@ def improved_text(
 
 
 def own_effects(improvement: Improvement) -> tuple[str, ...]:
-    """Names of effects of an improved rig that the user has brought."""
+    """Return the names of user-defined effects of an improved rig."""
     return tuple(spec.name for spec in improvement.rig.effects if spec.name not in EFFECTS)
 
 
@@ -168,14 +167,14 @@ def _head(improvement: Improvement) -> list[str]:
 
 
 def check_base(rig: Path, folder: Path) -> None:
-    """Refuse a rig file that the improved one would take the place of.
+    """Refuse a rig file that the improved one would overwrite.
 
     Parameters
     ----------
     rig : Path
-        That is diagnosed.
+        Rig file that is diagnosed.
     folder : Path
-        Of what is written.
+        Output folder.
 
     Raises
     ------
@@ -183,13 +182,13 @@ def check_base(rig: Path, folder: Path) -> None:
         It, or a file that it is based on, is ``improved.toml`` in this folder.
     """
     target, path = (folder / NAME).resolve(), rig.resolve()
-    seen: set[Path] = set()
-    while path.is_file() and path not in seen:
+    checked: set[Path] = set()
+    while path.is_file() and path not in checked:
         if path == target:
             raise ParameterError(
                 f"--out {folder}: would write {NAME} over the rig file that --rig {rig} needs; "
                 "name another folder"
             )
-        seen.add(path)
+        checked.add(path)
         base = read_toml(path, f"rig file {path}").get("base")
         path = (path.parent / str(base)).resolve() if base else path

@@ -1,8 +1,4 @@
-"""Outcome of a diagnosis as plain data: for the report, for `diagnosis.json`, for a notebook.
-
-It holds what is found piece by piece (stages, places, effects, what is heard and shown) and the
-improved rig, with how sure its numbers are.
-"""
+"""Result of a diagnosis, and its form in `diagnosis.json`."""
 
 from __future__ import annotations
 
@@ -23,11 +19,10 @@ if TYPE_CHECKING:
 
 
 LARGEST_GAP = 100.0
-"""Floors that larger gaps are not told from [-]: they come from numbers that hardly scatter;
-assumed."""
+"""Upper limit of gaps [-]: larger ones come from numbers that hardly scatter; assumed."""
 
 SURE = 0.05
-"""p-value up to which a stage or a place is said to differ [-]; the customary level, assumed."""
+"""Significance level of stages and places [-]; the customary one, assumed."""
 
 SHOWN_IN = {
     "drive": ("drive", "friction"),
@@ -36,28 +31,28 @@ SHOWN_IN = {
     "radiation": ("radiation",),
     "measurement": ("measurement", "friction", "structure", "radiation"),
 }
-"""Stages that an effect of each stage may show in: a shaft's motion hangs together with the
-contact, and an error of a sensor looks like one of the way to it."""
+"""Stages in which an effect of each stage may show: the shaft's motion depends on the contact, and
+an error of a sensor looks like one of the transfer path to it."""
 
 _DRAWN = 10
-"""Causes that are drawn, the most probable; assumed."""
+"""Number of causes that are drawn; assumed."""
 
 ROLES = ("measured", "before", "after")
-"""What is compared: the recording, the nominal model, and the fitted one."""
+"""Recording, nominal model and fitted model of a comparison."""
 
 
 @dataclass(frozen=True)
 class StageFinding:
-    """How a stage of the chain differs.
+    """Difference in a stage of the chain.
 
     Parameters
     ----------
     gap : float
-        In units of what repeats differ by; `LARGEST_GAP` stands for all that are larger [-].
+        Relative to that of repeats, `LARGEST_GAP` at most [-].
     share : float
-        Of the whole gap [-].
+        Share of the whole gap [-].
     p_value : float
-        Of so large a difference between repeats, corrected for the number of looks.
+        p-value of the difference, corrected for the number of tests.
     """
 
     gap: float
@@ -68,7 +63,7 @@ class StageFinding:
 @short_repr
 @dataclass(frozen=True)
 class Location:
-    """Where the simulation goes wrong first.
+    """Place of a difference.
 
     Parameters
     ----------
@@ -77,9 +72,9 @@ class Location:
     band : (float, float)
         [Hz]
     phase : str
-        Of the cycle: ``stick``, ``slip``, ``cycle`` where it is the cycle as a whole, or ``all``.
+        Phase of the stick-slip cycle: ``stick``, ``slip``, ``cycle`` (as a whole) or ``all``.
     conditions : str
-        In which it shows, such as ``speed_rad_s >= 2.5``, or ``all``.
+        Conditions in which it shows, such as ``speed_rad_s >= 2.5``, or ``all``.
     p_value : float
         [-]
     """
@@ -95,24 +90,24 @@ class Location:
 @short_repr
 @dataclass(frozen=True)
 class EffectFinding:
-    """A candidate cause.
+    """Candidate cause.
 
     Parameters
     ----------
     name, stage : str
     probability : float
-        That it is at work, alone or with others [-].
+        Probability that it is present, alone or with others [-].
     parameters : mapping of str to float or str
-        As fitted; empty where it was not [unit of the parameter].
+        Fitted values; empty without a fit [unit of the parameter].
     strength : (float, float), optional
-        90 % interval of the parameter that switches it off, given that the form and the other
-        numbers are as fitted; another form may do the same at another strength.
+        90 % interval of the parameter that switches it off, given the form and the other numbers as
+        fitted; another form may need another strength.
     gap_before, gap_recalibrated, gap_after, gap_floor : float, optional
-        On recordings that no fit has seen; None where it was not fitted, in floors [-].
+        Gaps of held-out recordings, relative to that of repeats; None without a fit [-].
     closed, closed_low, closed_high, closed_by_effect : float, optional
-        Shares of the closable gap, with a 90 % interval; None where there is nothing to close.
+        Shares of the closable gap, with a 90 % interval; None if there is nothing to close.
     fitted_with : tuple of str
-        Effects that share its fit and its figures.
+        Effects of the same fit.
     """
 
     name: str
@@ -134,17 +129,16 @@ class EffectFinding:
 @short_repr
 @dataclass(frozen=True)
 class HypothesisFinding:
-    """Causes that may be at work together, and no others.
+    """Set of causes that may be present together.
 
     Parameters
     ----------
     causes : tuple of str
-        None where nothing is the matter.
+        Empty if nothing differs.
     probability : float
         [-]
     gap : float, optional
-        That is left with them on recordings that no fit has seen; None where it was not fitted, in
-        floors [-].
+        Gap of held-out recordings with them, relative to that of repeats; None without a fit [-].
     """
 
     causes: tuple[str, ...]
@@ -155,7 +149,7 @@ class HypothesisFinding:
 @short_repr
 @dataclass(frozen=True)
 class Agreement:
-    """How far a recording lies from the rig as its file describes it.
+    """Gap of a recording from the simulation of the rig file.
 
     Parameters
     ----------
@@ -163,9 +157,9 @@ class Agreement:
     speed, interference : float
         [rad/s], [m]
     gap : float
-        In units of what repeats differ by [-].
+        Gap of all channels together, relative to that of repeats [-].
     channels : mapping of str to float
-        The same by kind of channel [-].
+        Gap of each kind of channel [-].
     """
 
     recording: str
@@ -178,14 +172,14 @@ class Agreement:
 @short_repr
 @dataclass(frozen=True)
 class Remainder:
-    """What is still to be explained once the verdict's model is fitted.
+    """Gap that the fitted model of the verdict leaves.
 
     Parameters
     ----------
     gap : float
-        On recordings that no fit has seen, in floors [-].
+        Gap of held-out recordings, relative to that of repeats [-].
     channels : tuple of str
-        In which it is largest, the first most of all.
+        Channels with the largest gap, in falling order.
     band : (float, float)
         [Hz]
     """
@@ -198,38 +192,37 @@ class Remainder:
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Illustration:
-    """One held-out recording beside its simulations, for pictures and players."""
+    """Held-out recording with its simulations, for pictures and players."""
 
     name: str
     measured: Recording
     before: Recording
     after: Recording | None
     contacts: Mapping[str, FrictionCurves] = field(default_factory=dict)
-    """The friction torque of each, by ``measured``, ``before`` and ``after``."""
+    """Friction torque of each, by ``measured``, ``before`` and ``after``."""
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Improvement:
-    """What closes a gap, as a rig file can say it.
+    """Improved rig.
 
     Parameters
     ----------
     rig : Rig
-        The improved one.
+        Improved rig.
     factors : mapping of str to float
-        On parameters of the rig that was diagnosed [-].
+        Factors on parameters of the diagnosed rig [-].
     effects : tuple of LawSpec
-        That it gets besides those it has.
+        Effects that are added.
     spread : mapping of str to float
-        Relative standard deviation of each fitted number, by the names that ``[tolerances]`` has
-        [-].
+        Relative standard deviation of each fitted number, by its name in ``[tolerances]`` [-].
     undetermined : tuple of str
-        Fitted numbers of which the recordings say next to nothing.
+        Fitted numbers that the recordings hardly determine.
     fitted_to, held_out : tuple of str
         Recordings.
     gap_before, gap_after : float
-        On those held out, in floors [-].
+        Gaps of held-out recordings, relative to that of repeats [-].
     """
 
     rig: Rig
@@ -246,7 +239,7 @@ class Improvement:
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
-    """The whole answer.
+    """Result of a diagnosis.
 
     Parameters
     ----------
@@ -254,43 +247,43 @@ class Diagnosis:
         Empty: no gap beyond repeatability; ``("parameters",)``; ``("unknown",)``; or one to three
         effects.
     equivalent : tuple of (str, str)
-        Pairs of effects that these channels cannot separate.
+        Pairs of effects that these channels cannot distinguish.
     location : Location, optional
-        None where there is no gap.
+        None without a gap.
     stages : mapping of str to StageFinding
         By `sim.effects.effect.Stage`, in the order of the chain.
     effects : tuple of EffectFinding
         The most probable first; ``parameters`` and ``unknown`` are not among them.
     probabilities : mapping of str to float
-        Of ``none``, ``parameters``, ``unknown`` and of each effect being at work [-].
+        Probability of ``none``, ``parameters``, ``unknown`` and of the presence of each effect [-].
     parameters : mapping of str to (float, float)
         90 % interval of each rig parameter, relative to the rig file.
     next_measurement : str
     held_out : tuple of str
-        Recordings that no fit has seen.
+        Recordings that no fit used.
     gap, floor, p_value : float
-        Of the case as a whole, before anything was fitted [-].
+        Gap of all recordings before any fit, that of repeats, and p-value [-].
     seconds : float
-        That it took [s].
+        Time taken [s].
     notes : tuple of str
-        What is missing and what that costs; channels in bad health.
+        Notes on missing data and bad channels.
     illustrations : tuple of Illustration
     differences : tuple of Location
-        Every stage, channel, band and phase with its p-value, corrected for the number of looks;
-        the surest first.
+        Stages, channels, bands and phases that differ, with p-values corrected for the number of
+        tests; the smallest first.
     improvement : Improvement, optional
-        What closes the gap; None where nothing does, and where it was not looked for.
+        None if nothing closes the gap, and without fits.
     hypotheses : tuple of HypothesisFinding
         Sets of causes, the likeliest first.
     agreement : tuple of Agreement
-        Of each recording with the rig file, before anything was fitted.
+        Gap of each recording before any fit.
     remainder : Remainder, optional
-        None where the fit leaves no more than repeats differ by, and where there was none.
+        None if the fit leaves no more than the scatter of repeats, and without a fit.
     bench : tuple of str
-        Why the recordings cannot be of the rig as it is described, one line each; nothing else was
-        then looked for, and the verdict is ``("unknown",)``.
+        Reasons why the recordings cannot be of this rig, one line each; the verdict is then
+        ``("unknown",)``.
     faults : tuple of str
-        Channels that are dead, and were left out, or clip, one line each.
+        Channels that are dead (and left out) or clip, one line each.
 
     Examples
     --------
@@ -325,11 +318,11 @@ class Diagnosis:
 
     @property
     def improved(self) -> Rig | None:
-        """The rig with what closes the gap; None where nothing does."""
+        """Improved rig; None if nothing closes the gap."""
         return None if self.improvement is None else self.improvement.rig
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw how probable each cause is, those of the verdict in blue, the most probable on top.
+        """Draw the probability of each cause, those of the verdict in blue.
 
         Parameters
         ----------
@@ -362,7 +355,7 @@ class Diagnosis:
         return axes
 
     def to_pandas(self) -> DataFrame:
-        """Return one row an effect as a data frame of pandas, as ``diagnosis.json`` names it.
+        """Return one row per effect as a data frame of pandas, as ``diagnosis.json`` names it.
 
         Returns
         -------
@@ -384,7 +377,7 @@ _RECORDS = {
     "location": Location, "map": Location, "stages": StageFinding, "effects": EffectFinding,
     "hypotheses": HypothesisFinding, "agreement": Agreement, "remainder": Remainder,
 }  # fmt: skip
-"""Of a diagnosis: what a key is, or holds as values of an object or as entries of a list."""
+"""Record classes of keys of a diagnosis: of the value, or of its items."""
 
 _NAMES: dict[type, dict[str, str]] = {
     Diagnosis: {"differences": "map", "floor": "gap_floor"},
@@ -393,13 +386,13 @@ _NAMES: dict[type, dict[str, str]] = {
     HypothesisFinding: {"gap": "gap_after"},
     Agreement: {"speed": "speed_rad_s", "interference": "interference_mm"},
 }
-"""Keys of fields that are called otherwise in the file."""
+"""Keys of fields that have another name in the file."""
 
 _LEFT_OUT = ("illustrations", "improvement")
 
 _DIGITS = {"band_hz": 1, "seconds": 1, "speed_rad_s": 6, "interference_mm": 6}
 _OF_PARAMETERS, _USUAL = 6, 4
-"""Digits of the numbers of effects, and of all others."""
+"""Digits of the parameters of effects, and of all other numbers."""
 
 _MILLIMETRES = 1e3
 
@@ -411,20 +404,20 @@ def _keys(kind: type) -> dict[str, Any]:
 
 
 def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]:
-    """Return a diagnosis as ``diagnosis.json`` has it.
+    """Return the content of ``diagnosis.json``.
 
     Parameters
     ----------
     diagnosis : Diagnosis
     improved : str, optional
-        Name of the file of the improved rig that lies beside it.
+        Name of the file of the improved rig.
     """
     written: dict[str, Any] = _written(diagnosis, _USUAL)
     return written | {"improved": improved}
 
 
 def from_json(data: Mapping[str, Any]) -> Diagnosis:
-    """Return the diagnosis that ``diagnosis.json`` holds, without its illustrations.
+    """Return the diagnosis of ``diagnosis.json``, without its illustrations.
 
     Parameters
     ----------
@@ -434,7 +427,7 @@ def from_json(data: Mapping[str, Any]) -> Diagnosis:
     Raises
     ------
     KeyError, TypeError, ValueError
-        It is no diagnosis.
+        The data are no diagnosis.
     """
     for key in ("verdict", "equivalent", "location", "effects", "probabilities"):
         data[key]
@@ -446,11 +439,11 @@ _UNKNOWN: dict[str, Any] = {
     "stages": {}, "parameters": {}, "next_measurement": "", "held_out": [], "gap": None,
     "gap_floor": None, "p_value": None, "seconds": None,
 }  # fmt: skip
-"""What a file may lack."""
+"""Defaults of keys that a file may lack."""
 
 
 def _written(value: Any, digits: int) -> Any:
-    """Return a value of plain data: records as objects, numbers rounded, none as null."""
+    """Return a value as plain data: records as objects, numbers rounded, NaN as null."""
     if type(value) in {Diagnosis, *_RECORDS.values()}:
         many = _OF_PARAMETERS if isinstance(value, EffectFinding) else _USUAL
         given = {key: getattr(value, one.name) for key, one in _keys(type(value)).items()}
@@ -470,7 +463,7 @@ def _written(value: Any, digits: int) -> Any:
 
 
 def _record(kind: type, data: Mapping[str, Any]) -> Any:
-    """Return a record of the data of an object; what is not there stays at its default."""
+    """Return a record from the data of an object, with defaults for missing keys."""
     given: dict[str, Any] = {}
     for key, one in _keys(kind).items():
         if key in data:
@@ -483,7 +476,7 @@ def _record(kind: type, data: Mapping[str, Any]) -> Any:
 
 
 def _read(value: Any, holds: type | None) -> Any:
-    """Return a value of a file, with what it holds as records."""
+    """Return a value of a file, with its items as records."""
     if value is None:
         return math.nan
     if isinstance(value, Mapping):

@@ -1,4 +1,4 @@
-"""The diagnosis of a folder, as a notebook and the blind check call it."""
+"""Diagnosis of a folder of recordings."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def diagnose(
     effects: str | Path | Sequence[str | Path] = (),
     seed: int = 0,
 ) -> Diagnosis:
-    """Diagnose recordings against the simulator.
+    """Compare recordings with the simulator and name the missing effects.
 
     Parameters
     ----------
@@ -31,17 +31,16 @@ def diagnose(
     rig : Rig or path
         Rig, or its file.
     quick : bool
-        Whether to give the first answer alone, without fits.
+        Whether to return the first answer, without fits.
     effects : path or sequence of paths
-        Python files that define effects of the user's own, fitted beside the probable ones, and
-        known by their names where the rig file lists them. They are run.
+        Python files that define further effects. They are executed.
     seed : int
         Of simulated repeats and bootstraps.
 
     Returns
     -------
     Diagnosis
-        Its ``improved`` is the rig with what closes the gap, None where nothing does.
+        Its ``improved`` is the improved rig, None if nothing closes the gap.
 
     Raises
     ------
@@ -68,5 +67,5 @@ def _paths(given: str | Path | Sequence[str | Path]) -> list[Path]:
 
 
 def diagnosis_json(data: Path, rig: Path, *, quick: bool = False) -> dict[str, Any]:
-    """Diagnose a folder; return what ``diagnosis.json`` holds."""
+    """Return the content of ``diagnosis.json`` for a folder."""
     return as_json(diagnose(data, rig, quick=quick))

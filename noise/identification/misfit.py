@@ -61,7 +61,18 @@ class Misfit:
         ]
 
     def deviations(self, x: Array) -> list[Array]:
-        """Return the deviations of the recordings for a vector, shape (n,)."""
+        """Return the deviations of the recordings.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            Logarithms [-].
+
+        Returns
+        -------
+        list of ndarray, shape (n_samples,)
+            [-]
+        """
         deviations = []
         for one, torque in zip(self._model.subjects, self._model.predicted(x), strict=True):
             e = one.excerpts
@@ -73,11 +84,33 @@ class Misfit:
         return deviations
 
     def by_recording(self, x: Array) -> Array:
-        """Return the mean size of each recording's deviations for a vector, large ones clipped."""
+        """Return the mean size of each recording's deviations, large ones clipped.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            Logarithms [-].
+
+        Returns
+        -------
+        ndarray, shape (n_recordings,)
+            [-]
+        """
         return np.array([np.mean(np.minimum(np.abs(one), _FAR)) for one in self.deviations(x)])
 
     def missed(self, deviations: list[Array]) -> Array:
-        """Return the share of the oscillation missed in each recording's median excerpt [-]."""
+        """Return the share of the oscillation missed in each recording's median excerpt.
+
+        Parameters
+        ----------
+        deviations : list of ndarray, shape (n_samples,)
+            As of `deviations` [-].
+
+        Returns
+        -------
+        ndarray, shape (n_recordings,)
+            [-]
+        """
         shares = []
         for one, away in zip(self._model.subjects, deviations, strict=True):
             e = one.excerpts
@@ -86,7 +119,17 @@ class Misfit:
         return np.array(shares)
 
     def cost(self, x: Array, deviations: list[Array], usual: float = 1.0) -> float:
-        """Return Huber's loss of deviations over their usual size, plus that of the prior."""
+        """Return Huber's loss of deviations over their usual size, plus that of the prior.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            Logarithms [-].
+        deviations : list of ndarray, shape (n_samples,)
+            As of `deviations` [-].
+        usual : float
+            [-]
+        """
         size = np.abs(np.concatenate(deviations)) / usual
         bent = np.where(size <= _BEND, size**2, _BEND * (2.0 * size - _BEND))
         prior = self._matrix @ x - self._target
@@ -110,7 +153,7 @@ class Misfit:
         -------
         vector : ndarray, shape (n,)
             [-]
-        deviations : list of ndarray
+        deviations : list of ndarray, shape (n_samples,)
             Deviations for that vector [-].
         curvature : ndarray, shape (n, n)
             Of the cost [-].

@@ -1,9 +1,8 @@
-"""The report of a diagnosis: one page to be understood in a minute, and its data beside it.
+"""Report of a diagnosis, with ``diagnosis.json`` and ``improved.toml``.
 
-Order is rank: what is missing and how sure that is, where it acts, how far it closes the gap, what
-to measure next; then the evidence for eye and ear; figures for whoever doubts come last. All gaps
-of the waterfall come from one fit and the same held-out recordings, because steps of different
-recordings do not add up.
+The page begins with the verdict and its probability, the location, the closed share of the gap and
+the next measurement; comparisons to see and hear follow, and tables of all figures. All gaps of the
+waterfall come from one fit and the same held-out recordings, so that its steps add up.
 """
 
 from __future__ import annotations
@@ -61,12 +60,12 @@ def write_diagnosis(
     Parameters
     ----------
     folder : Path
-        Made where it is not there; older files of these names are replaced, or taken away.
+        Created if missing; older files of these names are replaced or removed.
     diagnosis : Diagnosis
     improved : str, optional
-        The rig file of the improved rig; without it none is left there.
+        Text of the improved rig file; without it an older file is removed.
     commands : sequence of str
-        What to call next with it.
+        Commands to run next.
 
     Raises
     ------
@@ -176,7 +175,7 @@ def _improved(diagnosis: Diagnosis, commands: Sequence[str]) -> list[b.Block]:
 
 
 def stages_chain(diagnosis: Diagnosis) -> list[dict[str, object]]:
-    """Return the stages from drive to measurement as the page draws them, each as words.
+    """Return the texts of the stages from drive to measurement.
 
     Examples
     --------
@@ -190,12 +189,12 @@ def stages_chain(diagnosis: Diagnosis) -> list[dict[str, object]]:
     chain, place = [], diagnosis.location
     named = diagnosis.verdict if is_named(diagnosis) else ()
     for name, what in STAGES.items():
-        found = diagnosis.stages.get(name)
+        finding = diagnosis.stages.get(name)
         gap, p_value = NOT_DETERMINED, math.nan
-        if found is not None and found.gap != 0.0:  # else nothing of it was recorded
-            p_value = found.p_value
-            if math.isfinite(found.gap):
-                gap = f"gap {gap_number(found.gap, '.2f')}, {percent(found.share)} of all"
+        if finding is not None and finding.gap != 0.0:  # 0 if nothing of it was recorded
+            p_value = finding.p_value
+            if math.isfinite(finding.gap):
+                gap = f"gap {gap_number(finding.gap, '.2f')}, {percent(finding.share)} of all"
         known = f"{p_number(p_value)}: {evidence(p_value)}" if math.isfinite(p_value) else ""
         causes = [cause_of(c).name for c in named if stage_of_effect(diagnosis, c) == name]
         guilty = begins(diagnosis) and place is not None and place.stage == name
@@ -212,7 +211,7 @@ _BESIDE_EFFECTS = ("none", "parameters", "unknown")
 
 
 def ranked_causes(diagnosis: Diagnosis) -> tuple[dict[str, float], int]:
-    """Return the probability of each cause, those of the verdict first, and how many lead.
+    """Return the probabilities of all causes, those of the verdict first, and how many to show.
 
     Examples
     --------
@@ -238,7 +237,7 @@ _CAUSE_COLUMNS = ("Cause", "Probability", "Explained", "Strength as fitted, 90 %
 
 
 def _likely(diagnosis: Diagnosis) -> list[b.Block]:
-    """Return the causes that are worth a look: how likely, how far each closes, how strong."""
+    """Return a table of the likely causes: probability, closed share, strength."""
     chances, n = ranked_causes(diagnosis)
     if not chances:
         return [b.Text(NOT_DETERMINED.capitalize() + ".")]
@@ -285,7 +284,7 @@ _LEAST_REACH = 0.05  # of the axis of relative parameters, to either side of 1
 
 
 def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> list[list[b.Cell | str]]:
-    """Return refitted parameters: name, interval, where it lies on a common axis about 1.
+    """Return rows of the refitted parameters: name, interval, and its bar about 1.
 
     Examples
     --------
@@ -308,14 +307,13 @@ def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> list[list[b.
 
 def _details(diagnosis: Diagnosis) -> list[b.Block]:
     chances, n = ranked_causes(diagnosis)
-    found = diagnosis.differences[:_MOST_PLACES]
     places = [
         [
             place.stage, ", ".join(place.channels),
             place.phase if place.phase != "all" else f"{place.band[0]:g} to {place.band[1]:g} Hz",
             place.conditions.replace("speed_rad_s", "speed [rad/s]"), p_number(place.p_value),
         ]
-        for place in found
+        for place in diagnosis.differences[:_MOST_PLACES]
     ]  # fmt: skip
     held_out = ", ".join(diagnosis.held_out) or "none, since nothing was fitted"
     facts = [
@@ -356,14 +354,14 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
 
 
 def _agreement_row(one: Agreement) -> list[str]:
-    """Return how far a recording is off: name, speed, interference, whole gap, each channel's."""
+    """Return a row of a recording: name, speed, interference, gaps of all and of each channel."""
     channels = (gap_number(one.channels[k]) if k in one.channels else "not recorded" for k in KINDS)
     fit = f"{1e3 * one.interference:.3g}"
     return [one.recording, f"{one.speed:g}", fit, gap_number(one.gap), *channels]
 
 
 def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
-    """Return bars from the nominal gap to what is left of it, and how much is closed in words.
+    """Return bars from the nominal gap to the remaining one, with sentences.
 
     Examples
     --------
@@ -437,7 +435,7 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
 
 
 def _shown_fit(diagnosis: Diagnosis) -> EffectFinding | None:
-    """Return the fit to show: of the verdict's effects, else of any, the one that closes most."""
+    """Return the fit to show: the best of the verdict's effects, else of any."""
     among = [one for one in diagnosis.effects if one.name in diagnosis.verdict]
     if diagnosis.verdict in {("parameters",), ("unknown",)}:
         among = list(diagnosis.effects)
@@ -461,7 +459,7 @@ def _effect_label(diagnosis: Diagnosis, fitted: EffectFinding) -> str:
 
 
 def _fitted_words(diagnosis: Diagnosis) -> str:
-    """Say what the fitted model that is shown has; empty where none is."""
+    """Return a description of the fitted model in the pictures; empty without one."""
     if all(one.after is None for one in diagnosis.illustrations):
         return ""
     if diagnosis.improvement is not None:

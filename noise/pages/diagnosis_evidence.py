@@ -1,10 +1,8 @@
-"""Recordings beside their simulations on the page of a diagnosis: figures and sounds.
+"""Figures and sounds that compare recordings with simulations on the page of a diagnosis.
 
-A before and an after are compared by eye only on common axes, and cycles only where they are
-aligned: each torque is shown around a slip of its own, because no simulation can know when the
-rig began to stick. Bands of a sixth of an octave are wide enough to be still and narrow enough to
-show a resonance. What a missing effect does to loudness is part of what it does; so no loudness is
-matched, and the one full scale is what the loudest of all sounds needs.
+All curves of a quantity share axes. Torques are aligned at a slip, because the phase of stick-slip
+is random. Bands of a sixth of an octave are wide enough to be smooth and narrow enough to show a
+resonance. Loudness is not matched, since it is part of an effect: all sounds share one full scale.
 """
 
 from __future__ import annotations
@@ -40,7 +38,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Curve:
-    """How one of the three is drawn, as no eye takes it for another; `width` in points."""
+    """Style of a curve; `width` in points."""
 
     label: str
     colour: str
@@ -66,7 +64,7 @@ _LEAST_SAMPLES = 16
 
 
 def illustration_panels(illustration: Illustration) -> tuple[Panel, ...]:
-    """Draw what an illustration has: cycles of the torque, and one spectrum a kind of channel.
+    """Draw cycles of the torque and one spectrum for each kind of channel.
 
     Parameters
     ----------
@@ -75,7 +73,7 @@ def illustration_panels(illustration: Illustration) -> tuple[Panel, ...]:
     Returns
     -------
     tuple of Panel
-        The cycles first, where the recording has a torque.
+        Cycles first, if the recording has a torque.
 
     Raises
     ------
@@ -103,7 +101,7 @@ def illustration_panels(illustration: Illustration) -> tuple[Panel, ...]:
 def sixth_octaves(
     signal: NDArray[np.float64], rate: float, reference: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Levels in bands of a sixth of an octave, base ten, from 25 Hz to 15 kHz.
+    """Return levels in bands of a sixth of an octave, base ten, from 25 Hz to 15 kHz.
 
     Parameters
     ----------
@@ -132,8 +130,8 @@ def sixth_octaves(
     middle = 1e3 * 10.0 ** ((np.arange(first, last) + 0.5) / 20.0)
     low, high = middle / 10.0**0.025, middle * 10.0**0.025
     level = band_levels(band_power(spectrum, low, high), reference)
-    kept = (high - low >= _LEAST_BINS * spectrum.spacing) & (high <= _ANTI_ALIAS * rate / 2.0)
-    return middle[kept], level[kept]
+    valid = (high - low >= _LEAST_BINS * spectrum.spacing) & (high <= _ANTI_ALIAS * rate / 2.0)
+    return middle[valid], level[valid]
 
 
 def _signal(recording: Recording, kind: str) -> NDArray[np.float64] | None:
@@ -144,7 +142,7 @@ def _signal(recording: Recording, kind: str) -> NDArray[np.float64] | None:
 
 
 def _line(role: str, x: NDArray[np.float64], y: NDArray[np.float64], **more: Any) -> Line:
-    """Return a curve as all of its role are drawn."""
+    """Return a curve in the style of its role."""
     curve = CURVES[role]
     style = "dashes" if curve.dashed else "-"
     return Line(x, y, curve.colour, curve.label, curve.width, style, **more)
@@ -181,7 +179,7 @@ def _cycles(runs: dict[str, Recording]) -> Panel:
 
 
 def _length(torque: NDArray[np.float64], rate: float) -> float:
-    """Three cycles, or what of them a panel keeps apart."""
+    """Return the duration of about three cycles [s]."""
     slips = torque_slips(torque, rate)
     wanted = _CYCLES / slips.rate if slips.rate > 0.0 else _LONGEST
     return float(min(max(wanted, _SHORTEST), _LONGEST, torque.size / rate))
@@ -217,7 +215,7 @@ _OVER = {
     "time": ("Slip begins: torque over the recording", "Time [s]", 1.0),
     "angle": ("Slip begins: torque by angle turned", "Angle turned [rad]", 1.0),
 }
-"""Title, what is across, and its scale."""
+"""Title, label of the horizontal axis, and scale."""
 
 
 def contact_panels(contacts: Mapping[str, FrictionCurves]) -> tuple[Panel, ...]:
@@ -231,7 +229,7 @@ def contact_panels(contacts: Mapping[str, FrictionCurves]) -> tuple[Panel, ...]:
     Returns
     -------
     tuple of Panel
-        None where the measured one is not known.
+        Empty without a measured one.
 
     Examples
     --------
@@ -248,22 +246,22 @@ def _panel(over: str, contacts: Mapping[str, FrictionCurves]) -> Panel:
     title, across, scale = _OVER[over]
     lines, words = [], []
     for name, friction_curves in contacts.items():
-        found = getattr(friction_curves, over)
-        if found.x.size:
-            more = {"marker": "o", "low": found.low, "high": found.high}
-            lines.append(_line(name, scale * found.x, found.torque, **more))
-            ends = f"{found.torque.min():.3g} to {found.torque.max():.3g} Nm"
+        curve = getattr(friction_curves, over)
+        if curve.x.size:
+            more = {"marker": "o", "low": curve.low, "high": curve.high}
+            lines.append(_line(name, scale * curve.x, curve.torque, **more))
+            ends = f"{curve.torque.min():.3g} to {curve.torque.max():.3g} Nm"
             words.append(f"{CURVES[name].label} {ends}")
     alt = f"{title}, over {across.lower()}: {'; '.join(words)}."
     return lines_panel(title, across, "Torque [Nm]", lines, alt)
 
 
 LONGEST = 4.0
-"""Of a sound on the page [s]; what is longer is played from its beginning."""
+"""Longest sound on the page [s]: of longer ones the beginning is played."""
 
 
 def illustration_entries(illustration: Illustration) -> dict[str, Entry]:
-    """Return what is heard of an illustration, by role.
+    """Return the sounds of an illustration, by role.
 
     Parameters
     ----------
@@ -303,7 +301,7 @@ def illustration_entries(illustration: Illustration) -> dict[str, Entry]:
 def draw_comparisons(
     diagnosis: Diagnosis,
 ) -> tuple[dict[str, Entry], dict[str, Clip], list[b.Block]]:
-    """Draw and sound what a diagnosis illustrates.
+    """Return figures and sounds of the illustrations of a diagnosis.
 
     Parameters
     ----------
@@ -314,9 +312,9 @@ def draw_comparisons(
     entries : dict of str to Entry
         By id.
     clips : dict of str to Clip
-        Of those that can be heard.
+        Clips of the audible ones.
     shown : list of Block
-        Each recording beside its simulations.
+        Comparison of each recording with its simulations.
 
     Raises
     ------
@@ -326,11 +324,11 @@ def draw_comparisons(
     entries: dict[str, Entry] = {}
     groups: list[b.Block] = []
     for illustration in diagnosis.illustrations:
-        found = illustration_entries(illustration)
-        keys = [f"s{len(entries) + i}" for i in range(1, len(found) + 1)]
-        entries |= dict(zip(keys, found.values(), strict=True))
+        sounds = illustration_entries(illustration)
+        keys = [f"s{len(entries) + i}" for i in range(1, len(sounds) + 1)]
+        entries |= dict(zip(keys, sounds.values(), strict=True))
         known = facts_of(Entry(illustration.name, condition=illustration.measured.condition))
-        silent = "" if found else "There is no sound pressure to be heard."
+        silent = "" if sounds else "There is no sound pressure to be heard."
         panels = (*illustration_panels(illustration), *contact_panels(illustration.contacts))
         groups.append(
             b.Group(

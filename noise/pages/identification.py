@@ -1,4 +1,4 @@
-"""The report of an identification: the numbers, the law, and each step as a picture."""
+"""Report of an identification: numbers, friction law, and pictures of each step."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 
 
 _SHOWN = 0.03
-"""Of a recording around a slip [s]."""
+"""Length of the part of a recording that is drawn [s]."""
 
 
 def recording_panels(one: RecordingFit) -> tuple[Panel, ...]:
-    """Draw what one recording shows: the rise in stick, and what the law predicts.
+    """Draw torque over angle of a recording, and the prediction of the law.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def recording_panels(one: RecordingFit) -> tuple[Panel, ...]:
 
 
 def _rise(one: RecordingFit) -> Panel:
-    """Draw the torque over the shaft's angle, with the rise by elastomer and support in series."""
+    """Draw torque over angle, with the slope of elastomer and support in series."""
     spectrum, fit = one.fit.spectrum, one.fit
     begin = round(cycle_window(spectrum.torque, spectrum.rate, _SHOWN)[0] * spectrum.rate)
     end = begin + round(_SHOWN * spectrum.rate)
@@ -70,7 +70,7 @@ def _rise(one: RecordingFit) -> Panel:
 
 
 def _prediction(forecast: Forecast) -> Panel:
-    """Draw the torque of an excerpt, and what the law predicts of it from its first sample on."""
+    """Draw the recorded and the predicted torque of an excerpt."""
     time = 1e3 * np.arange(forecast.recorded.size) / forecast.rate
     missed = float(np.std(forecast.predicted - forecast.recorded) / np.std(forecast.recorded))
     return lines_panel(
@@ -85,7 +85,7 @@ def _prediction(forecast: Forecast) -> Panel:
 
 
 def static_panels(test: StaticTest) -> tuple[Panel, ...]:
-    """Draw torque over angle, and the ring-down where there is one.
+    """Draw torque over angle of a static test, and its ring-down if there is one.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ _MEANINGS = {
     "law_kinetic_torque": "of the law that fits best: kinetic_torque_Nm of the rig file",
     "elastomer_damping_share": "share of the damping that acts in the elastomer, not in the beams",
 }
-"""Of numbers that their name does not explain."""
+"""Descriptions of numbers that need one."""
 
 
 def write_identification(folder: Path, result: Identification) -> None:
@@ -156,7 +156,7 @@ def write_identification(folder: Path, result: Identification) -> None:
     Parameters
     ----------
     folder : Path
-        Made where it is not there; older files of these names are replaced.
+        Created if missing; older files of these names are replaced.
     result : Identification
 
     Raises
@@ -261,7 +261,7 @@ _RISE = (
 
 
 def _in_rig_file(law: str) -> str:
-    """Return what the rig file calls a law that was tried."""
+    """Return a law as in the rig file."""
     candidate = _CANDIDATES[law]
     effect = f", with the effect {candidate.effect}" if candidate.effect else ""
     return f'law = "{candidate.law}"{effect}'

@@ -1,1 +1,1 @@
-"""The words of a diagnosis."""
+"""Sentences of a diagnosis."""

@@ -1,7 +1,7 @@
-"""A diagnosis in sentences: what the command prints and the report begins with.
+"""Sentences of a diagnosis for the terminal and the top of the report.
 
-A sentence takes stage, channel and figure from one row of a table. A figure that was not determined
-is left out of a sentence, never replaced by a cautious phrase that reads like a finding.
+A sentence takes stage, channel and figure from one row of a table. Figures that were not determined
+are left out.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ _COLUMNS = {
 }
 
 _NOTHING = 0.005
-"""Share up to which a fit closes nothing [-]: it would be rounded to 0 %."""
+"""Share below which a fit closes nothing [-]: it would be rounded to 0 %."""
 
 _MOST_NAMED = 4
-"""Recordings that are named in a sentence; assumed."""
+"""Most recordings that a sentence names; assumed."""
 
 _AS_REPEATS = "times as much as repeat measurements do"
 
@@ -48,10 +48,8 @@ _AS_REPEATS = "times as much as repeat measurements do"
 def answer(diagnosis: Diagnosis) -> list[str]:
     """Return all sentences of the answer.
 
-    Whether the rig file describes the rig, the verdict, where, what is left, what cannot be told
-    apart.
-
-    Before all, which channels are dead or clip; of recordings that cannot be of their rig, why not.
+    In order: dead or clipping channels, agreement with the rig file, verdict, location, remainder,
+    equivalent effects. Recordings that cannot be of the rig have the reasons alone.
 
     Examples
     --------
@@ -79,7 +77,7 @@ def answer(diagnosis: Diagnosis) -> list[str]:
 
 
 def agreement_sentence(diagnosis: Diagnosis) -> str:
-    """Say whether the rig file describes the rig, at which conditions and in which channels not.
+    """Return whether the rig file describes the rig, and where it does not.
 
     Parameters
     ----------
@@ -88,7 +86,7 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
     Returns
     -------
     str
-        Empty where that was not determined.
+        Empty if that was not determined.
 
     Examples
     --------
@@ -113,7 +111,7 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
     reach = _reach(one.gap for one in rows)
     deviate = f"{'the recording deviates' if n == 1 else f'its {n} recordings deviate'} {reach}"
     most = _channel_that_deviates_most(far)
-    if not diagnosis.verdict and far:  # what one recording does may be chance, and together it is
+    if not diagnosis.verdict and far:  # single recordings may deviate by chance
         roughly = " only roughly" if len(far) == n else ""
         worst = max(far, key=lambda one: one.gap)
         at_most = _channel_that_deviates_most([worst])
@@ -149,7 +147,7 @@ def _reach(gaps: Iterable[float]) -> str:
 
 
 def _channel_that_deviates_most(rows: Sequence[Agreement]) -> str:
-    """Say in which channel recordings deviate most, and how much there."""
+    """Return the channel in which recordings deviate most, and how much."""
     most: dict[str, float] = {}
     for row in rows:
         for name, gap in row.channels.items():
@@ -162,7 +160,7 @@ def _channel_that_deviates_most(rows: Sequence[Agreement]) -> str:
 
 
 def _where(rows: Sequence[Agreement]) -> str:
-    """Conditions that part the recordings which deviate from the others, or their names."""
+    """Return the conditions of the recordings that deviate, or their names."""
     for key, scale, unit in (("speed", 1.0, "rad/s"), ("interference", 1e3, "mm")):
         far, near = (
             [abs(scale * getattr(one, key)) for one in rows if (one.gap > AGREES) == away]
@@ -179,7 +177,7 @@ def _where(rows: Sequence[Agreement]) -> str:
 
 
 def location_sentence(diagnosis: Diagnosis) -> str:
-    """Return where the simulation goes wrong; empty where there is no gap.
+    """Return where the gap lies; empty without a gap.
 
     Parameters
     ----------
@@ -188,7 +186,7 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     Returns
     -------
     str
-        First the stage that differs for sure, then the one that a named effect acts in.
+        First the stage that differs significantly, then the one that a named effect acts in.
     """
     place, acting = diagnosis.location, stages_acting(diagnosis)
     if place is None:
@@ -213,7 +211,7 @@ def location_sentence(diagnosis: Diagnosis) -> str:
 
 
 def _other_stage(diagnosis: Diagnosis, place: Location) -> str:
-    """Return another stage that surely differs, that with most of the gap; empty without one."""
+    """Return the other stage with most of the gap that differs significantly, or nothing."""
     sure = place.p_value <= SURE
     own = diagnosis.stages.get(place.stage)
     least = own.share if sure and own is not None else -1.0
@@ -226,7 +224,7 @@ def _other_stage(diagnosis: Diagnosis, place: Location) -> str:
 
 
 def _other_words(diagnosis: Diagnosis, place: Location, other: str) -> list[str]:
-    """Say of a stage that differs more than that of the named effects what that may mean."""
+    """Return sentences on a stage that differs more than that of the named effects."""
     row = _row_words(diagnosis, other)
     sure = place.p_value <= SURE
     first = f"{'Most of it' if sure else 'The gap'} shows in the {other} ({row})"
@@ -249,11 +247,11 @@ def _other_words(diagnosis: Diagnosis, place: Location, other: str) -> list[str]
 
 
 def _row_words(diagnosis: Diagnosis, stage: str) -> str:
-    """Return share of the gap and p-value of a stage, as its table has them."""
-    found = diagnosis.stages.get(stage)
-    if found is None:
+    """Return share of the gap and p-value of a stage as in the table."""
+    row = diagnosis.stages.get(stage)
+    if row is None:
         return p_number(diagnosis.location.p_value if diagnosis.location else math.nan)
-    return f"{percent(found.share)} of the gap, {p_number(found.p_value)}"
+    return f"{percent(row.share)} of the gap, {p_number(row.p_value)}"
 
 
 def _channels_and_band(place: Location) -> str:
@@ -274,7 +272,7 @@ def _place_words(diagnosis: Diagnosis, place: Location) -> str:
 
 
 def _conditions(limits: str) -> str:
-    """Replace names of columns by words, with the unit behind the number."""
+    """Return conditions with names and units of quantities for those of columns."""
     for column, (name, unit) in _COLUMNS.items():
         limits = re.sub(rf"\b{column} *([<>=]+) *([\w.+-]+)", rf"{name} \1 \2 {unit}", limits)
     return limits.replace(">=", "\N{GREATER-THAN OR EQUAL TO}").replace(
@@ -283,7 +281,7 @@ def _conditions(limits: str) -> str:
 
 
 def remainder_sentence(diagnosis: Diagnosis) -> str:
-    """Say what the fit of a verdict leaves; empty where that is no more than repeats differ by.
+    """Return what the fit of a verdict leaves; empty if that is within the scatter of repeats.
 
     Examples
     --------
@@ -315,15 +313,15 @@ def remainder_sentence(diagnosis: Diagnosis) -> str:
 
 
 def closed_words(finding: EffectFinding | None, of: str = "", interval: str = "") -> str:
-    """Return how much of the gap a fit with an effect closes, with the 90 % interval.
+    """Return the share of the gap that a fit with an effect closes, with its 90 % interval.
 
-    Share and interval end at all of it: what is beyond says only that the floor is unsure as well.
+    Both are limited to 100 %: more would only reflect the uncertainty of the floor.
 
     Parameters
     ----------
     finding : EffectFinding or None
     of, interval : str
-        What stands behind the share, and before the interval.
+        Text behind the share, and before the interval.
 
     Examples
     --------
@@ -344,13 +342,13 @@ def closed_words(finding: EffectFinding | None, of: str = "", interval: str = ""
 
 
 def fit_sentence(finding: EffectFinding, fit: str = "The fit") -> str:
-    """Return how far a fit with an effect closes the gap; empty where that is not determined.
+    """Return how far a fit with an effect closes the gap; empty if that was not determined.
 
     Parameters
     ----------
     finding : EffectFinding
     fit : str
-        What the fit is called.
+        Name of the fit.
 
     Examples
     --------
@@ -403,7 +401,7 @@ def strength_words(finding: EffectFinding) -> str:
 
 
 def strength_sentence(finding: EffectFinding) -> str:
-    """Return how strong an effect is as fitted; empty where that is not determined.
+    """Return the strength of a fitted effect; empty if it was not determined.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""The verdict of a diagnosis in words.
+"""Headline and verdict of a diagnosis.
 
-A cause is the headline only where it is likely and the stage that it acts in differs; otherwise the
-sentence says what differs, and what it may be.
+A cause is named only if it is likely and the stage that it acts in differs. Otherwise the sentence
+states what differs, and what it may be.
 """
 
 from __future__ import annotations
@@ -28,26 +28,26 @@ from noise.diagnosis.text.words import (
 )
 
 AGREES = 2.0
-"""Floors up to which a recording agrees with the rig file; assumed. Of 480 simulated repeats of ten
-quiet development cases of the second rig (seed 3), each against the other eleven of its condition,
-5 % are farther off; of 66 recordings without a cause (quiet, seed 4) 3 %."""
+"""Largest gap of a recording that agrees with the rig file [-]; assumed. Of 480 simulated repeats
+of ten quiet development cases of the second rig (seed 3), each against the other eleven of its
+condition, 5 % have a larger one; of 66 recordings without a cause (quiet, seed 4) 3 %."""
 
 _MOST_PARAMETERS = 3
-"""Parameters that are named in a sentence; assumed."""
+"""Most parameters that a sentence names; assumed."""
 
 _CANDIDATES = 3
-"""Causes that are named where none is likely; assumed."""
+"""Number of causes in a sentence if none is likely; assumed."""
 
 _MAY_BE = {"unknown": "something unknown", "parameters": "parameters that are off"}
 
 _LIKELY = 0.5
-"""Probability from which on a cause is named first [-]: it is likelier than not."""
+"""Least probability of a cause that is named [-]: it is likelier than not."""
 
 _MOSTLY = 0.5
-"""Share of the gap from which on what is left is no second cause [-]; assumed."""
+"""Closed share of the gap above which no second cause is suspected [-]; assumed."""
 
 _NOT_AT_ALL = 0.5
-"""p-value from which on a difference is none to speak of [-]; assumed."""
+"""p-value above which a stage does not differ at all [-]; assumed."""
 
 
 def far_ones(diagnosis: Diagnosis) -> list[Agreement]:
@@ -91,7 +91,7 @@ def headline(diagnosis: Diagnosis) -> str:
 
 
 def is_named(diagnosis: Diagnosis) -> bool:
-    """Tell whether a verdict is likely, and agrees with what is said of its stage.
+    """Return whether a verdict is likely and agrees with the table of stages.
 
     Examples
     --------
@@ -107,7 +107,7 @@ def is_named(diagnosis: Diagnosis) -> bool:
 
 
 def _contradicted(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """Return stages of a verdict's effects where nothing that these show in differs at all."""
+    """Return the stages of a verdict's effects in which nothing differs."""
     stages = []
     for name in diagnosis.verdict:
         stage = stage_of_effect(diagnosis, name)
@@ -119,7 +119,7 @@ def _contradicted(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
-    """Return the verdict as a sentence, with how likely it is.
+    """Return the verdict as a sentence, with its probability.
 
     Examples
     --------
@@ -147,13 +147,13 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
 
 
 def _in_stage(diagnosis: Diagnosis) -> str:
-    """Name the stage that differs; empty where none surely does."""
+    """Return the stage that differs; empty if none does significantly."""
     place = diagnosis.location
     return f" in {place.stage}" if place is not None and place.p_value <= SURE else ""
 
 
 def differs(diagnosis: Diagnosis) -> bool:
-    """Tell whether a gap is larger than that of repeats, whatever is said of causes.
+    """Return whether the gap is larger than that of repeats, whatever the verdict.
 
     Examples
     --------
@@ -202,8 +202,7 @@ def parameters_off(
 ) -> dict[str, tuple[float, float]]:
     """Return the refitted parameters that differ from the rig file.
 
-    One of several intervals excludes 1 by chance: each is widened so that all together hold at
-    90 % (Bonferroni).
+    Each interval is widened so that all of them together hold at 90 % (Bonferroni).
 
     Parameters
     ----------
@@ -244,7 +243,7 @@ def _parameters(diagnosis: Diagnosis) -> str:
 
 
 def _departure(low: float, high: float) -> str:
-    """Say how far an interval that excludes one lies from it, the nearer end first."""
+    """Return how far an interval that excludes 1 lies from it, the nearer end first."""
     if low > 1.0:
         return f"{100 * (low - 1.0):.2g} to {100 * (high - 1.0):.2g} % higher"
     return f"{100 * (1.0 - high):.2g} to {100 * (1.0 - low):.2g} % lower"
@@ -267,7 +266,7 @@ def _unknown(diagnosis: Diagnosis) -> str:
 
 
 def _unlikely(diagnosis: Diagnosis) -> str:
-    """Say what may be the cause where none is likely, or where its stage does not differ."""
+    """Return possible causes if none is likely, or if its stage does not differ."""
     chances = {name: p for name, p in diagnosis.probabilities.items() if name != "none"}
     named = () if diagnosis.verdict == ("unknown",) else diagnosis.verdict
     ranked = sorted(chances, key=lambda name: (name not in named, -chances[name]))
@@ -282,7 +281,7 @@ def _unlikely(diagnosis: Diagnosis) -> str:
 
 
 def _likely(diagnosis: Diagnosis, name: str, clause: str = "") -> str:
-    """Return in brackets a clause and how likely a cause is; empty where neither is known."""
+    """Return a clause and the probability of a cause in brackets; empty if neither is known."""
     known = diagnosis.probabilities.get(name)
     if known is None:
         finding = finding_of(diagnosis, name)

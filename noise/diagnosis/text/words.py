@@ -1,9 +1,8 @@
-"""Causes, stages and chances in plain words.
+"""Words for causes, stages, probabilities and numbers of a diagnosis.
 
-An effect's name is for programs; an engineer in a hurry needs a clause that says what happens on
-the rig. Chances are worded by one scale, that of the Intergovernmental Panel on Climate Change
-(Mastrandrea et al. 2010, Guidance note on consistent treatment of uncertainties), because it says
-which number a word stands for; the number always follows the word.
+Each cause has a name and a clause that describes it. Probabilities are worded by the scale of the
+Intergovernmental Panel on Climate Change (Mastrandrea et al. 2010, Guidance note on consistent
+treatment of uncertainties); the number always follows the word.
 """
 
 from __future__ import annotations
@@ -21,11 +20,11 @@ PHASES = {
     "slip": "while the contact slips",
     "cycle": "in the stick-slip cycle as a whole",
 }
-"""Phases of the stick-slip cycle that a difference can be in."""
+"""Phases of the stick-slip cycle in words."""
 
 
 def stage_of_effect(diagnosis: Diagnosis, name: str) -> str:
-    """Return the stage that an effect acts in; empty where it is not known."""
+    """Return the stage that an effect acts in; empty if it is unknown."""
     finding = finding_of(diagnosis, name)
     if finding is not None:
         return str(finding.stage)
@@ -39,9 +38,9 @@ def stages_acting(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 
 def begins(diagnosis: Diagnosis) -> bool:
-    """Tell whether the gap begins where it is located.
+    """Return whether the gap begins in the stage of its location.
 
-    It does where that stage surely differs, and a verdict's effects, if there are any, act there.
+    It does if that stage differs significantly and effects of the verdict, if any, act there.
 
     Examples
     --------
@@ -57,7 +56,7 @@ def begins(diagnosis: Diagnosis) -> bool:
 
 
 def finding_of(diagnosis: Diagnosis, name: str) -> EffectFinding | None:
-    """Return what was found about an effect, None where nothing was."""
+    """Return the finding about an effect, if there is one."""
     return next((effect for effect in diagnosis.effects if effect.name == name), None)
 
 
@@ -73,12 +72,12 @@ def parameter_name(name: str) -> str:
 
 
 NOT_DETERMINED = "not determined"
-"""Stands for a figure that is not known, so that a gap in the data is never read as a zero."""
+"""Text for an unknown figure."""
 
 
 @dataclass(frozen=True)
 class Cause:
-    """A cause in words: what it is called, and in a clause what it does."""
+    """Name and description of a cause."""
 
     name: str
     clause: str
@@ -88,7 +87,7 @@ CAUSES = {
     name: Cause(*words)
     for name, words in packaged_toml("noise.diagnosis.text", "causes.toml").items()
 }
-"""Every shipped effect, and what a verdict can be beside effects, by name."""
+"""Descriptions of all shipped effects and of the other verdicts, by name."""
 
 STAGES = {
     "drive": "the shaft's motion",
@@ -97,7 +96,7 @@ STAGES = {
     "radiation": "plate and room",
     "measurement": "sensors and cables",
 }
-"""What each stage of the chain is, in its order."""
+"""Descriptions of the stages, in the order of the chain."""
 
 _CHANCES = (
     (0.99, "virtually certain"),
@@ -119,7 +118,7 @@ _EVIDENCE = (
 
 
 def cause_of(name: str) -> Cause:
-    """Return a cause in words; one that is not shipped is the user's own.
+    """Return the description of a cause; one that is not shipped is the user's own.
 
     Examples
     --------
@@ -163,7 +162,7 @@ def evidence(p_value: float) -> str:
 
 
 def p_number(p_value: float) -> str:
-    """Return a p-value as it is printed.
+    """Return a p-value as text.
 
     Examples
     --------
@@ -178,7 +177,7 @@ def p_number(p_value: float) -> str:
 
 
 def percent(share: float | None) -> str:
-    """Return a share in per cent; no estimate of a chance is said to be certain by rounding.
+    """Return a share in per cent; rounding never gives 0 or 100 %.
 
     Examples
     --------
@@ -195,7 +194,7 @@ def percent(share: float | None) -> str:
 
 
 def number(value: float | None, form: str = ".2f") -> str:
-    """Return a number [any unit] as it is printed.
+    """Return a number [any unit] as text.
 
     Examples
     --------
@@ -208,7 +207,7 @@ def number(value: float | None, form: str = ".2f") -> str:
 
 
 def gap_number(gap: float | None, form: str = ".1f") -> str:
-    """Return a gap, in what repeats of one run differ by [-], as it is printed.
+    """Return a gap [-], relative to that of repeats of one run, as text.
 
     Examples
     --------
@@ -221,7 +220,7 @@ def gap_number(gap: float | None, form: str = ".1f") -> str:
 
 
 def frequency(hertz: float) -> str:
-    """Return a frequency [Hz] as it is read.
+    """Return a frequency [Hz] as text.
 
     Examples
     --------
