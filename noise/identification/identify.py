@@ -280,7 +280,7 @@ def _dependence(
     known = [value for value in stated if value is not None]
     if rig.temperature is None or rig.material != material:
         return None
-    return rig.temperature.given_at(sum(known) / len(known)) if known else rig.temperature
+    return rig.temperature.at_reference(sum(known) / len(known)) if known else rig.temperature
 
 
 def _structure(beforehand: Beforehand) -> str:
