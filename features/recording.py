@@ -58,7 +58,8 @@ def feature_vector(
     Returns
     -------
     dict of str to float
-        By the names of `feature_names`. NaN for an undefined feature.
+        By the names of `feature_names`, in the units of `features.table` [unit]. NaN for an
+        undefined feature.
 
     Raises
     ------
@@ -103,7 +104,8 @@ def recording_features(
     Returns
     -------
     dict of str to float
-        By the names of `recording_feature_names`, which have the kind as prefix. NaN for kinds that
+        By the names of `recording_feature_names`, which have the kind as prefix, in the units of
+        `features.table` [unit]. NaN for kinds that
         the recording does not have.
 
     Raises

@@ -245,7 +245,7 @@ class TemperatureDependence:
     c1, c2 : float
         Constants of the shift about 50 K above the glass temperature [-] and [K].
     stiffening : float
-        s: increase of stiffness at the rates of the vibration, over the static stiffness.
+        s: increase of stiffness at the rates of the vibration, over the static stiffness [-].
     exponent : float
         alpha: exponent of the rate [-].
     friction_peak : float, optional
@@ -254,7 +254,7 @@ class TemperatureDependence:
     friction_width : float
         w: decades from the peak to 0.61 of its height [-].
     friction_floor : float
-        p_0: friction far from the peak over that at the peak.
+        p_0: friction far from the peak over that at the peak [-].
 
     Examples
     --------

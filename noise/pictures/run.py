@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from features.kernels.spectra import autospectrum
 from models.condition import Condition
-from models.drawing import BLUE, GREY, ORANGE, frequency_axis, padded, styled, thinned
+from models.drawing import BLUE, GREY, ORANGE, frequency_axis, levels, padded, styled, thinned
 from models.recording import Recording
 from noise.pictures.figure import KINDS, new_figure
 from noise.thesis.repetition import repetition_rate
@@ -109,9 +109,6 @@ _LOWEST = 20.0
 
 _DYNAMIC_RANGE = 120.0
 """Of a spectrum's axis at most [dB]."""
-
-_LEAST_DENSITY = 1e-60
-"""Relative density that replaces zero."""
 
 _WHOLE_ALONE = 1.5
 """A run that is no longer than so many windows is shown once."""
@@ -303,8 +300,7 @@ def draw_spectrum(axes: Axes, recording: Recording, name: str) -> str:
     kind = KINDS[name]
     spectrum = autospectrum(recording[name], recording.rate)
     shown = spectrum.frequency >= max(_LOWEST, spectrum.spacing)
-    frequency, density = spectrum.frequency[shown], spectrum.density[shown]
-    level = 10.0 * np.log10(np.maximum(density / kind.reference**2, _LEAST_DENSITY))
+    frequency, level = spectrum.frequency[shown], levels(spectrum.density[shown], kind.reference)
     axes.plot(
         *thinned(frequency, level, position=np.log(frequency)), color=kind.colour, linewidth=1.0
     )

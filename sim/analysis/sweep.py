@@ -49,7 +49,7 @@ class Sweep:
     Parameters
     ----------
     conditions : ndarray of KnownCondition, shape (...)
-        Conditions in SI units.
+        Operating conditions, as of `KnownCondition`.
     features : dict of str to ndarray, shape (...)
         By the names of `FEATURES`, in their units.
 

@@ -50,7 +50,7 @@ class ContactRun:
     Parameters
     ----------
     system : ndarray, shape (6,)
-        As from `LumpedBushing.packed`.
+        System as of `LumpedBushing.packed`.
     critical_torque, kinetic_torque : float
         [Nm]
     start_speed : float
@@ -60,7 +60,7 @@ class ContactRun:
     law : compiled function, optional
         Friction law by `sim.contact.LAW_SIGNATURE`; without one the contact has true stick.
     coefficients, law_state : ndarray, shape (n,), optional
-        Coefficients of the law, and its state at the start.
+        Coefficients of the law, and its state at the start, in the units of the law [unit].
     hooks : tuple of Hook
         Effects that act on the contact, in this order.
     name : str
@@ -146,7 +146,7 @@ class ContactRun:
         return motion, math.copysign(1.0, shaft_speed - motion[1])
 
     def start_from(self, motion: NDArray[np.float64], direction: float, angle: float) -> None:
-        """Start from a motion, as from `motion`, with the shaft at an angle [rad]."""
+        """Start from a motion, shape (4,), as of `motion`, with the shaft at an angle [rad]."""
         self._rows.end[: at.N_MOTION] = motion
         self._carried[at.ANGLE] = angle
         if not self._constants[0].law:
@@ -237,7 +237,7 @@ def _parts(law: Any, n_law: int, hooks: tuple[Hook, ...]) -> dict[Any, slice]:
 
 
 def n_variables(law_state: NDArray[np.float64], hooks: tuple[Hook, ...]) -> int:
-    """Return the number of variables: motion, states of law and effects, and the shaft's lag."""
+    """Return the number of variables: motion, `law_state` of shape (n,), effects, shaft's lag."""
     lag = at.N_LAG if hooks else 0
     return at.N_MOTION + law_state.size + sum(hook.n_states for hook in hooks) + lag
 

@@ -48,7 +48,7 @@ def parts_of_a_step(system: NDArray[np.float64], step: float) -> int:
     Parameters
     ----------
     system : ndarray, shape (6,)
-        As from `sim.bushing.LumpedBushing.packed`.
+        System as of `sim.bushing.LumpedBushing.packed`.
     step : float
         [s]
 
@@ -88,7 +88,7 @@ def extended(system: NDArray[np.float64]) -> NDArray[np.float64]:
     Parameters
     ----------
     system : ndarray, shape (6,)
-        As from `sim.bushing.LumpedBushing.packed`.
+        System as of `sim.bushing.LumpedBushing.packed`.
 
     Returns
     -------
@@ -194,7 +194,7 @@ def advance_stick_slip(
     Parameters
     ----------
     system : ndarray, shape (6,)
-        As from `LumpedBushing.packed`.
+        System as of `LumpedBushing.packed`.
     critical_torque, kinetic_torque : float
         [Nm]
     step : float
@@ -203,7 +203,7 @@ def advance_stick_slip(
         At the samples [rad/s], and at the start of the next block; without the latter the run ends
         here.
     state : ndarray, shape (N_STATE,)
-        From `rest_state` or the previous block; changed in place.
+        State as of `rest_state`, or from the previous block; changed in place.
     n : int
         Samples to solve.
 
