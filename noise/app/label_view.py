@@ -19,8 +19,9 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
 from models.errors import ParameterError
+from noise.app.corrected_segments import Row, read_corrections
 from noise.app.gate import body
-from noise.app.labels import Labels, read_corrections
+from noise.app.labels import Labels
 from noise.app.opened import Opened
 from noise.app.requests import choice, number
 from noise.base.labels import LABELS
@@ -28,8 +29,6 @@ from noise.base.progress import LINES
 from noise.base.tables import plain_cell
 from noise.labels.corrections import version
 from noise.labels.labelling import Labelling
-
-Row = dict[str, object]
 
 _ORDERS = {
     "name": "name",

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import soundfile
 
-from noise.app.labels import Correction, Labels
+from noise.app.corrected_segments import Correction
+from noise.app.labels import Labels
 from noise.base.tables import write_table
 from noise.batch.work import find_jobs
 from noise.labels.corrections import version

@@ -8,7 +8,7 @@ from itertools import count
 import pytest
 
 from models.errors import ParameterError, RecordingError
-from noise.app.labels import Correction, read_corrections
+from noise.app.corrected_segments import Correction, read_corrections
 from noise.base.tables import write_table
 from noise.batch.journal import open_journal
 from noise.batch.work import JobResult, file_identity, find_jobs

@@ -7,7 +7,7 @@ import pytest
 import soundfile
 
 from models.recording import Channel, Recording
-from noise.app.labels import NOT_MEASURED, Correction
+from noise.app.corrected_segments import NOT_MEASURED, Correction
 from noise.base.tables import write_table
 from noise.labels.labelling import label
 from noise.labels.summary import ASSUMED

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from models.errors import ParameterError
-from noise.app.labels import Correction
+from noise.app.corrected_segments import Correction
 from noise.base.tables import write_table
 from noise.labels.corrections import version, with_corrections
 from noise.labels.table import COLUMNS

@@ -5,7 +5,6 @@ import { Chart } from "./chart.js";
 import { Controls } from "./controls.js";
 import { Drawings } from "./drawings.js";
 import { listen } from "../labels/keys.js";
-import { Saving } from "./saving.js";
 import { Sound } from "./sound.js";
 
 const LEVELS_EVERY = 500, FACTS_AFTER = 200; // ms
@@ -51,7 +50,7 @@ export async function mount(panel) {
   right.append(
     made("section", { className: "shown" }, made("h2", { textContent: "Torque" }), torque),
     made("section", {}, made("h2", { textContent: "Playback level" }), made("div", { className: "tools" }, made("label", { htmlFor: "design-full-scale", textContent: "Full scale, Pa" }), scale, gain, fit)));
-  new Saving(right, design);
+  right.append(saving(design));
 
   // Show the controls of a base; false where another one was chosen meanwhile, or there is no answer.
   async function take(id) {
@@ -200,4 +199,25 @@ function words({ label, frequency_hz: frequency, level_dba: level, l_afmax_dba: 
   const played = most - 20 * Math.log10(fullScale / 2e-5), quiet = played < -48;
   const inaudible = level < 0 ? "; inaudible, as it is below 0 dB(A)" : quiet ? "; nearly inaudible at this playback level" : "";
   return [[called, ...tone, `${level.toFixed(0)} dB(A)`].join(", "), `Last second: ${level.toFixed(1)} dB(A), at most ${most.toFixed(1)} dB(A) Fast, re 20 µPa${inaudible}`];
+}
+
+// The design saved as a rig file; a name that is taken is written over where it is asked for a second time.
+function saving(design) {
+  let again = null;
+  const field = made("input", { id: "design-name", type: "text", value: "design", spellcheck: false, autocomplete: "off", oninput: () => { again = null; } });
+  const text = made("p", { className: "saved", role: "status" });
+  const save = async () => {
+    const name = field.value.trim();
+    try {
+      const { file, command } = await api("design/rig", { ...design.stated(), name, replace: again === name }, () => {});
+      again = null;
+      text.textContent = `Saved as ${file}. To simulate it: ${command}`;
+    } catch ({ message }) {
+      text.textContent = message;
+      again = /is there already/.test(message) ? name : null;
+    }
+  };
+  const button = made("button", { type: "button", textContent: "Save rig file", onclick: save });
+  return made("section", { className: "saving" }, made("h2", { textContent: "Save" }),
+    made("div", { className: "tools" }, made("label", { htmlFor: "design-name", textContent: "Name" }), field, button), text);
 }

@@ -4,36 +4,18 @@ import { made } from "../dom.js";
 
 export const LABELS = ["creak", "squawk", "squeal", "none", "unknown"];
 
-function button(textContent, title, more = {}) {
-  return made("button", { type: "button", textContent, title, ...more });
-}
+const button = (textContent, title, more = {}) => made("button", { type: "button", textContent, title, ...more });
 
-function toggle(textContent, title, pressed = false) {
-  const one = button(textContent, title);
-  one.setAttribute("aria-pressed", pressed);
-  return one;
-}
+const toggle = (textContent, title, pressed = false) => button(textContent, title, { ariaPressed: String(pressed) });
 
-function canvas(className, ariaLabel) {
-  const one = made("canvas", { className });
-  if (ariaLabel) {
-    one.setAttribute("role", "img");
-    one.setAttribute("aria-label", ariaLabel);
-  } else one.setAttribute("aria-hidden", "true");
-  return one;
-}
+const canvas = (className, ariaLabel) => made("canvas", { className, ...(ariaLabel ? { role: "img", ariaLabel } : { ariaHidden: "true" }) });
 
-function group(name, ...children) {
-  const one = made("div", { className: "group" }, ...children);
-  one.setAttribute("role", "group");
-  one.setAttribute("aria-label", name);
-  return one;
-}
+const group = (ariaLabel, ...children) => made("div", { className: "group", role: "group", ariaLabel }, ...children);
 
 export function build(element) {
   const box = made("select");
   const parts = {
-    title: made("h2"), facts: made("p", { className: "facts" }), saved: made("p", { className: "saved" }),
+    title: made("h2"), facts: made("p", { className: "facts" }), saved: made("p", { className: "saved", role: "status" }),
     play: button("Play", "Space", { className: "play" }), loop: toggle("Loop", "L", true), clock: made("output", { className: "clock" }),
     a: toggle("A", "X changes over", true), b: toggle("B", "X changes over"), keep: button("Keep as B", "B"), equal: toggle("Equal loudness", "E"),
     out: button("−", "zoom out", { ariaLabel: "Zoom out" }), in: button("+", "zoom in", { ariaLabel: "Zoom in" }),
@@ -41,7 +23,7 @@ export function build(element) {
     whole: button("All", "0"), fit: button("Segment", "F", { ariaLabel: "Zoom to the segment" }), harmonic: toggle("Harmonics", "H"),
     help: button("?", "keys", { ariaLabel: "Help: keys" }), channel: { box, label: made("label", {}, "Channel ", box) }, others: group("Channels"),
     gains: made("p", { className: "gains" }), readout: made("output", { className: "readout" }), levelRead: made("output", { className: "readout level" }),
-    strip: made("div", { className: "strip" }), overlay: made("div", { className: "overlay" }), position: made("div", { className: "position" }), selection: made("div", { className: "selection" }),
+    strip: made("div", { className: "strip", role: "group", ariaLabel: "Segments" }), overlay: made("div", { className: "overlay" }), position: made("div", { className: "position" }), selection: made("div", { className: "selection" }),
     wave: canvas("wave", "Samples over time"), waveAxis: canvas("axis wave"),
     plot: canvas("plot"), marks: canvas("marks"), frequencies: canvas("axis frequencies"), legend: canvas("legend", "Colours of levels"),
     course: canvas("course", "A-weighted level over time, Fast"), courseAxis: canvas("axis course"), times: canvas("times"),
@@ -54,16 +36,9 @@ export function build(element) {
     const one = made("button", { type: "button", className: `label ${label}`, title: `Key ${at + 1}`, data: { label } }, made("i"), label);
     parts.labels.append(one);
   }
-  parts.saved.setAttribute("role", "status");
-  parts.strip.setAttribute("role", "group");
-  parts.strip.setAttribute("aria-label", "Segments");
-  const screen = made("div", { className: "screen", tabIndex: 0 }, parts.plot, parts.marks);
-  screen.setAttribute("role", "application");
-  screen.setAttribute("aria-roledescription", "spectrogram");
-  screen.setAttribute("aria-label", "Spectrogram: arrow keys move the cursor");
-  parts.screen = screen;
+  parts.screen = made("div", { className: "screen", tabIndex: 0, role: "application", ariaRoleDescription: "spectrogram", ariaLabel: "Spectrogram: arrow keys move the cursor" }, parts.plot, parts.marks);
   parts.overlay.append(parts.selection, parts.position);
-  parts.area = made("div", { className: "area" }, parts.strip, parts.wave, screen, parts.course, parts.stack, parts.times, parts.overlay);
+  parts.area = made("div", { className: "area" }, parts.strip, parts.wave, parts.screen, parts.course, parts.stack, parts.times, parts.overlay);
   const axes = made("div", { className: "axes" }, made("span", { className: "strip" }), parts.waveAxis, parts.frequencies, parts.courseAxis, parts.stackAxes, made("span", { className: "times", textContent: "s" }));
   parts.lanes = made("div", { className: "lanes" }, axes, parts.area);
   element.replaceChildren(

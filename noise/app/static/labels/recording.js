@@ -10,8 +10,7 @@ import { refresh } from "./list.js";
 import { Outline } from "./outline.js";
 import { RecordingPlayer } from "./player.js";
 import { follow } from "./pointer.js";
-import { showSegment } from "./segment.js";
-import { Segments } from "./segments.js";
+import { Segments, showSegment } from "./segments.js";
 import { about } from "./sounds.js";
 import { Spectrogram } from "./spectrogram.js";
 import { drawTimes, Timeline } from "./timeline.js";
@@ -41,8 +40,7 @@ export class RecordingPage {
     this.player.addEventListener("change", () => this.#playing());
     new ResizeObserver(() => this.#view()).observe(parts.area);
     follow(this);
-    this.#buttons();
-    this.#keys();
+    this.#actions();
   }
 
   // Why it cannot be shown is thrown.
@@ -221,60 +219,49 @@ export class RecordingPage {
     told(`B is ${this.sound.name}${from === null ? "" : ` from ${from.toFixed(2)} s on`}. Open another recording as A; X switches between them.`);
   }
 
-  toggle(what) {
-    const { player } = this;
-    if (what === "play") return player.playing ? player.stop() : this.play();
-    if (what === "harmonic") {
-      this.spectrogram.harmonic = !this.spectrogram.harmonic;
-      this.parts.harmonic.setAttribute("aria-pressed", this.spectrogram.harmonic);
-      return this.spectrogram.drawMarks();
-    }
-    player[what] = !player[what];
+  #toggle(what) {
+    this.player[what] = !this.player[what];
     this.#playing();
-    if (player.playing) this.play();
+    if (this.player.playing) this.play();
   }
 
-  changeOver(slot = this.player.active === "a" ? "b" : "a") { this.player.hear(slot); }
-
-  #buttons() {
-    const { parts, timeline } = this;
-    const actions = {
-      play: () => this.toggle("play"), loop: () => this.toggle("looping"), equal: () => this.toggle("equal"), harmonic: () => this.toggle("harmonic"),
-      a: () => this.changeOver("a"), b: () => this.changeOver("b"), keep: () => this.keepAsB(),
-      in: () => timeline.zoom(ZOOM), out: () => timeline.zoom(1 / ZOOM), left: () => timeline.pan(-PAN), right: () => timeline.pan(PAN),
-      whole: () => timeline.whole(), fit: () => this.fit(), help: () => parts.dialog.showModal(),
+  // What buttons do, by their names, and keys.
+  #actions() {
+    const { parts, timeline, player, segments, spectrogram } = this;
+    const buttons = {
+      play: () => (player.playing ? player.stop() : this.play()), loop: () => this.#toggle("looping"), equal: () => this.#toggle("equal"),
+      harmonic: () => {
+        spectrogram.harmonic = !spectrogram.harmonic;
+        parts.harmonic.setAttribute("aria-pressed", spectrogram.harmonic);
+        spectrogram.drawMarks();
+      },
+      a: () => player.hear("a"), b: () => player.hear("b"), keep: () => this.keepAsB(), help: () => parts.dialog.showModal(),
+      in: () => timeline.zoom(ZOOM), out: () => timeline.zoom(1 / ZOOM), left: () => timeline.pan(-PAN), right: () => timeline.pan(PAN), whole: () => timeline.whole(),
+      fit: () => {
+        const { start, end } = timeline.selection ?? { start: segments.chosen?.start_s, end: segments.chosen?.end_s };
+        if (start !== undefined) timeline.fit(start, end);
+      },
       split: () => splitHere(this), join: () => joinHere(this), undo: () => undo(this), redo: () => undo(this, true), agree: () => agree(this),
     };
-    for (const [name, action] of Object.entries(actions)) parts[name].addEventListener("click", (event) => { if (this.sound) action(event); });
-    for (const button of parts.labels.children) button.addEventListener("click", () => label(this, button.dataset.label));
-    parts.channel.box.addEventListener("change", ({ target }) => this.hearChannel(target.value));
-  }
-
-  fit() {
-    const { selection } = this.timeline, { chosen } = this.segments;
-    if (selection) this.timeline.fit(selection.start, selection.end);
-    else if (chosen) this.timeline.fit(chosen.start_s, chosen.end_s);
-  }
-
-  #keys() {
-    const { timeline, segments } = this;
     const step = (sign) => ({ shiftKey }) => this.seek(timeline.position + sign * (shiftKey ? 1 : 0.1));
     const beside = (sign) => () => { segments.choose(segments.at + sign); if (segments.chosen) timeline.go(segments.chosen.start_s); };
-    const actions = {
-      " ": () => this.toggle("play"), l: () => this.toggle("looping"), e: () => this.toggle("equal"), h: () => this.toggle("harmonic"),
-      x: () => this.changeOver(), b: () => this.keepAsB(), s: () => splitHere(this), c: () => agree(this),
-      u: () => undo(this), "Ctrl+z": () => undo(this), "Ctrl+Shift+z": () => undo(this, true), "Ctrl+y": () => undo(this, true),
-      Delete: () => joinHere(this), Backspace: () => joinHere(this), ArrowLeft: step(-1), ArrowRight: step(1), "[": beside(-1), "]": beside(1),
-      "+": () => timeline.zoom(ZOOM), "=": () => timeline.zoom(ZOOM), "-": () => timeline.zoom(1 / ZOOM), 0: () => timeline.whole(), f: () => this.fit(),
-      Escape: () => timeline.select(null), "?": () => this.parts.dialog.showModal(),
+    const named = {
+      " ": "play", l: "loop", e: "equal", h: "harmonic", b: "keep", s: "split", c: "agree", u: "undo", "Ctrl+z": "undo", "Ctrl+Shift+z": "redo", "Ctrl+y": "redo",
+      Delete: "join", Backspace: "join", "+": "in", "=": "in", "-": "out", 0: "whole", f: "fit", "?": "help",
     };
-    for (const [at, name] of LABELS.entries()) actions[at + 1] = () => label(this, name);
-    listen(this.element, Object.fromEntries(Object.entries(actions).map(([key, action]) => [key, (event) => this.#act(action, event)])));
-  }
-
-  // What is done before a recording is there would be done to another.
-  #act(action, event) {
-    if (this.sound) action(event);
-    else if (this.id !== undefined) this.parts.saved.textContent = "not done: the recording is still loading";
+    const keys = {
+      ...Object.fromEntries(Object.entries(named).map(([key, name]) => [key, buttons[name]])),
+      ...Object.fromEntries(LABELS.map((name, at) => [at + 1, () => label(this, name)])),
+      x: () => player.hear(player.active === "a" ? "b" : "a"), ArrowLeft: step(-1), ArrowRight: step(1), "[": beside(-1), "]": beside(1), Escape: () => timeline.select(null),
+    };
+    for (const [name, action] of Object.entries(buttons)) parts[name].addEventListener("click", () => { if (this.sound) action(); });
+    for (const button of parts.labels.children) button.addEventListener("click", () => label(this, button.dataset.label));
+    parts.channel.box.addEventListener("change", ({ target }) => this.hearChannel(target.value));
+    // What is done before a recording is there would be done to another.
+    const act = (action) => (event) => {
+      if (this.sound) action(event);
+      else if (this.id !== undefined) parts.saved.textContent = "not done: the recording is still loading";
+    };
+    listen(this.element, Object.fromEntries(Object.entries(keys).map(([key, action]) => [key, act(action)])));
   }
 }
