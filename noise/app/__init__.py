@@ -1,4 +1,4 @@
-"""The local app of ``bushing-noise open``: a small server, and what it shows in the browser.
+"""Local web app of ``bushing-noise open``: server and browser views.
 
 Each view is a module whose `routes` gives what it needs of the server, and a folder of the view's
 name under ``static`` whose ``view.js`` draws it. A new view is these two and a line in

@@ -1,7 +1,7 @@
-"""Segments as a person corrects them: those of a request, and the rows that they become.
+"""Manual corrections of segments: parsing of requests, and the resulting rows of the label table.
 
-A segment that is as it was keeps its row; what is new is measured again where the sound can be
-read. Columns that are not of a label table, such as a remark of one's own, stay with the row.
+Unchanged segments keep their rows; new segments are measured again if the sound can be read.
+Columns of the user, such as remarks, stay with the row.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from noise.labels.table import COLUMNS, CONDITIONS, HUMAN
 Row = dict[str, object]
 
 _MOST = 10_000
-"""Segments of one recording that a request may bring."""
+"""Maximum number of segments in a request."""
 
 _LONGEST = 1e9
-"""Nothing is recorded for longer [s]."""
+"""Maximum duration of a recording [s]."""
 
 
 @dataclass(frozen=True)
 class Correction:
-    """A segment as a person says it is.
+    """Segment with a label set by a person.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Correction:
     channel : str
         ``all``, or a track counted from 1.
     confirmed : bool
-        Whether it is by a person also where nothing of it is new.
+        Whether the person confirmed it, even if nothing changed.
     """
 
     start: float
@@ -54,7 +54,7 @@ class Correction:
 
 
 def read_corrections(rows: object) -> list[Correction]:
-    """Check the segments of a request.
+    """Parse and check the segments of a request.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def read_corrections(rows: object) -> list[Correction]:
     Raises
     ------
     ParameterError
-        They are no segments of one recording.
+        The rows are not valid segments of one recording.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def as_rows(
     name : str
         Of the recording in the table.
     before : sequence of dict
-        Its rows until now.
+        Its rows before the correction.
     measured : sequence of dict
         Rows of the segments as they were measured, as far as they were.
 
@@ -151,7 +151,7 @@ def as_rows(
 
 
 def _source_of_rest(one: Correction, before: Sequence[Row]) -> object:
-    """Return who named what is left of a segment that another was cut out of; else a person."""
+    """Return the label source of the rest of a segment that another was cut out of; else human."""
     for row in before:
         channel, start, end = place(row)
         spans = channel == one.channel and start <= one.start and one.end <= end
@@ -167,17 +167,17 @@ _PARTS = ("", "_low", "_high", "_source")
 _LEVELS = ("level_db", "level_dbfs")
 
 NOT_MEASURED = "not measured since its borders were changed"
-"""What a segment's note says where its sound could not be read, or was too long to be."""
+"""Note of a segment whose sound could not be read, or was too long."""
 
 _MAY_END = ("frequency_hz", "snr_dba")
-"""What a segment may have no longer by its new label: a pitch, a background to stand out of."""
+"""Columns that may become empty with a new label."""
 
 _OF_RECORDING = ("calibrated", "material", "material_source", "note")
-"""What holds wherever a segment's borders are, as do conditions that were logged."""
+"""Columns that do not depend on the borders of a segment."""
 
 
 def without_opinion(row: Row) -> Row:
-    """Return a row without what hangs on its label: probabilities, frequency, inferred conditions.
+    """Return a row without values that depend on its label, such as probabilities.
 
     Examples
     --------
@@ -196,7 +196,7 @@ def without_opinion(row: Row) -> Row:
 
 
 def row_of_piece(at: tuple[str, float, float], before: Sequence[Row]) -> Row:
-    """Return what is known of a new segment before it is measured.
+    """Return the row of a new segment before measurement.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def row_of_piece(at: tuple[str, float, float], before: Sequence[Row]) -> Row:
 
 
 def with_measured(row: Row, measured: Row) -> Row:
-    """Return a row with what was measured of it; what the table alone knows of it stays.
+    """Return a row updated with measured values; logged values of the table have priority.
 
     Examples
     --------
@@ -261,22 +261,22 @@ def with_measured(row: Row, measured: Row) -> Row:
 
 
 def _without(note: object, ending: str) -> str | None:
-    """Return a note without the remarks that end so; None where nothing is left."""
+    """Return a note without the remarks that have a given ending; None if nothing is left."""
     remarks = str(note or "").split("; ")
     return "; ".join(one for one in remarks if not one.endswith(ending)) or None
 
 
 def measured_rows(job: Job, segments: Sequence[Correction], before: Sequence[Row]) -> list[Row]:
-    """Measure a recording's segments where some are new; none where it cannot be.
+    """Measure the segments of a recording if some are new; return no rows on failure.
 
     Parameters
     ----------
     job : Job
         The recording.
     segments : sequence of Correction
-        All its segments, as a person says they are.
+        All its segments after the correction.
     before : sequence of dict
-        Its rows until now.
+        Its rows before the correction.
     """
     there = {(*place(row), row["label"]) for row in before}
     new = [one for one in segments if (one.channel, one.start, one.end, one.label) not in there]
@@ -308,7 +308,7 @@ def measured_rows(job: Job, segments: Sequence[Correction], before: Sequence[Row
 
 
 def full_scale_of(rows: Sequence[Row]) -> float | tuple[float, ...] | None:
-    """Return the sound pressure of a full-scale sample that rows were calibrated by [Pa].
+    """Return the full-scale sound pressure [Pa] implied by the levels of rows.
 
     Parameters
     ----------
@@ -318,7 +318,7 @@ def full_scale_of(rows: Sequence[Row]) -> float | tuple[float, ...] | None:
     Returns
     -------
     float or tuple of float or None
-        One for each track of several [Pa]; None where their levels do not tell it.
+        One value per track [Pa]; None if the levels do not determine it.
 
     Examples
     --------
@@ -340,7 +340,7 @@ def full_scale_of(rows: Sequence[Row]) -> float | tuple[float, ...] | None:
 
 
 def _over_background(rows: Sequence[Row]) -> dict[str, float]:
-    """Return the level of the background of each track, as `label` has found it [dB(A)]."""
+    """Return the background level [dB(A)] of each track from the label table."""
     backgrounds = {}
     for row in rows:
         level, snr = row.get("level_dba"), row.get("snr_dba")

@@ -1,4 +1,4 @@
-"""A design: a base and what is changed about it, as a rig, a setting of a run, and saved files."""
+"""Design of the app: a base rig and its changes, as a rig, a run setting and a rig file."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Values = Mapping[str, float | bool | str]
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """What the controls say.
+    """State of all controls.
 
     Parameters
     ----------
@@ -42,11 +42,11 @@ class Design:
     values : mapping of str to float, bool or str
         Of all controls [unit of each].
     setting : Setting
-        Of the run that is heard.
+        Setting of the live run.
     changes : dict of str to str or float
-        As ``[change]`` has them.
+        Entries of ``[change]``.
     friction : LawSpec or None
-        The law where it is another than the base's.
+        Friction law, if it differs from that of the base.
     """
 
     base: Base
@@ -57,12 +57,12 @@ class Design:
 
     @property
     def rig(self) -> Rig:
-        """The rig with all its changes."""
+        """Rig with all changes."""
         return self.setting.rig
 
     @property
     def options(self) -> str:
-        """The condition as options of a command."""
+        """Condition as command-line options."""
         support = "fixed" if self.values["fixed"] else f"{self.values['support']:g}"
         words = [
             motion_options(self.values), f"--interference {self.values['interference']:g}",
@@ -73,7 +73,7 @@ class Design:
         return " ".join(words)
 
     def text(self, folder: Path, name: str) -> str:
-        """Return the rig file called `name` that a folder is to hold."""
+        """Return the text of the rig file `name` in a folder."""
         notes = [f"bushing-noise simulate --rig {name} {self.options}"]
         return changed_rig_text(
             self.base.named_in(folder), self.changes, self.rig.effects, {}, notes,
@@ -82,7 +82,7 @@ class Design:
 
     @property
     def words(self) -> str:
-        """What differs from the base, as the rig file has it, and the motion that is heard."""
+        """Differences from the base and motion of the shaft, in words."""
         own = [str(spec) for spec in self.base.rig.effects]
         effects = [str(spec) for spec in self.rig.effects]
         changed = [f"{key} {_amount(value)}" for key, value in self.changes.items()]
@@ -94,7 +94,7 @@ class Design:
         return f"{self.base.name} {of_base} ({self.options})"
 
     def facts(self) -> dict[str, str]:
-        """Return what the bushing's quantities have become, with their units, by short name."""
+        """Return the resulting quantities of the bushing with units, by short name."""
         setting = self.setting
         fit = at_temperature(setting.rig, setting.temperature).fit(setting.interference)
         quantities = {
@@ -112,7 +112,7 @@ class Design:
         return {name: f"{value:.4g} {unit}" for name, (value, unit) in quantities.items()}
 
     def remarks(self) -> list[str]:
-        """Say what the listener should know: what lies outside the usual or was not measured."""
+        """Return remarks: values out of the usual range, and data that were not measured."""
         setting = self.setting
         notes = use_remarks(
             setting.rig,
@@ -142,12 +142,12 @@ def _amount(value: str | float) -> str:
 
 
 def design_of(stated: object, bases: dict[str, Base]) -> Design:
-    """Read a design that a request states: ``{"base": ..., "values": {...}}``.
+    """Parse the design of a request, ``{"base": ..., "values": {...}}``.
 
     Raises
     ------
     ParameterError
-        It states something that cannot be.
+        The design is invalid.
     """
     if not isinstance(stated, dict):
         raise ParameterError("design: must be an object with base and values")
@@ -177,7 +177,7 @@ def design_of(stated: object, bases: dict[str, Base]) -> Design:
 
 
 def _friction(values: Values, own: Values) -> tuple[LawSpec | None, dict[str, str | float]]:
-    """Return the law where it is another one, and else what is changed about its parameters."""
+    """Return the friction law if it differs from the base, else its changed parameters."""
     law = str(values["law"])
     stated = {
         key.removeprefix(f"law.{law}."): float(value)
@@ -190,7 +190,7 @@ def _friction(values: Values, own: Values) -> tuple[LawSpec | None, dict[str, st
 
 
 def _effects(rig: Rig, values: Values, own: Values) -> tuple[LawSpec, ...]:
-    """Return those of the base as they have become, then those that are new."""
+    """Return the effects of the base with their changes, then new effects."""
     stated = {spec.name: spec for spec in rig.effects}
     effects = []
     for name in dict.fromkeys([*stated, *EFFECTS]):
@@ -214,12 +214,12 @@ _NAME = re.compile(r"[\w][\w .+-]{0,79}")
 
 
 def name_of(request: dict[str, Any]) -> str:
-    """Return a name for files that a request states, without ending.
+    """Return the file name of a request, without ending.
 
     Raises
     ------
     ParameterError
-        It is none, or leads elsewhere.
+        The name is missing or not a plain file name.
 
     Examples
     --------
@@ -236,12 +236,12 @@ def name_of(request: dict[str, Any]) -> str:
 
 
 def save_rig(request: dict[str, Any], bases: dict[str, Base], folder: Path) -> dict[str, str]:
-    """Write a design as a rig file, and tell where and how it is simulated.
+    """Write a design as a rig file; return its path and the command that simulates it.
 
     Raises
     ------
     ParameterError
-        The design or its name cannot be, or a file has that name that is another's.
+        The design or its name is invalid, or the file exists.
     """
     design, name = design_of(request, bases), f"{name_of(request)}.toml"
     target = folder / name

@@ -1,7 +1,7 @@
-"""The map of noises of a design over speed and interference, and the changes that end a noise.
+"""Noise map of a design over speed and interference, and changes that end a noise.
 
-Both are what ``bushing-noise screen`` says, of few points; they take seconds, so they are asked of
-a process beside the sound.
+Both use the code of ``bushing-noise screen`` at few points. They take seconds, so they run in a
+separate process.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from noise.screening.vibration import Condition
 
 
 class ChartRequest(NamedTuple):
-    """Rig, support stiffness [Nm/rad], temperature [degree Celsius] and detail of a chart."""
+    """Request of a map: rig, support stiffness [Nm/rad], temperature [degree Celsius], detail."""
 
     rig: Rig
     support_stiffness: float
@@ -34,7 +34,7 @@ class ChartRequest(NamedTuple):
 
 
 class SuggestionRequest(NamedTuple):
-    """Condition whose noise is to end: that of a chart, interference [m], speed [rad/s]."""
+    """Request of advice: chart, interference [m], speed [rad/s]."""
 
     chart: ChartRequest
     interference: float
@@ -45,15 +45,15 @@ _DETAIL = (2.0, 2, 0), (0.5, 3, 30), (0.25, 5, 100)
 """Step of speeds [rad/s], interferences and simulations: each takes about three times as long."""
 
 _HEIGHT = 200.0
-"""Of its drawing [px]."""
+"""Height of the map [px]."""
 
 _MEANING = {PERSISTS: "quiet from rest, but a vibration goes on once it has started"}
 _FASTEST = 13.0
-"""Of a chart of a bushing that states none [rad/s]."""
+"""Maximum speed of the map if the rig has no fitted speeds [rad/s]."""
 
 
 def chart_of(request: ChartRequest) -> dict[str, object]:
-    """Return the map of noises over speed and interference as a piece of a page, and its legend.
+    """Return the noise map as HTML, and its legend.
 
     Examples
     --------
@@ -90,7 +90,7 @@ def chart_of(request: ChartRequest) -> dict[str, object]:
 
 
 def suggestions_of(request: SuggestionRequest) -> dict[str, object]:
-    """Return the noise at a condition, and the least change of each quantity that ends it.
+    """Return the noise at a condition and the smallest changes that end it.
 
     Examples
     --------

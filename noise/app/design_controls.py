@@ -1,8 +1,8 @@
-"""Controls of a design: what can be changed about its base, with bounds, for page and server.
+"""Controls of a design: adjustable quantities with their bounds, for page and server.
 
-Laws and effects come from their registries with the parameters that they declare, so that a new one
-appears by itself. A base is a shipped material or a rig file that was opened. The condition that a
-design was heard at stands in its rig file, where the view begins when the file is opened::
+Friction laws and effects come from their registries, so new ones appear without changes here. A
+base is a shipped material or an opened rig file. The condition of a design is saved in its rig
+file and restored when the file is opened::
 
     [design.heard]
     motion = "run_up"                  # or "constant" with speed_rad_s, or "swing"
@@ -43,14 +43,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RunUp:
-    """Up from one speed to another and down again, over and over.
+    """Periodic run-up and run-down between two speeds.
 
     Parameters
     ----------
     start, end : float
         [rad/s]
     seconds : float
-        From one to the other [s].
+        Duration of the run-up [s].
 
     Examples
     --------
@@ -73,7 +73,7 @@ class RunUp:
 
 
 def motion_of(values: Mapping[str, float | bool | str]) -> ShaftMotion:
-    """Return the motion that values of controls describe.
+    """Return the shaft motion of control values.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def motion_of(values: Mapping[str, float | bool | str]) -> ShaftMotion:
 
 
 def motion_options(values: Mapping[str, float | bool | str]) -> str:
-    """Return the motion as options of a command.
+    """Return the motion as command-line options.
 
     Examples
     --------
@@ -117,13 +117,13 @@ _NAMES = {
     "support": _SUPPORT,
     "temperature": "temperature_C",
 }
-"""Of controls, in files."""
+"""Key in the rig file of each control."""
 
 
 def condition_table(
     controls: Iterable[Control], values: Mapping[str, float | bool | str]
 ) -> dict[str, str | float]:
-    """Return what a rig file says of the condition that values of controls describe.
+    """Return the entries of ``[design.heard]`` for control values.
 
     Examples
     --------
@@ -145,19 +145,19 @@ def condition_table(
 
 
 def condition_values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """Return what a rig file says of the condition by control, as it stands there.
+    """Return the control values in ``[design.heard]`` of a rig file.
 
     Parameters
     ----------
     content : mapping
-        Of the whole file.
+        Content of the whole file.
     where : str
-        What messages call the file.
+        Name of the file in error messages.
 
     Raises
     ------
     ParameterError
-        Something is no table, or a key unknown.
+        An entry is not a table, or a key is unknown.
 
     Examples
     --------
@@ -179,7 +179,7 @@ def condition_values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
 
 
 MOTIONS = {"constant": "constant speed", "run_up": "run-up", "swing": "swing"}
-"""How the shaft turns."""
+"""Motions of the shaft."""
 
 _FACTORS = {
     "critical_torque": ("Critical torque", "at which the contact breaks"),
@@ -195,36 +195,36 @@ _SLEEVE = {
     "youngs_modulus": ("Young's modulus of the rubber", "torques and stiffness follow"),
 }
 _REACH = 20.0
-"""A slider of a parameter reaches from so many times below its value to so many times above."""
+"""Ratio of the ends of a slider to the value of its parameter."""
 
 
 @dataclass(frozen=True)
 class Control:
-    """One thing that can be changed.
+    """Adjustable quantity of a design.
 
     Parameters
     ----------
     key : str
-        Of its value in a state.
+        Key of its value in the state.
     kind : str
         ``number``, ``switch`` or ``choice``.
     group, label, meaning : str
-        What it is called, and where it stands.
+        Heading, name and explanation.
     value : float, bool or str
-        That of the base [`unit`].
+        Value of the base [`unit`].
     unit : str
     low, high : float
-        Ends of the slider, within which a value is plausible [`unit`].
+        Range of the slider, which is plausible [`unit`].
     least, most : float
-        Between which it is taken [`unit`].
+        Range of valid values [`unit`].
     log : bool
-        Whether equal ways of the slider are equal ratios.
+        Whether the slider is logarithmic.
     choices : dict of str to str
-        What can be chosen, and how it is called.
+        Values of a choice and their names.
     only : tuple of (str, str) or None
-        Key and value of another control with which this one counts.
+        Key and value of another control that enables this one.
     condition : bool
-        Whether it is of how the rig is run, and stays where another base is taken.
+        Whether it belongs to the operating condition, which is kept for another base.
     """
 
     key: str
@@ -244,16 +244,16 @@ class Control:
     condition: bool = False
 
     def as_json(self) -> dict[str, object]:
-        """Return it as the page reads it."""
+        """Return the fields for the page."""
         return asdict(self)
 
     def read(self, stated: object) -> float | bool | str:
-        """Return a value that a request says.
+        """Parse the value of a request.
 
         Raises
         ------
         ParameterError
-            It is none that this control takes.
+            The value is invalid for this control.
         """
         if self.kind == "switch":
             if isinstance(stated, bool):
@@ -273,18 +273,18 @@ class Control:
 
 
 def controls_of(rig: Rig, condition: Mapping[str, object] | None = None) -> list[Control]:
-    """List what can be changed about a rig.
+    """Return all controls of a rig.
 
     Parameters
     ----------
     rig : Rig
     condition : mapping of str to float, bool or str, optional
-        Values of the condition that are other than usual [unit of each].
+        Values of the condition that differ from the defaults [unit of each].
 
     Raises
     ------
     ParameterError
-        A control does not take what `condition` says.
+        A value of `condition` is invalid.
 
     Examples
     --------
@@ -302,12 +302,12 @@ def controls_of(rig: Rig, condition: Mapping[str, object] | None = None) -> list
 
 
 def read_values(controls: list[Control], stated: object) -> dict[str, float | bool | str]:
-    """Return the values of all controls: those that a request says, else those of the base.
+    """Return the values of all controls, from a request or else from the base.
 
     Raises
     ------
     ParameterError
-        A key is unknown, or a value cannot be taken.
+        A key is unknown or a value is invalid.
     """
     if not isinstance(stated, dict):
         raise ParameterError("design: the state must be an object of values by control")
@@ -425,7 +425,7 @@ def _parameter(
     key: str, group: str, parameter: Parameter, value: float, only: tuple[str, str | bool],
     of: str = "",
 ) -> Control:  # fmt: skip
-    """Return the control of a declared parameter; its slider reaches about its value."""
+    """Return the control of a parameter of a law or effect."""
     centre = value or parameter.default
     low, high, log = parameter.low, parameter.high, False
     if centre > 0.0:
@@ -443,12 +443,12 @@ def _parameter(
 
 @dataclass(frozen=True)
 class Base:
-    """A rig that designs are changes of.
+    """Base rig of designs.
 
     Parameters
     ----------
     name : str
-        What it is called in the browser.
+        Name in the browser.
     file : Path or None
         None for a material.
     """
@@ -466,14 +466,14 @@ class Base:
 
     @cached_property
     def rig(self) -> Rig:
-        """As it was when it was first asked for."""
+        """Rig, read once."""
         if self.file is None:
             return load_material_rig(self.name)
         return rig_from(self._content, self.file.parent, self._where)
 
     @cached_property
     def controls(self) -> list[Control]:
-        """What can be changed about it; the condition is that which the file was heard at."""
+        """Controls, with the condition saved in the file."""
         condition = condition_values(self._content, self._where)
         try:
             return controls_of(self.rig, condition)
@@ -482,16 +482,16 @@ class Base:
 
     @property
     def has_condition(self) -> bool:
-        """Whether the file says at which condition."""
+        """Whether the file has a saved condition."""
         return bool(condition_values(self._content, self._where))
 
     def named_in(self, folder: Path) -> str:
-        """Name it as ``base`` in a rig file of a folder."""
+        """Return the entry ``base`` of a rig file in a folder."""
         return self.name if self.file is None else base_name(self.file, folder)
 
 
 def bases_of(opened: Opened) -> dict[str, Base]:
-    """Return all bases by what requests call them: rig files by number first, then materials.
+    """Return all bases by identifier: rig files, then materials.
 
     Raises
     ------
@@ -512,7 +512,7 @@ def bases_of(opened: Opened) -> dict[str, Base]:
 
 
 def base_of(stated: object, bases: dict[str, Base]) -> Base:
-    """Return the base that a request names.
+    """Return the base of a request.
 
     Raises
     ------

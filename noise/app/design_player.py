@@ -1,8 +1,8 @@
-"""The process that plays designs: it makes the blocks of each run as they are due.
+"""Process that simulates live designs in real time, block by block.
 
-It does nothing else, so nothing that the program does besides keeps the sound waiting. A change is
-heard in the block that is made next; what carries the torque to the microphone takes a while to be
-computed, in a process of its own, and takes over when it is known.
+It does nothing else, so other work cannot delay the sound. A change takes effect in the next block.
+Impulse responses from torque to microphone take longer; another process computes them, and they are
+used as soon as they are available.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from multiprocessing.context import BaseContext
 
 RATE = 48000
-"""Of the sound [Hz]."""
+"""Sampling rate of the sound [Hz]."""
 
 
 _NICE = 10
-"""The sound goes on before what carries it is another."""
+"""Niceness of the process that computes impulse responses."""
 
 
 def block_impulse_responses(setting: Setting) -> ImpulseResponses:
@@ -44,7 +44,7 @@ def block_impulse_responses(setting: Setting) -> ImpulseResponses:
 
 
 class LiveTransferPaths:
-    """Impulse responses for one run, computed beside; the first at once."""
+    """Impulse responses of one run, computed in another process except for the first."""
 
     def __init__(self, beside: WorkerProcess[Setting, ImpulseResponses]) -> None:
         self._beside = beside
@@ -55,12 +55,12 @@ class LiveTransferPaths:
 
     @property
     def refusal(self) -> str:
-        """Why those of the setting that was asked for last cannot be, as far as that is known."""
+        """Reason why the impulse responses of the newest setting failed; empty if they did not."""
         refused, wanted = self._refused, self._wanted
         return refused[1] if refused and wanted and refused[0] == wanted[1] else ""
 
     def __call__(self, setting: Setting) -> ImpulseResponses | None:
-        """Return those of a setting, None while they are not known."""
+        """Return the impulse responses of a setting; None while they are computed."""
         if self._known is None:
             self._known = paths_key(setting), paths_of(setting, RATE)
         if self._wanted is None or self._wanted[0] is not setting:
@@ -89,16 +89,16 @@ class LiveTransferPaths:
 
 
 _BEHIND = 0.2
-"""By more than which nobody catches up: the rest comes later [s]."""
+"""Delay beyond which the schedule restarts instead of catching up [s]."""
 
 
 class Pace:
-    """One block after another, as they are played.
+    """Schedule of the blocks of one run.
 
     Parameters
     ----------
     step : float
-        From one block to the next [s].
+        Duration of a block [s].
 
     Examples
     --------
@@ -117,9 +117,9 @@ class Pace:
         self._begun: float | None = None
 
     def early(self, sequence: int, now: float) -> float:
-        """Return how long to wait for a block, 0 where it is due [s].
+        """Return the time until a block is due [s].
 
-        The clock runs once the first is made, which may take longer than all others.
+        The clock starts after the first block, which may take longer than all others.
         """
         if sequence == 0:
             return 0.0
@@ -129,22 +129,22 @@ class Pace:
         return max(0.0, self._begun + since - now)
 
     def sooner(self, seconds: float) -> None:
-        """Let all that follow come sooner by so much, later where it is negative [s]."""
+        """Shift the schedule of the following blocks forward by a time [s]."""
         if self._begun is not None:
             self._begun -= seconds
 
 
 BLOCK = 960
-"""Samples of a block: 10 ms."""
+"""Samples per block: 20 ms."""
 
 TORQUE_STEP = 4
-"""Of every so many samples of the torque one is sent, to be drawn."""
+"""Decimation of the torque, which is only drawn."""
 
 HEADER = struct.Struct("<4If")
-"""Of a block."""
+"""Header of a block."""
 
 REFUSED = 0xFFFFFFFF
-"""In place of a sequence: why the change of that serial could not be, as UTF-8 of n bytes."""
+"""Sequence number of a message that refuses a change; n bytes of UTF-8 follow."""
 
 
 @dataclass(eq=False)
@@ -159,7 +159,7 @@ class _Run:
 
 
 class Player:
-    """Runs that go on, by number.
+    """Live runs by number.
 
     Parameters
     ----------
@@ -174,33 +174,33 @@ class Player:
         )
 
     def start(self, number: int, serial: int, setting: Setting) -> None:
-        """Begin a run.
+        """Start a run.
 
         Raises
         ------
         ParameterError
-            The setting cannot be used.
+            The setting is invalid.
         """
         paths = LiveTransferPaths(self.beside)
         live = BlockEngine(setting, n=BLOCK, kinds=("pressure", "torque"), paths=paths)
         self._runs[number] = _Run(live, paths, serial)
 
     def stop(self, number: int) -> None:
-        """End a run, if there is one of that number."""
+        """End a run, if it exists."""
         self._runs.pop(number, None)
 
     def change(self, number: int, serial: int, setting: Setting) -> None:
-        """Let another setting be heard from the next block on."""
+        """Change the setting from the next block on."""
         if run := self._runs.get(number):
             run.change = serial, setting
 
     def sooner(self, number: int, seconds: float) -> None:
-        """Let the blocks that follow come sooner by so much [s]."""
+        """Shift the schedule of a run forward by a time [s]."""
         if run := self._runs.get(number):
             run.pace.sooner(seconds)
 
     def due(self, now: float) -> tuple[float, int] | None:
-        """Return in how long which run's block is due [s], None without runs."""
+        """Return the time until the next block is due [s] and its run; None without runs."""
         waits = ((run.pace.early(run.sequence, now), n) for n, run in self._runs.items())
         return min(waits, default=None)
 
@@ -219,7 +219,7 @@ class Player:
         Raises
         ------
         ParameterError
-            The run cannot go on.
+            The run failed.
         """
         run = self._runs[number]
         why = b""
@@ -245,13 +245,13 @@ class Player:
 
 
 def refusal(serial: int, error: ParameterError | str) -> bytes:
-    """Return the message that a change could not be."""
+    """Return the message that refuses a change."""
     why = " ".join(str(error).split()).encode()
     return HEADER.pack(REFUSED, serial, len(why), 0, 0.0) + why
 
 
 def warmed(context: BaseContext | None = None) -> Player:
-    """Return a player, as of its `context`, that has compiled what it will use."""
+    """Return a player whose code is compiled; `context` as of `Player`."""
     player = Player(context)
     setting = Setting(load_material_rig("fluorocarbon"), ConstantSpeed(5.0), 0.3e-3, 2214.0)
     player.beside.ask(setting)
@@ -266,7 +266,7 @@ def warmed(context: BaseContext | None = None) -> Player:
 
 
 def play(link: Connection) -> None:
-    """Play what is asked for until None is, or the other end is closed.
+    """Execute commands from a connection until None arrives or it is closed.
 
     Parameters
     ----------

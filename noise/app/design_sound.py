@@ -1,6 +1,6 @@
-"""The sound of a design while it is changed: blocks of one run that goes on, as a stream.
+"""Live sound of a design as a stream of blocks that follows its changes.
 
-Blocks come as they are due, so that the page has little in reserve and a change is heard soon.
+Blocks are sent when they are due: the page buffers little, so changes are audible soon.
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ if TYPE_CHECKING:
     from noise.classifier import Classifier
 
 _METER = RATE // BLOCK
-"""Blocks of the second whose level and noise are shown."""
+"""Blocks per second, over which level and noise are shown."""
 
 _NICE = 5
-"""By how much the sound goes before its name."""
+"""Niceness of the process that names the noise."""
 
 _MOST_RUNS = 4
-"""That go on at once: of pages that are open."""
+"""Maximum number of simultaneous runs."""
 
 _UNREAD = 5 * _METER
-"""Blocks that nobody has read, after which nobody will."""
+"""Unread blocks after which a stream is abandoned."""
 
 _SOONEST = 2.0
-"""By which blocks may come sooner or later at once [s]."""
+"""Maximum shift of the schedule in one request [s]."""
 
 
 @dataclass(eq=False)
@@ -58,7 +58,7 @@ class _Stream:
     speed: float = 0.0
 
     def put(self, message: bytes) -> None:
-        """Hand on what the player made; an empty message ends the stream."""
+        """Queue a message of the player; an empty message ends the stream."""
         if message and HEADER.unpack_from(message)[0] != REFUSED:
             self.recent.append(message[HEADER.size : HEADER.size + 4 * BLOCK])
             self.speed = HEADER.unpack_from(message)[4]
@@ -68,12 +68,12 @@ class _Stream:
 
 
 class LiveSounds:
-    """Runs that go on, each for one page.
+    """Live runs, one per page.
 
     Parameters
     ----------
     bases : dict of str to Base
-        That designs name.
+        Bases of designs.
     """
 
     def __init__(self, bases: dict[str, Base]) -> None:
@@ -86,7 +86,7 @@ class LiveSounds:
         )
 
     def get_ready(self) -> None:
-        """Start the player, which takes a while, if there is none."""
+        """Start the player process, if it is not running."""
         with self._lock:
             if self._link is not None:
                 return
@@ -112,7 +112,7 @@ class LiveSounds:
                 link.send(None)
 
     def started(self, request: dict[str, Any]) -> tuple[int, int, Design]:
-        """Return number, serial and design of a run that is to begin or to be changed.
+        """Parse number, serial and design of a request that starts or changes a run.
 
         Parameters
         ----------
@@ -122,14 +122,14 @@ class LiveSounds:
         Raises
         ------
         ParameterError
-            Something of it cannot be.
+            The request is invalid.
         """
         number, serial = (_whole(request, key) for key in ("run", "serial"))
         stated = request.get("design")
         return number, serial, design_of(stated, self._bases)
 
     async def stream(self, number: int, serial: int, design: Design) -> AsyncIterator[bytes]:
-        """Give what `noise.app.design.player.Player.block` makes, until nobody listens."""
+        """Yield the blocks of `noise.app.design_player.Player.block` until the page disconnects."""
         stream = _Stream(asyncio.get_running_loop())
         while len(self._streams) >= _MOST_RUNS:
             self._streams.pop(next(iter(self._streams))).put(b"")
@@ -145,24 +145,24 @@ class LiveSounds:
                 del self._streams[number]
 
     def change(self, request: dict[str, Any]) -> None:
-        """Let another design be heard from the next block on; `request` is as of `started`.
+        """Change the design from the next block on; `request` as of `started`.
 
         Raises
         ------
         ParameterError
-            Something of it cannot be; the run goes on as it was.
+            The request is invalid; the run continues unchanged.
         """
         number, serial, design = self.started(request)
         self._known(number)
         self._tell("change", number, serial, design.setting)
 
     def pace(self, request: dict[str, Any]) -> None:
-        """Let the blocks that follow come sooner, or later: ``{"run": number, "sooner": seconds}``.
+        """Shift the schedule of a run: ``{"run": number, "sooner": seconds}``.
 
         Raises
         ------
         ParameterError
-            Something of it cannot be.
+            The request is invalid.
         """
         run = _whole(request, "run")
         seconds = number(request, "sooner", -_SOONEST, _SOONEST)
@@ -170,9 +170,9 @@ class LiveSounds:
         self._tell("sooner", run, float(seconds))
 
     def levels(self, number: int) -> dict[str, object]:
-        """Return levels of the last second of a run [dB re 20 uPa], and the noise in it.
+        """Return the levels [dB re 20 uPa] and the noise of the last second of a run.
 
-        The name is that of the second before, since it takes as long as that to be found.
+        The noise is that of an earlier second, because classification takes time.
         """
         stream = self._streams.get(number)
         recent = b"".join(stream.recent.copy()) if stream is not None else b""
@@ -217,7 +217,7 @@ class LiveSounds:
 
 
 def name_of(question: tuple[int, float, bytes]) -> dict[str, object]:
-    """Return the label and the frequency [Hz] of a run's last second, by the classifier.
+    """Return the label and frequency [Hz] of the last second of a run.
 
     Parameters
     ----------
@@ -242,7 +242,7 @@ def name_of(question: tuple[int, float, bytes]) -> dict[str, object]:
 
 @cache
 def _classifier() -> Classifier:
-    """Return the shipped classifier; loaded once, in the process that names."""
+    """Return the shipped classifier, loaded once per process."""
     from noise.classifier import load_classifier
 
     return load_classifier()

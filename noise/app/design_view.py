@@ -1,4 +1,4 @@
-"""Routes of the view Design: a rig that is heard while it is changed."""
+"""Routes of the view Design: live sound of a rig."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _NICE = 2
 """Whoever listens goes first, but whoever waits for a map is served on a busy machine, too."""
 
 _SLOWEST, _FASTEST = 0.05, 200.0
-"""At which a noise is looked for [rad/s]."""
+"""Range of speeds of advice [rad/s]."""
 
 
 def routes(opened: Opened) -> list[BaseRoute]:
@@ -117,6 +117,6 @@ def _chart(setting: Setting) -> ChartRequest:
 
 
 def _waited(answer: tuple[dict[str, object] | None, str] | None) -> Response:
-    """Answer what is known by now: the page asks again until it is."""
+    """Return the result so far; the page polls until it is known."""
     result, error = answer or (None, "")
     return JSONResponse({"known": answer is not None, "found": result, "error": error})

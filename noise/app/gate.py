@@ -1,4 +1,4 @@
-"""The app's gate: a request without the token, for another host or from another site gets nothing.
+"""Access control of the app: it refuses requests without token, to other hosts or from other sites.
 
 Any page that a browser shows may send requests to the loopback address, and a name on the network
 may be made to point there (DNS rebinding). So a request needs the token that only the printed
@@ -44,7 +44,7 @@ _HEADERS = {
 
 
 class Gate:
-    """Let through what comes from the printed address alone.
+    """Middleware that accepts requests from the printed address only.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Gate:
         self._hosts = {f"127.0.0.1:{port}", f"localhost:{port}"}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or refuse it."""
+        """Answer or refuse a request."""
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
@@ -116,7 +116,7 @@ _MOST = 4 << 20
 def body(
     answer: Callable[[Request, dict[str, Any]], Response],
 ) -> Callable[[Request], Awaitable[Response]]:
-    """Return the endpoint that answers a request and the JSON object in it.
+    """Return an endpoint that passes on a request and its JSON object.
 
     Parameters
     ----------

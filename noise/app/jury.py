@@ -1,4 +1,4 @@
-"""A jury: sounds compared in pairs, blind, in random order; its votes and the scale that they give.
+"""Jury tests: blind paired comparisons in random order, their votes, and the resulting scale.
 
 All comparisons are in the table of votes from the beginning, without a vote, so whoever goes on
 with a jury goes on in its order; each vote is in the table before it is answered. The table is read
@@ -43,19 +43,19 @@ _PRIOR = 0.5
 
 @dataclass(frozen=True)
 class Jury:
-    """Comparisons by one person, in their order, of which the first have been voted.
+    """Comparisons of one person in their order; votes exist for the first ones.
 
     Parameters
     ----------
     number : int
-        By which it is called.
+        Number of the jury.
     listener, question : str
     played : str
         At which gain.
     pairs : tuple of (str, str)
-        Names of the sounds that are called A and B.
+        Names of sounds A and B of each comparison.
     votes : tuple of str
-        Of `VOTES`; as many as were voted.
+        Votes so far, of `VOTES`.
 
     Examples
     --------
@@ -74,34 +74,34 @@ class Jury:
 
     @property
     def sounds(self) -> tuple[str, ...]:
-        """Names of all sounds, each once, in the order of their names."""
+        """Names of all sounds, sorted."""
         return tuple(sorted({name for pair in self.pairs for name in pair}))
 
     @property
     def waiting(self) -> int | None:
-        """Number of the comparison whose turn it is; None where all have been voted."""
+        """Index of the next comparison; None if all are voted."""
         return len(self.votes) if len(self.votes) < len(self.pairs) else None
 
 
 class Votes:
-    """The table of votes; may be used from several threads and programs.
+    """Table of votes, safe for several threads and programs.
 
     Parameters
     ----------
     path : Path
-        There, or to be made.
+        File, which need not exist.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
 
     def juries(self) -> list[Jury]:
-        """Return all juries, as they stand in the table.
+        """Return all juries of the table.
 
         Raises
         ------
         RecordingError
-            It is no table of votes.
+            The file is not a table of votes.
         """
         return [_jury(self.path, rows) for rows in self._read()[1].values()]
 
@@ -111,9 +111,9 @@ class Votes:
         Raises
         ------
         ParameterError
-            There is none of this number.
+            The jury does not exist.
         RecordingError
-            It is no table of votes.
+            The file is not a table of votes.
         """
         return _jury(self.path, _rows_of(self._read()[1], number))
 
@@ -189,7 +189,7 @@ class Votes:
             return _jury(self.path, rows)
 
     def undo(self, number: int, place: int) -> Jury:
-        """Take back the last vote of a jury, which is on comparison `place`.
+        """Remove the last vote of a jury, which is on comparison `place`.
 
         Raises
         ------
@@ -207,7 +207,7 @@ class Votes:
 
     @contextmanager
     def _changed(self) -> Iterator[dict[int, list[Row]]]:
-        """Give the rows of each jury to change, and write them."""
+        """Yield the rows of each jury for changes, then write them."""
         with locked(self.path):
             columns, juries = self._read()
             yield juries
@@ -235,7 +235,7 @@ class Votes:
 def random_pairs(
     names: Sequence[str], rng: np.random.Generator, count: int | None = None
 ) -> list[tuple[str, str]]:
-    """Return pairs of sounds in random order, either of a pair first.
+    """Return pairs of sounds in random order and orientation.
 
     Parameters
     ----------
@@ -274,7 +274,7 @@ def random_pairs(
 
 
 def bradley_terry(share: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return values of sounds, of which the higher of two is chosen exp(difference) times as often.
+    """Return Bradley-Terry values of sounds; odds of a choice are exp(difference).
 
     Parameters
     ----------
@@ -316,7 +316,7 @@ def bradley_terry(share: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def scale(jury: Jury) -> tuple[list[Row], list[str]]:
-    """Return the scale of a jury's sounds, the highest first, and remarks on it.
+    """Return the Bradley-Terry scale of a jury, highest first, and remarks.
 
     Intervals at 95 % are those of a bootstrap: votes on the same pairs are drawn anew by the values
     found. They say how surely these votes place a sound, not how another person would vote.
@@ -379,7 +379,7 @@ def scale(jury: Jury) -> tuple[list[Row], list[str]]:
 
 
 def in_words(rows: Sequence[Row]) -> str:
-    """Return the result of a jury in plain words, from the rows of its `scale`.
+    """Return the result of a jury in words, from the rows of `scale`.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Routes of the view Jury: sounds compared blind.
+"""Routes of the view Jury: blind comparisons of sounds.
 
 While votes are given, nothing that is answered tells what is heard: a sound is asked for by the
 number of its comparison and its side, and comes without a name, at the gain that all have.
@@ -28,20 +28,20 @@ from noise.audio.sound import audible, refuse_mixed
 from noise.recordings.wav import wav_bytes
 
 MOST = 40
-"""Sounds that are compared."""
+"""Maximum number of sounds."""
 
 LONGEST = 30.0
-"""Of what is heard of a recording, from its beginning [s]."""
+"""Maximum duration of a sound, from the start of the recording [s]."""
 
 ONE_GAIN, EQUAL_LOUDNESS = GAINS = ("one gain", "equal loudness")
-"""How sounds are played: as recorded, the louder louder; or each as loud as the others."""
+"""Playback: one gain for all sounds, or equal loudness."""
 
 _LONGEST_TEXT = 200
 _LONGEST_WAIT = 1e6
-"""Between a comparison and its vote [s]."""
+"""Maximum time between comparison and vote [s]."""
 
 _RATE = 48000
-"""Of samples to play [Hz]."""
+"""Sampling rate of playback [Hz]."""
 
 
 def routes(opened: Opened) -> list[BaseRoute]:
@@ -144,7 +144,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
 
 class JuryPlaying:
-    """Sounds of juries at one gain or equally loud; may be used from several threads.
+    """Sounds of juries at one gain or equal loudness, safe for several threads.
 
     Parameters
     ----------
@@ -159,12 +159,12 @@ class JuryPlaying:
         self._measured: dict[tuple[int, int, int, bool], Measured] = {}
 
     def gain(self, indices: Sequence[int], played: str) -> str:
-        """Say in words at which gain sounds are played.
+        """Return the gain of playback in words.
 
         Raises
         ------
         BushingNoiseError
-            They cannot be played so; it says why.
+            The sounds cannot be played at this gain.
         """
         full_scale = self._full_scales(indices, played)[str(indices[0])]
         if full_scale.target is not None:
@@ -175,12 +175,12 @@ class JuryPlaying:
         return f"one gain: full scale = {full_scale.value:.4g} Pa ({level:.0f} dB peak re 20 µPa)"
 
     def wav(self, index: int, indices: Sequence[int], played: str) -> bytes:
-        """Return one of several sounds as a WAV file of floats, to be played as it is.
+        """Return one of several sounds as a WAV file of floats.
 
         Raises
         ------
         BushingNoiseError
-            They cannot be played so; it says why.
+            The sounds cannot be played at this gain.
         """
         full_scale = self._full_scales(indices, played)[str(index)].value
         return wav_bytes(audible(self._sound_of(index), _RATE) / full_scale, _RATE, 32)

@@ -38,19 +38,19 @@ _ORDERS = {
     "duration": "duration_s",
     "least_sure": "least_sure",
 }
-"""Columns that a list is sorted by, as requests call them."""
+"""Sort columns by their names in requests."""
 
 UNLABELLED, PARTLY, CORRECTED, REFUSED = "unlabelled", "partly", "corrected", "refused"
-"""What a list is filtered by beside the labels."""
+"""Filters besides the labels."""
 
 _LONGEST_NAME = 80
-"""Characters by which pages are told from each other."""
+"""Maximum length of a page identifier."""
 
 _NICE = 10
-"""Whoever listens goes before what is labelled meanwhile."""
+"""Niceness of the labelling process."""
 
 _PATIENCE = 10.0
-"""A command that is told to end writes what it has, which takes no longer [s]."""
+"""Time for a command to write its results after termination [s]."""
 
 _CONDITIONS = ("speed", "interference", "stiffness", "material")
 
@@ -64,7 +64,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
     opened.leaving.callback(labelling.stop)
 
     def state() -> dict[str, object]:
-        """Return how many recordings there are [-], whether some are labelled now, what failed."""
+        """Return number of recordings [-], whether labelling runs, and its message."""
         failed = labelling.code not in (None, 0, 1)
         message = labelling.message if failed or labelling.running else ""
         return {"total": len(opened.jobs), "running": labelling.running, "message": message}
@@ -130,12 +130,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
 
 class Command:
-    """A command of the program that runs beside the server, one at a time.
+    """Runner of one command of the program at a time, in a subprocess.
 
     Parameters
     ----------
     ended : callable
-        Called with the exit code when it has ended.
+        Called with the exit code.
     """
 
     def __init__(self, ended: Callable[[int], None]) -> None:
@@ -147,11 +147,11 @@ class Command:
 
     @property
     def running(self) -> bool:
-        """Whether it is at work, or what it did is being taken up."""
+        """Whether the command or the processing of its result is running."""
         return self._watcher is not None and self._watcher.is_alive()
 
     def start(self, arguments: Sequence[str]) -> None:
-        """Begin."""
+        """Start the command."""
         self.message, self.code = "", None
         self._process = subprocess.Popen(
             [sys.executable, "-m", "noise", *arguments],
@@ -169,7 +169,7 @@ class Command:
         self._watcher.start()
 
     def stop(self) -> None:
-        """Tell it to end, and wait until it has."""
+        """Terminate the command and wait for its end."""
         if self._process is None or self._watcher is None:
             return
         self._process.terminate()
@@ -189,7 +189,7 @@ class Command:
 
 
 def list_answer(query: Mapping[str, str], shown: Sequence[Row]) -> dict[str, object]:
-    """Return the recordings that a list asks for, how many there are, and how many by label.
+    """Return the recordings of a list request, and counts by label.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def list_answer(query: Mapping[str, str], shown: Sequence[Row]) -> dict[str, obj
     Raises
     ------
     ParameterError
-        It is not understood.
+        A parameter is invalid.
 
     Examples
     --------
@@ -229,7 +229,7 @@ def list_answer(query: Mapping[str, str], shown: Sequence[Row]) -> dict[str, obj
 
 
 def conditions(row: Row) -> list[str]:
-    """Return the operating conditions of a segment in words, as pages have them.
+    """Return the operating conditions of a segment in words.
 
     Examples
     --------
@@ -249,7 +249,7 @@ def conditions(row: Row) -> list[str]:
 
 
 def _kinds(one: Row) -> list[str]:
-    """Return what a recording is found under: each label in it."""
+    """Return the filters that match a recording."""
     labels = [str(label) for label in one["labels"]]  # type: ignore[attr-defined]
     kinds = labels + [REFUSED] * bool(one["error"])
     kinds += [CORRECTED] * bool(one["corrected"]) + [PARTLY] * bool(one["partly"])
@@ -257,7 +257,7 @@ def _kinds(one: Row) -> list[str]:
 
 
 def _sorted(shown: Sequence[Row], key: str, *, descending: bool) -> list[Row]:
-    """Sort by a column; what has nothing there comes last either way."""
+    """Sort by a column, empty values last."""
     there = [one for one in shown if one[key] is not None]
     rest = [one for one in shown if one[key] is None]
 
@@ -268,14 +268,14 @@ def _sorted(shown: Sequence[Row], key: str, *, descending: bool) -> list[Row]:
 
 
 def _plain(name: str, value: object) -> object:
-    """Return a cell as JSON can hold it; the bolted clamp is the word ``fixed``."""
+    """Return a cell as a JSON value; the bolted clamp is ``fixed``."""
     if isinstance(value, float) and not math.isfinite(value):
         return "fixed" if name.startswith("support_stiffness") and value > 0.0 else None
     return plain_cell(value)  # a date of a column of one's own is text
 
 
 def _page(content: Mapping[str, Any]) -> str:
-    """Return the page that a request comes from, as it calls itself."""
+    """Return the identifier of the page of a request."""
     return str(content.get("page", ""))[:_LONGEST_NAME]
 
 

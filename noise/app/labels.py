@@ -1,8 +1,8 @@
-"""Labels of all recordings, as they arrive and as a person corrects them.
+"""Label table of the app: results of the classifier and manual corrections.
 
-They are those of the table; what the classifier has done since stands in its journal until the
-table is written. A correction is in the table before it is answered, and refused where the rows
-that it was made of are others by now.
+Rows come from the table, and from the journal of the classifier until the table is written. A
+correction is written before the request is answered; it is refused if its rows have changed
+meanwhile.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from noise.labels.table import COLUMNS, HUMAN, LabelTable, read_label_table
 
 @dataclass(frozen=True, eq=False)
 class _Correction:
-    """Rows of the tracks of a recording that a change replaced, before and after it."""
+    """Rows of the changed tracks of a recording, before and after a correction."""
 
     index: int
     before: list[Row]
@@ -34,16 +34,16 @@ class _Correction:
 
 
 class Labels:
-    """Rows of the label table by recording; may be used from several threads.
+    """Rows of the label table by recording, safe for several threads.
 
     Parameters
     ----------
     jobs : sequence of Job
         The recordings.
     table : Path
-        Of their labels, there or to be made.
+        Label table, which need not exist.
     work : Labelling
-        What labels them.
+        Work that labels them.
 
     Raises
     ------
@@ -70,13 +70,13 @@ class Labels:
                 self._put(index, rows)
 
     def follow(self, work: Labelling) -> None:
-        """Take what comes from now on from the journal of this work."""
+        """Read new results from the journal of this work."""
         with self._lock:
             self._journal = JournalReader(self.path, work)
             self._fresh = {}
 
     def refresh(self) -> None:
-        """Take what others wrote: the classifier its journal, anybody the table."""
+        """Read changes of the journal and the table."""
         with self._lock:
             if self._state() != self._table_state:
                 self._read_table()
@@ -87,13 +87,13 @@ class Labels:
                 self._put(index, with_corrected_rows(self._rows[index], rows))
 
     def ended(self) -> None:
-        """Take the table as it stands, now that what filled the journal has written it."""
+        """Read the table that the finished work has written."""
         with self._lock:
             self.refresh()
             self._fresh = {}
 
     def summaries(self) -> list[dict[str, object]]:
-        """Return what the list shows of each recording, as of `summary`."""
+        """Return the `summary` of each recording."""
         with self._lock:
             self.refresh()
             for job in self._jobs:
@@ -110,7 +110,7 @@ class Labels:
     def correct(
         self, index: int, segments: Sequence[Correction], of: str, by: str = ""
     ) -> list[Row]:
-        """Put corrections in place of a recording's segments, and write the table.
+        """Replace the segments of a recording, and write the table.
 
         Parameters
         ----------
@@ -118,9 +118,9 @@ class Labels:
             Of the recording.
         segments : sequence of Correction
         of : str
-            `noise.labels.corrections.version` of the rows that the person saw.
+            `noise.labels.corrections.version` of the rows that were shown.
         by : str
-            The page that the correction comes from.
+            Page of the correction.
 
         Raises
         ------
@@ -147,20 +147,20 @@ class Labels:
             return after
 
     def history(self, by: str) -> dict[str, bool]:
-        """Return whether a page has a correction to undo, and one to redo."""
+        """Return whether a page can undo and redo."""
         with self._lock:
             lists = {"undo": self._undo, "redo": self._redo}
             return {name: any(one.by == by for one in done) for name, done in lists.items()}
 
     def undo(self, by: str = "", *, redo: bool = False) -> tuple[int, list[Row]]:
-        """Put back what the last correction of a page replaced, and write the table.
+        """Undo the last correction of a page, and write the table.
 
         Parameters
         ----------
         by : str
-            The page that the corrections come from.
+            Page of the corrections.
         redo : bool
-            Undo its last undo instead; there is none after a new correction.
+            Whether to redo the last undo instead.
 
         Raises
         ------
@@ -189,7 +189,7 @@ class Labels:
             return last.index, self._rows[last.index]
 
     def _check_version(self, index: int, of: str, rows: Sequence[Row]) -> None:
-        """Refuse corrections of other rows than these."""
+        """Refuse a correction if the rows have changed."""
         # Whoever names a recording before the classifier has does not depend on what that says.
         unseen = of == version(()) and all(row.get("label_source") != HUMAN for row in rows)
         if of != version(rows) and not unseen:
@@ -225,7 +225,7 @@ class Labels:
         self._others = by_recording.pop(None, [])
 
     def _state(self) -> tuple[int, ...] | None:
-        """Tell one version of the table on disk from another; None where there is none."""
+        """Return the file state of the table; None if it does not exist."""
         try:
             status = self.path.stat()
         except OSError:
@@ -245,7 +245,7 @@ def _changed_tracks(before: Sequence[Row], after: Sequence[Row]) -> set[str]:
 
 
 def _order(row: Row) -> tuple[int, float]:
-    """Sort rows of a recording as `label` writes them: by track, then by time."""
+    """Return the sort key of a row: track, then time."""
     number, start = track(row), row.get("start_s")
     return (
         int(number) if number.isascii() and number.isdecimal() else 0,
@@ -260,7 +260,7 @@ def _rows(done: JobResult) -> list[Row]:
 def _by_recording(
     rows: Sequence[Row], jobs: Sequence[Job], table: Path
 ) -> dict[int | None, list[Row]]:
-    """Part rows by their recording's index; None has those of recordings that are not open.
+    """Group rows by the index of their recording; None has those of other recordings.
 
     A file of the table is the recording of that name, else the one at that place beside the table,
     else the only one whose path ends so.
@@ -285,7 +285,7 @@ def _by_recording(
 
 
 def summary(index: int, name: str, rows: Sequence[Row]) -> dict[str, object]:
-    """Return what the list shows of a recording.
+    """Return the entry of a recording in the list.
 
     Examples
     --------
@@ -313,7 +313,7 @@ def summary(index: int, name: str, rows: Sequence[Row]) -> dict[str, object]:
 
 
 def _doubt(row: Row) -> float:
-    """Probability that a row's label is wrong, by the classifier [-]; 0 of a person's label."""
+    """Probability that a label is wrong [-]; 0 for labels by a person."""
     p = row.get(f"p_{row.get('label')}")
     if row.get("label_source") == HUMAN or not isinstance(p, float):
         return 0.0

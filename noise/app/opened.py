@@ -1,6 +1,6 @@
-"""What was opened: recordings by number, their label table, rig files.
+"""Opened files of the app: recordings by number, label table, rig files.
 
-No path comes from a browser.
+The browser never names a path.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ _TABLE = "labels.csv"
 
 @dataclass(frozen=True)
 class Opened:
-    """What the app may read and write.
+    """Files that the app may read and write.
 
     Parameters
     ----------
     jobs : tuple of Job
         Recordings; `Job.index` is what the browser calls each.
     table : Path or None
-        Of their labels, there or to be made; None without recordings.
+        Label table, which need not exist; None without recordings.
     rigs : tuple of Path
         Rig files.
     folder : Path
@@ -39,9 +39,9 @@ class Opened:
     sources : tuple of Path
         Recordings and folders that the recordings were found in.
     seed : int
-        Of random orders.
+        Seed of random orders.
     leaving : ExitStack
-        What is to be ended when the app ends.
+        Cleanup at the end of the app.
     """
 
     jobs: tuple[Job, ...]
@@ -58,7 +58,7 @@ class Opened:
         Raises
         ------
         ParameterError
-            None has it.
+            The number does not exist.
         """
         if not 0 <= index < len(self.jobs):
             raise ParameterError(f"there is no recording {index}")
@@ -81,7 +81,7 @@ def open_paths(
         Label table to write, which may be there; by default the one that was named, ``labels.csv``
         where it is already in the folder of recordings, or else ``FOLDER-labels.csv`` beside it.
     seed : int
-        Of random orders.
+        Seed of random orders.
     save : Path, optional
         `Opened.folder`, where that is to be another one.
 
@@ -128,7 +128,7 @@ def open_paths(
 
 
 def _table_of(folder: Path) -> Path:
-    """Return the label table of a folder of recordings, in which nothing new is written.
+    """Return the label table of a folder of recordings; a new one lies beside the folder.
 
     A table of which only the journal is there yet is being written, or was when it was interrupted.
     """

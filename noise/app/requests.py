@@ -1,4 +1,4 @@
-"""Checks of what a request says: numbers, choices and texts, refused in one line each."""
+"""Parsing of request parameters: numbers, choices and texts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from models.errors import ParameterError
 from models.schema import Quantity
 
 _SHOWN = 40
-"""Characters of a value that a message shows."""
+"""Maximum length of a value in an error message."""
 
 
 def number(
@@ -27,19 +27,19 @@ def number(
     Parameters
     ----------
     request : mapping
-        What the request says: numbers of JSON, or words of an address.
+        JSON object or query parameters.
     key : str
     low, high : float
-        Between which it has to be [unit of the key].
+        Bounds [unit of the key].
     missing : float, optional
-        Its value where nothing is said [unit of the key]; by default something has to be.
+        Default [unit of the key]; without it the key is required.
     whole : bool
-        Whether it has to be a whole number.
+        Whether the number must be an integer.
 
     Raises
     ------
     ParameterError
-        It is none, or out of bounds.
+        The value is not a number or out of bounds.
 
     Examples
     --------
@@ -67,12 +67,12 @@ def number(
 
 
 def choice(request: Mapping[str, Any], key: str, known: Iterable[str], missing: str = "") -> str:
-    """Return one of several words.
+    """Return a choice of a request.
 
     Raises
     ------
     ParameterError
-        It is none of them.
+        The value is not one of the choices.
 
     Examples
     --------
@@ -87,12 +87,12 @@ def choice(request: Mapping[str, Any], key: str, known: Iterable[str], missing: 
 
 
 def text(request: Mapping[str, Any], key: str, longest: int) -> str:
-    """Return a text, its spaces single; empty where nothing is said.
+    """Return a text of a request with single spaces; empty if missing.
 
     Raises
     ------
     ParameterError
-        It is none, or too long.
+        The value is not a text or too long.
 
     Examples
     --------

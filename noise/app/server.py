@@ -1,4 +1,4 @@
-"""The server of the app: its views, and the page that they stand in."""
+"""Server of the app: its page and the routes of its views."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ if TYPE_CHECKING:
 
 
 class LazyRoutes(BaseRoute):
-    """All routes that begin alike.
+    """Routes with a common prefix, created on the first request.
 
     Parameters
     ----------
     prefix : str
-        That they begin with.
+        Common prefix.
     make : callable
-        Returns them; called once, in a thread, since it may take its time.
+        Returns the routes; called once, in a thread.
     """
 
     def __init__(self, prefix: str, make: Callable[[], Sequence[BaseRoute]]) -> None:
@@ -50,7 +50,7 @@ class LazyRoutes(BaseRoute):
         self._router: Router | None = None
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
-        """Whether a request is for one of them."""
+        """Match a request against the prefix."""
         path = scope["path"]
         mine = path == self._prefix or path.startswith(f"{self._prefix}/")
         return (Match.FULL if mine and scope["type"] == "http" else Match.NONE), {}
@@ -84,18 +84,18 @@ _STATIC = Path(__file__).parent / "static"
 def create_app(
     opened: Opened, token: str, port: int, stop: Callable[[], None] = lambda: None
 ) -> ASGIApp:
-    """Return the application.
+    """Return the ASGI application.
 
     Parameters
     ----------
     opened : Opened
-        What it may read and write.
+        Files of the app.
     token : str
-        Without which nothing is answered.
+        Access token.
     port : int
-        Of the server [-].
+        Port of the server [-].
     stop : callable
-        Called when somebody asks it to stop.
+        Called on a request to stop.
     """
     environment = Environment(loader=PackageLoader("noise.app"), autoescape=True)
     first = "design" if opened.rigs and not opened.jobs else "labels"
@@ -130,26 +130,26 @@ def create_app(
 
 
 async def _told(_: Request, error: Exception) -> Response:
-    """Tell what was wrong in one line, as the command line does."""
+    """Return the error as one line of JSON."""
     return JSONResponse({"error": " ".join(str(error).split("\n"))}, 400)
 
 
 def serve(opened: Opened, port: int, ready: Callable[[str], None]) -> None:
-    """Serve on the loopback address until somebody asks it to stop.
+    """Serve on the loopback address until a request or signal stops the server.
 
     Parameters
     ----------
     opened : Opened
-        What it may read and write.
+        Files of the app.
     port : int
-        To listen on; 0 takes a free one [-].
+        Port; 0 selects a free one [-].
     ready : callable
-        Called with the address once it answers there.
+        Called with the address.
 
     Raises
     ------
     OSError
-        Something else listens on the port.
+        The port is in use.
     """
     import uvicorn
 
@@ -181,7 +181,7 @@ def serve(opened: Opened, port: int, ready: Callable[[str], None]) -> None:
 
 @contextlib.contextmanager
 def _ended_by_signals(stop: Callable[[], None]) -> Iterator[None]:
-    """Stop where the terminal is closed, or somebody says so there."""
+    """Stop on signals of the terminal within the block."""
     if threading.current_thread() is not threading.main_thread():  # signals are not for us
         yield
         return

@@ -1,4 +1,4 @@
-"""Samples, spectrogram and levels of recordings for the app's views, each recording by its number.
+"""Samples, spectrograms and levels of recordings for the views of the app.
 
 Recordings that are looked at are kept in memory; long ones are read in parts. Samples are played by
 a page that has one gain for all calibrated sounds, so they are given as floating-point numbers, in
@@ -50,12 +50,12 @@ Facts = dict[str, object]
 
 
 _MOST_OPEN = 6
-"""Recordings in memory: two that are compared, and those beside them."""
+"""Number of recordings in memory."""
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """One channel of a recording.
+    """Channel of a recording.
 
     Parameters
     ----------
@@ -78,27 +78,27 @@ class Track:
 
     @property
     def duration(self) -> float:
-        """Of the whole [s]."""
+        """Duration [s]."""
         return self.n / self.rate
 
     @property
     def in_full_scale(self) -> bool:
-        """Whether it is sound whose pressure is not known, in fractions of full scale."""
+        """Whether samples are fractions of full scale: sound without calibration."""
         return self.channel.kind == "pressure" and not self.calibrated
 
     @property
     def unit(self) -> str:
-        """Of its samples."""
+        """Unit of the samples."""
         return "FS" if self.in_full_scale else self.channel.unit
 
     @property
     def reference(self) -> float:
-        """Of its levels [unit of the samples]."""
+        """Reference of levels [unit of the samples]."""
         return 1.0 if self.in_full_scale else REFERENCES.get(self.channel.kind, 1.0)
 
     @property
     def level_unit(self) -> str:
-        """Of its levels."""
+        """Unit of levels."""
         if self.in_full_scale:
             return "dBFS"
         if self.channel.kind == "pressure":
@@ -108,7 +108,7 @@ class Track:
 
 @dataclass
 class _Reading:
-    """A recording that is read once, whoever asks first."""
+    """Recording that is read once."""
 
     path: Path
     lock: Lock = field(default_factory=Lock)
@@ -124,7 +124,7 @@ class _Reading:
 
 
 class SoundCache:
-    """The recordings that were opened, of which the last few are kept.
+    """Cache of the recordings used last.
 
     Parameters
     ----------
@@ -137,12 +137,12 @@ class SoundCache:
         self._readings: OrderedDict[tuple[int, int, int], _Reading] = OrderedDict()
 
     def blocks(self, index: int) -> RecordingBlocks:
-        """Return a recording, read anew where its file has changed.
+        """Return a recording; a changed file is read again.
 
         Raises
         ------
         ParameterError, RecordingError
-            There is none of this number, or it cannot be read.
+            The recording does not exist or cannot be read.
         """
         return self._reading(index).get()
 
@@ -183,14 +183,14 @@ class SoundCache:
 
 
 def read_stretch(query: Query, track: Track, longest: float = math.inf) -> tuple[int, int]:
-    """Read which stretch is asked for, `start` to `end`; by default the whole.
+    """Parse the interval `start` to `end` of a request; by default the whole recording.
 
     Parameters
     ----------
     query : mapping of str to str
     track : Track
     longest : float
-        What is longer is cut there [s].
+        Maximum duration [s].
 
     Returns
     -------
@@ -200,7 +200,7 @@ def read_stretch(query: Query, track: Track, longest: float = math.inf) -> tuple
     Raises
     ------
     ParameterError
-        It is none.
+        The interval is empty.
     """
     start = number(query, "start", 0.0, math.inf, 0.0)
     end = number(query, "end", 0.0, math.inf, track.duration)
@@ -214,29 +214,29 @@ def read_stretch(query: Query, track: Track, longest: float = math.inf) -> tuple
 
 
 _RATE = 48000
-"""Of samples to play [Hz]."""
+"""Sampling rate of playback [Hz]."""
 
 _LONGEST_PLAYED = 600.0
-"""Played from one answer [s]."""
+"""Maximum duration of one answer [s]."""
 
 _CELL = 0.01
-"""Of levels over time: the largest in each is given [s]."""
+"""Cell of levels over time, which has the maximum in it [s]."""
 
 _MOST_CELLS = 6000
-"""Of one recording: where it is longer, so is a cell."""
+"""Maximum number of cells."""
 
 _LONGEST_BANDS = 120.0
-"""Of a stretch whose bands are measured [s]."""
+"""Maximum interval for band levels [s]."""
 
 
 def wav(track: Track, query: Query) -> bytes:
-    """Return a stretch as a WAV file of floats: pascals, or the channel's own unit."""
+    """Return an interval as a WAV file of floats in the unit of the channel."""
     first, last = read_stretch(query, track, _LONGEST_PLAYED)
     return wav_bytes(playable(track.read(first, last), track.rate, _RATE), _RATE, 32)
 
 
 def level_course(track: Track) -> dict[str, object]:
-    """Return the A-weighted level with the time weighting F, the largest in each cell."""
+    """Return the maximum A-weighted level, time weighting F, of each cell."""
     cell = max(_CELL, track.duration / _MOST_CELLS)
     levels = np.full(math.ceil(track.n / (cell * track.rate)), -math.inf)
     first = 0
@@ -252,7 +252,7 @@ def level_course(track: Track) -> dict[str, object]:
 
 
 def bands(track: Track, query: Query) -> dict[str, object]:
-    """Return levels and third octaves of a stretch, as the tables have them."""
+    """Return levels and third-octave levels of an interval."""
     first, last = read_stretch(query, track, _LONGEST_BANDS)
     signal = track.read(first, last)
     measured = sound_levels(signal, track.rate, reference=track.reference)
@@ -268,7 +268,7 @@ def bands(track: Track, query: Query) -> dict[str, object]:
 
 
 def equal(track: Track, query: Query) -> dict[str, object]:
-    """Return the loudness of a stretch, and its peak, re one unit of its samples.
+    """Return loudness and peak of an interval, re one unit of its samples.
 
     The loudness is None for what is too short or too quiet to have one.
     """
@@ -287,25 +287,25 @@ def _weighted(track: Track) -> str:
 
 
 def _plain(level: float) -> float | None:
-    """Return a level as JSON can hold it; None for silence, and for what is not measured."""
+    """Return a level as a JSON value; None for silence."""
     return round(level, 2) if math.isfinite(level) else None
 
 
 _STEP = 0.5
-"""Of levels in bytes [dB]."""
+"""Step of levels coded as bytes [dB]."""
 
 _ROUND = 5.0
-"""The level of the highest byte is a multiple of it [dB]."""
+"""Rounding of the highest level [dB]."""
 
 _WINDOW = (0.01, 0.04)
-"""Shortest and longest frame [s]."""
+"""Minimum and maximum frame [s]."""
 
 _COLUMNS = 8.0
-"""That a frame covers in between [-]."""
+"""Columns per frame in between [-]."""
 
 
 def outline(track: Track, query: Query) -> tuple[Facts, NDArray[np.float32]]:
-    """Return the lowest and the highest sample in each column, shape (2, width)."""
+    """Return minimum and maximum of the samples in each column, shape (2, width)."""
     begin, end = read_stretch(query, track)
     width = min(end - begin, int(number(query, "width", 1, 4000, 1000)))
     edges = np.linspace(begin, end, width + 1).astype(int)
@@ -321,7 +321,7 @@ def outline(track: Track, query: Query) -> tuple[Facts, NDArray[np.float32]]:
 
 
 def spectrogram(track: Track, query: Query) -> tuple[Facts, NDArray[np.uint8]]:
-    """Return levels in steps, the highest frequency first, shape (height, width)."""
+    """Return levels coded as bytes, highest frequency first, shape (height, width)."""
     begin, end = read_stretch(query, track)
     highest = min(HIGHEST, 0.5 * track.rate)
     lowest = min(LOWEST, 0.01 * highest)
@@ -349,7 +349,7 @@ def spectrogram(track: Track, query: Query) -> tuple[Facts, NDArray[np.uint8]]:
 
 
 def routes(opened: Opened) -> list[BaseRoute]:
-    """Return the routes that tell of recordings, each by its number."""
+    """Return the routes of recordings by number."""
     sounds = SoundCache(opened)
 
     def about(request: Request) -> Response:
@@ -413,7 +413,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
 
 def _framed(facts: Facts, values: NDArray[np.generic]) -> Response:
-    """Return numbers after what they mean: JSON of whole words, whose length stands before it."""
+    """Return length of the header, JSON header padded to 4 bytes, and values as one response."""
     head = json.dumps(facts).encode()
     head += b" " * (-len(head) % 4)
     content = len(head).to_bytes(4, "little") + head + values.tobytes()

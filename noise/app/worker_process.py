@@ -1,7 +1,7 @@
-"""Work beside the sound, in a process of its own, so that it never keeps the sound waiting.
+"""Background process for work that must not delay the sound.
 
-Only the newest question counts: one that comes while another is answered takes the place of those
-that wait. The process ends with the server, however that ends.
+Only the newest question is answered: it replaces a question that is still waiting. The process
+ends with the server.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from noise.base.processes import Worker
 from noise.batch.work import one_thread
 
 _REST = 0.5
-"""Longest rest between answers, as long as one took: half a processor is left to the sound [s]."""
+"""Maximum pause between answers [s]; a pause is as long as the last answer took."""
 
 _LOADED = ("noise.app.design_sound", "noise.app.design_chart", "noise.labels.segments")
-"""Modules that take seconds to be loaded."""
+"""Modules that are loaded before a process starts."""
 
 _Question = TypeVar("_Question")
 _Answer = TypeVar("_Answer")
@@ -35,7 +35,7 @@ _Answer = TypeVar("_Answer")
 
 @cache
 def process_context() -> BaseContext:
-    """Return a context of processes that begin with all modules loaded; of new ones off Linux."""
+    """Return the context for starting processes: on Linux they start with modules loaded."""
     if sys.platform != "linux":
         return get_context("spawn")
     context = get_context("forkserver")
@@ -44,16 +44,16 @@ def process_context() -> BaseContext:
 
 
 class WorkerProcess(Generic[_Question, _Answer]):
-    """A process that answers the newest question.
+    """Process that answers the newest question.
 
     Parameters
     ----------
     answer : str
-        ``module:function`` from question to answer: only the process imports it, once it is nice.
+        ``module:function`` from question to answer, imported by the process.
     nice : int
-        By how much everything else goes first, as of the command ``nice``.
+        Niceness of the process.
     context : multiprocessing.context.BaseContext, optional
-        In which it is started, by default `process_context`.
+        Start method, by default `process_context`.
     """
 
     def __init__(self, answer: str, nice: int = 0, context: BaseContext | None = None) -> None:
@@ -66,13 +66,13 @@ class WorkerProcess(Generic[_Question, _Answer]):
         self._stopped = False
 
     def ask(self, question: _Question) -> None:
-        """Ask, and forget those questions that have not been begun."""
+        """Replace the waiting question."""
         with self._lock:
             self._wanted = (question,)
             self._go_on()
 
     def answer_to(self, question: _Question) -> tuple[_Answer | None, str] | None:
-        """Return the answer and what went wrong, None while there is none; asks if need be."""
+        """Return answer and error message of a question; None while it is computed."""
         with self._lock:
             if self._newest is not None and self._newest[0] == question:
                 return self._newest[1:]
@@ -83,12 +83,12 @@ class WorkerProcess(Generic[_Question, _Answer]):
 
     @property
     def newest(self) -> tuple[_Question, _Answer | None, str] | None:
-        """The question that was answered last, its answer, and what went wrong if it has none."""
+        """Last answered question, its answer and its error message."""
         return self._newest
 
     @property
     def busy(self) -> bool:
-        """Whether something that was asked is not answered yet."""
+        """Whether a question is unanswered."""
         with self._lock:
             return self._current is not None or self._wanted is not None
 
@@ -123,7 +123,7 @@ class WorkerProcess(Generic[_Question, _Answer]):
 
 @cache
 def _answers(answer: str, nice: int) -> list[Any]:
-    """Be nice, import what answers, and keep until when there is a rest [s]."""
+    """Set the niceness, import the function, and store the end of the next pause [s]."""
     with suppress(AttributeError, OSError):
         os.nice(nice)
     with suppress(AttributeError, OSError):  # on Linux: nothing that waits for it is woken late

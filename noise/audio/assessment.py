@@ -1,4 +1,4 @@
-"""Levels of a recording, in the air and in the file that is written, and of a sound power.
+"""Levels of a sound in air and in the written file, and levels of sound power.
 
 Levels in the air are those of the recording before it is faded and resampled, so that they are
 the measurement's and a gain does not change them. Without a calibration there is no level in the
@@ -49,7 +49,7 @@ TOTAL = "total"
 
 @dataclass(frozen=True)
 class Assessment:
-    """What a recording sounds like, in numbers.
+    """Levels and sound quality of a recording.
 
     Parameters
     ----------
@@ -64,12 +64,12 @@ class Assessment:
     quality: SoundQuality | None = None
 
     def in_file(self, full_scale: float) -> SoundLevels:
-        """Return levels re full scale [unit of the recording] of the file that is written."""
+        """Return levels re full scale [unit of the recording] of the written file."""
         reference = REFERENCE_PRESSURE if self.calibrated else 1.0
         return self.levels.raised(20.0 * math.log10(reference / full_scale))
 
     def row(self, full_scale: float) -> dict[str, object]:
-        """Return cells by `COLUMNS` at a full scale [Pa]; those that are not known are left out."""
+        """Return known cells by `COLUMNS` at a full scale [Pa]."""
         row: dict[str, object] = {"level_dbfs": _rounded(self.in_file(full_scale).level)}
         if self.calibrated:
             row |= {
@@ -85,7 +85,7 @@ class Assessment:
         return row
 
     def entry(self, full_scale: float) -> dict[str, object]:
-        """Return the same for a sidecar, with the one-third octaves as an object."""
+        """Return the values of `row` for a sidecar, third octaves as an object."""
         row = self.row(full_scale)
         entry = {key: row[key] for key in COLUMNS if key in row and "third_octave" not in key}
         levels, unit = self.levels, "db"
@@ -99,7 +99,7 @@ class Assessment:
         return entry
 
     def words(self, full_scale: float) -> list[str]:
-        """Return lines that say the same, without the one-third octaves."""
+        """Return the values of `row` as lines of text, without third octaves."""
         levels = self.levels if self.calibrated else self.in_file(full_scale)
         unit, re = ("dB", " re 20 uPa") if self.calibrated else ("dBFS", "")
         lines = [
@@ -163,7 +163,7 @@ def _rounded(value: float, digits: int = 2) -> float | None:
 
 
 def sound_power_rows(power: BandPower) -> list[dict[str, object]]:
-    """Rows by `POWER_COLUMNS`, one a band and one of their sum.
+    """Return rows by `POWER_COLUMNS`, one per band and one for the sum.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Sound as a WAV file for listening, with a sidecar; both whole or not at all."""
+"""WAV files for listening with a sidecar, written atomically."""
 
 import json
 import math
@@ -30,7 +30,7 @@ def write_audio(
     dither: np.random.Generator | None = None,
     about: Mapping[str, object] | None = None,
 ) -> Path:
-    """Write sound as a WAV file for listening, with a sidecar; both whole or not at all.
+    """Write a WAV file for listening and its sidecar, atomically.
 
     Parameters
     ----------

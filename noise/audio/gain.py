@@ -1,4 +1,4 @@
-"""Gain of a sound file: one number, the value of a sample at full scale.
+"""Gain of sound files, stated as the value of a full-scale sample.
 
 There are three ways to choose it. Calibrated: a listening room is set to so many pascals at full
 scale, and a sound that would clip there is refused. Common: one full scale for all sounds of a
@@ -47,14 +47,14 @@ _BLOCK, _MARGIN = 1 << 19, 1 << 9
 
 
 def common_full_scale(signals: Iterable[NDArray[np.float64]], headroom_db: float = 3.0) -> float:
-    """Return the one full scale at which a set of sounds keeps its relative loudness.
+    """Return the common full scale of a set of sounds.
 
     Parameters
     ----------
     signals : iterable of ndarray, shape (n_samples,)
         Sounds [unit of the sound], the same for all.
     headroom_db : float
-        How far below full scale the largest peak of all is put [dB].
+        Distance of the largest peak from full scale [dB].
 
     Returns
     -------
@@ -72,7 +72,7 @@ def common_full_scale(signals: Iterable[NDArray[np.float64]], headroom_db: float
 
 
 def least_full_scale(samples: NDArray[np.float64], bits: int) -> float:
-    """Smallest full scale at which no sample clips, rounded up to four digits.
+    """Return the smallest full scale at which no sample clips, rounded up to four digits.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def least_full_scale(samples: NDArray[np.float64], bits: int) -> float:
 
 
 def full_scale_without_clipping(peak: float) -> float:
-    """Smallest full scale [unit of the peak] that keeps a true peak below `CEILING`.
+    """Return the smallest full scale [unit of the peak] with a true peak below `CEILING`.
 
     It is rounded up to four digits.
 
@@ -108,7 +108,7 @@ def full_scale_without_clipping(peak: float) -> float:
 
 
 def true_peak(samples: NDArray[np.float64], rate: float) -> float:
-    """Peak of the curve through the samples, in their unit.
+    """Return the true peak, between samples, in their unit.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def true_peak(samples: NDArray[np.float64], rate: float) -> float:
 
 
 def loudness(samples: NDArray[np.float64], rate: int) -> float:
-    """Integrated loudness of a sound on one channel.
+    """Return the integrated loudness of a mono sound.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def loudness(samples: NDArray[np.float64], rate: int) -> float:
 
 
 def matched_loudness(loudest: Sequence[float]) -> float:
-    """Return the loudness that all sounds of a set can have.
+    """Return the common target loudness of a set of sounds.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def matched_loudness(loudest: Sequence[float]) -> float:
 
 
 def matched_full_scale(samples: NDArray[np.float64], rate: int, target: float) -> float:
-    """Return the full scale at which a sound has a loudness [LUFS].
+    """Return the full scale at which a sound has a given loudness [LUFS].
 
     Parameters
     ----------
@@ -240,7 +240,7 @@ def matched_full_scale(samples: NDArray[np.float64], rate: int, target: float) -
 
 
 def _rounded_up(value: float) -> float:
-    """To four digits, so that it is still enough when it is typed."""
+    """Round up to four digits."""
     if value == 0.0:
         return 0.0
     digit = 10.0 ** (math.floor(math.log10(value)) - 3)

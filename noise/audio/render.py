@@ -1,4 +1,4 @@
-"""Recordings as audible WAV files of a set, whose gains belong together.
+"""Rendering of recordings as a set of audible WAV files with related gains.
 
 It takes two passes: first every sound is measured, then the gain is chosen that suits them all,
 then each is written. What is kept between is a few numbers a sound, so that a set may be larger
@@ -48,7 +48,7 @@ COLUMNS = (
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """One recording in a file.
+    """Recording within a sound file.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Peak, loudness and levels of a sound, measured before it is written.
+    """Peak, loudness and levels of a sound before writing.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Measured:
 
     @property
     def name(self) -> str:
-        """Of its first recording."""
+        """Name of its first recording."""
         return self.parts[0].about.name
 
     @property
@@ -98,7 +98,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class FullScale:
-    """A gain: value of a sample at full scale, how it was chosen, loudness aimed at [LUFS]."""
+    """Gain: value of a full-scale sample, method, and target loudness [LUFS]."""
 
     value: float
     gain: str
@@ -114,7 +114,7 @@ def measure(
     quality: bool = False,
     match: bool = False,
 ) -> Measured:
-    """Measure the sound that recordings make back to back.
+    """Measure the concatenated sound of recordings.
 
     Parameters
     ----------
@@ -313,7 +313,7 @@ def render(
 
 
 def _entry(part: Part, full_scale: float) -> dict[str, object]:
-    """Return a part as the sidecar has it."""
+    """Return the sidecar entry of a part."""
     about = part.about
     return {
         "name": about.name,
@@ -326,7 +326,7 @@ def _entry(part: Part, full_scale: float) -> dict[str, object]:
 
 
 def _common(recordings: Sequence[Recording]) -> Recording:
-    """Return what holds for all recordings, without samples."""
+    """Return the common metadata of recordings, without samples."""
     conditions = [recording.condition for recording in recordings]
     values = {one.name: {getattr(c, one.name) for c in conditions} for one in fields(Condition)}
     shared: dict[str, Any] = {name: of.pop() for name, of in values.items() if len(of) == 1}

@@ -1,4 +1,4 @@
-"""The sound of a recording: its pressure at a rate that is played, without offset, faded.
+"""Audible sound of a recording: resampled pressure without offset, with fades.
 
 Sound is resampled by a polyphase filter whose stop band begins where the lower of both rates folds
 back: images and alias, which an ear would take for a squeal of the bushing, lie 100 dB down, and
@@ -24,7 +24,7 @@ GAP = 0.5
 """Silence between two recordings in one file [s]."""
 
 LOWEST_AUDIBLE_RATE = 40.0
-"""Sampling rate below which no frequency is left that is heard [Hz]."""
+"""Minimum sampling rate of audible sound [Hz]."""
 
 _STOP_BAND = 100.0  # dB
 _PASS_BAND = 0.95  # of the lower Nyquist frequency
@@ -34,7 +34,7 @@ _ORDER = 4  # of a band's ends, once
 
 
 def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> NDArray[np.float64]:
-    """Return the sound of a recording's first pressure channel, ready to be listened to.
+    """Return the first pressure channel of a recording, prepared for listening.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> N
 def playable(
     signal: NDArray[np.float64], rate: float, new_rate: int = 48000, *, fade: float = FADE
 ) -> NDArray[np.float64]:
-    """Return a signal at a rate that is played, without its mean, faded in and out.
+    """Return a resampled signal without its mean, with fades.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def playable(
 
 
 def fade_ends(sound: NDArray[np.floating], n: int) -> None:
-    """Fade a sound in and out, in place, each over n samples or half of it."""
+    """Fade a sound in and out in place, over at most n samples each."""
     n = min(n, sound.size // 2)
     flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / max(n, 1)) ** 2
     sound[:n] *= flank
@@ -102,7 +102,7 @@ def fade_ends(sound: NDArray[np.floating], n: int) -> None:
 
 
 def pressure_channel(recording: Recording | RecordingBlocks) -> Channel:
-    """Return the channel that is heard: the first of sound pressure.
+    """Return the first channel of sound pressure.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def resampled(signal: NDArray[np.float64], rate: float, new_rate: float) -> NDAr
 
 @lru_cache(maxsize=4)
 def _resampling(rate: float, new_rate: float) -> tuple[int, int, NDArray[np.float64]]:
-    """Ratio of two sampling rates [Hz] and the filter that goes with it, at the multiplied rate."""
+    """Return up and down factors of two sampling rates [Hz] and the filter taps."""
     from scipy.signal import firwin, kaiser_beta
 
     terms = max(1, min(_FINEST_RATIO, int(_LARGEST_TERM * rate / new_rate)))
@@ -165,7 +165,7 @@ def _resampling(rate: float, new_rate: float) -> tuple[int, int, NDArray[np.floa
 def in_band(
     signal: NDArray[np.float64], rate: float, band: tuple[float, float]
 ) -> NDArray[np.float64]:
-    """Return a signal in a band of frequencies alone, without delay.
+    """Return a band-pass filtered signal without delay.
 
     Butterworth's filter runs forwards and backwards, so that a slip stays where it was: at the ends
     of the band it is 6 dB down, and falls by 48 dB an octave beyond.
@@ -212,7 +212,7 @@ def in_band(
 def pressure_recording(
     recording: Recording | RecordingBlocks, band: tuple[float, float] | None = None
 ) -> Recording:
-    """Return the first pressure channel of a recording as one of its own, in a band [Hz] alone.
+    """Return the first pressure channel as a recording, filtered to a band [Hz].
 
     Raises
     ------
@@ -253,7 +253,7 @@ def pressure_recording(
 def joined(
     recordings: Sequence[Recording], rate: int = 48000, *, gap: float = GAP, fade: float = FADE
 ) -> tuple[NDArray[np.float64], list[tuple[float, float]]]:
-    """Put the sounds of recordings behind one another, at the same gain.
+    """Concatenate the sounds of recordings at one gain.
 
     Parameters
     ----------
@@ -298,7 +298,7 @@ def joined(
 
 
 def refuse_mixed(known: Mapping[bool, str], remedy: str) -> None:
-    """Refuse one gain for sounds of which some are calibrated and others are not."""
+    """Refuse a common gain for calibrated and uncalibrated sounds."""
     if len(known) > 1:
         raise ParameterError(
             f"{known[True]} is calibrated and {known[False]} is not, so one gain cannot keep how "

@@ -1,4 +1,4 @@
-"""Spectrogram of any part of a sound: levels of lines over time and logarithmic frequency.
+"""Spectrogram of a part of a sound over time and logarithmic frequency.
 
 Pages, app and pictures share it, so that the same sound looks the same in all of them. Each row and
 column holds the largest line in it, so that neither a click nor a tone is lost where a row or
@@ -31,7 +31,7 @@ _MOST_FRAMES = 16
 
 @dataclass(frozen=True)
 class Grid:
-    """Which part of a sound is looked at, and how finely.
+    """Interval and resolution of a spectrogram.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Grid:
 
 
 def whole_grid(n: int, rate: float) -> Grid:
-    """Return the grid of a whole sound of `n` samples at a rate [Hz], on pages and in pictures.
+    """Return the default grid of a sound of `n` samples at a rate [Hz].
 
     Examples
     --------
@@ -82,7 +82,7 @@ def spectrogram(
     reference: float,
     grid: Grid | None = None,
 ) -> NDArray[np.float64]:
-    """Levels of lines in the rows and columns of a grid.
+    """Return the levels in the rows and columns of a grid.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def spectrogram(
 
 
 def _window(length: int) -> NDArray[np.float32]:
-    """Under which the square of a line's magnitude is the mean square of its tone."""
+    """Return the window, scaled so that squared magnitudes are mean squares of tones."""
     window = np.hanning(length)
     return np.asarray(window * (math.sqrt(2.0) / window.sum()), dtype=np.float32)
 
@@ -150,7 +150,7 @@ def _window(length: int) -> NDArray[np.float32]:
 def _without_offset(
     frames: NDArray[np.float32], window: NDArray[np.float32]
 ) -> NDArray[np.float32]:
-    """Frames under a window, without the line at zero: an offset is nothing to hear, and leaks.
+    """Return windowed frames without their offset, which would leak into low frequencies.
 
     Of a tone the mean under the window is nothing, which the plain mean is not.
     """

@@ -1,1 +1,1 @@
-"""Pages to look at and listen to."""
+"""Self-contained HTML pages with sounds."""

@@ -1,4 +1,4 @@
-"""Blocks that pages consist of: words, tables, figures, cards of sounds, condition maps.
+"""Building blocks of pages: text, tables, figures, cards of sounds, condition maps.
 
 A report, a review, a screen, a diagnosis and an identification are sections of the same blocks.
 ``templates/blocks.html.j2`` has a macro for each, by the name of its class; a block of nothing is
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Text:
-    """A paragraph; `style` is of the style sheet, `bold` stands before it."""
+    """Paragraph with a CSS class `style` and bold words before it."""
 
     words: str
     style: str = ""
@@ -32,7 +32,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Items:
-    """A list of texts, or of names and what is said of each."""
+    """List of texts, or of names with texts."""
 
     items: Sequence[str | tuple[str, str]]
     style: str = ""
@@ -43,13 +43,13 @@ class Items:
 
 @dataclass(frozen=True)
 class Pre:
-    """Lines of a file or a call, as they are."""
+    """Preformatted lines of a file or call."""
 
     text: str
 
 
 class Bar(NamedTuple):
-    """A bar within a cell: where it begins and how wide it is [%], and its look."""
+    """Bar within a cell: left end [%], width [%] and CSS class."""
 
     left: float
     width: float
@@ -57,7 +57,7 @@ class Bar(NamedTuple):
 
 
 class Cell(NamedTuple):
-    """Content of a cell of a table.
+    """Cell of a table.
 
     Parameters
     ----------
@@ -67,9 +67,9 @@ class Cell(NamedTuple):
     bars : sequence of Bar
         Above it.
     labels : sequence of (str, str)
-        Labels, and what is said of each.
+        Labels, each with a text.
     link : str
-        Id of the element that a click leads to.
+        Id of the element that the cell links to.
     items : sequence of str
     """
 
@@ -83,16 +83,16 @@ class Cell(NamedTuple):
 
 @dataclass(frozen=True)
 class Table:
-    """A table whose rows become cards of their own on a narrow screen.
+    """Table whose rows become cards on a narrow screen.
 
     Parameters
     ----------
     columns : sequence of str
     rows : sequence of sequences of (Cell or str)
     head : int
-        Number of the column that names each row.
+        Index of the column that names each row.
     name : str
-        For who does not see it.
+        Accessible name.
     style : str
     """
 
@@ -124,7 +124,7 @@ class Panels:
 
 @dataclass(frozen=True)
 class Cards:
-    """Cards of sounds, by id; `counts` of labels filter them, `more` has blocks on each card."""
+    """Cards of sounds by id, with filters by label and further blocks per card."""
 
     keys: Collection[str]
     style: str = ""
@@ -147,7 +147,7 @@ class Maps:
 
 @dataclass(frozen=True)
 class Group:
-    """Blocks under a heading of their own, or side by side under none."""
+    """Group of blocks with an optional heading."""
 
     title: str
     blocks: Sequence[Block]
@@ -160,7 +160,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Sounds:
-    """What holds for all sounds: gains, labels, and the colours of spectrograms."""
+    """Legend of all sounds: gains, labels, and colours of spectrograms."""
 
     gain: Sequence[str]
     labels: Sequence[str] = LABELS
@@ -168,7 +168,7 @@ class Sounds:
 
 @dataclass(frozen=True)
 class Other:
-    """What a page has beyond these: the name of a macro, and what it is given."""
+    """Block of a named template macro."""
 
     macro: str
     content: Any
@@ -179,7 +179,7 @@ class Other:
 
 @dataclass(frozen=True)
 class Section:
-    """Blocks under a heading."""
+    """Section of blocks under a heading."""
 
     heading: str
     blocks: Sequence[Block]
@@ -190,4 +190,4 @@ class Section:
 
 
 Block = Text | Items | Pre | Table | Panels | Cards | Maps | Group | Sounds | Other | Section
-"""Any of these."""
+"""Type of all blocks."""

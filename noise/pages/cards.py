@@ -1,9 +1,8 @@
-"""Cards of a page: spectrogram, labels and level over time, and what is known, in words.
+"""Cards of a page: spectrogram, labels, level over time and facts of a sound.
 
-Time runs across the whole width of a picture and nothing else does, so that a cursor over it needs
-no more than the fraction of the clip that has been played; the page draws the axes. Frequency is
-logarithmic, as the ear hears it. Colours are levels, the same for all pictures of a page, dark on
-light: that is read on a projector and costs no toner.
+A picture is the plain spectrogram over the whole duration of the clip, so a cursor needs only the
+played fraction; the page draws the axes. Frequency is logarithmic. All pictures of a page share
+their colours, dark on light for projectors and print.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ def round_ticks(low: float, high: float, most: int) -> list[float]:
     low, high : float
         Ends of the axis, in its unit, such as [Hz].
     most : int
-        How many steps the axis is divided into at most.
+        Maximum number of steps.
 
     Examples
     --------
@@ -51,7 +50,7 @@ def round_ticks(low: float, high: float, most: int) -> list[float]:
 
 
 RANGE = 70.0
-"""From the darkest colour to white [dB]."""
+"""Range of the colours [dB]."""
 
 TICKS = {100: "100", 200: "200", 500: "500", 1000: "1k", 2000: "2k", 5000: "5k", 10000: "10k"}
 
@@ -59,7 +58,7 @@ _COLOURS = 16
 
 
 def top(levels: Sequence[NDArray[np.float64]]) -> float:
-    """Return the level of the darkest colour: the highest of all, rounded up to 5 dB.
+    """Return the level of the darkest colour: the maximum, rounded up to 5 dB.
 
     Parameters
     ----------
@@ -109,10 +108,10 @@ def _png(steps: NDArray[np.uint8]) -> bytes:
 
 
 _RANGE_OVER_TIME = 60.0
-"""From the highest level of a page's curves down [dB]."""
+"""Range of level curves below the maximum of the page [dB]."""
 
 _STEP, _MARGIN = 20.0, 5.0
-"""Between ticks, and of ticks from the ends of the axis [dB]."""
+"""Distance of ticks from each other and from the ends of the axis [dB]."""
 
 _COLUMNS, _WIDTH, _HEIGHT = 120, 600, 100
 
@@ -128,7 +127,7 @@ class LevelDisplay(NamedTuple):
 def _level_displays(
     clips: Mapping[str, Clip], entries: Mapping[str, Entry], reference: float, unit: str
 ) -> dict[str, LevelDisplay]:
-    """Draw the levels of sounds that share an axis, of those in which something is heard."""
+    """Return the level curves of audible sounds on a common axis."""
     curves = {}
     for key, clip in clips.items():
         if (measured := entries[key].fast_levels) is not None:
@@ -159,19 +158,19 @@ _MOST_TICKS = 6
 
 
 class Fact(NamedTuple):
-    """What is known of a condition or of a noise: a number in words, and its unit."""
+    """Known value of a condition or noise, with its unit."""
 
     text: str
     unit: str = ""
 
     @property
     def words(self) -> str:
-        """Number and unit, as they stand in a line of facts."""
+        """Number and unit."""
         return "clamp fixed" if self.text == "fixed" else f"{self.text} {self.unit}".strip()
 
 
 class Band(NamedTuple):
-    """A labelled stretch on a card: where, in per cent of the clip, and what."""
+    """Labelled segment on a card: position and width in per cent, label, description."""
 
     left: float
     width: float
@@ -181,14 +180,14 @@ class Band(NamedTuple):
 
 @dataclass(frozen=True)
 class EntryDisplay:
-    """What a page shows of an entry.
+    """Contents of the card of an entry.
 
     Parameters
     ----------
     id : str
     title : str
     labels : tuple of str
-        All in it, the longest first.
+        Labels of the entry, longest first.
     facts : dict of str to Fact
         Those known of ``speed``, ``interference``, ``stiffness``, ``material``, ``temperature``,
         ``frequency`` and ``level``.
@@ -223,7 +222,7 @@ class EntryDisplay:
 def draw_entries(
     entries: Mapping[str, Entry], clips: Mapping[str, Clip]
 ) -> tuple[dict[str, EntryDisplay], list[str]]:
-    """Lay entries out; calibrated spectrograms share their colours, and so do the others.
+    """Return cards; calibrated and uncalibrated spectrograms each share their colours.
 
     Parameters
     ----------
@@ -236,7 +235,7 @@ def draw_entries(
     -------
     displays : dict of str to EntryDisplay
     scale_words : list of str
-        What the colours are worth.
+        Levels of the colours, in words.
 
     Examples
     --------
@@ -274,7 +273,7 @@ def _reader(samples: NDArray[np.float32]) -> Callable[[int, int], NDArray[np.flo
 
 
 def frequency_ticks() -> tuple[tuple[float, str], ...]:
-    """Where the spectrograms' frequencies stand, in per cent from the bottom.
+    """Return the frequency ticks of spectrograms, in per cent from the bottom.
 
     Examples
     --------
@@ -315,7 +314,7 @@ def _display(
 
 
 def facts_of(entry: Entry) -> dict[str, Fact]:
-    """Return what is known of an entry, the label table before the recording.
+    """Return the known facts of an entry; the label table has priority over the recording.
 
     Examples
     --------

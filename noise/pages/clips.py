@@ -1,4 +1,4 @@
-"""Sounds of a page: entries, one gain, FLAC, and no longer than the budget allows.
+"""Sounds of a page: entries, common gain, FLAC clips within a size budget.
 
 A page is for the ear, so a long recording is represented by the stretch that shows why it has its
 name, not by its beginning. Sixteen bits hold a set whose loudest sound is 60 dB above its quietest
@@ -38,12 +38,12 @@ Row = Mapping[str, object]
 FastLevels = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 RATE = 48000
-"""Of the sounds on a page [Hz]."""
+"""Sampling rate of sounds on pages [Hz]."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """A labelled stretch; `start` and `end` in s of the recording, `track` where there are many."""
+    """Labelled segment: `start` and `end` in seconds, `track` if there are several."""
 
     start: float
     end: float
@@ -53,7 +53,7 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Entry:
-    """Something to be heard, or at least to be named.
+    """Entry of a page: a recording or simulated sound, or its labels only.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class Entry:
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """Labels in time."""
+        """Labelled segments."""
         return tuple(
             Part(
                 number_or(row.get("start_s"), 0.0),
@@ -103,17 +103,17 @@ class Entry:
 
     @property
     def row(self) -> Row | None:
-        """The row that names the whole."""
+        """Row that names the entry."""
         return naming_row(self.rows)
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """All labels in it, the longest first."""
+        """Labels of the entry, longest first."""
         return labels_in(self.rows)
 
 
 def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
-    """Where a stretch of `length` begins that shows what a recording is named for [s].
+    """Return the start of an excerpt that shows the naming segment of a recording [s].
 
     Examples
     --------
@@ -130,7 +130,7 @@ def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
 
 
 def label_counts(entries: Iterable[Entry]) -> list[tuple[str, int]]:
-    """Count entries that have a label in them, by label; those without one last, as "".
+    """Count the entries with each label; those without labels come last, as "".
 
     Examples
     --------
@@ -142,7 +142,7 @@ def label_counts(entries: Iterable[Entry]) -> list[tuple[str, int]]:
 
 
 def labels_sentence(entries: Sequence[Entry]) -> str:
-    """Say how many segments of entries have which label.
+    """Return the number of segments by label as a sentence.
 
     Examples
     --------
@@ -160,18 +160,18 @@ def labels_sentence(entries: Sequence[Entry]) -> str:
 
 
 def number_or(value: object, missing: float) -> float:
-    """Return a cell of a table if it is a number [any unit], else what stands for it."""
+    """Return a cell if it is a number [any unit], else a default."""
     return float(value) if isinstance(value, int | float) else missing
 
 
 SHORTEST = 1.0
-"""No sound is made shorter than this for the sake of the budget [s]."""
+"""Minimum duration after shortening [s]."""
 
 BYTES_A_SECOND = 120_000.0
-"""What a second of loud noise takes up on the page at most."""
+"""Maximum size of a second of loud noise [byte]."""
 
 _ROUNDED_UP, _STEP = 1.05, 100_000.0
-"""What is said to be needed: so much more, in whole steps of so many bytes."""
+"""Margin factor and rounding step of a stated size [byte]."""
 
 _BITS = 16
 _BASE64 = 4.0 / 3.0
@@ -179,7 +179,7 @@ _BASE64 = 4.0 / 3.0
 
 @dataclass(frozen=True)
 class Gain:
-    """What full scale is worth.
+    """Full scale of the sounds of a page.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ class Gain:
     uncalibrated : float or None
         Of the others, in fractions of their own full scale.
     stated : bool
-        Whether the caller has set the calibrated one.
+        Whether the caller has set `calibrated`.
     """
 
     calibrated: float | None
@@ -196,12 +196,12 @@ class Gain:
     stated: bool = False
 
     def of(self, entry: Entry) -> float:
-        """Full scale of an entry's sound, in its unit, such as [Pa]."""
+        """Return the full scale of an entry's sound, in its unit, such as [Pa]."""
         return (self.calibrated if entry.calibrated else self.uncalibrated) or 1.0
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What a listener has to know before comparing.
+        """Sentences about the gain for the listener.
 
         Examples
         --------
@@ -224,15 +224,15 @@ class Gain:
 
 @dataclass(frozen=True)
 class Clip:
-    """A sound as it stands on the page.
+    """Encoded sound of a page.
 
     Parameters
     ----------
     flac : bytes
     samples : ndarray of float32, shape (n,)
-        What is in it, in the unit of the entry, such as [Pa].
+        Samples in the unit of the entry, such as [Pa].
     start, end : float
-        Which stretch of the recording it is [s].
+        Interval of the recording [s].
     full_scale : float
         What full scale of it is worth, in the unit of the entry, such as [Pa].
     """
@@ -245,7 +245,7 @@ class Clip:
 
 
 def full_scale_words(full_scale: float) -> str:
-    """Say what full scale is worth [Pa].
+    """Return the full scale [Pa] in words.
 
     Examples
     --------
@@ -257,7 +257,7 @@ def full_scale_words(full_scale: float) -> str:
 
 
 def common_gain(entries: Iterable[Entry], pascal: float | None = None) -> Gain:
-    """Choose the gain of a set.
+    """Return the common gain of a set.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ def make_clips(
     beside: float = 0.0,
     dither: np.random.Generator | None = None,
 ) -> tuple[dict[str, Clip], float | None]:
-    """Encode sounds, shortened where they would exceed a budget.
+    """Encode sounds, shortened if they exceed a size budget.
 
     Parameters
     ----------
@@ -304,9 +304,9 @@ def make_clips(
         By id.
     gain : Gain
     budget : float
-        What the page may take up [byte].
+        Maximum size of the page [byte].
     beside : float
-        What of it is no sound [byte].
+        Size of the rest of the page [byte].
     dither : numpy.random.Generator, optional
         By default there is no dither, and silence stays digital zero.
 
@@ -315,7 +315,7 @@ def make_clips(
     clips : dict of str to Clip
         Of the entries that have a sound.
     shortened : float or None
-        To how many seconds the longer ones are cut [s]; None where none is cut.
+        Duration of shortened sounds [s]; None if none is shortened.
 
     Raises
     ------
@@ -360,7 +360,7 @@ def make_clips(
 def _that_may_be_loudest(
     entries: Sequence[Entry],
 ) -> Iterator[tuple[Entry, NDArray[np.float32]]]:
-    """Sounds with samples within 12 dB of the largest: no peak between samples is as far above."""
+    """Yield sounds within 12 dB of the largest sample; true peaks of others are lower."""
     for calibrated in (True, False):
         audible = [
             (entry, entry.sound, float(np.abs(entry.sound).max(initial=0.0)))
@@ -397,7 +397,7 @@ def _weight(clips: Mapping[str, Clip]) -> float:
 
 
 def _length_that_fits(clips: Sequence[Clip], budget: float) -> float:
-    """Return the length to which cutting all longer ones brings them below the budget."""
+    """Return the common maximum length at which all clips fit the budget."""
     rates = [_BASE64 * len(clip.flac) / (clip.end - clip.start) for clip in clips]
     lengths = [clip.end - clip.start for clip in clips]
     low, high = 0.0, max(lengths)

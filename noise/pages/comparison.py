@@ -1,8 +1,7 @@
-"""Designs compared: their maps side by side over the same axes, and what a script needs for more.
+"""Comparison of designs: maps side by side over common axes, and data for the script.
 
-The page itself draws which noise occurs where and how loud it is; its script draws from the same
-cells what differs between any two designs. Each look has words, or a number,
-on the map as well, so that nothing is told by colour alone.
+The page draws noise and level maps; its script draws the difference of any two designs from the
+same cells. Words or numbers on the maps repeat the meaning of colours.
 """
 
 from __future__ import annotations
@@ -52,33 +51,33 @@ DIFFERENCES = {
     "new": Look("#c4571b", "#fbe3d3", "stripes", "noise new"),
     "quiet": Look("#ffffff", "#c9d0d7", "dots", "none in both"),
 }
-"""Of a design against another."""
+"""Looks of the difference of two designs."""
 
 _HOW_WORDS = {
     "refined": "interpolated",
     "beyond": "not run: vibration dies before",
     "unchanged": "as at another temperature or fit",
 }
-"""How a point is known, where its name in the table does not say it."""
+"""Words for the origin of a point."""
 
 _MOST_OPEN = 4
-"""Comparisons that are unfolded when the page opens."""
+"""Number of comparisons that are open at first."""
 
 _MAP_BYTES, _AREA_BYTES = 12_000.0, 250.0
-"""What a map and an area of it take up on a page at most [byte]."""
+"""Maximum sizes of a map and of an area [byte]."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """Maps of designs at one place: environment, motion, temperature and support.
+    """Maps of designs in one environment, motion, temperature and support.
 
     Parameters
     ----------
     title : str
     maps : tuple of ConditionMap
-        One a design; where there are several, one more for a script to draw their difference on.
+        One per design; for several designs, another one for the difference.
     cells : dict
-        For the script: where the cells end, and label and level of each design.
+        Data of the script: edges of the cells, label and level of each design.
     note : str
     """
 
@@ -90,16 +89,16 @@ class Place:
 
 @dataclass(frozen=True)
 class Compared:
-    """All that is compared.
+    """Content of a comparison.
 
     Parameters
     ----------
     names : tuple of str
-        Of the designs, as they were named.
+        Names of the designs.
     places : tuple of Place
-        One an environment, motion, temperature and support.
+        One per environment, motion, temperature and support.
     pair : tuple of int
-        Numbers of the designs that are compared until others are chosen.
+        Indices of the designs compared at first.
     """
 
     names: tuple[str, ...]
@@ -109,23 +108,23 @@ class Compared:
 
     @property
     def n_maps(self) -> int:
-        """How many maps of designs there are."""
+        """Number of maps of designs."""
         return sum(of.design is not None for one in self.places for of in one.maps)
 
     @property
     def weight(self) -> float:
-        """What the maps take up on a page at most [byte]."""
+        """Maximum size of the maps on a page [byte]."""
         n_areas = sum(len(of.areas) + len(of.levels) for one in self.places for of in one.maps)
         return _MAP_BYTES * self.n_maps + _AREA_BYTES * n_areas + len(json.dumps(self.data))
 
     @property
     def looks(self) -> dict[str, Look]:
-        """Of all that is drawn."""
+        """Looks of labels, levels and differences."""
         return LABEL_LOOKS | LEVELS | DIFFERENCES
 
     @property
     def keys(self) -> list[tuple[str, str, list[tuple[str, str]]]]:
-        """Legends: name, what it is of, and each look with its words."""
+        """Legends: name, heading, and looks with words."""
         looks = self.looks
         kinds = {
             "level": ("L_Aeq in dB(A):", list(LEVELS)),
@@ -140,7 +139,7 @@ class Compared:
 
     @property
     def data(self) -> dict[str, object]:
-        """For the script."""
+        """Data of the script."""
         return {
             "names": self.names,
             "labels": MAP_LABELS,
@@ -150,16 +149,16 @@ class Compared:
 
 
 _FEW_ROWS = 8
-"""So many interferences are named by their own numbers."""
+"""Maximum number of interferences with individual ticks."""
 
 _LEAST_HEIGHT, _ROW_HEIGHT = 180.0, 40.0
-"""Of a map of few interferences, and what each adds [px]."""
+"""Height of a map: base and increment per interference [px]."""
 
 _MOST_SOUNDS = 12
-"""Conditions of one map that are heard: more would hide it."""
+"""Maximum number of audible conditions per map."""
 
 _TICK_APART = 18.0
-"""Least distance of numbers along the interference [px]."""
+"""Minimum distance of ticks of interference [px]."""
 
 
 def compare_designs(
@@ -171,20 +170,20 @@ def compare_designs(
     workers: int = 1,
     pair: tuple[str, str] | None = None,
 ) -> tuple[Compared, dict[str, Entry]]:
-    """Lay maps of designs side by side, and simulate what is heard on them.
+    """Lay maps of designs side by side, and simulate their sounds.
 
     Parameters
     ----------
     maps : sequence of ScreenMap
     rigs : sequence of (Rig or str)
-        Of each map, or why it cannot be heard.
+        Rig of each map, or the reason why it has no sound.
     number : int
-        Of sounds, of all maps together.
+        Number of sounds of all maps together.
     seed : int
     workers : int
         Threads; -1 is one a core.
     pair : tuple of str, optional
-        Designs that are compared at first; by default the first two.
+        Designs compared at first; by default the first two.
 
     Returns
     -------
@@ -234,7 +233,7 @@ def compare_designs(
 
 
 def _places(maps: Sequence[ScreenMap]) -> list[list[int]]:
-    """Numbers of the maps that are of one environment, motion, temperature and support."""
+    """Return the indices of maps of the same environment, motion, temperature and support."""
     places: dict[str, list[int]] = {}
     for i, one in enumerate(maps):
         places.setdefault(one.where, []).append(i)
@@ -242,7 +241,7 @@ def _places(maps: Sequence[ScreenMap]) -> list[list[int]]:
 
 
 def _shares(number: int, designs: Sequence[int]) -> list[int]:
-    """Share sounds out: how many conditions are heard at each place, of so many designs there."""
+    """Return the number of audible conditions of each place, given its number of designs."""
     shares, left = [0] * len(designs), number
     while True:
         before = left
@@ -261,7 +260,7 @@ def _laid_out(
     silent: Sequence[str],
     n_designs: int,
 ) -> Place:
-    """Lay maps out whose designs have these numbers."""
+    """Lay out the maps of one place."""
     cells = common_cells(
         [
             cells_of(
@@ -309,14 +308,14 @@ def _laid_out(
 
 
 def _level_step(point: ScreenPoint) -> str:
-    """Return the look of a point's level, ``none`` where it is quiet."""
+    """Return the look of the level of a point, ``none`` if it is quiet."""
     if point.label == "none" or point.level is None:
         return "none"
     return f"level-{bisect(LEVEL_STEPS, point.level)}"
 
 
 def _cell_values(one: ScreenMap, cells: Cells) -> dict[str, object]:
-    """Label and level of each cell, the lowest row first."""
+    """Return label and level of each cell, lowest row first."""
     points = [one.points[i] if i >= 0 else None for i in cells.point.ravel().tolist()]
     return {
         # Numbers of labels; -1 where it was not screened.
@@ -329,7 +328,7 @@ def _cell_values(one: ScreenMap, cells: Cells) -> dict[str, object]:
 
 
 def _fit_axis(cells: Cells, fits: Sequence[float], height: float) -> Axis:
-    """Axis of interference; few are named by their own numbers, those that have room."""
+    """Return the axis of interference, with ticks at the values if they are few."""
     up = axis_of(cells.interference_edges, edges=True)
     if len(fits) > _FEW_ROWS:
         return up
@@ -349,7 +348,7 @@ def _spots(
     designs: Sequence[int],
     n_designs: int,
 ) -> tuple[Spot, ...]:
-    """Spots of one of the maps, or of their difference."""
+    """Return the spots of a map or of the difference."""
     spots = []
     for shared, keys in audible:
         point = None if own is None else shared.points[own]
@@ -373,7 +372,7 @@ def _spots(
 
 
 def _own_note(one: ScreenMap, silent: str) -> str:
-    """Say what to know of a map: where its data are not the design's own, and why it is silent."""
+    """Return the note of a map: substituted data, and why it has no sounds."""
     counts = Counter(part for point in one.points for part in point.note.split("; ") if part)
     notes = [
         f"{part[0].upper()}{part[1:]}: {'all' if n == len(one.points) else n} points."
@@ -383,7 +382,7 @@ def _own_note(one: ScreenMap, silent: str) -> str:
 
 
 def _note(maps: Sequence[ScreenMap], audible: Sequence[tuple[SharedPoint, tuple[str, ...]]]) -> str:
-    """How many points there are, how they are known, and how many are heard."""
+    """Return the note of a place: number and origin of its points, number of sounds."""
     counts = Counter(point.how for one in maps for point in one.points if point.how)
     how = "; ".join(f"{n} {_HOW_WORDS.get(how, how)}" for how, n in counts.most_common())
     n_points = counted(max(len(one.points) for one in maps), "point")

@@ -1,4 +1,4 @@
-"""Figures of a page: time history and autospectrum of each channel of a recording, a panel each.
+"""Figures of a page: time history and autospectrum of each channel.
 
 Each panel is an SVG of its own, so that a page lays them out as two columns on a projector and as
 one on a telephone, and print stays sharp. No pyplot: a library must not touch the caller's figures,
@@ -42,14 +42,14 @@ _TICKS = (20.0, 50.0, 100.0, 200.0, 500.0, 1e3, 2e3, 5e3, 10e3)  # [Hz]
 
 @dataclass(frozen=True)
 class Panel:
-    """One picture: an SVG file's bytes, and in words what it shows."""
+    """SVG picture with alternative text."""
 
     svg: bytes
     alt: str
 
 
 def as_svg(figure: Figure) -> bytes:
-    """Write a figure out, the same one as the same bytes.
+    """Return a figure as reproducible SVG bytes.
 
     Examples
     --------
@@ -63,7 +63,7 @@ def as_svg(figure: Figure) -> bytes:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A curve of a panel.
+    """Curve of a panel.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def lines_panel(
     room: Ends = (0.0, 0.0),
     inside: str = "",
 ) -> Panel:
-    """Draw lines, to be called within `models.drawing.styled`.
+    """Draw lines within `models.drawing.styled`.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ LEAD = 0.25
 
 
 def cycle_window(torque: NDArray[np.float64], rate: float, length: float) -> tuple[float, bool]:
-    """Find where to show a torque.
+    """Return the interval in which a torque is shown.
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ _PREFIXES = ((5e-4, 1e6, "µ", "ppm "), (0.5, 1e3, "m", "‰ "))  # of values be
 
 @dataclass(frozen=True, eq=False)
 class _Trace:
-    """A channel: samples from `start` [s] on, levels [dB] of the segment's density by frequency."""
+    """Channel: samples from `start` [s], spectral levels [dB] of the segment."""
 
     kind: str
     calibrated: bool
@@ -236,7 +236,7 @@ class _Trace:
 
     @property
     def swing(self) -> tuple[float, float]:
-        """Middle, and how far it swings to either side; all but torque swings about zero."""
+        """Middle and half-range; the middle is zero for all but torque."""
         low, high = float(self.samples.min()), float(self.samples.max())
         least = KINDS[self.kind].least_swing
         if self.kind == "torque":
@@ -245,14 +245,14 @@ class _Trace:
 
     @property
     def top(self) -> float:
-        """Upper end of the axis of its spectrum [dB]."""
+        """Upper end of the spectrum axis [dB]."""
         quiet = KINDS[self.kind].quiet if self.calibrated else _FULL_SCALE_QUIET
         highest = float(self.level.max(initial=-math.inf)) + _HEADROOM
         return 10.0 * math.ceil(max(highest, quiet) / 10.0)
 
 
 def recording_panels(entries: Sequence[tuple[Recording, Segment]]) -> list[Panels]:
-    """Draw torque, acceleration and sound pressure of recordings, comparable with one another.
+    """Draw torque, acceleration and sound pressure of recordings on comparable axes.
 
     Parameters
     ----------

@@ -1,9 +1,8 @@
-"""Condition maps to click on: speed across, interference up, coloured by label.
+"""Interactive condition maps over speed and interference, coloured by label.
 
-Axes are numbers, not places in a table, so that the maps of a screen and of a campaign can be laid
-beside each other. A map has areas, where a label is known all over, as a screen knows it, and
-spots, where there is something to be heard. The cell of a point ends half-way to its neighbours.
-Maps of different points are laid over one another by cutting both along all edges.
+Axes are numeric, so maps of a screen and of measurements are comparable. Areas show labels of a
+screen, spots have sounds. The cell of a point ends half-way to its neighbours. Maps of different
+points are compared on the union of their cell edges.
 """
 
 from __future__ import annotations
@@ -22,10 +21,10 @@ from noise.pages.cards import round_ticks
 from noise.pictures.figure import place_title
 
 MAP_SIZE = (500.0, 300.0)
-"""Width and height of the drawing of a condition map [px]."""
+"""Width and height of a condition map [px]."""
 
 LEVEL_STEPS = (50.0, 60.0, 70.0, 80.0, 90.0)
-"""Between the colours of levels [dB(A)]."""
+"""Bounds of the level colours [dB(A)]."""
 
 LEVELS = {
     "level-0": Look("#fdf1cf", "#8a6d2f", "plain", "below 50"),
@@ -35,12 +34,12 @@ LEVELS = {
     "level-4": Look("#a63a80", "#4b1d3e", "plain", "80 to 90"),
     "level-5": Look("#5e2379", "#2b0d3e", "plain", "90 and more"),
 }
-"""By steps of the level, from soft to loud."""
+"""Looks of the level steps, from soft to loud."""
 
 
 @dataclass(frozen=True)
 class Area:
-    """A rectangle of one label, in units of the drawing, `y` from the top."""
+    """Rectangle of one label [px], `y` from the top."""
 
     x: float
     y: float
@@ -51,7 +50,7 @@ class Area:
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Division of a map.
+    """Cells of a map.
 
     Parameters
     ----------
@@ -60,7 +59,7 @@ class Cells:
     interference_edges : ndarray, shape (n_rows + 1,)
         [mm]
     point : ndarray of int, shape (n_rows, n_columns)
-        Number of the point that each cell belongs to, the lowest row first; -1 where none does.
+        Index of the point of each cell, lowest row first; -1 without one.
     """
 
     speed_edges: NDArray[np.float64]
@@ -69,7 +68,7 @@ class Cells:
 
 
 def cells_of(speed: NDArray[np.float64], interference: NDArray[np.float64]) -> Cells:
-    """Divide a map among its points.
+    """Return the cells of the points of a map.
 
     Parameters
     ----------
@@ -91,7 +90,7 @@ def cells_of(speed: NDArray[np.float64], interference: NDArray[np.float64]) -> C
 
 
 def common_cells(maps: Sequence[Cells]) -> list[Cells]:
-    """Cut maps along each other's edges, so that all have the same cells.
+    """Return maps with the common cells of all of them.
 
     Parameters
     ----------
@@ -100,7 +99,7 @@ def common_cells(maps: Sequence[Cells]) -> list[Cells]:
     Returns
     -------
     list of Cells
-        Each with the same edges, over all that any of them covers.
+        Maps with the same edges, over the union of their ranges.
 
     Examples
     --------
@@ -117,7 +116,7 @@ def common_cells(maps: Sequence[Cells]) -> list[Cells]:
 def areas_of(
     cells: Cells, labels: Sequence[str], across: Axis, up: Axis, size: tuple[float, float]
 ) -> tuple[Area, ...]:
-    """Return what neighbours of one label cover.
+    """Return areas of adjacent cells with the same label.
 
     Parameters
     ----------
@@ -132,7 +131,7 @@ def areas_of(
     Returns
     -------
     tuple of Area
-        Equal neighbours taken together, the lowest row first; nothing where there is no point.
+        Merged cells, lowest row first; no area without a point.
 
     Examples
     --------
@@ -161,7 +160,7 @@ def areas_of(
 
 
 def _runs(labels: Sequence[str]) -> tuple[tuple[int, int, str], ...]:
-    """First, end and label of equal neighbours."""
+    """Return start, end and label of runs of equal labels."""
     runs, first = [], 0
     for label, run in groupby(labels):
         end = first + len(list(run))
@@ -171,7 +170,7 @@ def _runs(labels: Sequence[str]) -> tuple[tuple[int, int, str], ...]:
 
 
 def _edges(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Half-way between neighbours, and as far beyond the outermost, but not below zero."""
+    """Return cell edges half-way between neighbours, and as far beyond the ends, not below 0."""
     if values.size == 1:
         half = 0.25 * abs(values[0]) or 1.0
         return np.array([values[0] - half, values[0] + half])
@@ -187,7 +186,7 @@ def _middles(edges: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _merged(edges: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """All edges, those that differ by rounding alone once."""
+    """Return the union of edges without duplicates by rounding."""
     every = np.unique(np.concatenate(edges))
     apart = 1e-9 * max(float(np.ptp(every)), 1e-12)
     return every[np.concatenate(([True], np.diff(every) > apart))]
@@ -214,14 +213,14 @@ _NEAR = 0.11
 
 @dataclass(frozen=True)
 class Axis:
-    """Of a map.
+    """Axis of a map.
 
     Parameters
     ----------
     low, high : float
-        Its ends, in the unit of the axis, such as [rad/s].
+        Ends of the axis in its unit, such as [rad/s].
     ticks : tuple of (float, str)
-        Where along it, from 0 to 1 [-], and what stands there.
+        Position from 0 to 1 [-] and text.
     """
 
     low: float
@@ -229,25 +228,25 @@ class Axis:
     ticks: tuple[tuple[float, str], ...]
 
     def share(self, value: float) -> float:
-        """Where a value, in the unit of the axis, lies from 0 to 1 [-]."""
+        """Return the position of a value of the axis from 0 to 1 [-]."""
         return (value - self.low) / (self.high - self.low)
 
 
 @dataclass(frozen=True)
 class Spot:
-    """Where something can be heard.
+    """Spot of a map with sounds.
 
     Parameters
     ----------
     x, y : float
-        Along the axes, from 0 to 1 [-].
+        Position on the axes from 0 to 1 [-].
     label : str
     words : str
-        What is there.
+        Description.
     sounds : tuple of str
-        Ids; one click plays the first, the next one the second.
+        Ids; successive clicks play successive sounds.
     mates : tuple of str
-        Of designs compared, the ids of each one's sound there, empty where it has none.
+        Ids of the sound of each compared design there, empty without one.
     """
 
     x: float
@@ -260,7 +259,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class ConditionMap:
-    """One map, drawn by the page.
+    """Condition map of a page.
 
     Parameters
     ----------
@@ -270,15 +269,15 @@ class ConditionMap:
     spots : tuple of Spot
     note : str
     across : str
-        What the speed is.
+        Name of the speed axis.
     height : float
-        Of the drawing [px].
+        Height [px].
     design : int or None
-        Number of the design among those that are compared with one another; None of any other map.
+        Index of the compared design; None for other maps.
     compared : bool
-        Whether it is one of several maps of the same axes side by side.
+        Whether it is one of several maps on common axes.
     levels : tuple of Area
-        By keys of `LEVELS`, and ``none``.
+        Areas by keys of `LEVELS`, and ``none``.
     """
 
     title: str
@@ -302,7 +301,7 @@ def axis_of(values: Iterable[float], *, edges: bool) -> Axis:
     values : iterable of float
         In any unit, such as [rad/s].
     edges : bool
-        Whether it ends with the outermost values, because areas do, or leaves room for spots.
+        Whether it ends at the outermost values, as areas do, or leaves room for spots.
 
     Examples
     --------
@@ -325,23 +324,23 @@ def axis_of(values: Iterable[float], *, edges: bool) -> Axis:
 def recorded_maps(
     rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], with_sound: Iterable[str]
 ) -> tuple[list[ConditionMap], int]:
-    """Lay recordings out by the conditions that were logged with them.
+    """Return condition maps of recordings by their logged conditions.
 
     Parameters
     ----------
     rows : sequence of mapping
-        Of a label table whose files are ids.
+        Rows of a label table whose files are ids.
     titles : mapping of str to str
         By id.
     with_sound : iterable of str
-        Ids that can be played.
+        Ids of playable sounds.
 
     Returns
     -------
     maps : list of ConditionMap
-        One a material and support.
+        One per material and support.
     left_out : int
-        Recordings whose speed or interference is not known.
+        Number of recordings with unknown speed or interference.
     """
     playable = set(with_sound)
     places = conditions_map(rows)

@@ -1,7 +1,7 @@
-"""Page: one file of blocks with the sounds, pictures, scripts and styles that they need.
+"""HTML page: a single file of blocks with all sounds, pictures, scripts and styles.
 
-Such a page is mailed, projected in a meeting and opened again after years. So everything is inside
-it, every name is escaped, and the page itself forbids the browser to fetch anything from elsewhere.
+Pages are mailed, projected and archived. So they contain everything, names are escaped, and their
+content security policy forbids network access.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from noise.pages.clips import Clip, Entry
 from noise.pages.maps import LEVELS, MAP_SIZE, ConditionMap
 
 PAGE_BYTES, CARD_BYTES = 75_000.0, 45_000.0
-"""What a page takes up, and at most each of its sounds beside the sound itself [byte]."""
+"""Size of an empty page, and maximum size per sound without its samples [byte]."""
 
 
 def page_html(
@@ -38,24 +38,24 @@ def page_html(
     clips: Mapping[str, Clip] | None = None,
     without_card: Collection[str] = (),
 ) -> str:
-    """Return a page.
+    """Return a page as HTML.
 
     Parameters
     ----------
     kind : str
-        Of page, for the style sheet.
+        Kind of page, for the style sheet.
     title : str
     header, sections : sequence of Block
-        Below the title, and after that.
+        Blocks below the title, and sections.
     footer : str
     tab : str
-        Title of the browser's tab; by default that of the page.
+        Title of the browser tab; by default `title`.
     entries : mapping of str to Entry, optional
         By id.
     clips : mapping of str to Clip, optional
-        Of those that can be heard.
+        Playable sounds.
     without_card : collection of str
-        Ids of sounds that have no card, so that the player brings their picture.
+        Ids of sounds without a card, whose picture is in the player.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def page_html(
 
 
 def write_page(path: Path, html: str) -> None:
-    r"""Write a page, whole or not at all.
+    r"""Write a page atomically.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def write_page(path: Path, html: str) -> None:
 
 
 def map_html(shown: ConditionMap) -> str:
-    """Return a condition map as a piece of a page, such as of the app.
+    """Return a condition map as HTML, such as for the app.
 
     Examples
     --------
@@ -143,7 +143,7 @@ def as_base64(content: bytes) -> str:
 
 
 def shortened_text(shortened: float | None) -> b.Text:
-    """Say that sounds were cut to keep to the size of the page, if they were.
+    """Return the note that sounds were shortened, or an empty text.
 
     Examples
     --------

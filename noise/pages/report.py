@@ -1,4 +1,4 @@
-"""The report: recordings to see, to hear and to compare, each with all that is known of it."""
+"""Report of recordings: labels, facts, sounds and figures on one page."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ if TYPE_CHECKING:
 @short_repr
 @dataclass(frozen=True)
 class ReportEntry:
-    """One recording of a report.
+    """Recording of a report.
 
     Parameters
     ----------
     title : str
     recording : Recording
-        Its first sound pressure is played.
+        Recording whose first sound pressure is played.
     segment : Segment
-        What the recording was labelled, and for which part of it.
+        Label and its interval.
     note : str
-        A remark shown with the entry.
+        Remark on the card.
 
     Examples
     --------
@@ -64,13 +64,13 @@ _COLUMNS = {
     "level": "Level",
     "frequency": "Frequency",
 }
-"""Facts of the table of all recordings, and what they are called there."""
+"""Columns of the overview table: fact and heading."""
 
 
 def write_report(
     path: str | Path, entries: Sequence[ReportEntry], *, title: str, summary: str | None = None
 ) -> None:
-    """Write a report: one HTML file that needs nothing else, whole or not at all.
+    """Write a report as one self-contained HTML file, atomically.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""The review: recordings, labels, screens and diagnoses on one page to look at and to listen to.
+"""Review page: recordings, labels, screens and diagnoses with sounds.
 
-The page goes from the whole to the single sound: maps, diagnoses, recordings. Every refusal is on
-it, since whoever looks at it later cannot see the terminal.
+The page shows maps first, then diagnoses and recordings. It lists all refused inputs, because its
+readers do not see the terminal.
 """
 
 from __future__ import annotations
@@ -46,20 +46,20 @@ from noise.screening.environments import DRY, environment, in_environment
 
 
 def rig_of(screened: ScreenMap, folder: Path, designs: Sequence[Path]) -> Rig:
-    """Find the rig that a design of a screen stands for, as it is in its environment.
+    """Return the rig of a screened design in its environment.
 
     Parameters
     ----------
     screened : ScreenMap
     folder : Path
-        Of the screen.
+        Folder of the screen.
     designs : sequence of Path
-        Design files that were named beside it.
+        Design files of the call.
 
     Raises
     ------
     ParameterError
-        It is not to be found, or cannot be simulated; the message says so.
+        The design file is missing or invalid.
     """
     name = screened.design
     files = [path for path in designs if path.stem == name or _named(path) == name]
@@ -104,7 +104,7 @@ def read_screen(path: Path) -> list[ScreenMap]:
     Raises
     ------
     RecordingError
-        It cannot be read, or a value is none.
+        The file cannot be read, or a value is invalid.
 
     Examples
     --------
@@ -172,17 +172,17 @@ def _support(row: dict[str, object], where: str) -> float | None:
 
 
 def read_diagnosis(path: Path) -> b.Section:
-    """Read a diagnosis: its answer, what to measure next and its notes, as a section of a page.
+    """Return a diagnosis as a section of a page: answer, next measurement, notes.
 
     Parameters
     ----------
     path : Path
-        Its ``diagnosis.json``.
+        File ``diagnosis.json``.
 
     Raises
     ------
     RecordingError
-        It cannot be read, or is no diagnosis.
+        The file cannot be read or is not a diagnosis.
 
     Examples
     --------
@@ -216,13 +216,13 @@ def read_diagnosis(path: Path) -> b.Section:
 def screened_maps(
     inputs: Inputs, refused: list[Refusal], *, number: int, seed: int
 ) -> tuple[Compared | None, dict[str, Entry]]:
-    """Lay screens out, and simulate what is heard on them.
+    """Lay out the maps of screens, and simulate their sounds.
 
     Parameters
     ----------
     inputs : Inputs
     refused : list of Refusal
-        Takes what cannot be read.
+        Extended by unreadable inputs.
     number : int
         Of sounds, of all maps together.
     seed : int
@@ -232,7 +232,7 @@ def screened_maps(
     compared : Compared or None
         None where there is no screen.
     heard : dict of str to Entry
-        b.Sounds by id.
+        Sounds by id.
     """
     maps: list[ScreenMap] = []
     rigs: list[Rig | str] = []
@@ -252,7 +252,7 @@ def screened_maps(
 
 
 def _rig(screened: ScreenMap, folder: Path, designs: Sequence[Path]) -> Rig | str:
-    """Return the rig of a map, or why it cannot be heard."""
+    """Return the rig of a map, or the reason why it has no sound."""
     try:
         return rig_of(screened, folder, designs)
     except BushingNoiseError as error:
@@ -265,17 +265,17 @@ _PAGE = "report.html"
 @short_repr
 @dataclass(frozen=True)
 class Review:
-    """A page that was written.
+    """Result of a written review.
 
     Parameters
     ----------
     path : Path
     sounds : int
-        How many can be played.
+        Number of playable sounds.
     shortened : float or None
-        To how many seconds sounds were cut so as to keep to the budget; None where none was.
+        Duration of shortened sounds [s]; None if none was shortened.
     refused : tuple of Refusal
-        Inputs that could not be used.
+        Refused inputs.
 
     Examples
     --------
@@ -303,7 +303,7 @@ def review(
     classify: bool = True,
     seed: int = 0,
 ) -> Review:
-    """Write a review page: recordings, labels, screens and diagnoses to look at and to listen to.
+    """Write a review page of recordings, labels, screens and diagnoses with sounds.
 
     Parameters
     ----------
@@ -418,7 +418,7 @@ def review(
 
 
 def page_path(out: Path) -> Path:
-    """Return the page that ``--out`` names, which may be the folder for it.
+    """Return the path of the page; ``--out`` may name its folder.
 
     Examples
     --------

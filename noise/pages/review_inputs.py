@@ -1,4 +1,4 @@
-"""Inputs of a review: the paths that were named, sorted by what they hold, and their recordings.
+"""Inputs of a review: paths sorted by content, and their recordings.
 
 A file is taken at its word and refused where it is not what its ending says. A folder is searched:
 what in it is of no known kind, such as a table of features, is passed over, because folders of
@@ -36,10 +36,10 @@ from noise.recordings.formats import formats
 from noise.recordings.meaning import PascalPerFullScale
 
 DIAGNOSIS = "diagnosis.json"
-"""What a folder of a diagnosis holds."""
+"""File name of a diagnosis."""
 
 _MOST_FOLDERS = 8
-"""That a name is lengthened by, to tell it from another."""
+"""Maximum number of folders in a unique name."""
 
 _OF_A_SCREEN = {"design", "speed_rad_s", "interference_mm", "label"}
 _OF_LABELS = {"file", "label"}
@@ -47,14 +47,14 @@ _OF_LABELS = {"file", "label"}
 
 @dataclass(frozen=True)
 class Refusal:
-    """An input that could not be used, and why."""
+    """Refused input and the reason."""
 
     name: str
     reason: str
 
     @classmethod
     def of(cls, path: Path, error: BushingNoiseError | str) -> Refusal:
-        """Refuse a file for an error, whose message may begin with its path.
+        """Return the refusal of a file; its path is removed from the error message.
 
         Examples
         --------
@@ -68,7 +68,7 @@ class Refusal:
 @short_repr
 @dataclass(frozen=True)
 class LabelTable:
-    """A label table and where it lies."""
+    """Label table and its path."""
 
     path: Path
     rows: tuple[Row, ...]
@@ -90,7 +90,7 @@ class LabelTable:
 
 @dataclass(frozen=True)
 class Inputs:
-    """Paths by what they hold.
+    """Input paths by content.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class Inputs:
 
 
 def sort_inputs(paths: Iterable[Path]) -> Inputs:
-    r"""Sort paths by what they hold.
+    r"""Sort paths by content.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def sort_inputs(paths: Iterable[Path]) -> Inputs:
     Raises
     ------
     ParameterError
-        A path does not exist, or nothing of a review is in them.
+        A path does not exist, or the paths contain nothing for a review.
 
     Examples
     --------
@@ -180,7 +180,7 @@ def _kind_of_file(path: Path) -> str | None:
 
 
 def _is_sidecar(path: Path) -> bool:
-    """Whether it only describes the recording beside it, as in ``review recordings/*``."""
+    """Whether a file is the sidecar of a recording."""
     if path.suffix.lower() != ".json" or path.name == DIAGNOSIS:
         return False
     return any(path.with_suffix(ending).is_file() for ending in formats())
@@ -199,7 +199,7 @@ def _inside(folder: Path) -> Iterator[tuple[str, Path]]:
 
 
 def _originals(files: Sequence[tuple[Path, str]]) -> Iterator[tuple[Path, str]]:
-    """Leave out ``audio/run07.wav`` beside ``recordings/run07.wav``: the same made to be heard."""
+    """Yield files without ``audio/run07.wav`` beside ``recordings/run07.wav``."""
     there = {path.resolve() for path, _ in files}
     for path, name in files:
         folder = path.parent.resolve()
@@ -209,7 +209,7 @@ def _originals(files: Sequence[tuple[Path, str]]) -> Iterator[tuple[Path, str]]:
 
 
 def unique_names(files: list[tuple[Path, str]]) -> tuple[tuple[Path, str], ...]:
-    """Name the folder above as well where two recordings have the same name.
+    """Make names of recordings unique by adding folders.
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def _each_once(paths: Iterable[Path]) -> tuple[Path, ...]:
 
 
 _GENEROUS = 4.0
-"""Quiet sounds take a quarter of the space of loud noise."""
+"""Ratio of the sizes of loud noise and quiet sounds."""
 
 
 def recorded_entries(
@@ -268,7 +268,7 @@ def recorded_entries(
     budget: float,
     classify: bool,
 ) -> list[Entry]:
-    """Read recordings, and what tables say of those that are not at hand.
+    """Read recordings, and entries of tables whose recordings are missing.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ def recorded_entries(
     refused : list of Refusal
         Takes what cannot be read.
     seconds : float
-        Longest stretch of a recording that is kept [s].
+        Maximum duration of an excerpt [s].
     full_scale : float or tuple of float, optional
         As for `noise.recordings.read_recording` [Pa].
     budget : float
@@ -314,7 +314,7 @@ def _labelled(path: Path, tables: Sequence[LabelTable]) -> bool:
 
 
 def _named_by_tables(tables: Sequence[LabelTable], given: Sequence[Path]) -> list[tuple[Path, str]]:
-    """Find recordings that a table names beside or below its own folder, and that are not given."""
+    """Return further recordings that tables name beside or below their folder."""
     files: dict[Path, tuple[Path, str]] = {}
     for table in tables:
         there = _files_of(table, given)
@@ -329,7 +329,7 @@ def _named_by_tables(tables: Sequence[LabelTable], given: Sequence[Path]) -> lis
 
 
 def _files_of(table: LabelTable, recordings: Sequence[Path]) -> set[str]:
-    """Return what a table calls the recordings that it has rows for."""
+    """Return the names in a table of the given recordings."""
     return {str(row["file"]) for path in recordings for row in table.of(path)}
 
 
@@ -365,7 +365,7 @@ def _read_entry(
     longest: float,
     full_scale: PascalPerFullScale | None = None,
 ) -> Entry | Refusal:
-    """Read what a review shows of a recording.
+    """Read the entry of a recording.
 
     Parameters
     ----------
@@ -377,7 +377,7 @@ def _read_entry(
     classifier : Classifier or None
         Labels what no table does; None leaves it without a label.
     longest : float
-        Of the stretch that is kept [s].
+        Maximum duration of the excerpt [s].
     full_scale : float or tuple of float, optional
         As for `noise.recordings.read_recording`.
     """
@@ -408,7 +408,7 @@ def _read_entry(
 def _excerpt(
     blocks: RecordingBlocks, offset: float, longest: float
 ) -> tuple[Recording | None, str]:
-    """Cut out what is heard; None, and why, where nothing is."""
+    """Return the audible excerpt and a remark; None without sound."""
     row = blocks.first("pressure")
     if row is None:
         return None, "no sound pressure to be heard"
@@ -422,5 +422,5 @@ def _excerpt(
 
 
 def _sound(excerpt: Recording) -> tuple[NDArray[np.float32], FastLevels]:
-    """Return the sound at the page's rate, and its level over time as the recording has it."""
+    """Return the sound at the rate of the page, and its original level over time."""
     return audible(excerpt, RATE).astype(np.float32), recorded_levels(excerpt)

@@ -1,4 +1,4 @@
-"""Maps of a screen, and sounds simulated where a listener will want them.
+"""Maps of a screen, and simulated sounds at selected points.
 
 One map is of one design in one environment, at one temperature, on one support: speed across and
 interference up. A screen knows thousands of conditions, and nobody listens to them all. So a few
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 class ScreenPoint(NamedTuple):
-    """One condition of a screen, and what happens there.
+    """Condition of a screen and its result.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class ScreenPoint(NamedTuple):
 
     @property
     def words(self) -> str:
-        """What is there, in words."""
+        """Result in words."""
         parts = [f"{self.speed:.3g} rad/s, {self.interference:.3g} mm: {self.label}"]
         parts += [self.regime.replace("_", " ")] if self.regime else []
         parts += [f"{self.level:.0f} dB(A)"] if self.level is not None else []
@@ -77,7 +77,7 @@ class ScreenPoint(NamedTuple):
 
 @dataclass(frozen=True)
 class ScreenMap:
-    """Points of one design in one environment, at one temperature, on one support.
+    """Map of one design in one environment, temperature and support.
 
     Parameters
     ----------
@@ -98,12 +98,12 @@ class ScreenMap:
 
     @property
     def title(self) -> str:
-        """Name it."""
+        """Title of the map."""
         return ", ".join([self.design, *filter(None, [self.where])])
 
     @property
     def where(self) -> str:
-        """What it has in common with the maps of other designs."""
+        """Environment, motion, temperature and support, shared with other designs."""
         parts = [self.environment] if self.environment else []
         parts += [self.motion] if self.motion not in ("", "steady") else []
         parts += [f"{self.temperature:g} °C"] if self.temperature is not None else []
@@ -112,7 +112,7 @@ class ScreenMap:
 
 
 class SharedPoint(NamedTuple):
-    """One condition, and what happens there with each of several designs.
+    """Condition and the results of several designs.
 
     Parameters
     ----------
@@ -128,12 +128,12 @@ class SharedPoint(NamedTuple):
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Of each design; empty where it was not screened."""
+        """Labels of the designs; empty for those not screened."""
         return tuple("" if point is None else point.label for point in self.points)
 
 
 def shared_points(maps: Sequence[ScreenMap]) -> list[SharedPoint]:
-    """Lay the points of designs at one place side by side.
+    """Return the common points of maps.
 
     Examples
     --------
@@ -150,7 +150,7 @@ def shared_points(maps: Sequence[ScreenMap]) -> list[SharedPoint]:
 
 
 def screen_maps(screening: Screening) -> list[ScreenMap]:
-    """Cut the maps of a screening by temperature and support.
+    """Return the maps of a screening by temperature and support.
 
     Examples
     --------
@@ -217,7 +217,7 @@ _SUPPORT, _TEMPERATURE = 2214.0, 23.0
 
 
 def chosen_points(points: Sequence[SharedPoint], most: int) -> list[SharedPoint]:
-    """Choose conditions to be heard.
+    """Return the conditions with sounds.
 
     Parameters
     ----------
@@ -252,7 +252,7 @@ def chosen_points(points: Sequence[SharedPoint], most: int) -> list[SharedPoint]
     chosen: list[int] = []
 
     def apart(of: tuple[str, ...], among: NDArray[np.int64]) -> NDArray[np.float64]:
-        """How far points are from the chosen ones of the same labels; else from their middle."""
+        """Return distances to chosen points of the same labels, else to their middle."""
         same = [i for i in chosen if labels[i] == of]
         if not same:
             middle = at[among].mean(axis=0)
@@ -280,7 +280,7 @@ def chosen_points(points: Sequence[SharedPoint], most: int) -> list[SharedPoint]
 
 
 def _telling(points: Sequence[SharedPoint]) -> list[int]:
-    """Numbers of the loudest of each noise, where levels differ most, and each design's loudest."""
+    """Return the indices of the loudest points and of the largest level differences."""
     loudest = []
     for own in zip(*(shared.points for shared in points), strict=True):
         for label in _NOISES:
@@ -303,7 +303,7 @@ def _telling(points: Sequence[SharedPoint]) -> list[int]:
 
 
 def _is_certain(shared: SharedPoint) -> bool:
-    """Whether label and level of all designs are known there, so that they are those heard."""
+    """Whether label and level of all designs are simulated at a point."""
     return all(point is None or point.how != INTERPOLATED for point in shared.points)
 
 
@@ -316,7 +316,7 @@ def _level(point: ScreenPoint | None) -> float:
 def simulated_entries(
     jobs: Sequence[tuple[ScreenMap, Rig, ScreenPoint]], *, seed: int, workers: int = 1
 ) -> list[Entry | str]:
-    """Simulate what is heard at points, all with the same seed.
+    """Simulate the sounds of points with a common seed.
 
     Parameters
     ----------
@@ -346,7 +346,7 @@ def simulated_entries(
 
 
 def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: int) -> Entry:
-    """Simulate what is heard at a point of a screen.
+    """Simulate the sound of a point of a screen.
 
     Raises
     ------

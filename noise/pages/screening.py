@@ -1,4 +1,4 @@
-"""The report of a screen: the designs ranked in words, their maps side by side, and sounds."""
+"""Report of a screen: ranking, maps of designs side by side, and sounds."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ RANKING = (
 
 
 def ranking_rows(screening: Screening) -> list[list[b.Cell | str]]:
-    """Return the rows of `RANKING`, the quietest design first.
+    """Return the rows of `RANKING`, quietest design first.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def write_screening(
     seed: int = 0,
     workers: int = 1,
 ) -> None:
-    """Write the report of a screen, whole or not at all.
+    """Write the report of a screen atomically.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ _SOUNDS = (
 
 
 def _pair(screening: Screening) -> tuple[str, str]:
-    """Compare the design that was named first with the best of the others."""
+    """Return the first design and the best of the others."""
     first = screening.maps[0].design
     others = [one.design for one in screening.standings if one.design != first]
     return first, (others or [first])[0]

@@ -1,8 +1,7 @@
-"""Map of the conditions that were recorded: which label is where, a panel a support.
+"""Map of recorded conditions and their labels, one panel per support.
 
-A place is divided by how many of its segments have which label, the noises below, and the numbers
-stand in it; places where nothing was recorded stay empty, so that what was not tried is never taken
-for what was quiet.
+The tile of a condition is divided by the numbers of segments per label. Conditions without
+recordings stay empty, which distinguishes them from quiet ones.
 """
 
 import math
@@ -90,14 +89,14 @@ def plot_conditions(places: Sequence[Place], *, title: str) -> Figure:
 
 
 def _along(ranges: Iterable[Range | None]) -> list[Range | None]:
-    """Return the different ones in rising order, what is not known last."""
+    """Return the distinct values in ascending order, unknown last."""
     different = set(ranges)
     known = sorted(span for span in different if span is not None)
     return [*known, *([None] if None in different else [])]
 
 
 def _draw(axes: Axes, place: Place, at: tuple[int, int], row_height: float) -> None:
-    """One place: a stack of its labels from below, each as high as its share of the segments."""
+    """Draw one condition as a stack of its labels, heights by share of segments."""
     size = 1.0 - 2.0 * _MARGIN
     left, bottom = at[0] - size / 2.0, at[1] - size / 2.0
     total = sum(place.segments.values())

@@ -1,4 +1,4 @@
-"""What all pictures share: kinds of channel, words, the frame of a figure, and its file.
+"""Shared parts of pictures: channel kinds, titles, figure frame and file output.
 
 The ending of a file says its format. It is checked before the work whose result is drawn, and a
 file is the same byte for byte whenever it is written: dates and names of programs are left out.
@@ -35,7 +35,7 @@ _WIDTH = 12.0
 
 
 class Kind(NamedTuple):
-    """How a kind of channel is shown.
+    """Appearance of a kind of channel.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ KINDS = {
 
 
 def support_words(support_stiffness: float) -> str:
-    """Name a support [Nm/rad] for a title.
+    """Return the name of a support [Nm/rad] for titles.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def support_words(support_stiffness: float) -> str:
 
 
 def place_title(material: str | None, support: Range | None) -> str:
-    """Name material and support [Nm/rad] of a map.
+    """Return the title of a map: material and support [Nm/rad].
 
     Examples
     --------
@@ -123,7 +123,7 @@ def new_figure(height: float, title: str) -> Figure:
 
 
 def check_picture_path(path: Path) -> None:
-    """Refuse a file that no picture can be written to.
+    """Refuse an invalid path of a picture.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def check_picture_path(path: Path) -> None:
 
 
 def write_picture(path: str | Path, figure: Figure) -> None:
-    """Write a figure, whole or not at all.
+    """Write a figure atomically.
 
     Parameters
     ----------

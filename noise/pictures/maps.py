@@ -62,7 +62,7 @@ edge to be seen by on white."""
 def boundary_lines(
     found: DesignMap, *, support: int = 0, temperature: int = 0
 ) -> list[tuple[str, int, float]]:
-    """List the lines of a map: what happens at each as the speed rises, its row, its speed.
+    """Return the boundary lines of a map: event with rising speed, row, speed.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
 def plot_map(
     found: DesignMap, ax: Axes | None = None, *, support: int = 0, temperature: int = 0
 ) -> Axes:
-    """Draw which noise a design makes where, with one support, on axes.
+    """Draw the noise map of a design for one support on axes.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def plot_map(
 
 
 def _places(found: DesignMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where the points of a map stand, across [rad/s] and up, a row a fit."""
+    """Return the positions of the points: speeds [rad/s] and rows of fits."""
     return np.array(found.grid.speed), np.arange(len(found.grid.interference), dtype=np.float64)
 
 
@@ -237,7 +237,7 @@ def _name_fits(axes: Axes, found: DesignMap) -> None:
 
 
 def _star(found: DesignMap, at: tuple[slice | int, ...], what: str) -> str:
-    """Star where at all points of a part of a map something is not the design's own."""
+    """Return a star if data are substituted at all points of a part of a map."""
     return _STAR if all(what in str(note) for note in found.note[at].flat) else ""
 
 
@@ -247,7 +247,7 @@ def _say_quiet(axes: Axes, found: DesignMap, temperature: int, support: int) -> 
 
 
 def _handles(found: DesignMap, *panels: Axes) -> list[Patch | Line2D]:
-    """Key of a map: of the lines those that its panels have."""
+    """Return the legend handles, with the lines that the panels have."""
     drawn = {line.get_label() for panel in panels for line in panel.get_lines()}
     return [
         *(
@@ -266,7 +266,7 @@ def _handles(found: DesignMap, *panels: Axes) -> list[Patch | Line2D]:
 
 
 def _beyond(found: DesignMap) -> float | None:
-    """Speed from which on a map is of none that the design was fitted at [rad/s]."""
+    """Return the speed beyond the fitted range [rad/s], None if there is none."""
     fast = ["faster" in str(note) for note in found.note[0, 0, 0]]
     return _edges(np.array(found.grid.speed))[fast.index(True)] if any(fast) else None
 
@@ -279,7 +279,7 @@ def _star_handle(found: DesignMap) -> list[Line2D]:
 
 
 def _edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Edges of the places that points stand in the middle of."""
+    """Return cell edges around centres."""
     if centres.size == 1:
         return np.array([centres[0] - 0.5, centres[0] + 0.5])
     between = 0.5 * (centres[1:] + centres[:-1])

@@ -1,4 +1,4 @@
-"""Picture of a recording: spectrogram, level over time, what the shaft did, and its orders.
+"""Picture of a recording: spectrogram, level over time, shaft speed and order map.
 
 The level is A-weighted with the time weighting F, as a meter shows it that was at rest before; the
 order map is drawn where the shaft's speed was recorded and changes, though hardly in a tenth of a
@@ -115,7 +115,7 @@ def plot_recording(
 def level_over_time(
     sound: NDArray[np.floating], rate: float, reference: float, *, columns: int = 1200
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Level of a sound over time, A-weighted, with the time weighting F.
+    """Return the A-weighted level of a sound over time, time weighting F.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def _levels(
 def recorded_levels(
     recording: Recording | RecordingBlocks,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Level over time of a recording's first pressure channel, as `level_over_time` returns it.
+    """Return the level over time of the first pressure channel, as `level_over_time`.
 
     Examples
     --------
@@ -172,7 +172,7 @@ def recorded_levels(
 
 
 def recorded_speed(recording: Recording | RecordingBlocks) -> NDArray[np.float64] | None:
-    """Speed of the shaft over time, as it was recorded.
+    """Return the recorded speed of the shaft over time.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def recorded_speed(recording: Recording | RecordingBlocks) -> NDArray[np.float64
 
 
 def recorded_orders(recording: Recording | RecordingBlocks) -> OrderMap | None:
-    """Order map of a recording's sound, else of its torque or acceleration.
+    """Return the order map of the sound of a recording, else of torque or acceleration.
 
     Returns
     -------
@@ -275,7 +275,7 @@ def _spectrogram(
 
 
 def _shown(level: NDArray[np.float64], highest: float) -> NDArray[np.float64]:
-    """Leave the paper white where a level is below the colours."""
+    """Return levels with NaN below the colour range."""
     return np.where(level < highest - _RANGE, np.nan, level)
 
 
@@ -298,7 +298,7 @@ def _trace(axes: Axes, values: NDArray[np.float64], rate: float, kind: str) -> N
 
 
 def _segments(axes: Axes, rows: Sequence[Mapping[str, object]], duration: float) -> None:
-    """Shade what is labelled, and name it."""
+    """Shade and name labelled segments."""
     for row in rows:
         start, end, label = row.get("start_s"), row.get("end_s"), row.get("label")
         if not (isinstance(start, float) and isinstance(end, float) and isinstance(label, str)):

@@ -1,4 +1,4 @@
-"""Picture of one run: what moved, how it slipped, and what could be heard of it.
+"""Picture of a run: time histories, phase planes and autospectra.
 
 Time histories and phase planes show the motion as it was computed, which no sensor sees;
 autospectra show what the sensors recorded, up to half the sampling rate. A linear axis would hide
@@ -48,7 +48,7 @@ _LEAST_SAMPLES = 1000
 
 @dataclass(frozen=True)
 class Window:
-    """A part of a motion.
+    """Interval of a motion.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Window:
 
 
 def run_window(run: Run) -> Window:
-    """Choose the part of a run that is shown enlarged.
+    """Return the interval of a run that is shown enlarged.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def run_window(run: Run) -> Window:
 
 
 def _cycles(motion: Motion) -> float | None:
-    """Slips a second, or periods of the torque [Hz]; None where it does not oscillate."""
+    """Return the rate of slips or torque periods [Hz]; None without oscillation."""
     if motion.torque.size < _LEAST_SAMPLES or not oscillates(motion.torque):
         return None
     repetition = repetition_rate(motion_slips(motion), motion.torque, motion.rate)
@@ -100,7 +100,7 @@ def _cycles(motion: Motion) -> float | None:
 
 
 def oscillates(torque: NDArray[np.floating]) -> bool:
-    """Whether a torque oscillates, as `sim.analysis.regime` has it."""
+    """Whether a torque oscillates, by `sim.analysis.regime`."""
     return bool(np.std(torque) > LEAST_OSCILLATION * abs(np.mean(torque)))
 
 
@@ -159,7 +159,7 @@ def plot_run(run: Run) -> Figure:
 
 
 def condition_words(condition: Condition, motion: Motion) -> str:
-    """Material, fit, support and speed in one line, for a title.
+    """Return material, interference, support and speed as a title.
 
     Examples
     --------
@@ -178,7 +178,7 @@ def condition_words(condition: Condition, motion: Motion) -> str:
 
 
 def _histories(figure: SubFigure, motion: Motion, window: Window) -> None:
-    """Torque, displacement and sliding speed over time: the whole run, and a few slips."""
+    """Draw torque, displacement and sliding speed over the run and over a few slips."""
     n, rate = motion.torque.size, motion.rate
     whole = slice(0, n)
     zoom = slice(window.first, window.last)
@@ -224,7 +224,7 @@ def _cycles_title(window: Window, *, both: bool) -> str:
 
 
 def _motion_curves(motion: Motion, part: slice) -> tuple[list[Curve], ...]:
-    """Curves of the three time histories, the more important ones later and so on top."""
+    """Return the curves of the time histories; later ones are drawn on top."""
     displacements: list[Curve] = [
         (1e3 * motion.interface_angle[part], BLUE, "elastomer's surface", 1.3)
     ]
@@ -241,7 +241,7 @@ def _motion_curves(motion: Motion, part: slice) -> tuple[list[Curve], ...]:
 
 
 def _planes(figure: SubFigure, motion: Motion, window: Window) -> None:
-    """Phase plane of the elastomer's surface, and torque against sliding speed."""
+    """Draw the phase plane of the elastomer surface, and torque over sliding speed."""
     left, right = figure.subplots(1, 2)
     spare = max(0, _ORBIT - (window.last - window.first)) // 2
     around = slice(max(0, window.first - spare), window.last + spare)
@@ -279,7 +279,7 @@ def _planes(figure: SubFigure, motion: Motion, window: Window) -> None:
 
 
 def _spectra(figure: SubFigure, run: Run, window: Window) -> None:
-    """Autospectra of what the sensors recorded."""
+    """Draw the autospectra of the recorded channels."""
     recording = run.recording
     rows = figure.subplots(len(KINDS), 1, sharex=True)
     cycles = window.frequency if recording.condition.speed is not None else None
@@ -296,7 +296,7 @@ def _spectra(figure: SubFigure, run: Run, window: Window) -> None:
 
 
 def draw_spectrum(axes: Axes, recording: Recording, name: str) -> str:
-    """Draw a channel's autospectrum on axes; return how it was computed."""
+    """Draw the autospectrum of a channel on axes; return its settings."""
     kind = KINDS[name]
     spectrum = autospectrum(recording[name], recording.rate)
     shown = spectrum.frequency >= max(_LOWEST, spectrum.spacing)
@@ -318,7 +318,7 @@ def _limits(curves: Sequence[NDArray[np.float64]], least: float) -> tuple[float,
 
 
 def _legend_above(axes: Axes) -> None:
-    """Put the legend where no curve runs: on top of the axes, right of the title."""
+    """Place the legend above the axes, right of the title."""
     axes.legend(
         loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.1, columnspacing=1.0
     )

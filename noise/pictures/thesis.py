@@ -1,4 +1,4 @@
-"""Figures of the thesis that show data, drawn by the plots that every run and sweep has.
+"""Data figures of the thesis, drawn by the plots of runs and sweeps.
 
 Its Figures 5.1 to 5.26 and H1 are measurements, 6.1 to 6.10 computed; here all are computed.
 Recordings of Chapter 5 are of the materials as they are shipped, runs of Chapter 6 and static tests
@@ -62,7 +62,7 @@ _FOUR_TYPES = [
 
 
 class Runs(NamedTuple):
-    """Runs that a figure shows, drawn as `noise.pictures.run` draws every run.
+    """Figure of runs, drawn by `noise.pictures.run`.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ SPECTRA = {
 
 
 class Swept(NamedTuple):
-    """Torque and slip frequency over speed, drawn by `sim.analysis.sweep.Sweep.plot`.
+    """Figure of torque and slip frequency over speed, drawn by `sim.analysis.sweep.Sweep.plot`.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ N_PICTURES = sum(len(shown.cases) for shown in RUNS.values()) + len(SPECTRA) + l
 
 
 def thesis_pictures() -> Iterator[tuple[str, Figure]]:
-    """Draw the thesis's figures, one after the other.
+    """Draw the figures of the thesis.
 
     Yields
     ------
