@@ -16,16 +16,14 @@ import re
 import sys
 import traceback
 import warnings
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from models.errors import BushingNoiseError, RecordingError
 from noise.base.progress import discard, note, say, set_verbosity
 from noise.commands import COMMANDS, load_command
 from noise.commands.options import COMMON, add_options, help_of, option_names
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
 
 _NAME = "bushing-noise"
 _REFUSED = 1

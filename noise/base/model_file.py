@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +21,8 @@ from models.errors import ParameterError
 from models.foreign_file import ExcessError, parse_json, read_arrays, reading
 from noise.base.files import atomic
 
-if TYPE_CHECKING:
-    Header = Mapping[str, Any]
-    Arrays = Mapping[str, NDArray[Any]]
-
-
+Header = Mapping[str, Any]
+Arrays = Mapping[str, NDArray[Any]]
 _Model = TypeVar("_Model")
 
 

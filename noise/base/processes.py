@@ -208,7 +208,7 @@ def _watched(
 
 
 def _exit_with_starter() -> None:
-    """Start a thread that exits the process when the one that asked for it is gone."""
+    """Start a thread that exits the process when the process that started it has ended."""
     starter = parent_process()
 
     def wait_for_end() -> None:

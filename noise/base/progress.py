@@ -113,14 +113,15 @@ def discard(stream: TextIO) -> None:
     os.close(null_device)
 
 
-def note(text: str) -> None:
-    """Print a warning in one line.
+def note(*texts: str) -> None:
+    """Print warnings, one line each.
 
     Examples
     --------
     >>> note("0.5 mm lies outside the measured fits")
     """
-    say(f"bushing-noise: note: {text}")
+    for text in texts:
+        say(f"bushing-noise: note: {text}")
 
 
 def counted(number: int, noun: str) -> str:

@@ -8,7 +8,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from noise.base.progress import report, say
-from noise.commands.options import SEED, Option, check_folder
+from noise.commands.options import Option, check_folder
 
 _DEFAULT_OUT = "bushing-noise-demo"
 
@@ -16,7 +16,6 @@ _DEFAULT_OUT = "bushing-noise-demo"
 OPTIONS = (
     Option("--out FOLDER", Path, Path(_DEFAULT_OUT)),
     Option("--no-browser"),
-    SEED,
 )
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.progress import Steps, note, report, say, steps
-from noise.commands.options import CHANGE, SEED, Option, changed, check_folder
+from noise.commands.options import CHANGE, Option, changed, check_folder
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
@@ -27,7 +27,6 @@ OPTIONS = (
     Option("--out FOLDER", Path),
     Option("--effects FILE.py", Path),
     Option("--quick"),
-    SEED,
 )
 
 
@@ -74,8 +73,7 @@ def _read(options: Namespace, progress: Steps) -> tuple[Case, Mapping[str, Effec
     for name, reason in case.refused:
         say(f"{name}: {reason}")
     remarks = case_remarks(case, library)
-    for text in remarks:
-        note(text)
+    note(*remarks)
     left_out = {f"{name} was left out: {reason}" for name, reason in case.refused}
     return case, library, {*remarks, *left_out}
 
@@ -95,9 +93,7 @@ def _print_answer(options: Namespace, diagnosis: Diagnosis, printed: set[str]) -
     if not (diagnosis.bench or diagnosis.next_measurement.startswith("none")):
         say(f"Measure next: {diagnosis.next_measurement}.")
     printed |= {*diagnosis.bench, *diagnosis.faults}  # sentences of the answer
-    for text in diagnosis.notes:
-        if text not in printed:
-            note(text)
+    note(*(text for text in diagnosis.notes if text not in printed))
     if options.out is not None and diagnosis.improvement is not None:
         from noise.diagnosis.improved_file import improved_sentence
 

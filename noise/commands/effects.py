@@ -6,16 +6,13 @@ from argparse import Namespace
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from noise.commands.options import SEED, Option
+from noise.commands.options import Option
 
 if TYPE_CHECKING:
     from sim.effects import Effect
 
 
-OPTIONS = (
-    Option("names NAME", str, count="*"),
-    SEED,
-)
+OPTIONS = (Option("names NAME", str, count="*"),)
 
 
 def run(options: Namespace) -> int:

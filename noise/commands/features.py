@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from noise.base.progress import note
 from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_recordings, run_batch
-from noise.commands.options import CALIBRATION, SEED, Option, full_scale_of
+from noise.commands.options import CALIBRATION, Option, full_scale_of
 
 if TYPE_CHECKING:
     from models.blocks import RecordingBlocks
@@ -23,7 +23,6 @@ OPTIONS = (
     Option("--windows"),
     PLOT,
     *CALIBRATION,
-    SEED,
 )
 
 

@@ -13,7 +13,7 @@ from models.errors import ParameterError, RecordingError
 from noise.base.files import atomic, check_target
 from noise.base.progress import counted, note, report, say, track
 from noise.base.tables import check_table_path, write_table
-from noise.commands.options import SEED, Option, band, number, one_of, refuse
+from noise.commands.options import Option, band, number, one_of, refuse
 
 if TYPE_CHECKING:
     import numpy as np
@@ -49,7 +49,6 @@ OPTIONS = (
     Option("--band LOW..HIGH", band),
     Option("--coherence C", number(least=0.0, most=1.0), _DEFAULT_COHERENCE),
     Option("--window"),
-    SEED,
 )
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.progress import Steps, note, report, say, steps
-from noise.commands.options import CHANGE, SEED, Option, change_table, check_folder
+from noise.commands.options import CHANGE, Option, change_table, check_folder
 
 if TYPE_CHECKING:
     from noise.identification.outcome import Identification
@@ -18,7 +18,6 @@ OPTIONS = (
     Option("--rig RIG.toml", Path),
     Option("--out FOLDER", Path),
     CHANGE,
-    SEED,
 )
 
 
@@ -34,8 +33,7 @@ def run(options: Namespace) -> int:
             write_identification(options.out, identification)
     if identification is None:
         return 1
-    for text in identification.notes:
-        note(text)
+    note(*identification.notes)
     if options.out is None:
         print(identification.rig_toml, end="")
     else:

@@ -17,7 +17,7 @@ from noise.base.labels import SURROUNDINGS
 from noise.base.progress import counted, note, report
 from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_recordings, run_batch
-from noise.commands.options import CALIBRATION, SEED, Option, full_scale_of, number, one_of
+from noise.commands.options import CALIBRATION, Option, full_scale_of, number, one_of
 
 if TYPE_CHECKING:
     from noise.batch.work import BatchRows
@@ -35,7 +35,6 @@ OPTIONS = (
     Option("--inference FILE.npz", Path),
     PLOT,
     *CALIBRATION,
-    SEED,
 )
 
 

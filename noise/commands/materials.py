@@ -5,16 +5,13 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from noise.commands.options import SEED, Option
+from noise.commands.options import Option
 
 if TYPE_CHECKING:
     from models.rig import Fit
 
 
-OPTIONS = (
-    Option("names NAME", str, count="*"),
-    SEED,
-)
+OPTIONS = (Option("names NAME", str, count="*"),)
 
 
 def run(options: Namespace) -> int:

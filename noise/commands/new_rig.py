@@ -10,12 +10,11 @@ from models.errors import ParameterError
 from noise.base.files import atomic, check_target
 from noise.base.progress import report
 from noise.commands.materials import fit_text
-from noise.commands.options import SEED, Option
+from noise.commands.options import Option
 
 OPTIONS = (
     Option("material MATERIAL", str, "fluorocarbon", count="?"),
     Option("--out FILE.toml", Path),
-    SEED,
 )
 
 

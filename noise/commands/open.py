@@ -7,7 +7,7 @@ from pathlib import Path
 
 from models.errors import ParameterError
 from noise.base.progress import say
-from noise.commands.options import SEED, Option, check_folder, whole_number
+from noise.commands.options import Option, check_folder, whole_number
 
 OPTIONS = (
     Option("paths PATH", Path, count="*"),
@@ -15,7 +15,6 @@ OPTIONS = (
     Option("--save-to FOLDER", Path),
     Option("--port PORT", whole_number(0, most=65535), 0),
     Option("--no-browser"),
-    SEED,
 )
 
 

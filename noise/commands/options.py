@@ -317,10 +317,8 @@ def _add(parser: argparse._ActionsContainer, row: Option, texts: Mapping[str, st
     )
 
 
-SEED = Option("--seed N", whole_number(0), 0)
-"""``--seed`` of all commands."""
-
 COMMON = (
+    Option("--seed N", whole_number(0), 0),
     OneOf(
         Option("--quiet"),
         Option("--verbose"),

@@ -14,7 +14,6 @@ from noise.base.progress import counted, note, report, say, track
 from noise.commands.condition import CONDITION
 from noise.commands.options import (
     CALIBRATION,
-    SEED,
     OneOf,
     Option,
     band,
@@ -60,7 +59,6 @@ OPTIONS = (
     Option("--sound-quality"),
     *CALIBRATION,
     CONDITION,
-    SEED,
 )
 
 
@@ -233,8 +231,7 @@ def _notes(measured: Mapping[str, Measured]) -> None:
             "dBFS only (--calibrator or --full-scale gives a calibration)"
         )
     for of in measured.values():
-        for line in of.untold:
-            note(line)
+        note(*of.untold)
 
 
 _LEAST_AUDIBLE = -48.0

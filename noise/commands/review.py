@@ -9,7 +9,6 @@ from noise.base.files import check_target
 from noise.base.progress import counted, note, report, say
 from noise.commands.options import (
     CALIBRATION,
-    SEED,
     Option,
     full_scale_of,
     number,
@@ -27,7 +26,6 @@ OPTIONS = (
     Option("--simulated N", whole_number(0, most=1000), 48),
     Option("--no-labelling"),
     *CALIBRATION,
-    SEED,
 )
 
 

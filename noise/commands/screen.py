@@ -14,7 +14,6 @@ from noise.base.progress import Steps, report, say, steps
 from noise.commands.options import (
     CHANGE,
     MOST_WORKERS,
-    SEED,
     Group,
     OneOf,
     Option,
@@ -66,7 +65,6 @@ OPTIONS = (
         Option("--workers N", whole_number(1, most=MOST_WORKERS), -1),
         Option("--scheduler ADDRESS", str),
     ),
-    SEED,
 )
 
 

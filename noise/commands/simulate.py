@@ -15,7 +15,7 @@ from noise.base.files import check_target
 from noise.base.progress import note, report, say
 from noise.base.tables import check_table_path, write_table
 from noise.commands.condition import CONDITION, DEFAULT_SECONDS, is_long, run_arguments, with_notes
-from noise.commands.options import SEED, Option, whole_number
+from noise.commands.options import Option, whole_number
 
 if TYPE_CHECKING:
     import os
@@ -40,7 +40,6 @@ OPTIONS = (
     Option("--force"),
     Option("--plot FILE", Path),
     Option("--sound-power TABLE", Path),
-    SEED,
 )
 
 
@@ -54,8 +53,7 @@ def run(options: Namespace) -> int:
         if suspension is not None:
             return _run_suspension(options, suspension)
     arguments, notes = run_arguments(options, options.rate)
-    for text in notes:
-        note(text)
+    note(*notes)
     if options.out is not None and is_long(arguments):
         from noise.base.remarks import NEVER_SLIPS
         from sim.blocks import simulate_blocks
@@ -103,8 +101,7 @@ def _run_suspension(options: Namespace, path: Path) -> int:
     suspension_run = run_suspension(car, **arguments)
     sensors = arguments["acquisition"].over(car.rig.sensors).sensors
     notes += (*suspension_run.remarks, *clipping_remarks(suspension_run.recording, sensors))
-    for text in notes:
-        note(text)
+    note(*notes)
     _write_or_print(options.out, replace(suspension_run.recording, notes=notes))
     return 0
 

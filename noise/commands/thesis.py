@@ -9,7 +9,7 @@ from models.errors import ParameterError
 from noise.base.files import atomic, check_target
 from noise.base.progress import report, say, track
 from noise.base.tables import TABLE_ENDINGS, check_table_path, write_table
-from noise.commands.options import SEED, Option, check_folder
+from noise.commands.options import Option, check_folder
 
 _PAGE_ENDING = ".md"
 
@@ -17,7 +17,6 @@ _PAGE_ENDING = ".md"
 OPTIONS = (
     Option("--out TABLE", Path),
     Option("--plots FOLDER", Path),
-    SEED,
 )
 
 

@@ -12,7 +12,7 @@ from models.errors import ParameterError
 from noise.base.files import check_target
 from noise.base.progress import Steps, counted, report, say, steps, track
 from noise.base.tables import TABLE_ENDINGS
-from noise.commands.options import SEED, Option, refuse, whole_number
+from noise.commands.options import Option, refuse, whole_number
 
 if TYPE_CHECKING:
     from noise.classifier import Classifier
@@ -33,7 +33,6 @@ OPTIONS = (
     Option("--add DIR|TABLE", Path, repeated=True),
     Option("--samples N", whole_number(1)),
     Option("--inference FILE.npz", Path),
-    SEED,
 )
 
 

@@ -15,7 +15,7 @@ import pytest
 from models.errors import RecordingError
 from noise.cli import main
 from noise.commands import COMMANDS, load_command
-from noise.commands.options import add_options, help_of, option_names
+from noise.commands.options import COMMON, add_options, help_of, option_names
 
 HELP = Path(__file__).parents[2] / "noise" / "commands" / "help.toml"
 HEAVY = ("numpy", "scipy", "sklearn", "librosa", "matplotlib", "numba", "soundfile")
@@ -56,7 +56,7 @@ def test_a_reader_that_goes_away_is_no_error():
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_option_is_explained_and_every_command_takes_a_seed(name):
     parser = argparse.ArgumentParser(prog=name)
-    texts, rows = help_of(name), load_command(name).OPTIONS
+    texts, rows = help_of(name), [*load_command(name).OPTIONS, *COMMON]
     add_options(parser, rows, texts.options)
     assert texts.description
     own = tomllib.loads(HELP.read_text(encoding="utf-8"))[name].get("options", {})
