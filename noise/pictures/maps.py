@@ -60,13 +60,13 @@ edge to be seen by on white."""
 
 
 def boundary_lines(
-    found: DesignMap, *, support: int = 0, temperature: int = 0
+    mapped: DesignMap, *, support: int = 0, temperature: int = 0
 ) -> list[tuple[str, int, float]]:
     """Return the boundary lines of a map: event with rising speed, row, speed.
 
     Parameters
     ----------
-    found : DesignMap
+    mapped : DesignMap
     support, temperature : int
         Which of the map's.
 
@@ -84,8 +84,8 @@ def boundary_lines(
     >>> boundary_lines(one.maps[0])
     []
     """
-    speed, growth = np.array(found.grid.speed), found.growth[temperature, support]
-    sticks = found.regime[temperature, support] == Regime.STICK_SLIP.value
+    speed, growth = np.array(mapped.grid.speed), mapped.growth[temperature, support]
+    sticks = mapped.regime[temperature, support] == Regime.STICK_SLIP.value
     kinds = [(("stick begins", "stick ends"), np.where(sticks, 1.0, -1.0))]
     if np.isfinite(growth).all():
         kinds.append((("sliding turns unstable", "sliding turns stable"), growth))
@@ -104,12 +104,12 @@ def _rising(
     return along[i : i + 2][order], speed[i : i + 2][order]
 
 
-def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
+def plot_screen(mapped: DesignMap, *, temperature: int = 0) -> Figure:
     """Draw the map of a design.
 
     Parameters
     ----------
-    found : DesignMap
+    mapped : DesignMap
     temperature : int
         Which of the map's temperatures.
 
@@ -125,25 +125,25 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
     >>> [axes.get_title("left") for axes in plot_screen(one.maps[0]).axes[:1]]
     ['2214 Nm/rad']
     """
-    grid = found.grid
+    grid = mapped.grid
     n = len(grid.support_stiffness)
-    speed, rows = _places(found)
+    speed, rows = _places(mapped)
     moving = "swinging" if grid.frequency else "at constant speed"
-    title = f"{found.design}, {found.environment}, {grid.temperature[temperature]:g} °C, {moving}"
+    title = f"{mapped.design}, {mapped.environment}, {grid.temperature[temperature]:g} °C, {moving}"
     with styled():
         figure = new_figure(min(7.6, 3.4 + 0.5 * rows.size), title)
         axes = figure.subplots(2, n, sharex=True, sharey=True, squeeze=False)
         images = []
         for k in range(n):
             above, below = axes[:, k]
-            star = _star(found, np.s_[:, k], "damping")
+            star = _star(mapped, np.s_[:, k], "damping")
             above.set_title(support_words(grid.support_stiffness[k]) + star)
-            _draw_labels(above, found, temperature, k)
+            _draw_labels(above, mapped, temperature, k)
             below.set_facecolor(_QUIET)
             level = np.where(
-                found.label[temperature, k] == "none", np.nan, found.level[temperature, k]
+                mapped.label[temperature, k] == "none", np.nan, mapped.level[temperature, k]
             )
-            _say_quiet(below, found, temperature, k)
+            _say_quiet(below, mapped, temperature, k)
             images.append(
                 below.pcolormesh(
                     _edges(speed),
@@ -155,14 +155,14 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
                 )
             )
             below.grid(visible=False)
-            below.set_xlabel(_speed_words(found))
+            below.set_xlabel(_speed_words(mapped))
         for panel in axes[:, 0]:
-            _name_fits(panel, found)
+            _name_fits(panel, mapped)
         figure.supylabel(_FITS)
         bar = figure.colorbar(images[0], ax=axes[1, :].tolist(), pad=0.01, aspect=12)
         bar.set_label("Level [dB(A)]")
         figure.legend(
-            handles=_handles(found, *axes[0]),
+            handles=_handles(mapped, *axes[0]),
             loc="outside lower center",
             ncols=8,
             columnspacing=1.3,
@@ -171,13 +171,13 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
 
 
 def plot_map(
-    found: DesignMap, ax: Axes | None = None, *, support: int = 0, temperature: int = 0
+    mapped: DesignMap, ax: Axes | None = None, *, support: int = 0, temperature: int = 0
 ) -> Axes:
     """Draw the noise map of a design for one support on axes.
 
     Parameters
     ----------
-    found : DesignMap
+    mapped : DesignMap
     ax : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
     support, temperature : int
@@ -187,28 +187,28 @@ def plot_map(
     -------
     matplotlib.axes.Axes
     """
-    grid = found.grid
+    grid = mapped.grid
     where = support_words(grid.support_stiffness[support])
     with axes_or_new(ax) as axes:
-        _draw_labels(axes, found, temperature, support)
-        axes.set_xlabel(_speed_words(found))
-        _name_fits(axes, found)
+        _draw_labels(axes, mapped, temperature, support)
+        axes.set_xlabel(_speed_words(mapped))
+        _name_fits(axes, mapped)
         axes.set_ylabel(_FITS)
         axes.set_title(
-            f"{found.design}, {found.environment}, {grid.temperature[temperature]:g} °C, {where}"
+            f"{mapped.design}, {mapped.environment}, {grid.temperature[temperature]:g} °C, {where}"
         )
-        axes.legend(handles=_handles(found, axes), fontsize="small")
+        axes.legend(handles=_handles(mapped, axes), fontsize="small")
     return axes
 
 
-def _places(found: DesignMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _places(mapped: DesignMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the positions of the points: speeds [rad/s] and rows of fits."""
-    return np.array(found.grid.speed), np.arange(len(found.grid.interference), dtype=np.float64)
+    return np.array(mapped.grid.speed), np.arange(len(mapped.grid.interference), dtype=np.float64)
 
 
-def _draw_labels(axes: Axes, found: DesignMap, temperature: int, support: int) -> None:
-    speed, rows = _places(found)
-    label = found.label[temperature, support]
+def _draw_labels(axes: Axes, mapped: DesignMap, temperature: int, support: int) -> None:
+    speed, rows = _places(mapped)
+    label = mapped.label[temperature, support]
     codes = np.select([label == name for name in _SIMULATED], range(len(_SIMULATED)))
     colours = ListedColormap([LABEL_LOOKS[name].colour for name in _SIMULATED])
     axes.pcolormesh(_edges(speed), _edges(rows), codes, cmap=colours, vmin=-0.5, vmax=4.5)
@@ -217,36 +217,36 @@ def _draw_labels(axes: Axes, found: DesignMap, temperature: int, support: int) -
         x, y = (np.r_[_edges(at)[0], at, _edges(at)[-1]] for at in (speed, rows))
         axes.contourf(x, y, persists, levels=[0.0, 2.0], colors="none", hatches=["///"])
     axes.grid(visible=False)
-    _say_quiet(axes, found, temperature, support)
-    beyond = _beyond(found)
+    _say_quiet(axes, mapped, temperature, support)
+    beyond = _beyond(mapped)
     if beyond is not None:
         axes.axvline(beyond, **_FITTED)
-    for name, row, where in boundary_lines(found, support=support, temperature=temperature):
+    for name, row, where in boundary_lines(mapped, support=support, temperature=temperature):
         axes.plot([where, where], [row - 0.5, row + 0.5], label=name, **LINES[name])
 
 
-def _speed_words(found: DesignMap) -> str:
-    return "Peak speed [rad/s]" if found.grid.frequency else "Speed [rad/s]"
+def _speed_words(mapped: DesignMap) -> str:
+    return "Peak speed [rad/s]" if mapped.grid.frequency else "Speed [rad/s]"
 
 
-def _name_fits(axes: Axes, found: DesignMap) -> None:
-    fits = found.grid.interference
+def _name_fits(axes: Axes, mapped: DesignMap) -> None:
+    fits = mapped.grid.interference
     rows = range(0, len(fits), math.ceil(len(fits) / _NAMED_ROWS))
-    words = [f"{1e3 * fits[i]:.3g}{_star(found, np.s_[:, :, i], 'fit')}" for i in rows]
+    words = [f"{1e3 * fits[i]:.3g}{_star(mapped, np.s_[:, :, i], 'fit')}" for i in rows]
     axes.set_yticks(list(rows), words)
 
 
-def _star(found: DesignMap, at: tuple[slice | int, ...], what: str) -> str:
+def _star(mapped: DesignMap, at: tuple[slice | int, ...], what: str) -> str:
     """Return a star if data are substituted at all points of a part of a map."""
-    return _STAR if all(what in str(note) for note in found.note[at].flat) else ""
+    return _STAR if all(what in str(note) for note in mapped.note[at].flat) else ""
 
 
-def _say_quiet(axes: Axes, found: DesignMap, temperature: int, support: int) -> None:
-    if (found.label[temperature, support] == "none").all():
+def _say_quiet(axes: Axes, mapped: DesignMap, temperature: int, support: int) -> None:
+    if (mapped.label[temperature, support] == "none").all():
         axes.text(0.5, 0.5, "quiet", transform=axes.transAxes, ha="center", va="center")
 
 
-def _handles(found: DesignMap, *panels: Axes) -> list[Patch | Line2D]:
+def _handles(mapped: DesignMap, *panels: Axes) -> list[Patch | Line2D]:
     """Return the legend handles, with the lines that the panels have."""
     drawn = {line.get_label() for panel in panels for line in panel.get_lines()}
     return [
@@ -260,19 +260,19 @@ def _handles(found: DesignMap, *panels: Axes) -> list[Patch | Line2D]:
             for label in _SIMULATED[::-1]
         ),
         *(Line2D([], [], **look, label=name) for name, look in LINES.items() if name in drawn),
-        *([] if _beyond(found) is None else [Line2D([], [], **_FITTED, label="fastest fitted")]),
-        *_star_handle(found),
+        *([] if _beyond(mapped) is None else [Line2D([], [], **_FITTED, label="fastest fitted")]),
+        *_star_handle(mapped),
     ]
 
 
-def _beyond(found: DesignMap) -> float | None:
+def _beyond(mapped: DesignMap) -> float | None:
     """Return the speed beyond the fitted range [rad/s], None if there is none."""
-    fast = ["faster" in str(note) for note in found.note[0, 0, 0]]
-    return _edges(np.array(found.grid.speed))[fast.index(True)] if any(fast) else None
+    fast = ["faster" in str(note) for note in mapped.note[0, 0, 0]]
+    return _edges(np.array(mapped.grid.speed))[fast.index(True)] if any(fast) else None
 
 
-def _star_handle(found: DesignMap) -> list[Line2D]:
-    if not found.substituted.any():
+def _star_handle(mapped: DesignMap) -> list[Line2D]:
+    if not mapped.substituted.any():
         return []
     words = "data interpolated or held"
     return [Line2D([], [], linestyle="none", marker="$*$", color="#222222", label=words)]

@@ -1,4 +1,4 @@
-"""Advice: which change of one parameter ends a noise, by runs of the bushing as it would be made.
+"""Advice: changes of one parameter that end a noise, verified by simulation.
 
 Of each parameter the changes that a drawing can carry, whole steps of 5 and 10 %, are tried
 outwards from the design, as far as a rig file accepts them. A change ends the noise if the
@@ -33,18 +33,18 @@ from noise.screening.vibration import (
 )
 
 STEPS = (5, 10, 15, 20, 25, 30, 40, 50, 60, 70, 80, 90, 100, 120, 150, 200)
-"""Changes that are tried, up and, to a half, down [%]."""
+"""Simulated changes, upwards and, to a half, downwards [%]."""
 
 MOST_DOWN = 50
 """[%]"""
 
 MARGIN = 2
-"""By how much less than what is offered a change may be [%]."""
+"""Part of an offered change without which it still ends the noise [%]."""
 
 
 @dataclass(frozen=True)
 class Offer:
-    """What changing one parameter one way does about a noise.
+    """Effect of changing one parameter in one direction on a noise.
 
     Parameters
     ----------
@@ -53,17 +53,17 @@ class Offer:
     nominal : float
         Value as it is, in the unit of `PARAMETERS`, such as [Nm].
     percent : int
-        Change that ends the noise, or where none does the largest that was tried [%].
+        Change that ends the noise, or the largest simulated one where none does [%].
     ends : bool
         Whether it ends the noise, from rest and from running noise.
     limit : str
-        Why no larger change was tried; empty where the steps end.
+        Reason why no larger change was simulated; empty where the steps end.
     from_rest : int, optional
         Smallest change after which none breaks out from rest, but a running one goes on [%]; None
         where there is none.
     quiet_elsewhere, elsewhere : int
-        At how many of the other noisy conditions looked at the same change ends the noise as well,
-        and how many these are.
+        Number of other noisy conditions at which the same change ends the noise, and number that
+        were simulated.
     left : Condition, optional
         The first of these at which it does not; None where it ends the noise at all.
     """
@@ -102,7 +102,7 @@ class Offer:
 
 
 def changed(rig: Rig, at: Condition, name: str, percent: float) -> tuple[Rig, Condition]:
-    """Change a parameter, as a rig file or an option would have it.
+    """Return rig and condition with one parameter changed, as a rig file does it.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def changed(rig: Rig, at: Condition, name: str, percent: float) -> tuple[Rig, Co
 def advise(
     rig: Rig, at: Condition, elsewhere: Sequence[Condition] = (), *, workers: int = -1
 ) -> tuple[Offer, ...]:
-    """Find the changes that end the noise at a condition.
+    """Return the changes that end the noise at a condition, and those that do not.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def advise(
     at : Condition
         Of constant speed, at which it is noisy.
     elsewhere : sequence of Condition
-        Other noisy conditions, at which the offers that end the noise are tried as well.
+        Other noisy conditions, at which the offers that end the noise are simulated as well.
     workers : int
         Threads; -1 is one a core.
 
@@ -178,10 +178,10 @@ def advise(
         offers: list[Offer] = work(
             delayed(_offer)(rig, at, noise, name, way) for name in names for way in (-1, 1)
         )
-        tried = [(i, other) for i, offer in enumerate(offers) if offer.ends for other in elsewhere]
-        quiet = work(delayed(_ends_at)(rig, other, offers[i]) for i, other in tried)
+        trials = [(i, other) for i, offer in enumerate(offers) if offer.ends for other in elsewhere]
+        quiet = work(delayed(_ends_at)(rig, other, offers[i]) for i, other in trials)
     stays: dict[int, list[Condition]] = {}
-    for (i, other), ends in zip(tried, quiet, strict=True):
+    for (i, other), ends in zip(trials, quiet, strict=True):
         stays.setdefault(i, []).extend([] if ends else [other])
     counted = [
         replace(
@@ -202,7 +202,7 @@ def _order(offer: Offer) -> tuple[bool, int, int]:
 
 
 def _offer(rig: Rig, at: Condition, noise: Course, name: str, way: int) -> Offer:
-    """Step one parameter one way until the noise ends with a margin."""
+    """Return the smallest change in one direction that ends the noise with a margin."""
     nominal = nominal_values(rig, at)[name]
     steps = [way * step for step in STEPS if way > 0 or step <= MOST_DOWN]
     known: dict[int, str] = {}
@@ -236,7 +236,7 @@ def _offer(rig: Rig, at: Condition, noise: Course, name: str, way: int) -> Offer
 
 
 def _state(rig: Rig, at: Condition, noise: Course | None = None) -> str:
-    """State of a vibration from every start, also from that of another rig."""
+    """Return the state of a vibration from every start, also from that of another rig."""
     growth = float(growth_at(rig, at))
     if growth > 0.0:  # which the least disturbance follows
         return BREAKS_OUT
@@ -248,7 +248,7 @@ def _state(rig: Rig, at: Condition, noise: Course | None = None) -> str:
 
 
 def _ends_at(rig: Rig, at: Condition, offer: Offer) -> bool:
-    """Whether an offer ends the noise at another condition."""
+    """Return whether an offer ends the noise at another condition."""
     noise = vibration_at(rig, at).course
     try:
         there = changed(rig, at, offer.name, offer.percent)

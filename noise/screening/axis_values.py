@@ -24,18 +24,18 @@ SPEED_STEP = 0.125
 
 @dataclass(frozen=True)
 class AxisRule:
-    """Which values an axis takes.
+    """Allowed values of an axis.
 
     Parameters
     ----------
     step : float, optional
-        Of a range without a number of points, in the unit of the axis, such as [rad/s].
+        Step of a range without a number of points, in the unit of the axis, such as [rad/s].
     points : int
-        Of a range without one, where there is no step.
+        Number of points of a range without one, where there is no step.
     low : float
-        Least value, in the unit of the axis, such as [rad/s].
+        Lower limit, in the unit of the axis, such as [rad/s].
     open_low : bool
-        Whether `low` itself is refused.
+        Whether `low` itself is not allowed.
     fixed : bool
         Whether ``fixed`` is a value.
     """
@@ -55,7 +55,7 @@ TEMPERATURE = AxisRule(points=3, low=ABSOLUTE_ZERO, open_low=False)
 
 
 def spread(low: float, high: float, points: int) -> tuple[float, ...]:
-    """Return evenly spaced values, written as short as they are distinct.
+    """Return evenly spaced values, rounded to ten digits.
 
     Parameters
     ----------
@@ -76,14 +76,14 @@ def spread(low: float, high: float, points: int) -> tuple[float, ...]:
 
 
 def axis_values(given: object, what: str, rule: AxisRule = POSITIVE) -> tuple[float, ...]:
-    """Read an axis: a number, ``5``, ``0.178,0.279``, ``0.25..13``, ``0.25..13/52``, or a list.
+    """Parse an axis: a number, ``5``, ``0.178,0.279``, ``0.25..13``, ``0.25..13/52``, or a list.
 
     Parameters
     ----------
     given : object
-        Of an option or a design file; None has no values.
+        Value of an option or a key of a design file; None has no values.
     what : str
-        What messages call it, such as ``--speed``.
+        Name of the axis in messages, such as ``--speed``.
     rule : AxisRule
 
     Returns
@@ -105,20 +105,20 @@ def axis_values(given: object, what: str, rule: AxisRule = POSITIVE) -> tuple[fl
     """
     if given is None:
         return ()
-    found: list[float] = []
+    values: list[float] = []
     for item in given if isinstance(given, list) else [given]:
         if isinstance(item, str):
             for part in item.split(","):
-                found += _part_values(part, what, item, rule)
+                values += _part_values(part, what, item, rule)
         elif isinstance(item, int | float) and not isinstance(item, bool):
-            found.append(float(item))
+            values.append(float(item))
         else:
             raise ParameterError(f"{what} = {given!r}: give numbers, or a range such as '0.25..13'")
-    return _checked(found, what, str(given), rule)
+    return _checked(values, what, str(given), rule)
 
 
 def _part_values(part: str, what: str, whole: str, rule: AxisRule) -> tuple[float, ...]:
-    """Read what stands between commas: a number, or a range."""
+    """Parse the text between two commas: a number or a range."""
     first, dots, rest = part.partition("..")
     if not dots:
         return (_value(part, what, whole, fixed=rule.fixed),)
@@ -138,7 +138,7 @@ def _part_values(part: str, what: str, whole: str, rule: AxisRule) -> tuple[floa
 
 
 def axis_words(values: Sequence[float], most: int = 4) -> str:
-    """Name the values of an axis, or where there are more than `most` its ends and their number.
+    """Return the values of an axis as text, or only its ends and number above `most` values.
 
     Parameters
     ----------
@@ -151,10 +151,10 @@ def axis_words(values: Sequence[float], most: int = 4) -> str:
     >>> axis_words([2214.0, FIXED]), axis_words([0.25, 0.5, 0.75], most=2)
     ('2214 and fixed', '0.25 to 0.75 (3 values)')
     """
-    said = ["fixed" if math.isinf(value) else f"{value:.4g}" for value in values]
-    if len(said) > most:
-        return f"{said[0]} to {said[-1]} ({len(said)} values)"
-    return " and ".join([", ".join(said[:-1]), said[-1]] if len(said) > 1 else said)
+    texts = ["fixed" if math.isinf(value) else f"{value:.4g}" for value in values]
+    if len(texts) > most:
+        return f"{texts[0]} to {texts[-1]} ({len(texts)} values)"
+    return " and ".join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)
 
 
 def _value(text: str, what: str, whole: str, *, fixed: bool = False) -> float:
@@ -172,8 +172,8 @@ def _value(text: str, what: str, whole: str, *, fixed: bool = False) -> float:
     return value
 
 
-def _checked(found: list[float], what: str, text: str, rule: AxisRule) -> tuple[float, ...]:
-    values = sorted(set(found))
+def _checked(numbers: list[float], what: str, text: str, rule: AxisRule) -> tuple[float, ...]:
+    values = sorted(set(numbers))
     if not values:
         raise ParameterError(f"{what} is empty; give at least one value")
     low = rule.low

@@ -60,7 +60,7 @@ _USE_KEYS = {
 @short_repr
 @dataclass(frozen=True)
 class Swinging:
-    """A bar on the road, swinging to and fro.
+    """Oscillation of a stabilizer bar on the road.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Swinging:
 @short_repr
 @dataclass(frozen=True)
 class Use:
-    """What a design meets in use; empty where it is not said.
+    """Operating conditions of a design in use; empty where not stated.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class Use:
 @short_repr
 @dataclass(frozen=True)
 class Design:
-    """A bushing on its rig, how it is used, and how it varies.
+    """Bushing design: a rig, its use and its tolerances.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ class Design:
 
 
 def load_design(given: str | Path) -> Design:
-    """Read a design file, or take a material by its name.
+    """Load a design from a file, or by the name of a material.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def _read_design(path: Path, where: str) -> Design:
 
 
 def _stated(key: str, content: Mapping[str, Any], folder: Path, where: str) -> Any:
-    """Return a table of a design file, or that of the file that it changes, but for its name."""
+    """Return a table of a design file, or of its base without the name."""
     if key in content:
         return content[key]
     base = folder / str(content.get("base", ""))
@@ -241,7 +241,7 @@ def _swinging(given: object, where: str) -> Swinging | None:
 def load_designs(
     designs: Sequence[str | Path | Design], change: Callable[[Rig], Rig] | None = None
 ) -> tuple[dict[str, Design], list[tuple[str, str]], list[tuple[str, Path]]]:
-    """Read designs.
+    """Load designs, and collect the reasons for those that are refused.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def load_designs(
     Returns
     -------
     dict of str to Design
-        By their names; two of one name are told apart by a number.
+        Designs by name; a number distinguishes two of one name.
     list of (str, str)
         Those that are refused, and why.
     list of (str, Path)
@@ -291,7 +291,7 @@ def load_designs(
 
 
 def _with_name_of_its_own(design: Design, taken: set[str]) -> Design:
-    """Two designs of one name are told apart by a number."""
+    """Return the design with a number behind its name where the name is taken."""
     name, number = design.name, 2
     while name in taken:
         name, number = f"{design.name} ({number})", number + 1
@@ -308,7 +308,7 @@ def copy_design_file(name: str, source: Path, folder: Path) -> Path:
     Parameters
     ----------
     name : str
-        What the screen calls the design.
+        Name of the design in the screening.
     source, folder : Path
 
     Returns
@@ -356,11 +356,11 @@ def copy_design_file(name: str, source: Path, folder: Path) -> Path:
 
 
 _BASE = re.compile(r"""^base\s*=\s*(?:"[^"]*"|'[^']*')""", re.MULTILINE)
-"""How a file names its base, before any table."""
+"""Line that names the base of a file."""
 
 
 def _base_elsewhere(source: Path) -> Path | None:
-    """Return the base of a file where the way to it, or to its own, leads out of a folder."""
+    """Return the base of a file if its path, or that of its own base, leaves the folder."""
     named = Path(read_toml(source, f"design {source}").get("base", ""))
     base = source.parent / named
     if named.is_absolute() or not base.is_file():
@@ -375,7 +375,7 @@ def _copied(source: Path, target: Path) -> None:
 
 def _named_files(source: Path) -> list[Path]:
     content = read_toml(source, f"design {source}")
-    found = [
+    paths = [
         Path(value)
         for table in content.get("measured_response", [])
         for key, value in table.items()
@@ -383,5 +383,5 @@ def _named_files(source: Path) -> list[Path]:
     ]
     base = Path(content.get("base", ""))
     if base.suffix and (source.parent / base).is_file() and _base_elsewhere(source) is None:
-        found += [base, *(base.parent / named for named in _named_files(source.parent / base))]
-    return found
+        paths += [base, *(base.parent / named for named in _named_files(source.parent / base))]
+    return paths

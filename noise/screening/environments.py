@@ -16,15 +16,15 @@ from models.rig import Fit, LawSpec, Rig, parse_spec
 from noise.base import packaged_toml
 
 DRY = "dry"
-"""What is measured in, as a rule."""
+"""Environment of the measurements."""
 
 FIT_PARAMETERS = ("elastomer_stiffness", "damping", "critical_torque", "kinetic_torque")
-"""Of a fit, what environments and tolerances multiply."""
+"""Parameters of a fit that environments and tolerances scale."""
 
 
 @dataclass(frozen=True)
 class Environment:
-    """One environment.
+    """Environment: temperature, factors on the parameters of friction, and effects.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Environment:
         Whether the factors stand for the temperature: a rig whose material says how it depends on
         that has no need of them.
     why : tuple of str
-        Where the numbers come from; all are assumed.
+        Reason for each number; all are assumed.
     """
 
     name: str
@@ -66,7 +66,7 @@ def _environments() -> dict[str, Environment]:
 
 
 def environment_names() -> tuple[str, ...]:
-    """Names of the environments.
+    """Return the names of the environments.
 
     Examples
     --------
@@ -89,16 +89,16 @@ def environment(name: str) -> Environment:
     >>> environment("Grease").factors["kinetic_torque"]
     0.3
     """
-    found = _environments().get(name.strip().lower())
-    if found is None:
+    match = _environments().get(name.strip().lower())
+    if match is None:
         raise ParameterError(
             f"environment {name!r} is unknown; there are {', '.join(environment_names())}"
         )
-    return found
+    return match
 
 
 def in_environment(rig: Rig, where: Environment) -> Rig:
-    """Return the rig as it is in an environment.
+    """Return the rig with the parameters of an environment.
 
     Examples
     --------

@@ -24,15 +24,15 @@ from noise.screening.design import Design, Swinging, Use
 from noise.screening.environments import DRY, environment
 
 DEFAULT_SPEEDS = (0.25, 13.0)
-"""Limits of use where nobody says any: the range that the thesis measured [rad/s]."""
+"""Default limits of use: the range measured in the thesis [rad/s]."""
 
 _DEFAULT_SUPPORT = 2214.0
 _DEFAULT_TEMPERATURE = 23.0
 _ALIKE = 1e-6
-"""Relative distance below which two values of an axis are one."""
+"""Relative distance below which two values of an axis are equal."""
 
-_MOST_SAID = 6
-"""Values of an axis that are named one by one."""
+_MOST_LISTED = 6
+"""Largest number of values of an axis that are listed."""
 
 _BEYOND = 1.5
 """A map reaches from the slowest of `DEFAULT_SPEEDS`, or of use, so far beyond the fastest use."""
@@ -74,7 +74,7 @@ class Grid:
 
     @property
     def used(self) -> NDArray[np.bool_]:
-        """Which speeds are of use, shape (n_speeds,); the middlemost where the map has none."""
+        """Mask of the speeds of use, shape (n_speeds,); the middle speed where the map has none."""
         speed, (low, high) = np.array(self.speed), self.use
         used = (speed >= low * (1.0 - _ALIKE)) & (speed <= high * (1.0 + _ALIKE))
         if not used.any():
@@ -83,7 +83,7 @@ class Grid:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """Say over which conditions, axis by axis."""
+        """Values of each axis as text."""
         moving = "speed" if not self.frequency else "peak speed"
         axes = (
             (moving, self.speed, "rad/s"),
@@ -92,24 +92,24 @@ class Grid:
             ("temperature", self.temperature, "°C"),
         )
         return tuple(
-            f"{name} {axis_words(values, _MOST_SAID)} {unit}" for name, values, unit in axes
+            f"{name} {axis_words(values, _MOST_LISTED)} {unit}" for name, values, unit in axes
         )
 
 
 def grid_of(
     design: Design, given: Use | None = None, *, where: str = DRY, swinging: Swinging | None = None
 ) -> Grid:
-    """Return the conditions of the map of a design that is compared with no other.
+    """Return the grid of the map of a single design.
 
     Parameters
     ----------
     design : Design
     given : Use, optional
-        What the caller says; it wins over the design's own.
+        Conditions that replace those of the design.
     where : str
         Environment; any but ``dry`` has a temperature of its own.
     swinging : Swinging, optional
-        How the shaft swings, instead of turning at constant speed.
+        Oscillation of the shaft, instead of constant speed.
 
     Returns
     -------
@@ -131,18 +131,18 @@ def shared_grid(
     where: str = DRY,
     swinging: Swinging | None = None,
 ) -> Grid:
-    """Return the conditions over which designs are compared, the same of each.
+    """Return the common grid over which designs are compared.
 
     Parameters
     ----------
     designs : sequence of Design
         One at least.
     given : Use, optional
-        What the caller says; it wins over what the designs say.
+        Conditions that replace those of the designs.
     where : str
         Environment; any but ``dry`` has a temperature of its own.
     swinging : Swinging, optional
-        How the shaft swings, instead of turning at constant speed.
+        Oscillation of the shaft, instead of constant speed.
 
     Returns
     -------
@@ -160,7 +160,7 @@ def shared_grid(
     uses = [design.use for design in designs]
     stated = [use.speed or given.speed for use in uses if use.speed or given.speed]
     limits = _hull(stated or [DEFAULT_SPEEDS])
-    speed = given.speed or _asked_speeds([use.speed for use in uses if use.speed])
+    speed = given.speed or _map_speeds([use.speed for use in uses if use.speed])
     if swinging is not None:
         speed = swinging.peak_speed
         limits = 0.0, speed[-1]
@@ -180,7 +180,7 @@ def shared_grid(
 
 
 def shared_motions(designs: Sequence[Design], given: Use | None = None) -> list[Swinging | None]:
-    """List how the shaft moves in the maps of designs that are compared; None is constant speed.
+    """Return the motions of the shaft in the maps of designs; None is constant speed.
 
     Parameters
     ----------
@@ -211,8 +211,8 @@ def shared_motions(designs: Sequence[Design], given: Use | None = None) -> list[
     return [None, *(Swinging(*swing) for swing in sorted(swings.items()))]
 
 
-def _asked_speeds(stated: Sequence[tuple[float, ...]]) -> tuple[float, ...]:
-    """Speeds of a map, of uses that state limits or lists of speeds."""
+def _map_speeds(stated: Sequence[tuple[float, ...]]) -> tuple[float, ...]:
+    """Return the speeds of a map from the limits or lists of speeds of all uses."""
     if not stated:
         return _spaced(*DEFAULT_SPEEDS)
     limits = [speeds for speeds in stated if len(speeds) <= 2]
@@ -226,7 +226,7 @@ def _hull(spans: Iterable[tuple[float, ...]]) -> tuple[float, float]:
 
 
 def _merged(*axes: tuple[float, ...]) -> tuple[float, ...]:
-    """Values of all axes, rising, those that are alike once."""
+    """Return the rising values of all axes without duplicates."""
     values: list[float] = []
     for value in sorted(itertools.chain(*axes)):
         if not (values and math.isclose(value, values[-1], rel_tol=_ALIKE)):
@@ -247,6 +247,6 @@ def _fits(rig: Rig) -> tuple[float, ...]:
 
 
 def _supports(rig: Rig) -> tuple[float, ...]:
-    """Supports that the rig's damping was given for, else that of the bench."""
+    """Return the supports for which the rig states damping, by default those of the bench."""
     given = sorted({support for fit in rig.fits for support in fit.damping})
     return tuple(given) if any(math.isfinite(k) for k in given) else (_DEFAULT_SUPPORT, FIXED)

@@ -45,8 +45,8 @@ LABELS = ("none", "creak", "squawk", "squeal")
 """Of a point, in the order of their codes."""
 
 SIMULATED, REFINED, BEYOND, UNCHANGED = HOW = ("simulated", "refined", "beyond", "unchanged")
-"""How a point is known: run; as the simulated points about it; not run since a vibration that runs
-has died at a speed between it and unstable sliding; as at another temperature or fit."""
+"""Origin of a point: simulated; as the simulated points around it; skipped, since a running
+vibration dies at a speed between it and unstable sliding; as at another temperature or fit."""
 
 STRIDE = 8
 """Points from corner to corner of the coarse cells."""
@@ -55,7 +55,7 @@ _FEW_ROWS = 8
 """Of a plane, up to which no row tells anything of the next."""
 
 _POINTS_A_CUT = 3
-"""That cutting a cell simulates, more or less: five, of which neighbours share four."""
+"""Approximate simulations per cut cell: five points, of which neighbours share four."""
 
 _SPEED_APART, _FIT_APART = 1.0, 0.05e-3
 """Largest distance of corners of coarse cells [rad/s] and [m]: a list of few speeds is simulated
@@ -68,7 +68,7 @@ _NEAREST = 4
 @short_repr
 @dataclass(frozen=True, eq=False)
 class DesignMap:
-    """What a design does over a grid; all arrays but the axes have the grid's shape.
+    """Results of a design over a grid; all arrays but the axes have the grid's shape.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class DesignMap:
     regime, label : ndarray of str, shape of the grid
         The label is ``none``, a noise that breaks out from rest, or ``persists``.
     sound, physics : ndarray of str, shape of the grid
-        What is heard once it vibrates, and the name of that by the physics of the motion.
+        Label of the sound of the vibration, and its name by the physics of the motion.
     level, level_max : ndarray, shape of the grid
         L_Aeq and L_AFmax [dB re 20 uPa]; NaN where the contact slides steadily.
     loudness : ndarray, shape of the grid
@@ -88,9 +88,9 @@ class DesignMap:
     how : ndarray of str, shape of the grid
         Of `HOW`.
     growth : ndarray, shape of the grid
-        Of a small vibration about steady sliding [1/s]; NaN where the shaft swings.
+        Growth rate of a small vibration about steady sliding [1/s]; NaN for a swinging shaft.
     note : ndarray of str, shape of the grid
-        What is not the design's own there, by `noise.screening.provenance.point_notes`: data
+        Data that are not the design's own, by `noise.screening.provenance.point_notes`: data
         interpolated or held, a speed beyond those fitted; empty where nothing is.
     substituted : ndarray of bool, shape of the grid
         Where such data stand in.
@@ -116,7 +116,7 @@ class DesignMap:
     open: int
 
     def count(self, how: str) -> int:
-        """How many points are known in a way."""
+        """Return the number of points with one value of `how`."""
         return int(np.sum(self.how == how))
 
 
@@ -130,7 +130,7 @@ def map_design(
     most: int | None = None,
     stride: int | None = None,
 ) -> DesignMap:
-    """Map a design over a grid.
+    """Simulate the map of a design over a grid.
 
     Parameters
     ----------
@@ -178,8 +178,8 @@ def map_design(
 
     def simulate(points: NDArray[np.int64]) -> NDArray[np.int64]:
         codes = []
-        found = evaluate(rig, [condition(*point) for point in points.tolist()])
-        for at, one in zip(points.tolist(), found, strict=True):
+        results = evaluate(rig, [condition(*point) for point in points.tolist()])
+        for at, one in zip(points.tolist(), results, strict=True):
             physics = LABELS.index(one.physics)
             values[:, *at] = physics, one.level, one.level_max
             ran[tuple(at)] = one.simulated
@@ -192,7 +192,7 @@ def map_design(
         at = interference[:, None], support[:, None, None]
         hot = [at_temperature(rig, float(t)) for t in temperature]
         growth = np.stack([sliding_growth(one, speed, *at) for one in hot])
-    found = refined_map(
+    refined = refined_map(
         planes,
         simulate,
         grows=growth.reshape(planes) > 0.0,
@@ -202,12 +202,12 @@ def map_design(
             stride or _stride(speed, _SPEED_APART),
         ),
     )
-    code = found.codes.reshape(shape)
+    code = refined.codes.reshape(shape)
     note, substituted = point_notes(rig, grid)
     kind = code // len(REGIMES)
     sound = np.array(LABELS)[kind % len(LABELS)]
-    physics = interpolated(values[0], found, nearest=1).reshape(shape).astype(int)
-    level, level_max = (interpolated(one, found).reshape(shape) for one in values[1:])
+    physics = interpolated(values[0], refined, nearest=1).reshape(shape).astype(int)
+    level, level_max = (interpolated(one, refined).reshape(shape) for one in values[1:])
     mapped = DesignMap(
         design=design,
         environment=environment,
@@ -221,48 +221,48 @@ def map_design(
         level_max=level_max,
         loudness=np.full(shape, np.nan),
         how=np.select(
-            [(found.beyond | ~ran).reshape(shape), found.simulated.reshape(shape)],
+            [(refined.beyond | ~ran).reshape(shape), refined.simulated.reshape(shape)],
             [BEYOND, SIMULATED],
             REFINED,
         ),
         growth=growth,
         note=note,
         substituted=substituted,
-        open=found.open,
+        open=refined.open,
     )
     return _copied(mapped, *known_by)
 
 
 def _stride(values: NDArray[np.float64], apart: float) -> int:
-    """Points from corner to corner of coarse cells that are no larger than `apart`."""
+    """Return the stride of coarse cells that are no larger than `apart`."""
     if values.size < 2:
         return STRIDE
     return max(1, min(STRIDE, round(apart / float(np.diff(values).max()))))
 
 
-def _copied(found: DesignMap, *known_by: NDArray[np.int64]) -> DesignMap:
-    """Repeat a map at all temperatures and fits, by those that each is known by."""
+def _copied(mapped: DesignMap, *known_by: NDArray[np.int64]) -> DesignMap:
+    """Repeat the rows of a map at all temperatures and fits that have the same results."""
     at = [np.unique(known, return_inverse=True)[1] for known in known_by]
     own = [known == np.arange(known.size) for known in known_by]
     names = (
         "regime", "label", "sound", "physics", "level", "level_max", "loudness", "how", "growth",
     )  # fmt: skip
-    copies: dict[str, Any] = {name: getattr(found, name)[at[0]][:, :, at[1]] for name in names}
+    copies: dict[str, Any] = {name: getattr(mapped, name)[at[0]][:, :, at[1]] for name in names}
     copied = ~(own[0][:, None, None, None] & own[1][:, None])
     copies["how"] = np.where(copied, UNCHANGED, copies["how"])
-    return replace(found, **copies)
+    return replace(mapped, **copies)
 
 
 @dataclass(frozen=True, eq=False)
 class Refined:
-    """Codes of a map and where they come from.
+    """Codes of a map and their origin.
 
     Parameters
     ----------
     codes : ndarray of int, shape (n_planes, n_rows, n_columns)
         0 is silence; of noises the kind times the number of regimes, and the regime.
     simulated, beyond : ndarray of bool, same shape
-        Where points were asked for, and where that was spared since a vibration dies before.
+        Simulated points, and points that were skipped since a vibration dies before them.
     open : int
         Points beside a boundary that were left to their nearest neighbour.
     """
@@ -281,7 +281,7 @@ def refined_map(
     stride: tuple[int, int] = (STRIDE, STRIDE),
     most: int | None = None,
 ) -> Refined:
-    """Fill a map with as few simulations as its boundaries need.
+    """Fill a map by simulating its boundaries finely and the rest coarsely.
 
     Parameters
     ----------
@@ -354,7 +354,7 @@ def refined_map(
 def _dies_before(
     codes: NDArray[np.int64], grows: NDArray[np.bool_], plane: int, row: int, column: int
 ) -> bool:
-    """Whether a vibration has died between each speed of unstable sliding and a point."""
+    """Return whether a vibration has died between each speed of unstable sliding and a point."""
     code, unstable = codes[plane, row], np.flatnonzero(grows[plane, row])
     if not unstable.size or grows[plane, row, column]:
         return False
@@ -367,14 +367,14 @@ def _dies_before(
 def _urgency(
     codes: NDArray[np.int64], grows: NDArray[np.bool_] | None, cell: Cell
 ) -> tuple[int, int] | None:
-    """How urgent it is to cut a cell: what differs in it, and its size; None where nothing does."""
+    """Return the priority of cutting a cell: what differs in it, and its size; None if nothing."""
     inside = _inside(cell)
-    found = codes[inside]
-    values = found[found >= 0]
+    known = codes[inside]
+    values = known[known >= 0]
     size = max(cell[2] - cell[1], cell[4] - cell[3])
     silent = values < len(REGIMES)
     if np.all(values == values[0]):
-        unstable = grows is not None and bool(grows[inside][found < 0].any())
+        unstable = grows is not None and bool(grows[inside][known < 0].any())
         return (3, size) if values[0] == 0 and unstable else None
     if np.any(silent != silent[0]):
         return 3, size
@@ -383,14 +383,14 @@ def _urgency(
 
 
 def _spread_over(cells: list[Cell], room: int) -> list[Cell]:
-    """As many cells as there is room for, from all over the map."""
+    """Return evenly distributed cells, at most `room`."""
     if len(cells) <= room:
         return cells
     return [cells[i] for i in np.linspace(0, len(cells) - 1, room).astype(int)]
 
 
 def _intervals(n: int, stride: int) -> list[tuple[int, int]]:
-    """Split 0 .. n - 1 into intervals of about `stride` with common ends."""
+    """Return 0 .. n - 1 split into intervals of about `stride` with common ends."""
     if n == 1:
         return [(0, 0)]
     pieces = max(1, round((n - 1) / stride))
@@ -399,7 +399,7 @@ def _intervals(n: int, stride: int) -> list[tuple[int, int]]:
 
 
 def _rows(n: int, stride: int) -> list[tuple[int, int]]:
-    """Few rows lie far apart: each is a line by itself."""
+    """Return intervals of rows; few rows are single lines, since they lie far apart."""
     return [(row, row) for row in range(n)] if n <= _FEW_ROWS else _intervals(n, stride)
 
 
@@ -414,7 +414,7 @@ def _inside(cell: Cell) -> tuple[int, slice, slice]:
 
 
 def _halves(cell: Cell) -> list[Cell]:
-    """Cut a cell along both axes; nothing where no point lies between its corners."""
+    """Return the parts of a cell halved along both axes; none if it has no inner point."""
     plane, top, bottom, left, right = cell
     if bottom - top < 2 and right - left < 2:
         return []
@@ -430,15 +430,15 @@ def _cut(first: int, last: int) -> list[tuple[int, int]]:
 
 
 def interpolated(
-    values: NDArray[np.float64], found: Refined, *, nearest: int = _NEAREST
+    values: NDArray[np.float64], refined: Refined, *, nearest: int = _NEAREST
 ) -> NDArray[np.float64]:
-    """Interpolate numbers of simulated points to the others of the same code in the same plane.
+    """Interpolate values of simulated points to other points of the same code and plane.
 
     Parameters
     ----------
     values : ndarray, shape (n_planes, n_rows, n_columns)
         In any unit, such as [dB]; any at points that were not simulated.
-    found : Refined
+    refined : Refined
     nearest : int
         Points that are averaged, weighted by the inverse square of their distance.
 
@@ -455,11 +455,11 @@ def interpolated(
     array([[[60., 62., 70., 78., 80.]]])
     """
     filled = values.copy()
-    for plane, codes in enumerate(found.codes):
-        known = np.argwhere(found.simulated[plane])
+    for plane, codes in enumerate(refined.codes):
+        known = np.argwhere(refined.simulated[plane])
         of_known = codes[tuple(known.T)]
         for code in np.unique(codes):
-            holes = np.argwhere((codes == code) & ~found.simulated[plane])
+            holes = np.argwhere((codes == code) & ~refined.simulated[plane])
             near = known[of_known == code]
             if not (holes.size and near.size):
                 continue

@@ -1,4 +1,4 @@
-"""Parts within their tolerances: how probably one is noisy in its use, and which tolerance matters.
+"""Tolerance analysis: probability that a part is noisy in use, and Sobol' indices.
 
 Parts are drawn as scrambled Sobol' points. A part is noisy if anywhere among the speeds of its use
 a vibration lasts that is heard, whether it breaks out or only persists: it is tried where the
@@ -47,11 +47,11 @@ ASSUMED = (
 """Tolerances where a design states none: orders of magnitude for moulded rubber, no source."""
 
 _SPEEDS = 9
-"""Of the use, at which growth is asked."""
+"""Number of speeds of use at which the growth rate is computed."""
 
 _PARTS = 64
 _INDICES = 128
-"""Samples of the Sobol' indices, times the number of tolerances and two."""
+"""Sample size of the Sobol' indices, to be multiplied by the number of tolerances plus two."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How far one tolerance makes the growth of vibration scatter.
+    """Sobol' indices of one tolerance for the growth rate of vibration.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Sensitivity:
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Robustness:
-    """What a design's tolerances do.
+    """Results of the tolerance analysis of a design.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class Robustness:
 
 
 def middle_of_use(design: Design) -> Condition:
-    """Return the middle of a design's use: of its speeds, fits, supports and temperatures.
+    """Return the condition in the middle of a design's use.
 
     Examples
     --------
@@ -139,7 +139,7 @@ def robustness(
     parts: int = _PARTS,
     workers: int = -1,
 ) -> Robustness:
-    """Tell what a design's tolerances do.
+    """Analyse the tolerances of a design.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def robustness(
         return varied(design.rig, at, dict(zip(spread, row.tolist(), strict=True)))
 
     def growth(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Growth of each row of factors at each speed, shape (n_rows, n_speeds)."""
+        """Return the growth of each row of factors at each speed, (n_rows, n_speeds) [1/s]."""
         return growth_of_parts(
             [
                 (at_temperature(rig, own.temperature), own.interference, own.support_stiffness)
@@ -198,15 +198,15 @@ def robustness(
 
     def noisy(row: NDArray[np.float64], worst: float) -> bool:
         rig, own = part(row)
-        tried = dict.fromkeys([own.speed, worst, float(speeds[0]), float(speeds[-1])])
-        return is_noisy(rig, [replace(own, speed=speed) for speed in tried])
+        speeds_tested = dict.fromkeys([own.speed, worst, float(speeds[0]), float(speeds[-1])])
+        return is_noisy(rig, [replace(own, speed=speed) for speed in speeds_tested])
 
     worst = speeds[growth(factors).argmax(axis=1)].tolist()
     with one_thread():
-        found = Parallel(n_jobs=workers, prefer="threads")(
+        results = Parallel(n_jobs=workers, prefer="threads")(
             delayed(noisy)(row, speed) for row, speed in zip(factors, worst, strict=True)
         )
-    k = int(sum(found))
+    k = int(sum(results))
     interval = stats.binomtest(k, parts).proportion_ci(0.95, method="exact")
     sensitivities: tuple[Sensitivity, ...] = ()
     if friction_law(design.rig.friction.name).torque is not None:
@@ -225,20 +225,20 @@ def _sensitivities(
     spread: dict[str, Any],
     rng: np.random.Generator,
 ) -> tuple[Sensitivity, ...]:
-    """Sobol' indices of an output of parts, the largest total index first."""
+    """Return the Sobol' indices of an output, the largest total index first."""
     if len(spread) < 2:
         one = Estimate(1.0, 1.0, 1.0)
         return tuple(Sensitivity(name, one, one) for name in spread)
-    found = stats.sobol_indices(func=output, n=_INDICES, dists=list(spread.values()), rng=rng)
-    drawn = found.bootstrap(n_resamples=200)
+    sobol = stats.sobol_indices(func=output, n=_INDICES, dists=list(spread.values()), rng=rng)
+    drawn = sobol.bootstrap(n_resamples=200)
     indices = [
         Sensitivity(
             name,
             *(
                 Estimate(*(0.0 if math.isnan(x) else float(x) for x in (value[i], low[i], high[i])))
                 for value, (low, high) in (
-                    (found.first_order, drawn.first_order.confidence_interval),
-                    (found.total_order, drawn.total_order.confidence_interval),
+                    (sobol.first_order, drawn.first_order.confidence_interval),
+                    (sobol.total_order, drawn.total_order.confidence_interval),
                 )
             ),
         )

@@ -1,4 +1,4 @@
-"""Evaluation of one point of a map: whether it vibrates, and what is heard of it.
+"""Evaluation of one point of a map: its vibration, regime, noise and level.
 
 Whether a vibration dies, persists or breaks out is told by `noise.screening.vibration`. What sounds
 has the name that `noise.labels` gives a recording of it, by the classifier that ships. The name by
@@ -58,19 +58,19 @@ from sim.shaft import Oscillation
 from sim.temperature import at_temperature
 
 JUDGED = 0.5
-"""Last part of a run that is heard: a window of the classifier [s]."""
+"""Judged last part of a run: a window of the classifier [s]."""
 
 _LONGER = 3.0
-"""Where that has no name though it vibrates [s]."""
+"""Judged part where a vibration has no name in the shorter one [s]."""
 
 _RINGING = 0.4
-"""Before that, which the structure remembers [s]."""
+"""Time before the judged part in which the structure rings [s]."""
 
 _REGIME = 0.4
-"""Last part of a motion in which slips are sought [s]."""
+"""Last part of a motion in which slips are detected [s]."""
 
 _FAST_SHARE = 0.5
-"""Of the peak speed, above which a swing is judged."""
+"""Share of the peak speed above which a swing is judged [-]."""
 
 _DAMPING_STEP = 0.04
 """Relative, of the beams' damping between the structures that are made: 0.2 dB at a resonance."""
@@ -78,7 +78,7 @@ _DAMPING_STEP = 0.04
 
 @dataclass(frozen=True)
 class PointResult:
-    """What is known of a simulated point.
+    """Results of a point of a map.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class PointResult:
     level, level_max : float
         L_Aeq and L_AFmax of the sound [dB re 20 uPa]; NaN where nothing sounds.
     simulated : bool
-        Whether it was run; not where a vibration has died before that speed.
+        False where it was skipped, since a vibration dies before that speed.
     """
 
     regime: Regime
@@ -105,7 +105,7 @@ class PointResult:
 
 
 SILENT = PointResult(Regime.STEADY_SLIDING, "none", False, "none", math.nan, math.nan)
-"""Of a condition at which every vibration dies."""
+"""Result of a condition at which every vibration dies."""
 
 
 def swing(speed: float, frequency: float) -> Oscillation:
@@ -120,7 +120,7 @@ def swing(speed: float, frequency: float) -> Oscillation:
 
 
 def evaluate_point(rig: Rig, at: Condition) -> PointResult:
-    """Simulate a point, and tell its regime, its noise and its level.
+    """Simulate a point and return its regime, noise and level.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def evaluate_point(rig: Rig, at: Condition) -> PointResult:
 
 
 def evaluate_row(rig: Rig, row: Sequence[Condition]) -> list[PointResult]:
-    """Simulate points that differ in speed alone, which is cheaper together.
+    """Simulate points that differ in speed alone; together they take less time.
 
     Parameters
     ----------
@@ -160,22 +160,24 @@ def evaluate_row(rig: Rig, row: Sequence[Condition]) -> list[PointResult]:
     list of PointResult
     """
     if row[0].frequency is not None:
-        return [heard_of(rig, at, _motion(rig, at, at.frequency)) for at in row if at.frequency]
-    found = [SILENT] * len(row)
+        return [
+            audible_result(rig, at, _motion(rig, at, at.frequency)) for at in row if at.frequency
+        ]
+    results = [SILENT] * len(row)
     for i, one in vibrations_at(rig, row):
         if not one.simulated:
-            found[i] = replace(SILENT, simulated=False)
+            results[i] = replace(SILENT, simulated=False)
         elif one.course is not None:
             persists = one.state == PERSISTS
-            found[i] = heard_of(rig, row[i], one.course.motion, persists=persists)
-            if found[i].label == "none":
+            results[i] = audible_result(rig, row[i], one.course.motion, persists=persists)
+            if results[i].label == "none":
                 longer = gone_on(one.course, _LONGER)
-                found[i] = heard_of(rig, row[i], longer, persists=persists, judged=_LONGER)
-    return found
+                results[i] = audible_result(rig, row[i], longer, persists=persists, judged=_LONGER)
+    return results
 
 
 def is_noisy(rig: Rig, row: Sequence[Condition]) -> bool:
-    """Whether a vibration lasts at any of some conditions that differ in speed alone, and is heard.
+    """Return whether an audible vibration lasts at any of several speeds.
 
     Costs half of what the name of the noise does.
     """
@@ -193,25 +195,25 @@ def _levels(pressure: NDArray[np.float64]) -> WeightedLevels:
 
 
 def _last_part(motion: Motion, judged: float = JUDGED) -> Motion:
-    """Cut to the part that is judged [s], and before it what still rings in it."""
+    """Return the judged part [s] of a motion, and before it what still rings in it."""
     return motion.part(max(0, motion.torque.size - round((judged + _RINGING) * RATE)))
 
 
-def heard_of(
+def audible_result(
     rig: Rig, at: Condition, motion: Motion, *, persists: bool = False, judged: float = JUDGED
 ) -> PointResult:
-    """Tell what is heard of a motion at a condition.
+    """Return regime, noise and level of a motion at a condition.
 
     Parameters
     ----------
     rig : Rig
     at : Condition
     motion : Motion
-        Its last part is judged; of a swing all but the first quarter of a cycle.
+        Motion, of which the last part is judged; of a swing all but the first quarter of a cycle.
     persists : bool
-        What the result says of it.
+        Value of `PointResult.persists`.
     judged : float
-        How much of the end is judged [s].
+        Length of the judged end [s].
 
     Returns
     -------
@@ -230,7 +232,7 @@ def heard_of(
     sound = _sound(rig, at, motion)
     pressure, pulses = sound.pressure[start:], sound.pulse_pressure[start:]
     levels = _levels(pressure)
-    criteria, interval = _liveliest(pressure, pulses, intervals)
+    criteria, interval = _loudest_interval(pressure, pulses, intervals)
     slips = motion_slips(interval.part(-round(_REGIME * RATE))).times.size > 0
     physics = criteria.label
     if swings and physics == "creak" and criteria.blows < 0.0:
@@ -255,7 +257,7 @@ def _classifier() -> Classifier:
 
 
 def _label(rig: Rig, at: Condition, motion: Motion, sound: Sound, start: int) -> str:
-    """Name by the classifier, of a recording as `sim.run.simulate` makes it."""
+    """Return the label of the classifier for a recording as `sim.run.simulate` makes it."""
     rng = np.random.default_rng(0)
     signals = sensor_signals(motion, sound, start)
     signals = apply_sensor_effects(signals, activated(rig.effects, EFFECTS), RATE, rng)
@@ -303,7 +305,7 @@ def point_sound(rig: Rig, at: Condition) -> tuple[float, NDArray[np.float64]]:
 
 
 def _motion(rig: Rig, at: Condition, frequency: float) -> Motion:
-    """Motion of a swing, from one turning on for a cycle and a quarter."""
+    """Simulate a swing from one turning point for a cycle and a quarter."""
     return simulate_motion(
         at_temperature(rig, at.temperature), swing(at.speed, frequency),
         interference=at.interference, support_stiffness=at.support_stiffness,
@@ -312,7 +314,7 @@ def _motion(rig: Rig, at: Condition, frequency: float) -> Motion:
 
 
 def fast_intervals(motion: Motion, *, swings: bool) -> list[Motion]:
-    """List the parts of a motion that are nearly of one speed.
+    """Return the parts of a motion at nearly constant speed.
 
     Where the shaft turns back its torque turns from one side to the other, which is neither
     vibration nor noise. In between, the slow trend of the torque with the speed is taken off.
@@ -347,7 +349,7 @@ def fast_intervals(motion: Motion, *, swings: bool) -> list[Motion]:
 
 
 def _piece(motion: Motion, first: int, last: int) -> Motion:
-    """Part of a motion, without the slow trend of its torque over a swing."""
+    """Return a part of a motion without the slow trend of its torque over a swing."""
     values = {
         field.name: getattr(motion, field.name)[first:last]
         for field in fields(motion)
@@ -360,7 +362,7 @@ def _piece(motion: Motion, first: int, last: int) -> Motion:
 
 
 def _paths(rig: Rig, interference: float, support_stiffness: float) -> ImpulseResponses:
-    """Responses of the structure, the beams' damping rounded so that few are made."""
+    """Return the responses of the structure, the beams' damping rounded to limit their number."""
     damping = damping_at(rig.fit(interference), support_stiffness)
     of_beams = (1.0 - rig.elastomer_damping_share) * damping
     if of_beams > 0.0 and math.isfinite(support_stiffness):
@@ -369,9 +371,9 @@ def _paths(rig: Rig, interference: float, support_stiffness: float) -> ImpulseRe
     return impulse_responses(rig, interference, support_stiffness, RATE)
 
 
-def _liveliest(
+def _loudest_interval(
     pressure: NDArray[np.float64], pulse_pressure: NDArray[np.float64], intervals: list[Motion]
 ) -> tuple[NoiseCriteria, Motion]:
-    """Criteria of the liveliest interval, with the sound of all, and that interval."""
-    found = [(noise_criteria(one, pressure, pulse_pressure), one) for one in intervals]
-    return max(found, key=lambda one: one[0].audible)
+    """Return the noise criteria of the loudest interval, and that interval."""
+    criteria = [(noise_criteria(one, pressure, pulse_pressure), one) for one in intervals]
+    return max(criteria, key=lambda one: one[0].audible)

@@ -1,4 +1,4 @@
-"""What a point of a map rests on: the design's own data, or their interpolation.
+"""Provenance of the data at a point of a map: the design's own, interpolated or held.
 
 Designs that are compared are mapped at the same conditions, and not each has data for all. None is
 left out for that; one rule, `RULE`, says what stands in. Between two fits everything is linear in
@@ -31,14 +31,14 @@ RULE = (
     "linearly in the interference between two fits, the damping linearly in the support's "
     "compliance between two supports; beyond the first and the last those of the nearest are held"
 )
-"""What stands in at conditions that a design is not given for."""
+"""Rule for conditions without data of the design."""
 
 _SAME = 0.01
-"""Relative distance within which a fit or a support is one that data are given for."""
+"""Relative tolerance of a fit or support that data are given for."""
 
 
 def point_notes(rig: Rig, grid: Grid) -> tuple[NDArray[np.object_], NDArray[np.bool_]]:
-    """Say of each point what is not the design's own there.
+    """Return a note at each point on data that are not the design's own.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def point_notes(rig: Rig, grid: Grid) -> tuple[NDArray[np.object_], NDArray[np.b
 
 
 def rows_of(rig: Rig, interference: Sequence[float]) -> list[int]:
-    """Tell by which row of a map each is known: its own, or that whose fit is held there.
+    """Return for each row of a map the row that has its results: itself, or that of a held fit.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def rows_of(rig: Rig, interference: Sequence[float]) -> list[int]:
 
 
 def within_fits(rig: Rig, interference: float) -> bool:
-    """Whether an interference [m] lies within the fits that a rig is given for.
+    """Return whether an interference [m] lies within the fits of a rig.
 
     Examples
     --------
@@ -114,7 +114,7 @@ def within_fits(rig: Rig, interference: float) -> bool:
 
 
 def fits_remark(rig: Rig, interference: Sequence[float]) -> str:
-    """Say at which interferences a rig's properties are not its own; empty where all are.
+    """Return a remark on interferences without a fit of their own; empty if there are none.
 
     Parameters
     ----------
@@ -129,12 +129,12 @@ def fits_remark(rig: Rig, interference: Sequence[float]) -> str:
     'fits are given for 0.254 and 0.381 mm; for 0.178 mm the nearest is held, for 0.3 mm they are...
     """
     given = [fit.interference for fit in rig.fits]
-    told = [f"fits are given for {_millimetres(given)} mm"]
+    texts = [f"fits are given for {_millimetres(given)} mm"]
     stand_in = {fit: len(_stand_in(given, fit)) for fit in interference}
     of = {n: _millimetres([fit for fit in interference if stand_in[fit] == n]) for n in (1, 2)}
-    told_of = [f"for {of[1]} mm the nearest is held"] if of[1] else []
-    told_of += [f"for {of[2]} mm they are interpolated"] if of[2] else []
-    return "; ".join([*told, ", ".join(told_of)]) if told_of else ""
+    parts = [f"for {of[1]} mm the nearest is held"] if of[1] else []
+    parts += [f"for {of[2]} mm they are interpolated"] if of[2] else []
+    return "; ".join([*texts, ", ".join(parts)]) if parts else ""
 
 
 def _millimetres(values: Sequence[float]) -> str:
@@ -142,7 +142,7 @@ def _millimetres(values: Sequence[float]) -> str:
 
 
 def _stand_in(given: Iterable[float], value: float) -> list[float]:
-    """Return what stands in for a value: the two about it or the nearest; nothing if given."""
+    """Return the substitutes of a value: the two around it or the nearest; none if it is given."""
     if any(math.isclose(each, value, rel_tol=_SAME) for each in given):
         return []
     below, above = [g for g in given if g < value], [g for g in given if g > value]

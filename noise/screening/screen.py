@@ -3,7 +3,8 @@
 Each design is mapped in each environment, at constant speed and, where any of them says so or the
 caller does, swinging to and fro, over conditions that all share. Then the designs are ranked, the
 changes that end the loudest noise of each are sought and verified, and its parts are looked at. A
-design that cannot be simulated is refused by name, and what else fails is told; the others go on.
+design that cannot be simulated is refused by name, and other failures are reported; the others go
+on.
 
 A shaft that turns on winds the bushing up until the contact slips. Where it would have to wind it
 up further than rubber bears, or longer than a few seconds at the fastest speed of use, with every
@@ -68,7 +69,7 @@ _LONGEST_WINDING = 2.0
 """[s]"""
 
 _ELSEWHERE = 6
-"""Other noisy conditions of use at which advice is tried."""
+"""Number of other noisy conditions at which advice is simulated."""
 
 _FAILURES = (BushingNoiseError, ArithmeticError, ValueError)
 """Singular matrices are among these; anything else is a defect of the program."""
@@ -77,7 +78,7 @@ _FAILURES = (BushingNoiseError, ArithmeticError, ValueError)
 @short_repr
 @dataclass(frozen=True)
 class Screening:
-    """What a screen found.
+    """Results of a screening.
 
     Parameters
     ----------
@@ -118,7 +119,7 @@ class Screening:
     def conditions(self) -> tuple[Grid, ...]:
         """Conditions that all designs are compared over, one for each environment and motion."""
         first = self.maps[0].design
-        return tuple(found.grid for found in self.maps if found.design == first)
+        return tuple(mapped.grid for mapped in self.maps if mapped.design == first)
 
     def map_of(self, one: Standing) -> DesignMap:
         """Return the map that a standing is of."""
@@ -127,7 +128,7 @@ class Screening:
 
     @property
     def failed(self) -> tuple[tuple[str, str], ...]:
-        """Designs of which something could not be told, and what and why."""
+        """Designs with an analysis that failed, and the reason."""
         return tuple((one.design, why) for one in self.standings for why in one.failed)
 
     def plot(
@@ -138,7 +139,7 @@ class Screening:
         support: int = 0,
         temperature: int = 0,
     ) -> Axes:
-        """Draw which noise a design makes where, with one support.
+        """Plot the noises of a design over speed and interference, with one support.
 
         Parameters
         ----------
@@ -169,10 +170,10 @@ class Screening:
         """
         from noise.pictures.maps import plot_map
 
-        found = _chosen("map", number, self.maps)
-        _chosen("support", support, found.grid.support_stiffness)
-        _chosen("temperature", temperature, found.grid.temperature)
-        return plot_map(found, ax, support=support, temperature=temperature)
+        mapped = _chosen("map", number, self.maps)
+        _chosen("support", support, mapped.grid.support_stiffness)
+        _chosen("temperature", temperature, mapped.grid.temperature)
+        return plot_map(mapped, ax, support=support, temperature=temperature)
 
     def to_pandas(self, table: str = "designs") -> DataFrame:
         """Return one of the tables that ``bushing-noise screen --out`` writes, as a data frame.
@@ -224,7 +225,7 @@ def screen(
     advance: Callable[[float], None] = lambda _: None,
     journal: Journal | None = None,
 ) -> Screening:
-    """Map bushing designs over their conditions, rank them, and tell what would end their noise.
+    """Map bushing designs over their conditions, rank them, and find changes that end their noise.
 
     Parameters
     ----------
@@ -236,10 +237,10 @@ def screen(
     environments : sequence of str
         Of `noise.screening.environments`.
     loudness : bool
-        Whether to tell loudness as well; needs the extra ``sound-quality``.
+        Whether to compute loudness as well; needs the extra ``sound-quality``.
     tolerances : bool, optional
-        Whether to tell what tolerances do, of all designs, with assumed ones where they state none;
-        by default only of those that state some. Takes several seconds a design.
+        Whether to analyse the tolerances of all designs, with assumed ones where they state none;
+        by default only of those that state some. It takes several seconds per design.
     rng : numpy.random.Generator, optional
         Of the parts within tolerances; by default of seed 0.
     change : callable, optional
@@ -432,7 +433,7 @@ _MOST_TWIST = 2.0
 
 
 def why_never_slipping(rig: Rig, grid: Grid) -> str:
-    """Say why the contact slips at no point of a map; empty where it does.
+    """Return why the contact slips at no point of a map; empty where it does.
 
     Parameters
     ----------
@@ -478,19 +479,19 @@ def _remarks(
     grids: Mapping[tuple[str, Swinging | None], Grid],
     given: Use | None,
 ) -> list[str]:
-    """Say what to know of a design's numbers in an environment, most of all those not its own."""
+    """Return remarks on the data of a design in an environment."""
     here = [grid for (name, _), grid in grids.items() if name == where]
     rig, grid = design.rig, here[0]
     temperature = sorted({value for each in here for value in each.temperature})
-    found = use_remarks(
+    remarks = use_remarks(
         rig,
         speed=[max(each.use[1] for each in here)],
         interference=grid.interference,
         support_stiffness=grid.support_stiffness,
         temperature=temperature,
     )
-    found.append(fits_remark(rig, grid.interference))
+    remarks.append(fits_remark(rig, grid.interference))
     if rig.temperature or (given is not None and given.temperature) or len(temperature) > 1:
-        found.append(temperature_remark(rig, *temperature))
-    found += effect_remarks(in_environment(rig, environment(where)), EFFECTS)
-    return list(dict.fromkeys(filter(None, found)))
+        remarks.append(temperature_remark(rig, *temperature))
+    remarks += effect_remarks(in_environment(rig, environment(where)), EFFECTS)
+    return list(dict.fromkeys(filter(None, remarks)))

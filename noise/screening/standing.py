@@ -40,7 +40,7 @@ _CRITICAL_SPEEDS = "v_crit1", "v_crit2", "v_crit2_high"
 _MARGINS = "margin_v_crit1", "margin_v_crit2", "margin_stability"
 
 SHARED = ("creak", "squawk", "squeal", "none", PERSISTS)
-"""Labels of a map, of which shares are told."""
+"""Labels of a map whose shares are reported."""
 
 
 @dataclass(frozen=True)
@@ -81,25 +81,25 @@ class CriticalPoint:
     margin_stability: float
 
 
-def critical_points(found: DesignMap) -> list[CriticalPoint]:
-    """Critical speeds of each temperature, support and fit of a map; none of a swinging shaft's."""
-    if found.motion != "steady":
+def critical_points(mapped: DesignMap) -> list[CriticalPoint]:
+    """Return the critical speeds of each temperature, support and fit; none for a swing."""
+    if mapped.motion != "steady":
         return []
-    speed = np.array(found.grid.speed)
-    sticks = found.regime == Regime.STICK_SLIP.value
-    vibrates = found.regime != Regime.STEADY_SLIDING.value
+    speed = np.array(mapped.grid.speed)
+    sticks = mapped.regime == Regime.STICK_SLIP.value
+    vibrates = mapped.regime != Regime.STEADY_SLIDING.value
     points = []
-    for at in np.ndindex(found.growth.shape[:3]):
+    for at in np.ndindex(mapped.growth.shape[:3]):
         last, spans = zip(
-            *(safe_range(speed, one[at]) for one in (sticks, vibrates, found.growth > 0.0)),
+            *(safe_range(speed, one[at]) for one in (sticks, vibrates, mapped.growth > 0.0)),
             strict=True,
         )
         points.append(
             CriticalPoint(
-                found.design, found.environment, found.grid.temperature[at[0]],
-                found.grid.interference[at[2]], found.grid.support_stiffness[at[1]],
+                mapped.design, mapped.environment, mapped.grid.temperature[at[0]],
+                mapped.grid.interference[at[2]], mapped.grid.support_stiffness[at[1]],
                 last[0], spans[0][1], last[1], spans[1][1], last[2],
-                *(margin_of(span, found.grid.use) for span in spans),
+                *(margin_of(span, mapped.grid.use) for span in spans),
             )
         )  # fmt: skip
     return points
@@ -140,7 +140,7 @@ def safe_range(
 
 
 def margin_of(span: tuple[float, float], use: tuple[float, float]) -> float:
-    """Distance of a use from a range of speeds [rad/s], negative where they overlap.
+    """Return the distance of a use from a range of speeds [rad/s], negative where they overlap.
 
     Examples
     --------
@@ -157,7 +157,7 @@ def margin_of(span: tuple[float, float], use: tuple[float, float]) -> float:
 @short_repr
 @dataclass(frozen=True)
 class Standing:
-    """How a design does in one environment and motion.
+    """Result of a design in one environment and motion.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ class Standing:
     shares : dict of str to float
         Of the points of use, by label [-].
     loudest : Condition, optional
-        The loudest of use; None where nothing is heard.
+        Loudest condition of use; None where all are silent.
     loudest_label : str
         Its noise, ``none`` if there is none.
     loudest_level, loudest_level_max : float
@@ -181,15 +181,15 @@ class Standing:
     offers : tuple of Offer
         Changes that end the loudest noise of use, and those that do not.
     robustness : Robustness, optional
-        What tolerances do, where it was asked for.
+        Tolerance analysis, where there is one.
     never_slips : str
         Why the contact never slips; empty where it does.
     words, advice : str
-        Whether it is quiet and where not; what to change.
+        Sentences on where it is noisy and on changes.
     notes : tuple of str
-        What to know of its numbers.
+        Remarks on its data.
     failed : tuple of str
-        What could not be told, and why.
+        Analyses that failed, and the reason.
     """
 
     rank: int | None
@@ -218,7 +218,7 @@ class Standing:
 
 
 def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how loud levels are, 1 at 40 dB(A), doubled every 10 dB.
+    """Return loudness from levels: 1 sone at 40 dB(A), doubled every 10 dB.
 
     Parameters
     ----------
@@ -239,13 +239,13 @@ def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def standing_of(
-    found: DesignMap, critical: Sequence[CriticalPoint], never_slips: str = ""
+    mapped: DesignMap, critical: Sequence[CriticalPoint], never_slips: str = ""
 ) -> Standing:
-    """Tell how a mapped design does; its rank is open.
+    """Return the standing of a mapped design, without rank.
 
     Parameters
     ----------
-    found : DesignMap
+    mapped : DesignMap
     critical : sequence of CriticalPoint
         Of this map.
     never_slips : str
@@ -255,9 +255,9 @@ def standing_of(
     -------
     Standing
     """
-    used = found.grid.used
+    used = mapped.grid.used
     label, sound, level, level_max = (
-        each[..., used] for each in (found.label, found.sound, found.level, found.level_max)
+        each[..., used] for each in (mapped.label, mapped.sound, mapped.level, mapped.level_max)
     )
     noisy = (sound != "none") & np.isfinite(level)
     loudest = np.unravel_index(np.argmax(np.where(noisy, level, -np.inf)), level.shape)
@@ -271,18 +271,18 @@ def standing_of(
     }
     return Standing(
         rank=None,
-        design=found.design,
-        environment=found.environment,
-        motion=found.motion,
+        design=mapped.design,
+        environment=mapped.environment,
+        motion=mapped.motion,
         mean_loudness=float(np.sum(loudness_weight(level_max[noisy])) / label.size),
         shares={name: float(np.mean(label == name)) for name in SHARED},
-        loudest=condition_at(found.grid, loudest) if any_noise else None,
+        loudest=condition_at(mapped.grid, loudest) if any_noise else None,
         loudest_label=str(sound[loudest]) if any_noise else "none",
         loudest_level=float(level[loudest]) if any_noise else nothing,
         loudest_level_max=float(level_max[loudest]) if any_noise else nothing,
         **numbers,
         never_slips=never_slips,
-        words=use_words(found, never_slips),
+        words=use_words(mapped, never_slips),
     )
 
 
@@ -299,12 +299,12 @@ def condition_at(grid: Grid, at: Sequence[int | np.integer]) -> Condition:
     )
 
 
-def ranked(found: Sequence[Standing]) -> tuple[Standing, ...]:
+def ranked(standings: Sequence[Standing]) -> tuple[Standing, ...]:
     """Rank designs by mean loudness and then by margin, the quietest first.
 
     Parameters
     ----------
-    found : sequence of Standing
+    standings : sequence of Standing
         Of designs in environments and motions; the worst of each design counts.
 
     Returns
@@ -313,16 +313,16 @@ def ranked(found: Sequence[Standing]) -> tuple[Standing, ...]:
         Those without a rank are the last; equals share one.
     """
     keys: dict[str, tuple[float, float]] = {}
-    for one in found:
+    for one in standings:
         margin = -math.inf if math.isnan(one.margin_v_crit2) else one.margin_v_crit2
         key = round(one.mean_loudness, 6), -margin
         keys[one.design] = max(keys.get(one.design, key), key)
-    for one in found:
+    for one in standings:
         if one.never_slips and one.motion == "steady":
             keys.pop(one.design, None)
     order = sorted(keys.values())
     ranks = {name: 1 + order.index(key) for name, key in keys.items()}
-    standings = [replace(one, rank=ranks.get(one.design)) for one in found]
+    standings = [replace(one, rank=ranks.get(one.design)) for one in standings]
     return tuple(sorted(standings, key=lambda one: (one.rank or math.inf, one.design)))
 
 

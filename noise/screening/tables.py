@@ -20,7 +20,7 @@ Table = tuple[tuple[str, ...], list[dict[str, object]]]
 
 
 def screening_tables(screening: Screening) -> dict[str, Table]:
-    """Return all tables of a screening; the last two only where there is something in them.
+    """Return all tables of a screening; the last two only where they have rows.
 
     Returns
     -------
@@ -39,7 +39,7 @@ def screening_tables(screening: Screening) -> dict[str, Table]:
     >>> columns[:3], rows[0]["mean_loudness_sone"]
     (('rank', 'design', 'environment'), 0.0)
     """
-    points = ((found, at) for found in screening.maps for at in np.ndindex(found.label.shape))
+    points = ((mapped, at) for mapped in screening.maps for at in np.ndindex(mapped.label.shape))
     columns, rows = _table(_DESIGNS, ((one,) for one in screening.standings))
     rows += [{"design": name, "error": reason} for name, reason in screening.refused]
     tables = {
@@ -77,12 +77,12 @@ def _loudest(axis: str, scale: float = 1.0) -> Callable[..., object]:
 
 
 def _bounds(name: str, estimate: Callable[..., Any]) -> Columns:
-    """Columns of an estimate and of the ends of its interval."""
+    """Return the columns of an estimate and of the ends of its interval."""
 
     def cell(attribute: str) -> Callable[..., object]:
         def rounded(*item: object) -> float | None:
-            found = estimate(*item)
-            return None if found is None else round(getattr(found, attribute), 4)
+            result = estimate(*item)
+            return None if result is None else round(getattr(result, attribute), 4)
 
         return rounded
 
@@ -103,22 +103,22 @@ _OF_DESIGN: Columns = {
 
 _MAP: Columns = {
     **_OF_DESIGN,
-    "motion": lambda found, _: found.motion,
-    "temperature_C": lambda found, at: found.grid.temperature[at[0]],
-    "speed_rad_s": lambda found, at: _short(found.grid.speed[at[3]]),
-    "frequency_hz": lambda found, at: found.grid.frequency[at[3]] if found.grid.frequency else None,
-    "interference_mm": lambda found, at: _short(1e3 * found.grid.interference[at[2]]),
-    "support_stiffness_Nm_rad": lambda found, at: _support(found.grid.support_stiffness[at[1]]),
-    "regime": lambda found, at: str(found.regime[at]),
-    "label": lambda found, at: str(found.sound[at]),
-    "persists": lambda found, at: str(found.label[at]) == PERSISTS,
-    "label_by_physics": lambda found, at: str(found.physics[at]),
-    "growth_1_s": lambda found, at: round(float(found.growth[at]), 3),
-    "level_dba": lambda found, at: round(float(found.level[at]), 2),
-    "l_afmax_dba": lambda found, at: round(float(found.level_max[at]), 2),
-    "loudness_n5_sone": lambda found, at: round(float(found.loudness[at]), 3),
-    "how": lambda found, at: str(found.how[at]),
-    "note": lambda found, at: found.note[at] or None,
+    "motion": lambda mapped, _: mapped.motion,
+    "temperature_C": lambda mapped, at: mapped.grid.temperature[at[0]],
+    "speed_rad_s": lambda mapped, at: _short(mapped.grid.speed[at[3]]),
+    "frequency_hz": lambda one, at: one.grid.frequency[at[3]] if one.grid.frequency else None,
+    "interference_mm": lambda mapped, at: _short(1e3 * mapped.grid.interference[at[2]]),
+    "support_stiffness_Nm_rad": lambda mapped, at: _support(mapped.grid.support_stiffness[at[1]]),
+    "regime": lambda mapped, at: str(mapped.regime[at]),
+    "label": lambda mapped, at: str(mapped.sound[at]),
+    "persists": lambda mapped, at: str(mapped.label[at]) == PERSISTS,
+    "label_by_physics": lambda mapped, at: str(mapped.physics[at]),
+    "growth_1_s": lambda mapped, at: round(float(mapped.growth[at]), 3),
+    "level_dba": lambda mapped, at: round(float(mapped.level[at]), 2),
+    "l_afmax_dba": lambda mapped, at: round(float(mapped.level_max[at]), 2),
+    "loudness_n5_sone": lambda mapped, at: round(float(mapped.loudness[at]), 3),
+    "how": lambda mapped, at: str(mapped.how[at]),
+    "note": lambda mapped, at: mapped.note[at] or None,
 }
 
 _MARGINS = "margin_v_crit1", "margin_v_crit2", "margin_stability"

@@ -35,19 +35,19 @@ PARAMETERS = {
     "temperature": "degree Celsius",
     "speed": "rad/s",
 }
-"""What can vary, with the unit in which a design file says it; and parameters of effects."""
+"""Parameters that can vary, with their units in a design file; those of effects vary as well."""
 
 
 _WIDEST_NORMAL = 1.0 / 6.0
 """Relative standard deviation from which on a normal distribution is taken as lognormal."""
 
 _NARROWEST = 1e-300
-"""Standard deviation of what does not vary, of which `scipy.stats` takes none of 0."""
+"""Standard deviation of a constant; `scipy.stats` does not take 0."""
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How one parameter varies.
+    """Tolerance of one parameter.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Tolerance:
     second: float = math.nan
 
     def factor(self, nominal: float) -> Any:
-        """Distribution of the factor on a nominal value.
+        """Return the distribution of the factor on a nominal value.
 
         A normal distribution so wide that it would reach to zero is taken as lognormal.
 
@@ -106,9 +106,9 @@ def read_tolerances(
     Parameters
     ----------
     given : object
-        What the file holds.
+        Content of the table.
     where : str
-        What messages call it.
+        Name of the file in messages.
     effects : sequence of LawSpec
         Of the rig, the parameters of which can vary where it states them.
 
@@ -128,15 +128,15 @@ def read_tolerances(
         for spec in effects
     }
     refuse_unknown(table, set(PARAMETERS) | set(stated), where)
-    found = []
+    tolerances = []
     for name, entry in table.items():
         if name in PARAMETERS:
-            found.append(_tolerance(name, entry, where))
+            tolerances.append(_tolerance(name, entry, where))
             continue
         inner = as_table(entry, name, where)
         refuse_unknown(inner, stated[name], f"{where}, {name}")
-        found += [_tolerance(f"{name}.{key}", value, where) for key, value in inner.items()]
-    return tuple(found)
+        tolerances += [_tolerance(f"{name}.{key}", value, where) for key, value in inner.items()]
+    return tuple(tolerances)
 
 
 def _tolerance(name: str, entry: object, where: str) -> Tolerance:
@@ -158,7 +158,7 @@ def _tolerance(name: str, entry: object, where: str) -> Tolerance:
 
 
 def nominal_values(rig: Rig, at: Condition) -> dict[str, float]:
-    """Nominal values of all that can vary, in the units of `PARAMETERS`.
+    """Return the nominal values of all parameters that can vary, in the units of `PARAMETERS`.
 
     Examples
     --------

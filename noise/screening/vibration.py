@@ -96,7 +96,7 @@ _REGULAR = 0.003
 _IRREGULAR = 5.0
 """How long one that does not is followed beside stable sliding [s]."""
 
-_KEPT = 10
+_LAST_BLOCKS = 10
 """Blocks of a motion that are kept."""
 
 _DEAD = 0.1
@@ -130,7 +130,7 @@ class Condition:
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """How a vibration goes on.
+    """Course of a vibration.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ class Course:
 
 @dataclass(frozen=True, eq=False)
 class Vibration:
-    """What becomes of a condition.
+    """Outcome of the vibration at a condition.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ class Vibration:
     course : Course, optional
         Of the vibration; None where there is none.
     simulated : bool
-        Whether a run says so; not beyond a speed at which the vibration has died.
+        False beyond a speed at which the vibration has died, where nothing is run.
     """
 
     state: str
@@ -177,7 +177,7 @@ class Vibration:
 
 
 def vibration_at(rig: Rig, at: Condition, *, from_rest: bool = False) -> Vibration:
-    """Tell what becomes of a vibration at a condition of constant speed.
+    """Return the outcome of a vibration at a condition of constant speed.
 
     Parameters
     ----------
@@ -203,14 +203,14 @@ def vibration_at(rig: Rig, at: Condition, *, from_rest: bool = False) -> Vibrati
     >>> states
     ['breaks out', 'none']
     """
-    [(_, found)] = vibrations_at(rig, [at], from_rest=from_rest)
-    return found
+    [(_, vibration)] = vibrations_at(rig, [at], from_rest=from_rest)
+    return vibration
 
 
 def vibrations_at(
     rig: Rig, row: Sequence[Condition], *, from_rest: bool = False
 ) -> Iterator[tuple[int, Vibration]]:
-    """Tell what becomes of a vibration at conditions that differ in speed alone, in any order.
+    """Yield the outcomes of vibrations at conditions that differ in speed alone, in any order.
 
     From where sliding is unstable outwards a vibration persists up to some speed and dies beyond,
     so that speed is bisected; each run goes on from the nearest that lasts.
@@ -225,7 +225,7 @@ def vibrations_at(
     Yields
     ------
     (int, Vibration)
-        Which of the conditions it is, and what becomes of it there.
+        Index of the condition, and the outcome there.
     """
     speed = np.array([at.speed for at in row])
     around = np.concatenate([speed[:, None], speed[:, None] * _AROUND], axis=1)
@@ -247,12 +247,12 @@ def vibrations_at(
         side = side[::-1] if above else side
         reached = _outwards(rig, [(row[i], own[i], unstable[i]) for i in side])
         for i, (known, ran) in zip(side, reached, strict=True):
-            found = _beside_rest(rig, row[i], own[i], known, from_rest=from_rest)
-            yield i, replace(found, simulated=ran or from_rest)
+            vibration = _beside_rest(rig, row[i], own[i], known, from_rest=from_rest)
+            yield i, replace(vibration, simulated=ran or from_rest)
 
 
 def _unstable(rig: Rig, at: Condition, growth: float, start: float | None) -> Vibration:
-    """Tell what becomes of a vibration where steady sliding cannot last."""
+    """Return the outcome of a vibration where steady sliding is unstable."""
     course = _followed(_solver(rig, at), at, growth)
     if not course.lasts:  # it grows so slowly that only what runs already shows where it ends
         course = running(rig, at, growth, start)
@@ -264,7 +264,7 @@ def _unstable(rig: Rig, at: Condition, growth: float, start: float | None) -> Vi
 def _beside_rest(
     rig: Rig, at: Condition, growth: float, course: Course | None, *, from_rest: bool
 ) -> Vibration:
-    """Tell from a vibration that runs, or from none, whether one breaks out from rest."""
+    """Return the outcome where sliding is stable, from a running vibration or from none."""
     lasts = course is not None and course.lasts
     if lasts or from_rest:
         rested = _followed(_solver(rig, at), at, growth)
@@ -309,7 +309,7 @@ def _outwards(
 
 
 def growth_at(rig: Rig, at: Condition, speed: ArrayLike | None = None) -> NDArray[np.float64]:
-    """Growth of a small vibration about steady sliding [1/s].
+    """Return the growth rate of a small vibration about steady sliding [1/s].
 
     Parameters
     ----------
@@ -338,7 +338,7 @@ def running(
     again: bool = True,
     patience: float = _IRREGULAR,
 ) -> Course:
-    """Follow a vibration that already runs when a condition is reached.
+    """Simulate a vibration that already runs when a condition is reached.
 
     Parameters
     ----------
@@ -379,7 +379,7 @@ def running(
 
 
 def _nearest_unstable(speed: float, growth: NDArray[np.float64]) -> float | None:
-    """Nearest speed at which sliding is unstable [rad/s], surely so if there is one."""
+    """Return the nearest speed at which sliding is unstable [rad/s], clearly so if there is one."""
     near = np.flatnonzero(growth > _SURE)
     if near.size:
         return float(speed * _AROUND[near[np.argmin(np.abs(_AROUND[near] - 1.0))]])
@@ -403,7 +403,7 @@ def _followed(
     held: float = 0.0,
     patience: float = _IRREGULAR,
 ) -> Course:
-    """Run in blocks until it is certain whether the vibration dies or lasts.
+    """Simulate in blocks until it is certain whether the vibration dies or lasts.
 
     The speeds of `approach` [rad/s] come first; a vibration that dies in them after `held` [s] is
     over.
@@ -414,7 +414,7 @@ def _followed(
     drive = np.concatenate(
         [before, np.full((last - first) * n + lookahead_samples(RATE), at.speed)]
     )
-    parts: deque[Motion] = deque(maxlen=_KEPT)
+    parts: deque[Motion] = deque(maxlen=_LAST_BLOCKS)
     sizes: list[float] = []
     certain = None
     for block in range(last):
@@ -438,7 +438,7 @@ def _followed(
 
 
 def _outcome(sizes: NDArray[np.float64], growth: float, patience: float) -> bool | None:
-    """Whether a vibration lasts, by the size of its blocks so far; None where that is open."""
+    """Return whether a vibration lasts, by the size of its blocks; None where that is open."""
     if growth <= 0.0 and sizes[-1] < _DEAD:
         return False
     if sizes.size < 2 * _FOLLOWED:

@@ -35,7 +35,7 @@ RANKING_RULE = (
     "twice as much and silence 0, so that a design that is noisy more often but fainter may come "
     "first"
 )
-"""What the number is that the ranking goes by."""
+"""Explanation of the number by which designs are ranked."""
 
 MARGIN_RULE = (
     "Margin: by how much the speeds of use would have to move until none vibrates (negative), or "
@@ -49,7 +49,7 @@ _NOISES = {
 """Labels of a map but ``none``, in sentences."""
 
 _MOST_RANGES = 2
-"""Ranges of a noise that are named."""
+"""Largest number of ranges of a noise in a sentence."""
 
 _HOW = {
     SIMULATED: "simulated from rest and from running vibration",
@@ -59,12 +59,12 @@ _HOW = {
 }
 
 
-def use_words(found: DesignMap, never_slips: str = "") -> str:
-    """Say whether a design is quiet over its use, and where it is not.
+def use_words(mapped: DesignMap, never_slips: str = "") -> str:
+    """Return a sentence on whether a design is quiet over its use, and where it is not.
 
     Parameters
     ----------
-    found : DesignMap
+    mapped : DesignMap
     never_slips : str
         Why the contact never slips; empty where it does.
 
@@ -77,23 +77,23 @@ def use_words(found: DesignMap, never_slips: str = "") -> str:
     'quiet in its use, all 2 conditions'
     """
     if never_slips:
-        return f"{never_slips}; quiet" if found.grid.frequency else never_slips
-    label = found.label[..., found.grid.used]
+        return f"{never_slips}; quiet" if mapped.grid.frequency else never_slips
+    label = mapped.label[..., mapped.grid.used]
     shares = {name: float(np.mean(label == name)) for name in _NOISES}
-    heard = sorted((name for name in shares if shares[name]), key=lambda name: -shares[name])
-    if not heard:
+    noises = sorted((name for name in shares if shares[name]), key=lambda name: -shares[name])
+    if not noises:
         return f"quiet in its use, all {label.size} conditions"
     noisy = sum(share for name, share in shares.items() if name != PERSISTS)
     head = f"noisy at {percent(noisy)} of its use" if noisy else "quiet from rest in its use"
-    said = [
-        f"{_NOISES[name]} at {percent(shares[name])}, {_ranges_words(label == name, found.grid)}"
-        for name in heard
+    parts = [
+        f"{_NOISES[name]} at {percent(shares[name])}, {_ranges_words(label == name, mapped.grid)}"
+        for name in noises
     ]
-    return f"{head}: {'; '.join(said)}"
+    return f"{head}: {'; '.join(parts)}"
 
 
 def percent(share: float) -> str:
-    """Write a share.
+    """Return a share as text.
 
     Examples
     --------
@@ -104,7 +104,7 @@ def percent(share: float) -> str:
 
 
 def _ranges_words(happens: NDArray[np.bool_], grid: Grid) -> str:
-    """Name the largest ranges of speed throughout which something happens, each with its place."""
+    """Return the largest ranges of speed throughout which something happens, as text."""
     speed = np.array(grid.speed)[grid.used]
     rows = (
         ((run, t, k), i)
@@ -118,17 +118,17 @@ def _ranges_words(happens: NDArray[np.bool_], grid: Grid) -> str:
         ((*key, temperatures) for key, temperatures in ranges.items()),
         key=lambda one: -(one[0][1] - one[0][0]) * math.prod(map(len, one[1:])),
     )
-    said = [
+    texts = [
         " ".join([_between(speed[slice(*run)]), *_where(fits, supports, temperatures, grid)])
         for run, supports, fits, temperatures in largest[:_MOST_RANGES]
     ]
-    more = len(largest) - len(said)
-    said += [f"in {more} smaller range{'s' if more > 1 else ''}"] if more else []
-    return " and ".join([", ".join(said[:-1]), said[-1]] if len(said) > 1 else said)
+    more = len(largest) - len(texts)
+    texts += [f"in {more} smaller range{'s' if more > 1 else ''}"] if more else []
+    return " and ".join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)
 
 
 def _runs(happens: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return where neighbours are true: the first, and the one after the last."""
+    """Return the runs of true values: the first index, and the one after the last."""
     edges = np.flatnonzero(np.diff(happens.astype(int), prepend=0, append=0))
     return [(int(first), int(end)) for first, end in edges.reshape(-1, 2)]
 
@@ -142,14 +142,14 @@ def _grouped(pairs: Iterable[tuple[K, int]]) -> dict[K, tuple[int, ...]]:
 
 def _between(span: NDArray[np.float64]) -> str:
     if span.size == 1:
-        return f"at {span[0]:.4g} rad/s"
-    return f"from {span[0]:.4g} to {span[-1]:.4g} rad/s"
+        return f"at {span[0]:.5g} rad/s"
+    return f"from {span[0]:.5g} to {span[-1]:.5g} rad/s"
 
 
 def _where(
     fits: Sequence[int], supports: Sequence[int], temperatures: Sequence[int], grid: Grid
 ) -> list[str]:
-    """Name fits, supports and temperatures, where the map has several."""
+    """Return fits, supports and temperatures as text, where they are not all of the map."""
     return [
         say([values[i] for i in there])
         for values, there, say in (
@@ -162,7 +162,7 @@ def _where(
 
 
 def fit_words(values: Sequence[float]) -> str:
-    """Name interferences [m] behind what happens at them.
+    """Return interferences [m] as text.
 
     Examples
     --------
@@ -173,7 +173,7 @@ def fit_words(values: Sequence[float]) -> str:
 
 
 def supports_words(values: Sequence[float]) -> str:
-    """Name supports [Nm/rad] behind what happens with them.
+    """Return supports [Nm/rad] as text.
 
     Examples
     --------
@@ -182,12 +182,12 @@ def supports_words(values: Sequence[float]) -> str:
     """
     finite = [value for value in values if math.isfinite(value)]
     several = "supports" if len(finite) > 1 else "a support"
-    said = [f"on {several} of {axis_words(finite)} Nm/rad"] if finite else []
-    return " and ".join([*said, *(["with the clamp fixed"] if len(finite) < len(values) else [])])
+    texts = [f"on {several} of {axis_words(finite)} Nm/rad"] if finite else []
+    return " and ".join([*texts, *(["with the clamp fixed"] if len(finite) < len(values) else [])])
 
 
 def condition_words(at: Condition) -> str:
-    """Name a condition.
+    """Return a condition as text.
 
     Examples
     --------
@@ -197,11 +197,11 @@ def condition_words(at: Condition) -> str:
     support = "the clamp fixed"
     if math.isfinite(at.support_stiffness):
         support = f"{at.support_stiffness:.4g} Nm/rad"
-    return f"{at.speed:.4g} rad/s, {1e3 * at.interference:.3g} mm, {support}"
+    return f"{at.speed:.5g} rad/s, {1e3 * at.interference:.3g} mm, {support}"
 
 
 def margin_words(one: Standing, use: tuple[float, float]) -> str:
-    """Say up to which speed it vibrates, and how far its use is from that; none of a swing.
+    """Return a sentence on the last vibration and the margin of the use; empty for a swing.
 
     Parameters
     ----------
@@ -222,17 +222,17 @@ def margin_words(one: Standing, use: tuple[float, float]) -> str:
         return ""
     if margin == math.inf:
         return "nothing vibrates at any speed of the map"
-    said = f"the last vibration ends between {last:.3g} and {one.v_crit2_high:.3g} rad/s (V_crit2)"
+    text = f"the last vibration ends between {last:.3g} and {one.v_crit2_high:.3g} rad/s (V_crit2)"
     if math.isinf(last):
-        said = "vibration reaches the fastest speed of the map (V_crit2)"
+        text = "vibration reaches the fastest speed of the map (V_crit2)"
     if margin > 0.0:
-        return f"{said}; every speed of use is at least {margin:.3g} rad/s from what vibrates"
+        return f"{text}; every speed of use is at least {margin:.3g} rad/s from what vibrates"
     if margin == 0.0:
-        return f"{said}, where the use begins"
+        return f"{text}, where the use begins"
     if -margin >= use[1] - use[0]:
-        return f"{said}; at the worst fit and support all speeds of use vibrate"
+        return f"{text}; at the worst fit and support all speeds of use vibrate"
     return (
-        f"{said}; at the worst fit and support the speeds of use would have to move by "
+        f"{text}; at the worst fit and support the speeds of use would have to move by "
         f"{-margin:.3g} rad/s to be quiet"
     )
 
@@ -244,18 +244,18 @@ def advice_words(
     sounds: Mapping[Condition, str],
     most: int = 3,
 ) -> str:
-    """Say which changes silence the loudest point, what they do elsewhere, and what stays worst.
+    """Return sentences on the changes that silence the loudest point, and on what they leave.
 
     Parameters
     ----------
     noise : str
-        What is heard at the loudest point.
+        Noise at the loudest point.
     at : Condition
-        Which that is.
+        The loudest point.
     offers : sequence of Offer
         Of `noise.screening.advice.advise`.
     sounds : mapping of Condition to str
-        What is heard at the other noisy points that were tried, such as ``creak, 85 dB(A)``.
+        Noise at the other points that were simulated, such as ``creak, 85 dB(A)``.
     most : int
         Changes that are named.
 
@@ -277,18 +277,18 @@ def advice_words(
         for one in shown
     )
     by = "by" if len(ending) == 1 else "by any one of these"
-    said = f"{where} falls silent {by}{others}: {changes}"
-    said += f"; advice.csv has {len(ending) - len(shown)} more" * (len(ending) > len(shown))
+    text = f"{where} falls silent {by}{others}: {changes}"
+    text += f"; advice.csv has {len(ending) - len(shown)} more" * (len(ending) > len(shown))
     if best.left is None:
-        return said
+        return text
     return (
-        f"no single change that was tried quiets the whole use. {said[0].upper()}{said[1:]}. "
+        f"no single change that was tried quiets the whole use. {text[0].upper()}{text[1:]}. "
         f"The loudest that the first leaves: {sounds[best.left]}, at {condition_words(best.left)}"
     )
 
 
 def limit_words(offers: Sequence[Offer], noise: str, most: int = 2) -> list[str]:
-    """Say of changes that do not end the noise how far they go, and what they do.
+    """Return sentences on changes that do not end the noise.
 
     Parameters
     ----------
@@ -306,7 +306,7 @@ def limit_words(offers: Sequence[Offer], noise: str, most: int = 2) -> list[str]
     ['critical torque -20 % to 8 Nm reaches the limit, and the squawk goes on (too small)']
     """
     end = {one.name for one in offers if one.ends}  # in the other direction
-    said = [
+    texts = [
         f"{replace(one, percent=one.from_rest).words} is quiet from rest only: the {noise} "
         f"persists once started{f' ({one.limit})' if one.limit else ''}"
         for one in offers
@@ -315,67 +315,67 @@ def limit_words(offers: Sequence[Offer], noise: str, most: int = 2) -> list[str]
     limited = [one for one in offers if one.limit and one.from_rest is None and one.name not in end]
     for one in limited[:most]:
         name = one.name.replace("_", " ")
-        said.append(
+        texts.append(
             f"{one.words} reaches the limit, and the {noise} goes on ({one.limit})"
             if one.percent
             else f"{name} alone does not end it ({one.limit})"
         )
     if len(limited) > most:
-        said.append(f"advice.csv has {len(limited) - most} more that reach a limit")
-    return said
+        texts.append(f"advice.csv has {len(limited) - most} more that reach a limit")
+    return texts
 
 
-def sure_words(one: Standing, found: DesignMap) -> list[str]:
-    """Say how a design's sentences are known, and how far to trust them.
+def sure_words(one: Standing, mapped: DesignMap) -> list[str]:
+    """Return phrases on how the results of a design were obtained and how exact they are.
 
     Parameters
     ----------
     one : Standing
-    found : DesignMap
+    mapped : DesignMap
         Its map.
     """
-    count, total = found.count(SIMULATED), found.label.size
-    said = [f"{count} of {total} points were simulated"]
-    steps = [b - a for a, b in pairwise(found.grid.speed)]
-    if steps and found.open:
-        said.append(
-            f"{found.open} lie between simulated points that differ and are as the nearest, so "
+    count, total = mapped.count(SIMULATED), mapped.label.size
+    texts = [f"{count} of {total} points were simulated"]
+    steps = [b - a for a, b in pairwise(mapped.grid.speed)]
+    if steps and mapped.open:
+        texts.append(
+            f"{mapped.open} lie between simulated points that differ and are as the nearest, so "
             "boundaries there are coarser than the map"
         )
     elif steps:
-        said.append(f"speeds at which a noise begins or ends are known to {max(steps):.3g} rad/s")
+        texts.append(f"speeds at which a noise begins or ends are known to {max(steps):.3g} rad/s")
     if any(offer.ends for offer in one.offers):
-        said.append(
+        texts.append(
             "each change was run from rest, from the running noise, and with 2 % less of it"
         )
-    return said + (_parts_words(one.robustness) if one.robustness else [])
+    return texts + (_parts_words(one.robustness) if one.robustness else [])
 
 
-def _parts_words(found: Robustness) -> list[str]:
-    """Say how probably a part is noisy, and which tolerance matters most."""
-    noisy = found.noisy
-    assumed = " within assumed tolerances" if found.assumed else " within its tolerances"
-    said = [
+def _parts_words(parts: Robustness) -> list[str]:
+    """Return phrases on the probability of a noisy part and on the most important tolerance."""
+    noisy = parts.noisy
+    assumed = " within assumed tolerances" if parts.assumed else " within its tolerances"
+    texts = [
         f"a part{assumed} is noisy somewhere in its use with a probability of {noisy.value:.0%} "
         f"({noisy.low:.0%} to {noisy.high:.0%})"
     ]
-    if found.sensitivities and found.sensitivities[0].total.value > 0.0:
-        most = found.sensitivities[0]
+    if parts.sensitivities and parts.sensitivities[0].total.value > 0.0:
+        most = parts.sensitivities[0]
         share = min(1.0, most.total.value)
-        said.append(
+        texts.append(
             f"the tolerance of {most.name.replace('_', ' ')} matters most: {share:.0%} of the "
             "scatter of the vibration's growth"
         )
-    return said
+    return texts
 
 
-def detail_lines(one: Standing, found: DesignMap) -> list[str]:
-    """Say where it is noisy, what is heard, what to change, its margin, and how sure that is.
+def detail_lines(one: Standing, mapped: DesignMap) -> list[str]:
+    """Return lines on where a design is noisy, its level, changes, margin and certainty.
 
     Parameters
     ----------
     one : Standing
-    found : DesignMap
+    mapped : DesignMap
         Its map.
     """
     where = "" if one.never_slips else one.words.partition(": ")[2]
@@ -387,14 +387,14 @@ def detail_lines(one: Standing, found: DesignMap) -> list[str]:
         )
         lines += [f"what to change: {text}" for text in [one.advice] if text]
         lines += [f"limits: {text}" for text in limit_words(one.offers, one.loudest_label)]
-    lines += [f"margin: {text}" for text in [margin_words(one, found.grid.use)] if text]
-    lines.append(f"how sure: {'; '.join(sure_words(one, found))}")
-    lines += [f"not told: {why}" for why in one.failed]
+    lines += [f"margin: {text}" for text in [margin_words(one, mapped.grid.use)] if text]
+    lines.append(f"how sure: {'; '.join(sure_words(one, mapped))}")
+    lines += [f"failed: {why}" for why in one.failed]
     return [*lines, *(f"note: {note}" for note in one.notes if note != one.never_slips)]
 
 
 def summary_lines(screening: Screening) -> list[str]:
-    """Say of each design whether it is quiet in its use, what to change and how sure that is.
+    """Return the summary of a screening for the terminal.
 
     Examples
     --------
@@ -418,9 +418,9 @@ def summary_lines(screening: Screening) -> list[str]:
         lines.append(RANKING_RULE)
     lines += conditions_lines(screening)
     maps = screening.maps
-    counts = {words: sum(found.count(how) for found in maps) for how, words in _HOW.items()}
+    counts = {words: sum(mapped.count(how) for mapped in maps) for how, words in _HOW.items()}
     how = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
-    points = sum(found.label.size for found in maps)
+    points = sum(mapped.label.size for mapped in maps)
     return [
         *lines,
         f"{points} points in {screening.seconds:.1f} s: {how}",
@@ -429,17 +429,17 @@ def summary_lines(screening: Screening) -> list[str]:
 
 
 def use_head(one: Standing) -> str:
-    """Say whether it is quiet in its use; where not is in `detail_lines`."""
+    """Return the first part of the words of a standing; `detail_lines` has the ranges."""
     return one.words if one.never_slips else one.words.partition(": ")[0]
 
 
 def standing_place(one: Standing) -> str:
-    """Name environment and motion of a standing."""
+    """Return environment and motion of a standing as text."""
     return one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}"
 
 
 def ranking_words(standings: Sequence[Standing]) -> str:
-    """Say which designs come first and by what number; nothing of a single one.
+    """Return a sentence on the designs that come first; empty for a single design.
 
     Parameters
     ----------
@@ -460,7 +460,7 @@ def ranking_words(standings: Sequence[Standing]) -> str:
 
 
 def conditions_lines(screening: Screening) -> list[str]:
-    """Say over which conditions all designs are compared, and where data are not their own.
+    """Return lines on the conditions of the comparison and on data that are not the designs' own.
 
     Examples
     --------
@@ -472,13 +472,13 @@ def conditions_lines(screening: Screening) -> list[str]:
     each design at 2 points: speed 1 and 5 rad/s; interference 0.3 mm; support 2214 Nm/rad; ...
     not from a design's own data: 2 of PDMS; where a design has no data of its own, stiffness, ...
     """
-    said = dict.fromkeys(words for grid in screening.conditions for words in grid.words)
+    axes = dict.fromkeys(words for grid in screening.conditions for words in grid.words)
     n_points = sum(math.prod(grid.shape) for grid in screening.conditions)
     same = "the same " if len(screening.designs) > 1 else ""
-    lines = [f"each design at {same}{n_points} points: {'; '.join(said)}"]
+    lines = [f"each design at {same}{n_points} points: {'; '.join(axes)}"]
     counts: Counter[str] = Counter()
-    for found in screening.maps:
-        counts[found.design] += int(found.substituted.sum())
+    for mapped in screening.maps:
+        counts[mapped.design] += int(mapped.substituted.sum())
     if stand_in := [f"{count} of {name}" for name, count in counts.items() if count]:
         lines.append(f"not from a design's own data: {', '.join(stand_in)}; {RULE}")
         lines += [text for text in [_fair(screening)] if text]
@@ -486,7 +486,7 @@ def conditions_lines(screening: Screening) -> list[str]:
 
 
 def _fair(screening: Screening) -> str:
-    """Say at which interferences no design's torques are held, where at some they are."""
+    """Return a remark on the interferences at which all designs have data; empty if all."""
     fits = sorted({fit for grid in screening.conditions for fit in grid.interference})
     own = [fit for fit in fits if all(within_fits(one.rig, fit) for one in screening.designs)]
     if len(screening.designs) == 1 or own == fits:

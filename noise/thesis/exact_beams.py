@@ -62,7 +62,7 @@ def boundary_conditions(
     *,
     scaled: bool = True,
 ) -> NDArray[np.complex128]:
-    """Set up the conditions at clamp and anchor on the amplitudes of the waves.
+    """Return the matrix of boundary conditions for the amplitudes of the waves.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def waves_at(
     position: NDArray[np.float64] | float,
     derivative: int,
 ) -> NDArray[np.complex128]:
-    """Give the four waves or one of their derivatives by the position.
+    """Return the four waves, or one of their derivatives by the position.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def waves_at(
 def wavenumber(
     structure: ClampOnBeams, frequency: ArrayLike, loss_factor: float = 0.0
 ) -> NDArray[np.complex128]:
-    """Give the wavenumber of bending waves (rho S omega^2 / (E I))^(1/4).
+    """Return the wavenumber of bending waves (rho S omega^2 / (E I))^(1/4).
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ def wavenumber(
 
 
 def wave_frequency(structure: ClampOnBeams, wave: ArrayLike) -> NDArray[np.float64]:
-    """Give the frequency at which wavenumber times length has a value; undamped.
+    """Return the frequency at which wavenumber times length has a value, without damping.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ _STEP = 0.05
 def natural_frequencies(
     structure: ClampOnBeams, highest_frequency: float, motion: RootMotion = RootMotion.TURNING
 ) -> NDArray[np.float64]:
-    """Undamped natural frequencies up to a highest one.
+    """Return the undamped natural frequencies up to a highest one.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ TORQUE_CELL = (
 """Voltages of Table C1 [mV]."""
 
 TORQUE_CELL_TORQUES = tuple(5.0 * step for step in range(-8, 9))
-"""At which they were read [Nm]."""
+"""Torques of `TORQUE_CELL` [Nm]."""
 
 _GRAVITY = 9.80665
 _INCH = 0.0254
@@ -54,7 +54,7 @@ _ACCELEROMETER = 12.55e-3
 
 
 def regression(x: Sequence[float], y: Sequence[float]) -> tuple[float, float, float]:
-    """Fit a line: offset, slope and correlation coefficient, (B1) and (B2).
+    """Return offset, slope and correlation coefficient of a fitted line, (B1) and (B2).
 
     Examples
     --------
@@ -66,7 +66,7 @@ def regression(x: Sequence[float], y: Sequence[float]) -> tuple[float, float, fl
 
 
 def potentiometer() -> Iterator[Values]:
-    """Offset, slope and correlation of Appendix B, as meant and as printed, and the gain."""
+    """Yield offset, slope and correlation of Appendix B, as meant and as printed, and the gain."""
     printed, meant = (
         regression([math.pi * angle for angle in angles], POTENTIOMETER)
         for angles in (_ANGLES_PRINTED, _ANGLES_MEANT)
@@ -77,7 +77,7 @@ def potentiometer() -> Iterator[Values]:
 
 
 def torque_cell() -> Iterator[Values]:
-    """Regressions of Appendix C for positive and negative torque, and the gain."""
+    """Yield the regressions of Appendix C for positive and negative torque, and the gain."""
     torque, voltage = np.array(TORQUE_CELL_TORQUES), np.array(TORQUE_CELL)
     slopes = []
     for side in (torque >= 0.0, torque <= 0.0):
@@ -90,7 +90,7 @@ def torque_cell() -> Iterator[Values]:
 
 
 def transducers() -> Iterator[Values]:
-    """Accelerometer in two units, calibrator rms and amplitude, microphone, Talysurf."""
+    """Yield gains of accelerometer (two units), calibrator, microphone and Talysurf."""
     rms = REFERENCE_PRESSURE * 10 ** (_CALIBRATOR_LEVEL / 20)
     amplitude = math.sqrt(2.0) * rms
     gain = _GRAVITY / _ACCELEROMETER
@@ -100,7 +100,7 @@ def transducers() -> Iterator[Values]:
 
 
 def free_free_frequencies(transit_time: float, n_modes: int = 3) -> NDArray[np.float64]:
-    """Natural frequencies of a free shaft, equation (A20), the rigid rotation left out.
+    """Return the natural frequencies of a free shaft without rigid rotation, equation (A20).
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def free_free_frequencies(transit_time: float, n_modes: int = 3) -> NDArray[np.f
 def fixed_free_frequencies(
     transit_time: float, ratio: float, n_modes: int = 3
 ) -> NDArray[np.float64]:
-    """Natural frequencies of a shaft held at one end with an inertia at the other, (A14), (A15).
+    """Return the natural frequencies of a shaft fixed at one end, an inertia at the other (A14).
 
     Parameters
     ----------
@@ -167,13 +167,13 @@ _TRANSIT_TIME, _INERTIA_RATIO = 1 / 16262, 0.4201
 
 
 def in_series(material: str, interference_mm: float, support: float) -> float:
-    """Stiffness of a bushing and its support [Nm/rad]."""
+    """Return the stiffness of a bushing and its support in series [Nm/rad]."""
     stiffness = rig_of(material).fit(1e-3 * interference_mm).elastomer_stiffness
     return 1.0 / (1.0 / support + 1.0 / stiffness)
 
 
 def series() -> Iterator[Values]:
-    """Sign in (3.1), which (5.2) and Table 5.4 have right; Tables 5.3 and 5.4."""
+    """Yield the sign in (3.1), which (5.2) and Table 5.4 have right; Tables 5.3 and 5.4."""
     yield {"exact": 1.0}
     theory = []
     for interference in INTERFERENCES:
@@ -186,7 +186,7 @@ def series() -> Iterator[Values]:
 
 
 def shaft() -> Iterator[Values]:
-    """Table 3.1, from two numbers."""
+    """Yield Table 3.1 from two numbers."""
     fixed = fixed_free_frequencies(_TRANSIT_TIME, _INERTIA_RATIO)
     for exact in (*fixed.tolist(), *free_free_frequencies(_TRANSIT_TIME).tolist()):
         yield {"exact": exact}
@@ -199,7 +199,7 @@ def _sleeve() -> Sleeve:
 
 
 def pressures() -> Iterator[Values]:
-    """Pressure by Lame over that at 0.279 mm (Recommendation 2), as the mean torques go.
+    """Yield the pressure by Lame over that at 0.279 mm (Recommendation 2), as the mean torques go.
 
     With one coefficient of friction the torque goes with the pressure, which is linear in the
     interference, whatever size and modulus of the sleeve are assumed. Its wall and hardness are
@@ -211,13 +211,13 @@ def pressures() -> Iterator[Values]:
 
 
 def sleeves() -> Iterator[Values]:
-    """Torsional stiffness of the sleeve that the pressure is of."""
+    """Yield the torsional stiffness of the sleeve."""
     for _ in INTERFERENCES:
         yield {"exact": _sleeve().torsional_stiffness}
 
 
 def squeal() -> Iterator[Values]:
-    """6570 Hz of the squeal: most likely rad/s read as Hz."""
+    """Yield the mode behind the 6570 Hz of the squeal, most likely rad/s read as Hz."""
     fit = rig_of(THESIS).fit(0.279e-3)
     mode = math.sqrt(fit.elastomer_stiffness / rig_of(THESIS).elastomer_inertia) / (2.0 * math.pi)
     line = QUANTITIES["strongest_line"](CALIBRATED, Case(10.0, 0.279, SHORT))

@@ -31,7 +31,7 @@ class HalfSpace:
     conductivity: float
 
     def resistance(self, seconds: float) -> float:
-        """Rise of the surface for a unit of flux held for `seconds` [K m2/W], (G3) at x = 0."""
+        """Return the rise of the surface per flux applied for `seconds` [K m2/W], (G3) at x = 0."""
         return 2.0 / self.conductivity * math.sqrt(self.diffusivity * seconds / math.pi)
 
 
@@ -43,7 +43,7 @@ RUBBER = HalfSpace(6.69e-8, 0.16)
 
 
 def temperature_rise(body: HalfSpace, flux: float, seconds: float, depth: float = 0.0) -> float:
-    """Rise of temperature in a half-space under a constant flux, equation (G3).
+    """Return the temperature rise in a half-space under a constant flux, equation (G3).
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def temperature_rise(body: HalfSpace, flux: float, seconds: float, depth: float 
 
 
 def interface_rise(power: float, area: float, seconds: float, layer: float = 0.0) -> float:
-    """Rise of the temperature where a bushing rubs on a shaft.
+    """Return the temperature rise in the contact of bushing and shaft.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ _PAINT = 50e-6 / 0.2
 
 
 def heating() -> Iterator[Values]:
-    """Shares of the heat, temperatures at the surface, below it and under paint."""
+    """Yield shares of the heat, and temperatures at the surface, below it and under paint."""
     a, b = STEEL.resistance(1.0), RUBBER.resistance(1.0)
     into_steel, into_rubber = b / (a + b), a / (a + b)  # (G5)
     area = interface_rise(_POWER, 1.0, _SECONDS) / _RISE

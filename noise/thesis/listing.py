@@ -43,7 +43,7 @@ _CLAMP_INERTIA, _ELASTOMER_INERTIA = 1 / 1200, 1 / 65000
 
 @dataclass(frozen=True, eq=False)
 class ListingRun:
-    """What the program writes, one row per step.
+    """Output of the program, one row per step.
 
     Parameters
     ----------

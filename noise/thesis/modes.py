@@ -49,7 +49,7 @@ _HIGHEST = 12e3
 
 
 def beams() -> Iterator[Values]:
-    """Equations (4.11) and (4.12)."""
+    """Yield the results of equations (4.11) and (4.12)."""
     beam = rigidly_anchored()
     yield {"exact": beam.width * beam.thickness**3 / 12}
     for length in LENGTHS.values():
@@ -69,14 +69,14 @@ def rigidly_anchored() -> Beams:
 
 
 def clamp_on_beams(beams: Beams, length: float) -> ClampOnBeams:
-    """Clamp, bushing and beams of one length [m] on the assumptions of 3.1.1."""
+    """Return clamp, bushing and beams of one length [m] on the assumptions of 3.1.1."""
     return ClampOnBeams(
         beams, length, _CLAMP_MASS, _CLAMP_INERTIA, _LATERAL_STIFFNESS, _TORSIONAL_STIFFNESS
     )
 
 
 def clamp_modes(beams: Beams, length: float) -> NDArray[np.float64]:
-    """Modes of beams of one length [m] with the clamp on the bushing [Hz].
+    """Return the modes of beams of one length [m] with the clamp on the bushing [Hz].
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def clamp_modes(beams: Beams, length: float) -> NDArray[np.float64]:
 
 
 def beam_modes() -> Iterator[Values]:
-    """Modes that 3.1.1 computes and 5.2.2 measures, the last two those nearest to 4500 and 6000 Hz.
+    """Yield the modes of 3.1.1 and 5.2.2, the last two those nearest to 4500 and 6000 Hz.
 
     Mass and inertia of the clamp were chosen for the two lowest of the long beams.
     """
@@ -156,7 +156,7 @@ def fitted_structure(kind: str) -> ClampOnBeams:
 
 
 def fitted() -> Iterator[Values]:
-    """Compute modes, k_B and effective stiffness, with turning and then with yielding anchors."""
+    """Yield modes, k_B and effective stiffness, with turning and then with yielding anchors."""
     for kind in FITTED:
         structure = fitted_structure(kind)
         lengths = LENGTHS.values()
@@ -167,7 +167,7 @@ def fitted() -> Iterator[Values]:
 
 
 def shipped() -> Iterator[Values]:
-    """Modes by which the torque reaches accelerometer and anchors of the shipped rig.
+    """Yield the modes by which the torque reaches accelerometer and anchors of the shipped rig.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""How often a torque repeats: slips a second, or periods of an oscillation that does not slip."""
+"""Repetition rate of a torque: slips per second, or periods of an oscillation without slips."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def repetition_rate(slips: Slips, torque: ArrayLike, rate: float) -> float:
-    """Slips a second, or periods of the torque where nothing slips.
+    """Return the slips per second, or periods per second where nothing slips.
 
     Slips that differ, as where the period has doubled, are counted each: this is no subharmonic.
 
@@ -47,5 +47,5 @@ def repetition_rate(slips: Slips, torque: ArrayLike, rate: float) -> float:
     >>> round(repetition_rate(slips, torque, 30e3))
     300
     """
-    found = slips.rate
-    return analyse_harmonics(torque, rate).fundamental if math.isnan(found) else found
+    slip_rate = slips.rate
+    return analyse_harmonics(torque, rate).fundamental if math.isnan(slip_rate) else slip_rate

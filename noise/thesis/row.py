@@ -22,7 +22,7 @@ _OFF_AT_MOST = 0.25
 
 @dataclass(frozen=True)
 class Published:
-    """What the thesis prints, as text and as the values that it admits.
+    """Published value, as text and as the interval of values that it allows.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Published:
     high: float
 
     def gap(self, value: float, scale: float | None = None) -> float:
-        """Distance from `value` to what is admitted, relative to that or to `scale`.
+        """Return the distance of `value` from the interval, relative to it or to `scale`.
 
         Examples
         --------
@@ -136,13 +136,13 @@ class Row:
 
     @property
     def best(self) -> float:
-        """What a measurement is held against: what ships, or a formula that is not counted [-]."""
+        """Value compared with a measurement: of the shipped material, else of a formula [-]."""
         formula = not self.counted and math.isnan(self.calibrated)
         return self.exact if formula else self.calibrated
 
     @property
     def misses(self) -> bool:
-        """Whether this was measured and `best` is more than a quarter off it."""
+        """Whether this was measured and `best` deviates by more than a quarter."""
         checkable = self.measured and not math.isnan(self.best)
         return checkable and self._word(self.best, self.meant or self.published) == "fails"
 

@@ -87,7 +87,7 @@ class Case:
 
     @property
     def fixed(self) -> bool:
-        """Whether the clamp is bolted down."""
+        """True if the clamp is bolted to the baseplate."""
         return self.support_stiffness == FIXED
 
     def __str__(self) -> str:
@@ -103,7 +103,7 @@ def rig_of(material: str) -> Rig:
 
 
 def constant_note() -> str:
-    """Say of what version of the shipped materials the numbers are.
+    """Return a remark on the version of the shipped materials.
 
     Examples
     --------
@@ -273,7 +273,7 @@ QUANTITIES: dict[str, Quantity] = {
 
 
 def _listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
-    """Run the thesis's listing; the clamp must not be fixed, which it cannot compute."""
+    """Run the thesis's listing, which cannot compute a fixed clamp."""
     fit = rig_of(THESIS).fit(case.interference)
     damping = fit.damping[case.support_stiffness] if case.damping is None else case.damping
     return run_listing(
@@ -288,7 +288,7 @@ def _listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
 
 
 def _listing_slips(case: Case, settled: float, seconds: float = _SECONDS[THESIS]) -> Slips | None:
-    """Find the listing's slips after a share of its run; none where the torque is steady."""
+    """Return the listing's slips after a share of its run; None where the torque is steady."""
     torque = _listing_run(case, seconds).torque
     torque = torque[round(settled * torque.size) :]
     if torque.std() <= LEAST_OSCILLATION * abs(torque.mean()):

@@ -49,16 +49,16 @@ _DECIMALS = 6  # of what runs give: beyond them lies rounding
 
 @lru_cache(maxsize=1)
 def _lines() -> dict[str, list[dict[str, str]]]:
-    """Rows of ``rows.csv`` by the name of their group."""
+    """Return the rows of ``rows.csv`` by the name of their group."""
     text = (resources.files("noise.thesis") / "rows.csv").read_text(encoding="utf-8")
-    found: dict[str, list[dict[str, str]]] = {}
+    groups: dict[str, list[dict[str, str]]] = {}
     for line in csv.DictReader(text.splitlines()):
-        found.setdefault(line["group"], []).append(line)
-    return found
+        groups.setdefault(line["group"], []).append(line)
+    return groups
 
 
 def group_names() -> list[str]:
-    """Names of the groups of rows, in the order of the table.
+    """Return the names of the groups of rows, in the order of the table.
 
     Examples
     --------
@@ -125,11 +125,11 @@ def _published(line: Mapping[str, str]) -> Row:
 
 
 def _computed(line: Mapping[str, str]) -> dict[str, float]:
-    """Values of a row by column."""
+    """Return the values of a row by column."""
     if line["value"]:
         return {line["judged"] or "exact": float(line["value"])}
     quantity = line["quantity"]
-    found: dict[str, float] = {}
+    results: dict[str, float] = {}
     cases = [_case(text) for text in line["cases"].split(";")]
     for column in (line["columns"] or "exact calibrated").split():
         if column == "listing":
@@ -138,12 +138,12 @@ def _computed(line: Mapping[str, str]) -> dict[str, float]:
             shipped = THESIS if column == "exact" else CALIBRATED
             values = [QUANTITIES[quantity](own or shipped, case) for case, own in cases]
         value = _COMBINED[line["combined"]](values)
-        found[column] = value if math.isinf(value) else round(value, _DECIMALS)
-    return found
+        results[column] = value if math.isinf(value) else round(value, _DECIMALS)
+    return results
 
 
 def _case(text: str) -> tuple[Case, str]:
-    """Read a case, and the material where it is stated."""
+    """Return a case, and its material where stated."""
     words = text.split()
     material = words.pop() if words[-1][0].isalpha() and words[-1] != "fixed" else ""
     speed, interference, support, *damping = (
