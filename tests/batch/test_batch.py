@@ -103,7 +103,7 @@ def test_a_journal_that_is_none_begins_again_with_a_note(work, jobs, tmp_path, c
 
 
 @given(st.data())
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_a_journal_torn_anywhere_tells_nothing_wrong_and_can_be_gone_on_with(work, tmp_path, data):
     folder = Path(tempfile.mkdtemp(dir=tmp_path))
     jobs, table = make_jobs(folder, ("a", "c", "d")), folder / "t.csv"

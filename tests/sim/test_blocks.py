@@ -53,23 +53,34 @@ def highest(pressure):
     return np.abs(np.fft.irfft(spectrum, pressure.size)).max()
 
 
-@pytest.mark.parametrize("block_seconds", [0.11, 0.3])
-@pytest.mark.parametrize(
-    ("rig", "shaft", "support"),
-    [
-        (THESIS, 1.0, 3745.0),
-        (THESIS, Oscillation(0.26, 5.0), 2214.0),
-        (THESIS, SpeedRamp(0.0, 8.0, 0.6), 2214.0),
-        (MEMORY, 2.5, 2214.0),
-        (MEMORY, 1.0, FIXED),
-        (replace(THESIS, effects=(LawSpec("static_ageing"), LawSpec("shaft_compliance"))), -2.0,
-         2214.0),
-    ],
-)  # fmt: skip
+def acting(rig, *effects):
+    return replace(
+        rig, effects=(*rig.effects, *(LawSpec(name, {"form": f}) for name, f in effects))
+    )
+
+
+PLATE, ROOM = ("plate_modes", "scattered"), ("room_reflections", "diffuse")
+JOINED = [
+    (THESIS, 1.0, 3745.0, 0.11),
+    (THESIS, 1.0, 3745.0, 0.3),
+    (THESIS, Oscillation(0.26, 5.0), 2214.0, 0.11),
+    (THESIS, SpeedRamp(0.0, 8.0, 0.6), 2214.0, 0.3),
+    (MEMORY, 2.5, 2214.0, 0.3),
+    (MEMORY, 1.0, FIXED, 0.11),
+    (acting(THESIS, ("static_ageing", "exponential"), ("shaft_compliance", "linear")), -2.0,
+     2214.0, 0.11),
+    *((acting(MEMORY, *effects), 2.5, 2214.0, 0.11)
+      for effects in ([PLATE], [ROOM], [("beam_modes", "single"), PLATE, ROOM])),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("rig", "shaft", "support", "block_seconds"), JOINED)
 def test_recordings_joined_are_one_recording(rig, shaft, support, block_seconds):
     how = {"support_stiffness": support, "seconds": 0.7, "acquisition": QUIET}
-    one = simulate(rig, shaft, **how).recording
-    run = simulate_blocks(rig, shaft, block_seconds=block_seconds, **how)
+    one = simulate(rig, shaft, rng=np.random.default_rng(7), **how).recording
+    run = simulate_blocks(
+        rig, shaft, rng=np.random.default_rng(7), block_seconds=block_seconds, **how
+    )
     samples = joined(run)
     assert (run.channels, run.condition, run.rate) == (one.channels, one.condition, one.rate)
     assert samples.shape == one.samples.shape == (4, run.n_samples)

@@ -12,7 +12,6 @@ from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.acquisition import Acquisition
-from sim.blocks import simulate_blocks
 from sim.chain import apply_chain_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage
@@ -23,9 +22,6 @@ from tests.helpers.spectra import path_spectra
 RATE = 96e3
 RIG = load_material_rig("fluorocarbon")
 CHAIN = ("beam_modes", "plate_modes", "room_reflections")
-EVERY_FORM = [(name, form) for name in CHAIN for form in EFFECTS[name].forms]
-PATHS = ("torque_to_acceleration", "torque_to_pressure", "pulse_to_acceleration",
-         "pulse_to_pressure")  # fmt: skip
 QUIET = Acquisition(noise={})
 
 
@@ -58,23 +54,6 @@ def test_radiation_leaves_torque_and_acceleration_alone(name, strength):
         assert np.array_equal(one["torque"], other["torque"])
         assert np.array_equal(one["acceleration"], other["acceleration"])
         assert not np.allclose(one["pressure"], other["pressure"], rtol=0.01)
-
-
-# In blocks, and together
-
-
-@pytest.mark.parametrize("names", [(name,) for name in CHAIN] + [CHAIN])
-def test_runs_in_blocks_have_the_effects_as_well(names):
-    forms = {"plate_modes": "scattered", "room_reflections": "diffuse"}
-    specs = [LawSpec(name, {"form": forms[name]} if name in forms else {}) for name in names]
-    rig = replace(RIG, effects=(*RIG.effects, *specs))
-    how = {"interference": 0.381e-3, "seconds": 0.4, "settling": 0.1, "acquisition": QUIET}
-    one = simulate(rig, 2.5, rng=np.random.default_rng(7), **how).recording.samples
-    run = simulate_blocks(rig, 2.5, rng=np.random.default_rng(7), block_seconds=0.11, **how)
-    joined = np.concatenate(list(run.blocks), axis=1)
-    inner = slice(12, -600)
-    for row, expected in zip(joined, one, strict=True):
-        assert np.abs(row - expected)[inner].max() < 1e-9 * np.abs(expected).max()
 
 
 def test_an_effect_of_the_users_own_can_change_the_chain():
