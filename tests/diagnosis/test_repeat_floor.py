@@ -20,7 +20,8 @@ from noise.diagnosis.gap.distance import (
     signature,
 )
 from noise.diagnosis.gap.floor import floor_widening, repeat_gap
-from noise.diagnosis.simulated.repeats import Scatter, condition_key, nominal_recordings
+from noise.diagnosis.simulated.repeats import condition_key, nominal_recordings
+from noise.diagnosis.simulated.scatter import Scatter
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.blind.cases import run_case, write_case
 from tests.blind.design import draw_design

@@ -20,7 +20,8 @@ from noise.diagnosis.first_answer import poor_responses, unlearned_sensors
 from noise.diagnosis.gap.distance import NAMES, Gap
 from noise.diagnosis.preparation.prepare import estimated_noise, with_seen_sensors
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
-from noise.diagnosis.simulated.repeats import Scatter, nominal_recordings
+from noise.diagnosis.simulated.repeats import nominal_recordings
+from noise.diagnosis.simulated.scatter import Scatter
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from noise.identification.measured import read_measurements
 from sim.acquisition import Acquisition

@@ -43,7 +43,7 @@ from noise.base import SURE_90
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import quantile
 from noise.diagnosis.evidence.reconstruction import Reconstruction, reconstruct, shaft_speed
-from noise.diagnosis.simulated.repeats import Scatter
+from noise.diagnosis.simulated.scatter import Scatter
 from sim.bushing import lumped_bushing
 
 _BEFORE = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)

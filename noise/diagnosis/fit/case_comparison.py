@@ -21,18 +21,14 @@ from numpy.typing import NDArray
 from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import LawSpec, Rig
+from noise.diagnosis.evidence.case_row import aligned
 from noise.diagnosis.evidence.reconstruction import closed_spectrum
-from noise.diagnosis.evidence.summary import (
-    CaseTable,
-    aligned,
-    path_numbers,
-    same_channels,
-    signals_of,
-)
+from noise.diagnosis.evidence.summary import CaseTable, path_numbers, same_channels, signals_of
 from noise.diagnosis.gap.distance import Gap, Reference, group_costs, signature
 from noise.diagnosis.gap.floor import references_of, repeat_gap
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
-from noise.diagnosis.simulated.repeats import Scatter, condition_key
+from noise.diagnosis.simulated.repeats import condition_key
+from noise.diagnosis.simulated.scatter import Scatter
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect
 

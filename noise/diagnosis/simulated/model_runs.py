@@ -24,17 +24,9 @@ from models.rig import Fit, LawSpec, Rig
 from models.sensors import Sensor
 from noise.base.arrays import Array
 from noise.diagnosis.gap.distance import KINDS, channel_signature, joined_signature
-from noise.diagnosis.simulated.repeats import (
-    Scatter,
-    chain_changes,
-    condition_key,
-    heard_of,
-    n_closed,
-    perturb_run,
-    plan_repeat,
-    record,
-    repeat_motion,
-)
+from noise.diagnosis.simulated.repeats import condition_key, plan_repeat, record, repeat_motion
+from noise.diagnosis.simulated.scatter import Scatter, perturb_run
+from noise.diagnosis.simulated.structure import chain_changes, heard_of, n_closed
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, chain_of
 from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import apply_chain_effects

@@ -1,39 +1,30 @@
 """Repeats of a run: a rig that is never quite the same twice, its motion and its recording.
 
-A bushing is pressed in again, warms by a few kelvin, wears: between two runs of one condition its
-stiffness, torques and damping come out a few per cent apart, and nobody's fault. A simulation that
-is to be compared with one recording is therefore run as several replicates, each of a rig drawn
-about the nominal one.
+A simulation that is to be compared with one recording is run as several replicates, each of a rig
+drawn about the nominal one (`noise.diagnosis.simulated.scatter`).
 
 Nominal repeats are of the rig as its file has it. Their transfer functions are those of the
 structure, applied to the simulated torque, so a repeat costs a few milliseconds. A rig file that
 lists effects beyond friction and drive is run through impulse responses instead, as the models are
 that a fit compares.
-
-A measured response is taken line by line, as it is where recordings are compared with what their
-torque should make of them: a causal impulse response of it would lack what only errors of the
-measurement explain, which at low frequencies can be most of it. What effects change about the
-structure is added to it.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.fft import rfft
 
 from models.condition import Condition, KnownCondition, known_condition
-from models.radiation.impulse_responses import ImpulseResponses, radiate
 from models.recording import Channel, Recording
-from models.rig import Fit, Rig
+from models.rig import Rig
 from models.sensors import Sensor, Sensors
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.base.arrays import Array
-from noise.diagnosis.evidence.reconstruction import closed_length, closed_spectrum
+from noise.diagnosis.evidence.reconstruction import closed_spectrum
+from noise.diagnosis.simulated.scatter import Scatter, perturb_run
+from noise.diagnosis.simulated.structure import OUTPUTS, faded
 from noise.diagnosis.simulated.transfer_functions import (
     TransferFunctionCache,
     chain_of,
@@ -48,145 +39,12 @@ from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, Effect, activated
 from sim.motion import Motion
 from sim.plan import DIAGNOSIS, Plan
-from sim.run import (
-    Sound,
-    apply_sensor_effects,
-    pulse_force,
-    radiate_motion,
-    run_motion,
-    sensor_signals,
-)
+from sim.run import apply_sensor_effects, radiate_motion, run_motion, sensor_signals
 from sim.shaft import ConstantSpeed
 from sim.temperature import at_temperature
 
-_FADE = 0.1
-"""In which a torque fades in and out [s], outside of the recording."""
-
-_GOING_ON = 0.12
-"""For which a torque goes on after the recording, turned back in time [s]."""
-
-
-def n_closed(plan: Plan) -> int:
-    """Return how many samples the transforms of a plan's torque have."""
-    n = plan.n_settling + plan.n_recorded + round(_GOING_ON * plan.rate)
-    return closed_length(n, plan.rate)
-
-
-def chain_changes(
-    before: ImpulseResponses, after: ImpulseResponses, length: int
-) -> dict[str, NDArray[np.complex128]]:
-    """Return what effects change about the ways from the torque.
-
-    Parameters
-    ----------
-    before, after : ImpulseResponses
-        At the rate of the motion.
-    length : int
-        Of the transforms, as of `n_closed`.
-
-    Returns
-    -------
-    dict of str to ndarray of complex, shape (length // 2 + 1,)
-        Of ``acceleration`` and ``pressure``, where they change [output unit per N m].
-    """
-    changes = {}
-    for name in _OUTPUTS:
-        one, other = (getattr(paths, f"torque_to_{name}") for paths in (before, after))
-        if one is other:
-            continue
-        change = np.zeros(max(one.size, other.size))
-        change[: other.size] += other
-        change[: one.size] -= one
-        changes[name] = np.asarray(rfft(change, length))
-    return changes
-
-
-def heard_of(
-    motion: Motion,
-    plan: Plan,
-    rig: Rig,
-    transfer_functions: Mapping[str, TransferFunction],
-    changes: Mapping[str, NDArray[np.complex128]],
-    paths: ImpulseResponses | None,
-    effects: Sequence[ActiveEffect] = (),
-) -> Sound:
-    """Send the torque of a motion, and pulses, to the sensors.
-
-    Parameters
-    ----------
-    motion : Motion
-        As `plan` has it.
-    plan : Plan
-    rig : Rig
-        Of the transfer functions; the clamp's mode is moved to where the plan's rig has it.
-    transfer_functions : mapping of str to TransferFunction
-        Of ``acceleration`` and ``pressure``, as `torque_transfer_functions` gives them.
-    changes : mapping of str to ndarray of complex, shape (n_lines,)
-        As of `chain_changes` [output unit per N m].
-    paths : ImpulseResponses, optional
-        Of pulses; asked for where an effect makes them.
-    effects : sequence of ActiveEffect
-
-    Returns
-    -------
-    Sound
-        As long as the motion; right while the plan keeps it.
-    """
-    kept = slice(plan.n_settling, plan.n_settling + plan.n_recorded)
-    more = round(_GOING_ON * plan.rate)
-    torque = motion.torque[: kept.stop]
-    torque = np.concatenate([torque, torque[-2 : -2 - more : -1]])
-    mean = float(torque[kept].mean())
-    torque = mean + faded(torque - mean, plan.rate)
-    at = (plan.interference, plan.support_stiffness)
-    bushing, scattered = lumped_bushing(rig, *at), lumped_bushing(plan.rig, *at)
-    spectrum = with_clamp_shifted(
-        closed_spectrum(torque, plan.rate), torque.size, plan.rate, bushing, scattered
-    )
-    found = predict_outputs(spectrum, torque.size, plan.rate, transfer_functions, changes)
-    acceleration, pressure = (found[name][: kept.stop] for name in _OUTPUTS)
-    force, pulses = pulse_force(motion, effects), np.zeros_like(pressure)
-    if paths is not None and np.any(force):
-        struck, pulses = radiate(paths, force, "pulse")
-        acceleration, pressure = acceleration + struck, pressure + pulses
-    return Sound(acceleration, pressure, pulses)
-
-
-def faded(signal: Array, rate: float) -> Array:
-    """Fade in and out.
-
-    Errors of a measured response have it ring before and after whatever is sudden, for as long as
-    its lines are fine. What rings on from before a recording must be in it, but the start from rest
-    and the end of the simulation must not.
-
-    Parameters
-    ----------
-    signal : ndarray, shape (n,)
-        [any unit]
-    rate : float
-        [Hz]
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [unit of the signal]
-
-    Examples
-    --------
-    >>> faded(np.ones(9), 40.0).round(2)
-    array([0.  , 0.25, 0.75, 1.  , 1.  , 1.  , 0.75, 0.25, 0.  ])
-    """
-    n = round(_FADE * rate)
-    slope = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, n))
-    gain = np.ones(signal.size)
-    gain[:n], gain[-n:] = slope, slope[::-1]
-    return np.asarray(signal * gain)
-
-
 _RUNNING_OUT = 0.12
 """Simulated after a recording ends [s]."""
-
-_OUTPUTS = ("acceleration", "pressure")
 
 
 def nominal_recordings(
@@ -248,13 +106,13 @@ def nominal_recordings(
         # What a sensor's filter does to a sound, it does to the torque that makes it.
         by_filter = {
             corner: decimate_sensed(motion.torque, decimation, plan.rate, Sensor(antialias=corner))
-            for corner in {corners[name] for name in ("torque", *_OUTPUTS)}
+            for corner in {corners[name] for name in ("torque", *OUTPUTS)}
         }
         angle = decimate_sensed(motion.shaft_angle, decimation, plan.rate, rig.sensors.of("angle"))
         lumped = lumped_bushing(once, *at)
         outputs: dict[str, Array] = {}
-        for corner in {corners[name] for name in _OUTPUTS}:
-            paths = {n: transfer_functions[n] for n in _OUTPUTS if corners[n] == corner}
+        for corner in {corners[name] for name in OUTPUTS}:
+            paths = {n: transfer_functions[n] for n in OUTPUTS if corners[n] == corner}
             mean = by_filter[corner][kept].mean()
             torque = mean + faded(by_filter[corner] - mean, rate)
             spectrum = with_clamp_shifted(
@@ -263,7 +121,7 @@ def nominal_recordings(
             outputs |= predict_outputs(spectrum, torque.size, rate, paths)
         signals = {
             "torque": by_filter[corners["torque"]][kept],
-            **{name: outputs[name][kept] for name in _OUTPUTS},
+            **{name: outputs[name][kept] for name in OUTPUTS},
             "angle": angle[kept] - angle[before],
         }
         through = rig.sensors.unfiltered()
@@ -347,117 +205,6 @@ def _with_effects(
         signals, rate, condition, rng, scatter,
         decimation=DIAGNOSIS.decimation(rate), sensors=rig.sensors,
     )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Scatter:
-    """Relative standard deviations from run to run.
-
-    Parameters
-    ----------
-    bushing : float
-        Of the elastomer's stiffness, damping and inertia, the kinetic torque, and what the
-        critical torque exceeds it by, each on its own; assumed [-].
-    structure : float
-        Of the clamp's inertia, the support's stiffness and the speed; assumed [-].
-    gain : float
-        Of the sensors' sensitivities; assumed [-].
-    noise : float
-        Of the sensors' noise, where it is known; assumed [-].
-    """
-
-    bushing: float = 0.02
-    structure: float = 0.004
-    gain: float = 0.01
-    noise: float = 0.1
-
-    def structure_factor(self, rng: np.random.Generator) -> float:
-        """Draw by what a value of the structure differs in one run [-]."""
-        return float(np.exp(self.structure * rng.normal()))
-
-
-def perturb_run(
-    rig: Rig,
-    condition: KnownCondition,
-    scatter: Scatter,
-    rng: np.random.Generator,
-    *,
-    support: bool = False,
-) -> tuple[Rig, KnownCondition]:
-    """Draw a rig and its condition as one of its runs finds them.
-
-    Parameters
-    ----------
-    rig : Rig
-    condition : KnownCondition
-    scatter : Scatter
-    rng : numpy.random.Generator
-    support : bool
-        Whether the support's stiffness scatters as well, where the clamp is not bolted down.
-
-    Returns
-    -------
-    Rig, KnownCondition
-
-    Examples
-    --------
-    >>> from models.condition import KnownCondition
-    >>> from models.rig_file import load_material_rig
-    >>> rig, at = load_material_rig("PDMS"), KnownCondition(5.0, 0.279e-3, 2214.0)
-    >>> once = perturb_run(rig, at, Scatter(), np.random.default_rng(1))[1]
-    >>> once.speed != 5.0, once.support_stiffness
-    (True, 2214.0)
-    """
-    stiffness = condition.support_stiffness
-    if support and not math.isinf(stiffness):
-        stiffness *= scatter.structure_factor(rng)
-    once = perturb_rig(rig, scatter, rng)
-    speed = condition.speed * scatter.structure_factor(rng)
-    return once, replace(condition, speed=speed, support_stiffness=stiffness)
-
-
-def perturb_rig(rig: Rig, scatter: Scatter, rng: np.random.Generator) -> Rig:
-    """Draw a rig as one of its runs finds it.
-
-    Parameters
-    ----------
-    rig : Rig
-    scatter : Scatter
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    Rig
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> once = perturb_rig(rig, Scatter(), np.random.default_rng(1))
-    >>> 0.9 < once.elastomer_inertia / rig.elastomer_inertia < 1.1
-    True
-    """
-    stiffness, kinetic, drop, damping, inertia = np.exp(scatter.bushing * rng.standard_normal(5))
-    # the support's stiffness scatters too; what counts is the clamp's frequency, hence the root
-    clamp = float(np.exp(math.sqrt(2.0) * scatter.structure * rng.standard_normal()))
-
-    def drawn(fit: Fit) -> Fit:
-        sliding = fit.kinetic_torque * float(kinetic)
-        excess = (fit.critical_torque - fit.kinetic_torque) * float(drop)
-        return replace(
-            fit,
-            elastomer_stiffness=fit.elastomer_stiffness * float(stiffness),
-            kinetic_torque=sliding,
-            critical_torque=sliding + excess,
-            damping={support: c * float(damping) for support, c in fit.damping.items()},
-        )
-
-    return replace(
-        rig,
-        fits=tuple(drawn(fit) for fit in rig.fits),
-        elastomer_inertia=rig.elastomer_inertia * float(inertia),
-        clamp_inertia=rig.clamp_inertia * clamp,
-    )
 
 
 CHANNELS = ("torque", "acceleration", "pressure", "angle")

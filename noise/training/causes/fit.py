@@ -24,7 +24,8 @@ from scipy.special import expit
 from noise.base.arrays import Array
 from noise.base.trees import BoostedTrees
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
-from noise.diagnosis.evidence.summary import CaseTable, evidence, scale_of
+from noise.diagnosis.evidence.case_row import evidence, scale_of
+from noise.diagnosis.evidence.summary import CaseTable
 from noise.diagnosis.simulated.repeats import CHANNELS
 from noise.training.causes.cases.draw import Truth, seen_through
 from noise.training.trees import as_arrays, boosted_nodes
