@@ -25,7 +25,7 @@ from noise.diagnosis.fit.decide import (
     weakened,
 )
 from noise.diagnosis.fit.fit import Fitted, split
-from noise.diagnosis.fit.fits import illustrations_of
+from noise.diagnosis.fit.fits import illustrations_of, strength_interval
 from noise.diagnosis.simulated.model_runs import Model
 from sim.effects import EFFECTS
 
@@ -233,3 +233,13 @@ def test_a_recording_whose_simulation_breaks_down_is_not_shown():
 
     case = SimpleNamespace(recordings=(None,), names=("a",), rig=None)
     assert illustrations_of(case, (0,), lambda recording: recording, breaks_down) == ()
+
+
+def test_a_strength_is_no_surer_than_its_form():
+    spec = LawSpec("slip_pulse", {"form": "triangle", "amplitude": 200.0})
+    comparison = SimpleNamespace(effect_of=lambda spec: EFFECTS[spec.name])
+    fitted = SimpleNamespace(comparison=comparison, spread={"slip_pulse.amplitude": 1e-3})
+    low, high = strength_interval(fitted, spec)
+    assert low * high == pytest.approx(200.0**2)
+    assert low < 100.0 < 400.0 < high
+    assert strength_interval(SimpleNamespace(comparison=comparison, spread={}), spec) is None

@@ -211,7 +211,7 @@ def _finding(
         stage=comparison.library[name].stage.value,
         probability=judged.probabilities.get(name, 0.0),
         parameters=spec.parameters,
-        strength=_strength(fitted, spec),
+        strength=strength_interval(fitted, spec),
         gap_before=rms(before),
         gap_recalibrated=rms(recalibrated),
         gap_after=rms(after),
@@ -224,14 +224,27 @@ def _finding(
     )
 
 
-def _strength(fitted: Fitted, spec: LawSpec) -> tuple[float, float] | None:
-    """Interval of an effect's strength, of whose logarithm the fit gives an error."""
+_OF_FORM = 0.5
+"""Standard deviation of a strength's logarithm by what its spread leaves out: another form, and
+other numbers of the effect that may stand for it. Of eleven effects of own simulations, refitted,
+6 of 11 were within their 90 % intervals without it and 10 with it; it was chosen on these."""
+
+
+def strength_interval(fitted: Fitted, spec: LawSpec) -> tuple[float, float] | None:
+    """Return the 90 % interval of an effect's strength; None where the fit does not move it.
+
+    Parameters
+    ----------
+    fitted : Fitted
+    spec : LawSpec
+        Effect of its model.
+    """
     strength = fitted.comparison.effect_of(spec).strength
     spread = fitted.spread.get(f"{spec.name}.{strength}")
     if spread is None:
         return None
-    value, factor = float(spec.parameters[strength]), math.exp(SURE_90 * spread)
-    low, high = sorted((value / factor, value * factor))
+    factor = math.exp(SURE_90 * math.hypot(spread, _OF_FORM))
+    low, high = sorted(float(spec.parameters[strength]) * x for x in (1.0 / factor, factor))
     return low, high
 
 
