@@ -230,4 +230,4 @@ def test_recordings_beyond_what_a_rig_was_fitted_to_are_remarked_once(weak):
     case = Case(rig, tuple("abcd"), tuple(weak))
     found = case_remarks(case, EFFECTS)
     assert len(found) == 1
-    assert "beyond 2, the fastest" in found[0]
+    assert "above 2 rad/s, the highest speed" in found[0]

@@ -141,7 +141,7 @@ def test_a_slider_is_heard(browser, app):
     opened.until(f"{DESIGN}.sound.heardSerial === {DESIGN}.sound.serial")
     opened.until(f"Math.abs({DESIGN}.speed - 21) < 0.1")
     assert opened.page.locator("#design-speed").input_value() == "21"
-    opened.page.get_by_text("beyond 13").wait_for()
+    opened.page.get_by_text("above 13 rad/s").wait_for()
     opened.page.locator("#view-design .level").get_by_text("dB(A)").wait_for()
     opened.close()
 

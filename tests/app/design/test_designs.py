@@ -158,7 +158,7 @@ def test_what_cannot_be_is_told_in_one_line(said, told):
 def test_conditions_outside_what_was_measured_are_said_to_be():
     remarks = design({"speed": 20.0, "interference": 0.45, "support": 3000.0}).remarks()
     said = " | ".join(remarks)
-    assert "beyond 13" in said
+    assert "above 13 rad/s" in said
     assert "for 0.45 mm the nearest is held" in said
     assert "damping is given for supports of" in said
     assert design({}).remarks() == []
