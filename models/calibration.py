@@ -255,7 +255,7 @@ def _check_monotonic(points: list[tuple[float, float]], name: str, where: str) -
         if sign * (after - before) <= 0.0:
             raise ParameterError(
                 f"{where}: from {name} = {low:g} to {high:g} the reading goes from {before:g} to "
-                f"{after:g}, elsewhere the other way; a reading must tell one value"
+                f"{after:g}, elsewhere the other way; a reading must have one value"
             )
 
 

@@ -162,14 +162,14 @@ def _target(rig: Rig, name: str, where: str) -> str:
     if name.partition("_mm")[0] == "interference":
         raise ParameterError(
             f"{where}: {name} is an operating condition, not a property of the bushing; leave it "
-            "out and ask for it with --interference"
+            "out and set it with --interference"
         )
     # A full name of the bushing takes precedence over parameters of the same name.
     whole = [short for short, long in _LONG.items() if name in (short, long)]
     targets = whole or [f"{own}.{name}" for own, law in owners.items() if name in law.parameters]
     if len(targets) > 1:
         possible = " or ".join(targets)
-        raise ParameterError(f"{where}: {name} can mean {possible}; write which")
+        raise ParameterError(f"{where}: {name} can mean {possible}; write the full name")
     if not targets:
         parameters = {f"{own}.{key}": key for own, law in owners.items() for key in law.parameters}
         names = [*dict.fromkeys((*_LONG, *_LONG.values(), *parameters))]
@@ -211,8 +211,8 @@ def _resized(rig: Rig, amounts: Mapping[str, _Amount], where: str) -> Rig:
     old = rig.sleeve
     if old is None:
         raise ParameterError(
-            f"{where}: {named[0]} needs a [sleeve] table in the rig file, of what its fits were "
-            "measured on: inner_radius_mm, wall_mm, length_mm, and hardness_shore_A or "
+            f"{where}: {named[0]} needs a [sleeve] table in the rig file, for the sleeve of "
+            "its fits: inner_radius_mm, wall_mm, length_mm, and hardness_shore_A or "
             "youngs_modulus_MPa"
         )
     units = {name: declared(Sleeve)[name].size for name in named}

@@ -180,7 +180,7 @@ def check_inflation(path: Path) -> None:
         members = archive.infolist()
     for member in members:
         if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-            raise ValueError(f"{member.filename} is compressed in a way that is not known")
+            raise ValueError(f"{member.filename} has an unknown compression")
     total = sum(member.file_size for member in members)
     if total > max(_ALLOWANCE, _MOST * size):
         raise ExcessError(f"would inflate from {size / 1e6:.3g} MB to {total / 1e6:.3g} MB")

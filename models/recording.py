@@ -192,7 +192,7 @@ class Recording:
         from models.drawing import CHANNEL_LOOKS, axes_or_new, thinned
 
         if not self.samples.size:
-            raise ParameterError(f"recording {self.name!r} holds nothing that could be drawn")
+            raise ParameterError(f"recording {self.name!r} has no samples to plot")
         name = channel or self.channel_names[self.first("pressure") or 0]
         samples, kind = self[name], name.partition("_")[0]
         look, number = CHANNEL_LOOKS[kind], name.removeprefix(kind).replace("_", " ")

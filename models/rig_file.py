@@ -320,7 +320,7 @@ def measured_responses(tables: Any, folder: Path, where: str) -> tuple[MeasuredR
 
     if not isinstance(tables, list):
         raise ParameterError(
-            f"{where}: measured_response must be entries as [[measured_response]] tables"
+            f"{where}: measured_response must be given as [[measured_response]] tables"
         )
     responses: list[MeasuredResponse] = []
     for i, content in enumerate(tables, start=1):

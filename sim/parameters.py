@@ -36,7 +36,7 @@ class Parameter:
 
 
 def resolve(
-    owner: str, declared: Mapping[str, Parameter], values_set: Mapping[str, float | str]
+    owner: str, declared: Mapping[str, Parameter], overrides: Mapping[str, float | str]
 ) -> dict[str, float]:
     """Return the values of all declared parameters, with defaults for those not set.
 
@@ -51,13 +51,13 @@ def resolve(
     >>> resolve("slip_pulse", declared, {"duration": 1e-4})
     {'duration': 0.0001}
     """
-    for name in values_set:
+    for name in overrides:
         if name not in declared:
             known = ", ".join(declared) or "none"
             raise ParameterError(f"{owner}: no parameter {name!r}; it has {known}")
     values = {}
     for name, parameter in declared.items():
-        raw = values_set.get(name, parameter.default)
+        raw = overrides.get(name, parameter.default)
         try:
             value = float(raw)
         except (TypeError, ValueError):

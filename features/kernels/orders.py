@@ -120,7 +120,7 @@ def order_map(
     mean = frames.mean(axis=1)
     fastest = float(mean.max())
     if not fastest > 0.0:
-        raise ParameterError("the shaft stands, so there are no orders")
+        raise ParameterError("the shaft stands still, so there are no orders")
     moving, steady = mean >= _SLOWEST * fastest, np.ptp(frames, axis=1) <= _STEADY * mean
     used = np.flatnonzero(moving & steady if (moving & steady).any() else moving)
     speeds = _columns(mean[used])

@@ -210,7 +210,7 @@ class Modes:
         from models.drawing import CURVES, GREY, axes_or_new, frequency_axis
 
         if not self.frequency.size:
-            raise ParameterError("there is no mode that could be drawn")
+            raise ParameterError("there is no mode to plot")
         low = _MARGIN * float(self.frequency[0])
         frequency = np.geomspace(low, self.highest, _POINTS)
         several = len(self.residues) > 1
