@@ -1,14 +1,14 @@
-// Requests to the server, and the line that tells what happened.
+// Requests to the server, and the status line.
 
 export const GONE = "The program does not answer any more; start it again by `bushing-noise open`.";
 const ENDED = "The program that this page is of has ended; open the address that it prints now.";
-// Kept by the tab, not by its address and history. The cookie is that of the page that was opened last,
+// The token is stored per tab, not in address and history. The cookie belongs to the page opened last,
 // which may be of another folder at the same port.
 const TOKEN = new URLSearchParams(location.search).get("token") ?? sessionStorage.token ?? null;
 if (TOKEN !== null) sessionStorage.token = TOKEN;
 history.replaceState(null, "", `${location.pathname}${location.hash}`);
 
-// GET without a body, POST of JSON with one; an error is thrown, and told unless the caller does that.
+// GET without a body, POST of JSON with one; errors are thrown and shown by `tell`.
 export async function api(path, body, tell = told) {
   const answer = await request(path, body, tell);
   return answer.json();
@@ -41,7 +41,7 @@ async function request(path, body, tell = told) {
   return answer;
 }
 
-// An error goes when the same request succeeds; "" is that the program does not answer.
+// An error is cleared when the same kind of request succeeds; kind "" means that the program does not answer.
 export function told(text, by = null) {
   told.by = by;
   document.getElementById("status").textContent = text;

@@ -1,4 +1,4 @@
-// Nodes of a page, and work that waits until a view is shown.
+// Creation of nodes, and actions deferred until a view is shown.
 
 export function made(tag, properties = {}, ...children) {
   const { data, ...rest } = properties;
@@ -10,7 +10,7 @@ export function made(tag, properties = {}, ...children) {
 
 export const stylesheet = (address) => document.head.append(made("link", { rel: "stylesheet", href: address.href }));
 
-// Act where a node is in the page, else once it is: of a view that is not shown nothing is asked for.
+// Act now if a node is in the page, else when its view is shown.
 export function onceShown(node, act) {
   if (node.isConnected) act();
   else document.addEventListener("view-shown", () => onceShown(node, act), { once: true });

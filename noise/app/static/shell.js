@@ -1,10 +1,10 @@
-// The page that the views stand in: tabs, requests, what is told. A view is mounted when it is first shown,
-// and only the one that is shown is in the page: whoever votes in a jury finds no name in another.
+// Page of the app: tabs and views. A view is mounted when it is first shown, and only the current view is in
+// the page, so that a blind jury cannot read names in another.
 import { api, told } from "./api.js";
 
 const tabs = [...document.querySelectorAll("[role=tab]")];
 const mounted = {};
-const away = {}; // by view: its nodes, and how far they are scrolled
+const away = {}; // nodes and scroll positions by view
 let shown = null;
 
 const panelOf = (view) => document.getElementById(`view-${view}`);
@@ -28,7 +28,7 @@ function bringBack(view) {
 async function show(name) {
   if (shown !== null && shown !== name) {
     putAway(shown);
-    if (told.by !== "") told(""); // an error of another view; that the program does not answer stays
+    if (told.by !== "") told(""); // clear errors of another view, but not that the program does not answer
   }
   shown = name;
   for (const tab of tabs) {
@@ -44,7 +44,7 @@ async function show(name) {
     mounted[name].catch((error) => told(`This view could not start: ${error.message}`));
   }
   const view = await mounted[name];
-  if (shown !== name) { // another one was chosen meanwhile
+  if (shown !== name) { // another view was chosen meanwhile
     putAway(name);
     return view;
   }

@@ -1,10 +1,10 @@
-// Which noise is where over speed and interference, the point that is heard in it, and what would end its noise.
+// Noise map over speed and interference with the current point, and advice on ending the noise.
 import { api } from "../api.js";
 import { made } from "../dom.js";
 
 const AGAIN = 500, AFTER = 1000; // ms
-const FIRST = 3, WORK = [1, 3, 9]; // that the coarsest map takes at first [s]; how many times as long each takes
-const SEARCH = 10; // that advice takes at first [s]
+const FIRST = 3, WORK = [1, 3, 9]; // expected duration of the coarsest map [s]; relative durations of the maps
+const SEARCH = 10; // expected duration of advice [s]
 const QUESTION = "What would end the noise?";
 
 export class Chart {
@@ -20,7 +20,7 @@ export class Chart {
       made("section", {}, made("h2", { textContent: "What to change" }), made("div", { className: "tools" }, this.ask), this.helps));
   }
 
-  // A design has changed: the map follows when there is time.
+  // Update the map after a change of the design.
   changed() {
     clearTimeout(this.later);
     this.following = null;
@@ -32,7 +32,7 @@ export class Chart {
     this.point();
   }
 
-  // A coarse map first, which is soon there.
+  // Request a coarse map first, then finer ones.
   async #follow() {
     const stated = this.design.stated(), mine = this.following = {};
     const wanted = () => mine === this.following && !this.design.hidden();
@@ -50,13 +50,13 @@ export class Chart {
       this.took.map = Math.max(0.5, answer.took / work);
       this.legend = `${answer.found.legend}.`;
       this.box.classList.remove("old");
-      this.box.innerHTML = answer.found.html; // as pages have it
+      this.box.innerHTML = answer.found.html; // as on pages
       this.point();
     }
     this.said.textContent = `${this.legend} At constant speed, for this support and temperature; partly simulated, partly from stability analysis.`;
   }
 
-  // Where on the map it is.
+  // Show the current point on the map.
   point() {
     const map = this.box.querySelector(".map"), here = map?.querySelector(".asked");
     if (!here) return;
@@ -102,7 +102,7 @@ export class Chart {
 
 const left = (all, since) => (since < all ? `about ${Math.ceil(all - since)} s left` : `${Math.floor(since)} s so far, longer than expected`);
 
-// Ask until it is known, or nobody wants to know any more; meanwhile say since when [s].
+// Poll until the answer is known or no longer wanted; `tell` gets the elapsed time [s].
 async function asked(path, stated, wanted, tell) {
   const began = performance.now(), since = () => (performance.now() - began) / 1000;
   while (wanted()) {

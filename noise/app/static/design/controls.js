@@ -1,4 +1,4 @@
-// Sliders, fields, switches and choices, as the server declares them.
+// Sliders, fields, switches and choices declared by the server.
 import { made } from "../dom.js";
 
 const TICKS = 1000;
@@ -26,23 +26,23 @@ export class Controls extends EventTarget {
     this.#reveal();
   }
 
-  // Put values; all others become those of the base.
+  // Set values; all others become those of the base.
   put(values) {
     for (const one of this.declared.values()) this.#set(one.key, values[one.key] ?? one.value);
     this.#reveal();
   }
 
-  // Only what differs from the base.
+  // Values that differ from the base.
   get changed() {
     return Object.fromEntries([...this.values].filter(([key, value]) => value !== this.declared.get(key).value));
   }
 
-  // How the rig is run, which is no matter of the base.
+  // Values of the operating condition.
   get condition() {
     return Object.fromEntries([...this.values].filter(([key]) => this.declared.get(key).condition));
   }
 
-  // What differs from the base and counts, in words; of those controls that are asked for.
+  // Visible differences from the base in words, of selected controls.
   words(asked = () => true) {
     const found = Object.keys(this.changed).filter((key) => !this.shown.get(key).row.hidden).map((key) => this.declared.get(key));
     return found.filter(asked).map((one) => `${name(one.label)} ${this.#said(one)}`).join(", ");
@@ -54,7 +54,7 @@ export class Controls extends EventTarget {
     return kind === "choice" ? choices[value] : value ? "on" : "off";
   }
 
-  // Numbers of the bushing as they have become, beside their factors.
+  // Show resulting quantities of the bushing beside their factors.
   told(facts) {
     for (const [key, { fact }] of this.shown) if (fact) fact.textContent = facts[key.slice("change.".length)] ?? "";
   }
@@ -113,7 +113,7 @@ export class Controls extends EventTarget {
     this.dispatchEvent(new CustomEvent("change", { detail: one.key }));
   }
 
-  // What counts only with something else is seen only with it.
+  // Hide controls that have no effect.
   #reveal() {
     for (const [key, { row }] of this.shown) {
       const { only } = this.declared.get(key);
@@ -131,10 +131,10 @@ const shareOf = ({ low, high, log }, value) => {
   return Math.min(1, Math.max(0, share || 0));
 };
 
-// All digits that a rig file has, with an exponent where zeros would push them out of the field.
+// Number with all digits of a rig file, with an exponent if it is very small or large.
 const written = (value) => (value && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e7) ? Number(value.toPrecision(6)).toExponential() : String(value));
 
-// As many digits as a step of the slider has.
+// Round to the digits of a slider step.
 function rounded(value, { low, high, log }) {
   const step = log ? value * Math.log(high / low) / TICKS : (high - low) / TICKS;
   const digits = Math.ceil(-Math.log10(step));

@@ -1,11 +1,11 @@
-// Torque over time and spectrum of the pressure, of what was heard last.
+// Torque over time and pressure spectrum of the latest sound.
 import { DEEP, LINE, sheet, SOFT } from "../labels/timeline.js";
 import { ticks } from "../shared/player.js";
 
-const TOP = 100; // of the spectrum, from 0 on [dB]
+const TOP = 100; // top of the spectrum [dB]
 const LOWEST = 50, HIGHEST = 20000; // Hz
-const SHOWN = 0.2; // of the torque [s]
-const EVERY = 120; // drawn anew [ms]
+const SHOWN = 0.2; // duration of the torque [s]
+const EVERY = 120; // redraw interval [ms]
 
 export class Drawings extends EventTarget {
   constructor({ rate, torque_step: step }, sound, torque, spectrum) {
@@ -23,7 +23,7 @@ export class Drawings extends EventTarget {
     setTimeout(() => requestAnimationFrame(() => { this.dirty = false; this.draw(); this.dispatchEvent(new Event("drawn")); }), EVERY);
   }
 
-  // Before anything is heard the diagrams are empty.
+  // Diagrams are empty before the first sound.
   draw() {
     this.#torque(this.sound.blocks ? this.torque : []);
     this.#spectrum(this.sound.spectrum());
@@ -40,7 +40,7 @@ export class Drawings extends EventTarget {
     curve(pen, Array.from(of, (value, i) => [x(i / (of.length - 1)), y((value - centre + half) / (2 * half))]));
   }
 
-  // In each column of the screen the highest line.
+  // Draw the maximum line in each column of the screen.
   #spectrum(levels) {
     const rows = [0, 20, 40, 60, 80, 100].map((level) => [level / TOP, `${level}`]);
     const columns = [50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000].map((f) => [Math.log(f / LOWEST) / Math.log(HIGHEST / LOWEST), f < 1000 ? `${f}` : `${f / 1000}k`]);
@@ -55,7 +55,7 @@ export class Drawings extends EventTarget {
 
 const LEFT = 34, BELOW = 16, ABOVE = 14; // room for numbers and units [px]
 
-// An empty diagram, its numbers outside of it; [share of the axis, text] of each row and column.
+// Draw empty axes; rows and columns are [share of the axis, text].
 function axes(canvas, rows, columns, up, along) {
   const { pen, width: whole, height: full } = sheet(canvas), width = whole - LEFT - 8, height = full - BELOW - ABOVE;
   const x = (share) => LEFT + share * width, y = (share) => ABOVE + (1 - share) * height;

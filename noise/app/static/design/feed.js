@@ -1,7 +1,7 @@
-// Beside the page: reads the stream of blocks and hands them to the audio thread; tells the program what has changed.
+// Worker that passes the stream of blocks to the audio thread, and changes to the program.
 const HEADER = 20, HEADROOM = 1.12; // bytes; peaks between two samples are higher
 const STEPS = [1, 2, 5, 10];
-const REFUSED = 0xFFFFFFFF; // in place of a sequence: a reason follows
+const REFUSED = 0xFFFFFFFF; // sequence number of a refusal, followed by its reason
 
 let address = "", run = 0, port = null, fullScale = 0.1, waiting = null, telling = false;
 
@@ -22,13 +22,13 @@ const post = (what, said) => fetch(address + what, { method: "POST", headers: { 
 
 const refused = (reason, serial) => self.postMessage({ refused: reason, serial });
 
-// Changes go out one after the other; of those that wait meanwhile the newest counts.
+// Send changes one after the other; only the newest waiting change is sent.
 async function tell() {
   telling = true;
   while (waiting) {
     const mine = waiting;
     waiting = null;
-    const answer = await post("change", { run, ...mine }).catch(() => null); // the stream ends then as well
+    const answer = await post("change", { run, ...mine }).catch(() => null); // the stream ends as well
     if (answer && !answer.ok) refused(await reason(answer), mine.serial);
   }
   telling = false;
@@ -66,7 +66,7 @@ function joined(first, second) {
   return both;
 }
 
-// Bytes of the message that begins there, 0 while that is not known.
+// Size of the first message [byte], 0 if incomplete.
 function sizeOf(bytes) {
   if (bytes.length < HEADER) return 0;
   const [sequence, , n, m] = new Uint32Array(bytes.slice(0, HEADER).buffer, 0, 4);

@@ -1,25 +1,25 @@
-// In the audio thread: plays blocks of pressure one after the other at one gain, and keeps a small reserve.
-const FIRST = 0.12; // to be in reserve before it begins, when there is most to do besides [s]
-const LOW = 0.006, AIM = 0.014, HIGH = 0.02; // reserve as a block comes, below and above which blocks are to come sooner and later [s]
-const CALM = 2; // without less in reserve, before blocks are to come later [s]
-const PATIENCE = 0.25; // until what was asked for shows [s]
-const FULL = 0.5; // in reserve, where nobody listens [s]
-const RAMP = 240; // samples in which a gain is another
+// Audio worklet that plays blocks of pressure at one gain from a small buffer.
+const FIRST = 0.12; // delay before playing, when the load is highest [s]
+const LOW = 0.006, AIM = 0.014, HIGH = 0.02; // buffer on arrival of a block: bounds and target of the schedule [s]
+const CALM = 2; // time above the bound before the schedule is delayed [s]
+const PATIENCE = 0.25; // minimum time between requests [s]
+const FULL = 0.5; // buffer of a suspended page [s]
+const RAMP = 240; // samples of a gain change
 
 class Ring extends AudioWorkletProcessor {
   constructor({ processorOptions: { block } }) {
     super();
     this.block = block;
     this.blocks = [];
-    this.at = 0; // sample of the first block
+    this.at = 0; // position in the first block
     this.gain = 0;
     this.aim = 0;
-    this.begins = Infinity; // time at which it plays
+    this.begins = Infinity; // start of playback
     this.playing = false;
     this.stopped = false;
     this.serial = -1;
-    this.least = Infinity; // in reserve, since the pace was looked at
-    this.calm = 0; // times at which the pace is looked at anew
+    this.least = Infinity; // smallest buffer since the last check
+    this.calm = 0; // time of the next check
     this.asked = 0;
     this.port.onmessage = ({ data }) => this.told(data);
   }
@@ -43,7 +43,7 @@ class Ring extends AudioWorkletProcessor {
     else if (this.begins === Infinity) this.begins = currentTime + FIRST;
   }
 
-  // Ask for another pace where there is too little in reserve, or for long too much.
+  // Request a shift of the schedule if the buffer is too small, or too large for long.
   look(reserve) {
     this.least = Math.min(this.least, reserve);
     if (currentTime < this.asked + PATIENCE && reserve < FULL) return;
@@ -74,7 +74,7 @@ class Ring extends AudioWorkletProcessor {
     }
     while (this.playing && first < output.length) {
       const block = this.blocks[0];
-      if (!block) break; // it has not come in time
+      if (!block) break; // the block is late
       if (this.at === 0 && block.serial !== this.serial) {
         this.serial = block.serial;
         this.port.postMessage(block.serial);

@@ -1,7 +1,7 @@
-// The sound of the design: a worker reads its blocks, the audio thread plays them, an analyser has their spectrum.
-const QUIETEST = 0.1; // nothing is amplified beyond this full scale [Pa]
-const BLACKMAN = 0.42; // mean of the analyser's window
-const LINES = 4096; // of the spectrum
+// Sound of the design: a worker reads blocks, an audio worklet plays them, an analyser computes the spectrum.
+const QUIETEST = 0.1; // smallest full scale [Pa]
+const BLACKMAN = 0.42; // mean of the analyser window
+const LINES = 4096; // lines of the spectrum
 
 export class Sound extends EventTarget {
   constructor({ rate, block }) {
@@ -9,23 +9,23 @@ export class Sound extends EventTarget {
     this.rate = rate;
     this.block = block;
     this.fullScale = QUIETEST;
-    this.blocks = 0; // that have come
-    this.levels = new Float32Array(LINES); // of the spectrum [dB]
-    this.serial = 0; // of the newest change
-    this.refusedSerial = -1; // of the newest that could not be
+    this.blocks = 0; // received blocks
+    this.levels = new Float32Array(LINES); // levels of the spectrum [dB]
+    this.serial = 0; // serial of the newest change
+    this.refusedSerial = -1; // serial of the newest refused change
     this.design = null;
   }
 
   get playing() { return Boolean(this.node); }
 
-  // Let a design be heard, from now on or when it is played.
+  // Set the design, now or for the next start.
   change(design) {
     this.design = design;
     this.serial += 1;
     this.worker?.postMessage({ design: { design, serial: this.serial } });
   }
 
-  // Levels of the lines of what is heard, as a tone of that frequency would have them [dB re 20 uPa]; none before it is played.
+  // Tone levels of the spectrum lines [dB re 20 uPa]; empty before the first start.
   spectrum() {
     if (!this.analyser) return [];
     this.analyser.getFloatFrequencyData(this.levels);
@@ -72,7 +72,7 @@ export class Sound extends EventTarget {
     this.#tell("change");
   }
 
-  // The gain follows the loudest so far; from now on it does anew, from a full scale [Pa] on.
+  // Reset the full scale [Pa], which follows the loudest sound from then on.
   fit(fullScale = QUIETEST) {
     this.fullScale = fullScale;
     this.worker?.postMessage({ fullScale });

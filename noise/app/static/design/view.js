@@ -1,4 +1,4 @@
-// A design that is heard while it is changed.
+// Design view: live sound of a design during changes.
 import { api } from "../api.js";
 import { made, stylesheet } from "../dom.js";
 import { Chart } from "./chart.js";
@@ -16,7 +16,7 @@ export async function mount(panel) {
   const view = made("div", { className: "design-view" });
   const left = made("div", { className: "left" }), right = made("div", { className: "right" });
   const base = made("select", { id: "design-base", onchange: () => rebase() }, ...about.bases.map(({ id, name }) => made("option", { value: id, textContent: name })));
-  const play = made("button", { type: "button", className: "play", textContent: "Play", disabled: true, onclick: () => toggle() }); // until there is a design
+  const play = made("button", { type: "button", className: "play", textContent: "Play", disabled: true, onclick: () => toggle() }); // until a design is loaded
   const slots = ["A", "B"].map((name) => made("button", { type: "button", className: "slot", textContent: name, ariaPressed: String(name === "A"), onclick: () => choose(name) }));
   const copy = made("button", { type: "button", onclick: () => copied() });
   const reset = made("button", { type: "button", textContent: "Reset to base", onclick: () => toBase() });
@@ -52,7 +52,7 @@ export async function mount(panel) {
     made("section", {}, made("h2", { textContent: "Playback level" }), made("div", { className: "tools" }, made("label", { htmlFor: "design-full-scale", textContent: "Full scale, Pa" }), scale, gain, fit)));
   right.append(saving(design));
 
-  // Show the controls of a base; false where another one was chosen meanwhile, or there is no answer.
+  // Show the controls of a base; false if another one was chosen meanwhile, or the request failed.
   async function take(id) {
     base.value = id;
     let found;
@@ -84,14 +84,14 @@ export async function mount(panel) {
       const { serial } = sound;
       let found = { facts: {}, remarks: [] }, why = "";
       try { found = await api("design/facts", states[slot], () => {}); } catch (error) { why = error.message; }
-      if (serial !== sound.serial) return; // of numbers that are no longer shown
+      if (serial !== sound.serial) return; // outdated
       judge(serial, why);
       controls.told(found.facts);
       remarks.replaceChildren(...found.remarks.map((textContent) => made("li", { textContent })));
     }, FACTS_AFTER);
   }
 
-  // Whether the newest change can be. Where it cannot, all that is heard and shown is marked.
+  // Mark the results as those of the previous design if the newest change is invalid.
   function judge(serial, why = "") {
     if (serial !== sound.serial || (!why && serial === sound.refusedSerial)) return;
     view.classList.toggle("refused", Boolean(why));
@@ -113,7 +113,7 @@ export async function mount(panel) {
     changed();
   }
 
-  // Another base keeps the condition, and drops what was changed of the one before.
+  // Choose another base: keep the condition and drop other changes.
   async function rebase() {
     const { condition } = controls, left = baseOf(shown), dropped = controls.words(({ condition: stays }) => !stays);
     if (!await take(base.value)) return;
@@ -185,13 +185,13 @@ export async function mount(panel) {
   silent();
   new ResizeObserver(() => drawings.draw()).observe(right);
   await put({ base: about.bases[0].id, values: {} });
-  panel.replaceChildren(view); // all of it at once
+  panel.replaceChildren(view); // only when it is complete
   play.disabled = false;
   design.ready = true;
   return design;
 }
 
-// What is heard, "squawk, 255 Hz, 72 dB(A)", and whether it can be heard at the gain it is played at.
+// Name of the sound, "squawk, 255 Hz, 72 dB(A)", and its levels.
 function words({ label, frequency_hz: frequency, level_dba: level, l_afmax_dba: most }, fullScale) {
   if (level === null) return ["Listening ...", "The name and the level are those of the last second."];
   const called = { none: "none: no creak, squawk or squeal", unknown: "unknown noise", undefined: "naming ..." }[label] ?? label;
@@ -201,7 +201,7 @@ function words({ label, frequency_hz: frequency, level_dba: level, l_afmax_dba: 
   return [[called, ...tone, `${level.toFixed(0)} dB(A)`].join(", "), `Last second: ${level.toFixed(1)} dB(A), at most ${most.toFixed(1)} dB(A) Fast, re 20 µPa${inaudible}`];
 }
 
-// The design saved as a rig file; a name that is taken is written over where it is asked for a second time.
+// Section that saves the design as a rig file; a second click replaces an existing file.
 function saving(design) {
   let again = null;
   const field = made("input", { id: "design-name", type: "text", value: "design", spellcheck: false, autocomplete: "off", oninput: () => { again = null; } });

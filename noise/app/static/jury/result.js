@@ -1,4 +1,4 @@
-// The scale that votes give, as a table: value and 95 % interval of each sound, and the same as bars on one axis.
+// Result of a jury: table of values and 95 % intervals, with bars on a common axis.
 import { api } from "../api.js";
 import { made } from "../dom.js";
 
@@ -23,7 +23,7 @@ export class Result {
   async open(number) {
     this.number = number;
     const found = await api(`juries/${number}/result`);
-    if (number !== this.number) return; // another was asked for before this came
+    if (number !== this.number) return; // outdated
     this.title.textContent = found.question;
     this.facts.textContent = [found.listener, `played at ${found.played}`, `${found.voted} of ${found.total} comparisons voted`].filter(Boolean).join(" · ");
     this.words.textContent = found.words;

@@ -1,16 +1,16 @@
-// Begin a jury, or go on with one: which sounds, what is asked, how they are played.
+// Setup of a jury: sounds, question, playback; or continuation of an earlier one.
 import { api } from "../api.js";
 import { made } from "../dom.js";
 
 const KINDS = ["all", "creak", "squawk", "squeal", "none", "unknown", "unlabelled"];
-const AT_FIRST = 8; // sounds that are chosen to begin with, at most
-const SECONDS = 10; // that a comparison takes, about
+const AT_FIRST = 8; // maximum number of sounds chosen at first
+const SECONDS = 10; // typical duration of a comparison
 
 export class Setup {
   constructor(element, goes) {
     this.goes = goes;
     this.element = element;
-    this.asked = 0; // counts lists: one that was asked for before comes too late
+    this.asked = 0; // number of the newest list request
     this.chosen = null; // ids
     this.shown = [];
     this.#build(element);
@@ -46,14 +46,14 @@ export class Setup {
 
   async open() {
     const { juries, most, longest_s: longest } = await api("juries");
-    if (this.element.hidden) return; // somebody votes
+    if (this.element.hidden) return; // voting has started
     Object.assign(this, { most, longest });
     this.goingOn.hidden = !juries.length;
     this.going.replaceChildren(...juries.map((jury) => this.#jury(jury)).reverse());
     await this.#list();
   }
 
-  // While somebody votes no name is in the page.
+  // Remove all names during voting.
   clear() {
     clearTimeout(this.wait);
     this.sounds.replaceChildren();
@@ -101,7 +101,7 @@ export class Setup {
   }
 
   async #begin() {
-    this.element.inert = true; // all sounds are measured first
+    this.element.inert = true; // while all sounds are measured
     this.plan.textContent = "Measuring the sounds ...";
     try {
       const { jury } = await api("juries", { sounds: [...this.chosen], comparisons: Number(this.number.value), question: this.question.value, listener: this.listener.value, played: this.played.value });

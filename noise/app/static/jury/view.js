@@ -1,4 +1,4 @@
-// The view of a jury: begin or go on, vote blind, see the scale.
+// Jury view: setup, blind voting, result.
 import { made, stylesheet } from "../dom.js";
 import { Result } from "./result.js";
 import { Setup } from "./setup.js";

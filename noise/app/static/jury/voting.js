@@ -1,11 +1,11 @@
-// Two sounds without names, in step; a vote is in the table before the next two come.
+// Voting: two synchronous sounds without names; each vote is saved before the next comparison.
 import { api, told } from "../api.js";
 import { made } from "../dom.js";
 import { listen } from "../labels/keys.js";
 import { RecordingPlayer } from "../labels/player.js";
 import { wav } from "../labels/sounds.js";
 
-const RATE = 48000; // of the sounds that come [Hz]
+const RATE = 48000; // sampling rate of the sounds [Hz]
 const VOTES = { 1: "first", 2: "second", 0: "equal" };
 const KEYS = "Keys: A, B to hear A, B; X the other one; Space to play and pause; L loop; 1, 2 to choose A, B; 0 no difference; U undo.";
 
@@ -15,7 +15,7 @@ export class Voting {
     this.player = new RecordingPlayer(({ samples }) => Promise.resolve(samples));
     this.kept = new Map(); // sounds of this comparison and the next
     this.ready = false;
-    this.shown = 0; // counts what is shown: what was asked for before comes too late
+    this.shown = 0; // number of the newest comparison; earlier answers are outdated
     this.#build(element);
     this.#playing();
     this.player.addEventListener("change", () => this.#playing());
@@ -29,7 +29,7 @@ export class Voting {
   #build(element) {
     const button = (textContent, action, className = "") => {
       const one = made("button", { type: "button", textContent, className });
-      // A click of the mouse leaves the keys where they were.
+      // Keep the keyboard focus after a mouse click.
       one.addEventListener("click", ({ detail }) => { if (detail) this.stage.focus(); action(); });
       return one;
     };
@@ -61,7 +61,7 @@ export class Voting {
     this.player.kept.clear();
     this.#playing();
     this.saved.textContent = "";
-    told(""); // what went wrong before may name a sound
+    told(""); // an earlier error may contain a name
     const state = await api(`juries/${number}`);
     if (shown !== this.shown) return;
     this.gain.textContent = `Played at ${state.gain}.`;
@@ -158,7 +158,7 @@ export class Voting {
     if (this.voted) await this.#write("undo", { place: this.voted - 1 }, "undone");
   }
 
-  // What is shown afterwards is what the table has, whatever became of it.
+  // Write a vote or undo, then show the state of the table.
   async #write(what, body, word) {
     if (this.busy) return;
     this.busy = true;

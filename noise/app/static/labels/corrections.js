@@ -1,41 +1,41 @@
-// Segments of the recording that is open: each change is written at once, in the order of the keys, and goes back where it cannot be.
+// Segments of the open recording: changes are shown at once, saved in order, and reverted on failure.
 import { api } from "../api.js";
 import { painted } from "./edits.js";
 
-// Undo takes back what was said on this page, and on the same before it was loaded again.
+// Identifier of the page for undo, which survives a reload.
 const PAGE = (sessionStorage.page ??= crypto.randomUUID());
 
 export class Corrections extends EventTarget {
-  // `tell` says what has become of the last change.
+  // `tell` shows the result of the last change.
   constructor(tell) {
     super();
     this.tell = tell;
     this.rows = [];
     this.track = "all";
-    this.saved = null; // rows as the table has them; none is known before they have come
-    this.history = { undo: false, redo: false }; // what there is to undo and redo
-    this.versions = new Map(); // of the rows of each recording, which a change of them is based on
-    this.taken = 0; // how often rows of the table came
-    this.queue = []; // what is still to be done: { id, name, rows, kind } is written, { undone } undoes
-    this.sending = null; // of the queue
+    this.saved = null; // saved rows; null while they are loading
+    this.history = { undo: false, redo: false }; // whether undo and redo are possible
+    this.versions = new Map(); // version of the rows of each recording
+    this.taken = 0; // number of row updates
+    this.queue = []; // pending work: { id, name, rows, kind } to save, { undone } to undo
+    this.sending = null; // current work
     this.working = null;
     this.undoing = null;
   }
 
-  // Until rows have come there are none to correct: what is written then would replace what nobody has seen.
+  // Close the rows; corrections are impossible until new rows have loaded.
   leave(id) {
     Object.assign(this, { id, name: "", duration: null, rows: [], saved: null });
     this.#tell();
   }
 
   async open({ id, name, duration_s: duration }) {
-    const awaited = id === this.id && this.saved && !this.rows.length; // labels are: any may be given meanwhile
+    const awaited = id === this.id && this.saved && !this.rows.length; // unlabelled so far, and labels may have arrived
     if (!awaited) this.leave(id);
     Object.assign(this, { name, duration });
     await this.#read();
   }
 
-  // What was asked for before something was written may be older than that. Whether it is another than was known comes of it.
+  // Read rows, again if something was saved meanwhile; return whether the version is new.
   async #read() {
     const { id } = this;
     let answer, taken;
@@ -49,7 +49,7 @@ export class Corrections extends EventTarget {
     return isOther;
   }
 
-  // Somebody else may have changed the table: then its rows are shown anew.
+  // Reload the rows if another page or program has changed them.
   async seen({ id, version }) {
     if (id !== this.id || !this.saved || this.working || version === this.versions.get(id)) return;
     const wereNone = !this.rows.length;
@@ -58,12 +58,12 @@ export class Corrections extends EventTarget {
 
   get tracks() { return [...new Set(this.rows.map((row) => row.channel))]; }
 
-  // Rows of a track in order of time.
+  // Rows of a track, sorted by time.
   of(track) { return this.rows.filter((row) => row.channel === track).sort((one, two) => one.start_s - two.start_s); }
 
   get shown() { return this.of(this.track); }
 
-  // Tracks with the same labels are one lane, corrected together: [{ tracks, rows }].
+  // Lanes [{ tracks, rows }]: tracks with equal labels share one.
   get lanes() {
     const lanes = new Map();
     for (const track of this.tracks) {
@@ -74,7 +74,7 @@ export class Corrections extends EventTarget {
     return [...lanes.values()];
   }
 
-  // What is still to be written of it stays shown.
+  // Take rows of the table; unsaved changes stay visible.
   #take({ id, rows, version, history }) {
     this.versions.set(id, version);
     this.history = history;
@@ -98,22 +98,22 @@ export class Corrections extends EventTarget {
 
   #tell() { this.dispatchEvent(new Event("change")); }
 
-  // All rows, where those of the lane are these.
+  // All rows with new rows of the current lane.
   #withLane(shown) {
     const { tracks } = this.lanes.find((lane) => lane.tracks.includes(this.track)) ?? { tracks: [this.track] };
     return [...this.rows.filter((row) => !tracks.includes(row.channel)), ...tracks.flatMap((channel) => shown.map((row) => ({ ...row, channel })))];
   }
 
-  // Show rows of the lane without writing them, such as while a border is dragged.
+  // Show rows of the lane without saving, such as during a drag.
   preview(shown) { this.#show(this.#withLane(shown)); }
 
-  // No longer show what was only looked at.
+  // Revert a preview.
   restore() { if (this.saved) this.#show([this.sending, ...this.queue].findLast((one) => one?.rows && one.id === this.id)?.rows ?? this.saved); }
 
-  // Write rows of the lane. One of the same kind that waits to be written is replaced, such as a border's step.
+  // Save rows of the lane, in place of pending rows of the same kind, such as steps of a border.
   write(shown, kind = null) { this.writeAll(this.#withLane(shown), kind); }
 
-  // Make a stretch of every track a segment; `tracks` are those of a recording that has no labels yet.
+  // Label an interval on all tracks; `tracks` are those of an unlabelled recording.
   paint(start, end, label, tracks) {
     const channels = this.tracks.length ? this.tracks : tracks;
     this.writeAll(channels.flatMap((channel) => painted(this.of(channel), start, end, label).map((row) => ({ ...row, channel }))));
@@ -128,14 +128,14 @@ export class Corrections extends EventTarget {
     this.working ??= this.#work();
   }
 
-  // Act now, or once what is being undone is there: who goes on after that means what it was before.
+  // Act now, or after a pending undo.
   inTurn(act) {
     const { id, undoing } = this;
     if (!undoing) return act();
     return undoing.then(() => (id === this.id ? this.inTurn(act) : this.tell("not changed: another recording is open now")));
   }
 
-  // Undo the last change, or redo what was undone last; the number of its recording comes of it, null where there is none.
+  // Undo or redo the last change; resolves to the number of its recording, or null.
   undo(redo = false) {
     const { id, name } = this, undoing = new Promise((undone) => this.queue.push({ id, name, undone, redo }));
     this.undoing = undoing;
@@ -152,7 +152,7 @@ export class Corrections extends EventTarget {
     this.working = null;
   }
 
-  // Write rows, or undo: there are none to be written then.
+  // Save rows, or undo if there are none.
   async #send({ id, name, rows, undone, redo }) {
     const did = rows ? "saved" : redo ? "redone" : "undone";
     const said = rows?.map(({ start_s, end_s, label, channel, label_source }) => ({ start_s, end_s, label, channel, label_source }));
@@ -165,7 +165,7 @@ export class Corrections extends EventTarget {
     } catch (error) {
       this.#say(id, name, `not ${did}: ${error.message}`);
       const now = await api(`recordings/${id}/segments?page=${PAGE}`).catch(() => null);
-      // What was changed until now was made of what could not be written, and what undoes means it.
+      // Drop later changes, which were based on rows that could not be saved.
       const dropped = rows ? this.queue.filter((one) => one.undone || one.id === id) : [];
       this.queue = this.queue.filter((one) => !dropped.includes(one));
       if (now) this.#take(now);

@@ -1,8 +1,8 @@
-// Corrections of the segments of a recording's page, in the order of the keys.
+// Corrections by buttons and keys on the page of a recording.
 import { told } from "../api.js";
 import { joined, relabelled, SHORTEST, split } from "./edits.js";
 
-// The selection becomes a segment of that label, on all tracks; without one the segment at the cursor has it.
+// Label the selection on all tracks, else the segment at the cursor.
 export function label({ corrections, segments, timeline, player, sound }, said) {
   const { selection, position } = timeline;
   corrections.inTurn(() => {
@@ -18,7 +18,7 @@ export function label({ corrections, segments, timeline, player, sound }, said) 
   });
 }
 
-// Every label that a person has not given is right.
+// Confirm all labels.
 export function agree({ corrections }) {
   corrections.inTurn(() => {
     if (!corrections.rows.length) return told("There are no labels to confirm yet.");
@@ -47,7 +47,7 @@ export function joinHere({ corrections, segments }) {
   });
 }
 
-// The last change may be of another recording, which is then opened.
+// Undo or redo, and open the recording of the change.
 export function undo(page, redo = false) {
   page.corrections.inTurn(async () => {
     const id = await page.corrections.undo(redo);

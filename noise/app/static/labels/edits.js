@@ -1,11 +1,11 @@
-// What a person does to the segments of one track: rows in order of time come in, new rows go out, none is changed.
+// Edits of the sorted segments of one track as pure functions.
 
 export const SHORTEST = 0.01; // of a segment [s]
 const SAME = 1e-6; // s
 
 const HUMAN = "human";
 
-// Places where a segment ends and another begins, or where one stands alone: { left, right, time }.
+// Borders { left, right, time } of segments; null beside a gap.
 export function borders(rows) {
   const found = [];
   for (let at = 0; at + 1 < rows.length; at++) {
@@ -35,7 +35,7 @@ export function relabelled(rows, index, label) {
   return rows.map((row, at) => (at === index ? said(row, { label }) : row));
 }
 
-// Null where a piece would be shorter than a segment can be.
+// Null if a piece would be too short.
 export function split(rows, time) {
   const at = Math.round(time * 1000) / 1000;
   const index = rows.findIndex((row) => row.start_s + SHORTEST <= at && at <= row.end_s - SHORTEST);
@@ -43,7 +43,7 @@ export function split(rows, time) {
   return rows.flatMap((row, place) => (place === index ? [said(row, { end_s: at }), said(row, { start_s: at })] : [row]));
 }
 
-// The stretch is a segment of its own, cut out of what was there; a rest that is too short for a segment goes with it.
+// Make an interval a segment; remainders that are too short join it.
 export function painted(rows, start, end, label) {
   let from = Math.round(start * 1000) / 1000, to = Math.round(end * 1000) / 1000;
   for (const { start_s: first, end_s: last } of rows) {
@@ -57,7 +57,7 @@ export function painted(rows, start, end, label) {
   return [...rest, { start_s: from, end_s: to, label, label_source: HUMAN }].sort((one, two) => one.start_s - two.start_s);
 }
 
-// To the neighbour before it, or after the first; null where there is none.
+// Join a segment to the previous one, or the first to the next; null without a neighbour.
 export function joined(rows, index) {
   if (rows.length < 2) return null;
   const into = index > 0 ? index - 1 : 1;

@@ -1,4 +1,4 @@
-// The parts of the page of one recording: names, tools, lanes, the chosen segment.
+// Elements of the page of a recording.
 import { helpDialog } from "./keys.js";
 import { made } from "../dom.js";
 

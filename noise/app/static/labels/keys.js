@@ -1,4 +1,4 @@
-// Keys of the view, and the dialog that tells them.
+// Keyboard handling, and the help dialog on keys.
 import { made } from "../dom.js";
 
 const TOLD = [
@@ -33,7 +33,7 @@ export function helpDialog() {
   return dialog;
 }
 
-// Call what a key stands for, unless somebody is typing or a dialog is open.
+// Call the action of a key, except while typing or in a dialog.
 export function listen(element, actions) {
   document.addEventListener("keydown", (event) => {
     if (event.altKey || event.defaultPrevented) return;

@@ -1,9 +1,9 @@
-// Level over time, and the levels of a stretch.
+// Level over time, and levels of an interval.
 import { facts } from "./sounds.js";
 import { ticks } from "../shared/player.js";
 import { caption, DEEP, drawAxis, LINE, sheet } from "./timeline.js";
 
-const LEAST_RANGE = 30; // of the level axis [dB]
+const LEAST_RANGE = 30; // minimum range of the level axis [dB]
 
 export class LevelCourse {
   constructor(timeline, { plot, axis, readout }) {
@@ -19,7 +19,7 @@ export class LevelCourse {
     if (turn !== this.turn) return;
     const known = found.levels.filter((level) => level !== null);
     const most = known.length ? Math.max(...known.slice(0, 1e5)) : 0;
-    // The first eighth of a second is the meter's own rise.
+    // Skip the rise of the meter.
     const settled = found.levels.slice(Math.ceil(0.25 / found.cell_s)).filter((level) => level !== null);
     const least = settled.length ? Math.min(...settled) : most - LEAST_RANGE;
     this.found = found;

@@ -1,4 +1,4 @@
-// The list of recordings: filter, order, labels as they arrive. All rows are in the page; those out of view are not laid out.
+// List of recordings: filters, order, and labels as they arrive.
 import { api } from "../api.js";
 import { made, onceShown } from "../dom.js";
 
@@ -10,27 +10,27 @@ const ORDERS = { "": "as found", "name asc": "name", "label asc": "label", "freq
 
 let list = null;
 
-// `onOpen` opens a recording, `onSeen` gets the version of its labels in the table.
+// `onOpen` opens a recording; `onSeen` gets the version of the labels of the open one.
 export async function mountList(element, { onOpen, onSeen }) {
   list = new RecordingList(element, onOpen, onSeen);
   await list.load();
   return list;
 }
 
-// Take the list again, such as after a correction.
+// Reload the list, such as after a correction.
 export async function refresh() { await list.load(); }
 
 export function openRecording(id) { list.open(id); }
 
 export class RecordingList {
   label = "";
-  rows = []; // as the server has them
+  rows = []; // rows of the server
   nodes = new Map(); // by number of the recording
   known = ""; // digest of the rows
   asked = 0;
-  at = 0; // where the keyboard is
-  on = null; // number of the recording there
-  marked = null; // the one that is open
+  at = 0; // row of the keyboard cursor
+  on = null; // recording of the keyboard cursor
+  marked = null; // open recording
 
   constructor(element, onOpen, onSeen) {
     Object.assign(this, { onOpen, onSeen });
@@ -56,7 +56,7 @@ export class RecordingList {
       made("div", { className: "line" }, this.find, this.order), this.kinds,
       made("div", { className: "line" }, this.labelButton, this.stateLine, this.progress),
       this.empty, this.box));
-    addEventListener("focus", () => onceShown(this.box, () => this.load())); // somebody may come back from another page of the same table
+    addEventListener("focus", () => onceShown(this.box, () => this.load())); // another page may have changed the table
     this.box.addEventListener("click", ({ target }) => { const row = target.closest("[role=option]"); if (row) this.#open(this.rows.findIndex((one) => one.id === row.shown.id)); });
     this.box.addEventListener("keydown", (event) => this.#key(event));
   }
@@ -73,8 +73,8 @@ export class RecordingList {
     const turn = ++this.asked, [sort, order] = this.order.value.split(" ");
     const said = { label: this.label, text: this.find.value, sort: sort ?? "", order: order ?? "asc", known: this.known, ...(this.marked !== null && { open: this.marked }) };
     const answer = await api(`recordings?${new URLSearchParams(said)}`).catch(() => null); // the error is shown
-    if (turn !== this.asked) return; // something else was asked for meanwhile
-    // Somebody may label on the command line, too, or change the table, and it may be no table while that is written.
+    if (turn !== this.asked) return; // outdated
+    // Poll, because other programs may label or change the table.
     this.timer = setTimeout(() => onceShown(this.box, () => this.load()), answer?.state.running ? POLL : 5 * POLL);
     if (!answer) return;
     if (answer.open) this.onSeen(answer.open);
@@ -86,7 +86,7 @@ export class RecordingList {
     this.draw();
   }
 
-  // The keyboard stays on its recording. Where a correction took that away, it is before the one that took its place.
+  // Keep the keyboard cursor on its recording, or near its place if a correction has removed it.
   #stay() {
     const at = this.rows.findIndex((row) => row.id === this.on);
     if (at >= 0) this.#put(at);
@@ -155,7 +155,7 @@ export class RecordingList {
   }
 }
 
-// A row: the recording's name, every label in it, its figures. What did not change is not written again.
+// Fill a row: name, labels and figures of a recording.
 function filled(node, shown, at, length) {
   node ??= made("div", { className: "row", id: `row-${shown.id}`, role: "option", data: { at: shown.id } }, made("i"), made("b"), made("span"), made("small"));
   node.setAttribute("aria-posinset", at + 1);
@@ -165,7 +165,7 @@ function filled(node, shown, at, length) {
   if (known) return node;
   const [mark, name, labels, numbers] = node.children, { label, error, frequency_hz: frequency, level_dba: level, duration_s: duration } = shown;
   mark.className = label ?? "";
-  // What tells files apart is at the end of a path: its folders are cut first.
+  // Long paths lose their folders first.
   const file = shown.name.lastIndexOf("/") + 1;
   name.replaceChildren(...[shown.name.slice(0, file), shown.name.slice(file)].filter(Boolean).map((textContent) => made("bdi", { textContent })));
   name.title = shown.name;

@@ -1,4 +1,4 @@
-// Outline of the samples over time.
+// Waveform over time: minimum and maximum per column.
 import { numbers } from "./sounds.js";
 import { caption, DEEP, drawAxis, LINE, sheet } from "./timeline.js";
 
@@ -6,7 +6,7 @@ const FINER = 60; // after the view has come to rest [ms]
 
 export class Outline {
   constructor(timeline, { plot, axis, name = "" }) {
-    Object.assign(this, { timeline, plot, axis, name }); // the name is written where several are stacked
+    Object.assign(this, { timeline, plot, axis, name }); // the name is drawn in stacked lanes
     this.parts = [];
     this.turn = 0;
   }

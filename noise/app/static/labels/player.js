@@ -1,12 +1,12 @@
-// Two recordings in step, A and B, at one gain or at equal loudness; of long ones a stretch is read at a time.
+// Synchronous player of two recordings at one gain or equal loudness; long ones are read in parts.
 import { Player } from "../shared/player.js";
 import { facts, samples } from "./sounds.js";
 
 const { RATE } = Player;
-const QUIETEST = 0.1; // nothing is amplified beyond this full scale [Pa]
+const QUIETEST = 0.1; // smallest full scale [Pa]
 const HEADROOM = 1.12; // peaks between two samples are higher
 const KEPT = 4; // sounds in memory
-const LONGEST = 600; // of one answer of the server [s]
+const LONGEST = 600; // maximum duration of an answer [s]
 const TARGET = -23, CEILING = -3, MOST_RAISED = 36; // LUFS, dB re full scale, dB
 
 export class RecordingPlayer extends Player {
@@ -14,7 +14,7 @@ export class RecordingPlayer extends Player {
   equal = false; // whether A and B are equally loud
   kept = new Map();
 
-  // `read` gives the samples of a sound from a moment on, as many as there are in one answer.
+  // `read` returns the samples of a sound from a time on.
   constructor(read = (sound, start) => samples(sound.id, { channel: sound.channel, start })) {
     super();
     this.read = read; // slots hold { id, name, channel, kind, calibrated, duration, anchor }
@@ -28,11 +28,11 @@ export class RecordingPlayer extends Player {
     this.tell();
   }
 
-  // A stretch of a sound, silent where there is nothing: all that is played is as long as A's.
+  // Buffer of an interval of a sound, padded with silence to the length of A.
   async #cut(sound, start, length) {
     const from = sound.duration > LONGEST ? Math.max(0, Math.min(start, sound.duration - LONGEST)) : 0;
     const key = `${sound.id} ${sound.channel} ${from}`, whole = this.kept.get(key) ?? this.read(sound, from);
-    this.kept.delete(key); // the one used last is kept longest
+    this.kept.delete(key); // least recently used first
     this.kept.set(key, whole);
     for (const old of this.kept.keys()) if (this.kept.size > KEPT) this.kept.delete(old);
     whole.catch(() => this.kept.delete(key));
@@ -45,7 +45,7 @@ export class RecordingPlayer extends Player {
     return buffer;
   }
 
-  // A stretch of A, and of B what is in step with it.
+  // Buffers of an interval of A and the synchronous interval of B.
   async load({ start, end }) {
     const length = Math.max(0.02, Math.min(end - start, LONGEST)), { a, b } = this.slots;
     const shift = (b?.anchor ?? start) - start;
@@ -55,14 +55,14 @@ export class RecordingPlayer extends Player {
     return { start, a: first, b: second };
   }
 
-  // One full scale for all calibrated sounds: what the loudest so far needs, in steps of 1, 2, 5.
+  // Common full scale of calibrated sounds for the loudest so far, in steps of 1, 2, 5.
   #scale() {
     const calibrated = Object.values(this.slots).filter((sound) => sound?.calibrated);
     const needed = Math.max(QUIETEST, ...calibrated.map((sound) => HEADROOM * sound.peak));
     if (calibrated.length && !(this.fullScale >= needed)) this.fullScale = roundedUp(needed);
   }
 
-  // By which the samples of a slot are multiplied.
+  // Gain factor of a slot.
   factor(slot) {
     const sound = this.slots[slot];
     if (!sound) return 0;
@@ -89,7 +89,7 @@ export class RecordingPlayer extends Player {
 
   hear(slot) { if (this.slots[slot]) super.hear(slot); }
 
-  // What a listener has to know before comparing.
+  // Description of the gain for the listener.
   get words() {
     const { a, b } = this.slots, said = [], heard = [a, b].filter(Boolean);
     if (!heard.length) return "";

@@ -1,9 +1,9 @@
-// The pointer over the lanes: reads, goes there, selects a stretch, zooms.
+// Pointer on the lanes: readout, seek, selection and zoom.
 
 const STILL = 4; // a press that moves less is a click [px]
 const WHEEL = 0.0015; // of zoom for a pixel of the wheel
 
-// Follow a press until it ends, also outside of what is pressed.
+// Track a press until it ends, also outside of the node.
 export function drag(node, { pointerId }, move, end) {
   node.setPointerCapture(pointerId);
   const over = new AbortController(), { signal } = over;
@@ -58,7 +58,7 @@ export function follow(page) {
     else timeline.zoom(Math.exp(-WHEEL * event.deltaY), at(event));
   }, { passive: false });
 
-  // By keys, a row and a column at a time.
+  // Move the cursor by keys.
   parts.screen.addEventListener("keydown", (event) => {
     const [right, up] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
     if ((!right && !up) || event.ctrlKey || event.metaKey || event.altKey || !spectrogram.whole) return;

@@ -1,4 +1,4 @@
-// The page of one recording: puts its lanes, segments, player and keys together.
+// Page of one recording: lanes, segments, player and keys.
 import { told } from "../api.js";
 import { Corrections } from "./corrections.js";
 import { agree, joinHere, label, splitHere, undo } from "./editing.js";
@@ -16,7 +16,7 @@ import { Spectrogram } from "./spectrogram.js";
 import { drawTimes, Timeline } from "./timeline.js";
 
 const ZOOM = 1.6, PAN = 0.3;
-const POLL = 1500; // while labels are awaited [ms]
+const POLL = 1500; // while waiting for labels [ms]
 
 export class RecordingPage {
   constructor(element, onOpen) {
@@ -30,7 +30,7 @@ export class RecordingPage {
     this.outline = new Outline(timeline, { plot: parts.wave, axis: parts.waveAxis });
     this.levels = new LevelCourse(timeline, { plot: parts.course, axis: parts.courseAxis, readout: parts.levelRead });
     this.segments = new Segments(timeline, this.corrections, parts, () => this.#chosen());
-    this.beside = new Set(); // names of the channels that are shown under the one that is heard
+    this.beside = new Set(); // names of additional visible channels
     this.stacked = [];
     timeline.addEventListener("view", () => this.#view());
     timeline.addEventListener("position", () => this.#position());
@@ -43,19 +43,19 @@ export class RecordingPage {
     this.#actions();
   }
 
-  // Why it cannot be shown is thrown.
+  // Open a recording; throws if it cannot be shown.
   async open(id) {
     const { parts } = this;
     this.id = id;
-    this.sound = this.pointed = null; // nothing is done to one that is not there, nor where the pointer was on another
+    this.sound = this.pointed = null; // of the previous recording
     this.corrections.leave(id);
     clearTimeout(this.timer);
-    this.turn = null; // levels of another recording are not awaited any more
-    for (const said of [parts.saved, parts.readout, parts.levelRead, parts.levels]) said.textContent = ""; // it was of another recording
+    this.turn = null; // pending levels are outdated
+    for (const said of [parts.saved, parts.readout, parts.levelRead, parts.levels]) said.textContent = "";
     clearTimeout(this.measuring);
-    // All at once: what each needs of the others comes with it.
+    // Load all in parallel.
     const seen = this.spectrogram.load(id, null);
-    seen.catch(() => {}); // the same error comes of what is asked for next
+    seen.catch(() => {}); // the next request fails with the same error
     const sound = await about(id);
     if (id !== this.id) return;
     this.sound = sound;
@@ -76,7 +76,7 @@ export class RecordingPage {
     this.#chosen();
   }
 
-  // Other channels of the recording under the one that is heard, on the same time axis.
+  // Show additional channels on the same time axis.
   async #stack() {
     const { parts, sound: { channels }, id } = this, others = channels.filter(({ name }) => name !== this.channel);
     parts.others.hidden = !others.length;
@@ -91,10 +91,10 @@ export class RecordingPage {
     await Promise.all(this.stacked.map((lane) => lane.load(id, lane.name)));
   }
 
-  // Labels, which may be on their way.
+  // Load labels, and poll while there are none.
   async #labels(id) {
     clearTimeout(this.timer);
-    await this.corrections.open({ ...this.sound, id }).catch(() => null); // it is told, and tried again
+    await this.corrections.open({ ...this.sound, id }).catch(() => null); // shown, and tried again
     if (id !== this.id || this.corrections.rows.length) return;
     this.timer = setTimeout(() => onceShown(this.element, () => { if (id === this.id && !this.corrections.rows.length) this.#labels(id); }), POLL);
   }
@@ -115,7 +115,7 @@ export class RecordingPage {
     this.#stretch();
   }
 
-  // What is played and measured: the selection, else the chosen segment while it loops, else all.
+  // Interval of playback and levels: the selection, else the looped segment, else all.
   get stretch() {
     const { selection, duration } = this.timeline;
     if (selection) return selection;
@@ -198,7 +198,7 @@ export class RecordingPage {
     this.#stretch();
   }
 
-  // Levels of the stretch, and what is played of it.
+  // Update playback and levels of the interval.
   #stretch() {
     clearTimeout(this.measuring);
     this.measuring = setTimeout(async () => {
@@ -225,7 +225,7 @@ export class RecordingPage {
     if (this.player.playing) this.play();
   }
 
-  // What buttons do, by their names, and keys.
+  // Actions of buttons, by name, and of keys.
   #actions() {
     const { parts, timeline, player, segments, spectrogram } = this;
     const buttons = {
@@ -257,7 +257,7 @@ export class RecordingPage {
     for (const [name, action] of Object.entries(buttons)) parts[name].addEventListener("click", () => { if (this.sound) action(); });
     for (const button of parts.labels.children) button.addEventListener("click", () => label(this, button.dataset.label));
     parts.channel.box.addEventListener("change", ({ target }) => this.hearChannel(target.value));
-    // What is done before a recording is there would be done to another.
+    // Ignore keys while a recording is loading.
     const act = (action) => (event) => {
       if (this.sound) action(event);
       else if (this.id !== undefined) parts.saved.textContent = "not done: the recording is still loading";

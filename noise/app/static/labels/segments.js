@@ -1,4 +1,4 @@
-// Segments over the lanes: coloured regions, their names, borders that are dragged or moved by keys.
+// Segments on the lanes: coloured regions, names, and borders moved by pointer or keys.
 import { borders, limits, moved } from "./edits.js";
 import { LABELS } from "./frame.js";
 import { made } from "../dom.js";
@@ -10,8 +10,8 @@ const STEP = 0.01; // of an arrow key on a border [s]
 export class Segments {
   constructor(timeline, corrections, { strip, overlay }, chosen) {
     Object.assign(this, { timeline, corrections, strip, overlay, onChosen: chosen });
-    this.at = 0; // which is chosen
-    this.known = { length: 0, middle: 0 }; // how many there were, and where the chosen one lay [s]
+    this.at = 0; // index of the chosen segment
+    this.known = { length: 0, middle: 0 }; // number of segments, and middle of the chosen one [s]
     this.regions = made("div", { className: "regions" });
     this.handles = made("div", { className: "handles" });
     overlay.append(this.regions, this.handles);
@@ -76,7 +76,7 @@ export class Segments {
     }
   }
 
-  // Where the chosen one is now: of others than before it is the one at the same time.
+  // Index of the chosen segment after a change: the one at the same time.
   #place(rows) {
     const { length, middle } = this.known;
     const found = length && rows.length !== length ? rows.findLastIndex((row) => row.start_s <= middle) : this.at;
@@ -124,7 +124,7 @@ export class Segments {
       const { corrections } = this, { border } = handle, { id, track, shown: { length } } = corrections;
       const same = () => id === corrections.id && track === corrections.track && length === corrections.shown.length;
       let time = null;
-      // Of the rows as they are by now: a key may have given one another label.
+      // Use the current rows, which a key may have changed.
       const move = ({ clientX }) => {
         const box = this.overlay.getBoundingClientRect();
         time = this.timeline.time((clientX - box.left) / box.width);
@@ -148,7 +148,7 @@ function fill(parent, count, make) {
   while (parent.children.length < count) parent.append(make());
 }
 
-// What is known of the chosen segment: its place, level, frequency, how sure its label is, and its conditions.
+// Show the chosen segment: interval, level, frequency, probabilities and conditions.
 export function showSegment({ chosen, labels, shares, source, conditions }, row) {
   for (const button of labels.children) button.setAttribute("aria-pressed", button.dataset.label === row?.label);
   if (!row) {

@@ -1,4 +1,4 @@
-// What the server knows of one recording, each by its number.
+// Requests about one recording.
 import { api, bytes } from "../api.js";
 
 export const about = (id) => api(`sounds/${id}`);
@@ -10,7 +10,7 @@ export function asked(id, what, said) {
 
 export const facts = (id, what, said) => api(asked(id, what, said));
 
-// Numbers after what they mean: JSON of whole words, whose length stands before it.
+// Response of header length, JSON header and numbers.
 export async function numbers(id, what, said, Kind) {
   const buffer = await bytes(asked(id, what, said));
   const length = new DataView(buffer).getUint32(0, true);
@@ -18,7 +18,7 @@ export async function numbers(id, what, said, Kind) {
   return { ...meaning, values: new Kind(buffer, 4 + length) };
 }
 
-// Samples of a WAV file of floats, exactly as they are in it.
+// Samples of a WAV file of floats.
 export const samples = (id, said) => wav(asked(id, "audio", said));
 
 export async function wav(path) {

@@ -1,4 +1,4 @@
-// Spectrogram: levels as colours, its axes, a cursor that reads them, harmonics of a frequency.
+// Spectrogram with axes, cursor readout and harmonics.
 import { numbers } from "./sounds.js";
 import { DEEP, drawAxis, INK, SOFT, sheet } from "./timeline.js";
 
@@ -25,7 +25,7 @@ export class Spectrogram {
     this.whole = this.#picture(found);
     this.top = found.top;
     this.draw();
-    this.refine(); // the view may have had no size before
+    this.refine(); // the canvas may have had no size before
     this.plot.dataset.drawn = id;
   }
 
@@ -50,7 +50,7 @@ export class Spectrogram {
     return { ...found, canvas };
   }
 
-  // Ask for what is in view, once it rests.
+  // Request the visible part, after the view has come to rest.
   refine() {
     clearTimeout(this.timer);
     if (!this.whole) return;
@@ -68,7 +68,7 @@ export class Spectrogram {
     }, FINER);
   }
 
-  // Whether the picture of the whole is what is asked for.
+  // Whether the picture of the whole shows the interval finely enough.
   #has(start, end) {
     const { whole } = this, fine = window.devicePixelRatio || 1;
     return start === whole.start && end === whole.end
@@ -125,7 +125,7 @@ export class Spectrogram {
     this.legend.setAttribute("aria-label", `Colours from ${low} (white) to ${top} (black) ${this.whole.unit}`);
   }
 
-  // Level under the cursor, of the finest picture that has it [dB]; null where there is none.
+  // Level at a point of the finest picture [dB]; null outside.
   level(time, frequency) {
     for (const picture of [this.fine, this.whole]) {
       if (!picture || time < picture.start || time >= picture.end) continue;
@@ -136,7 +136,7 @@ export class Spectrogram {
     return null;
   }
 
-  // Put the cursor somewhere and read it; null takes it away.
+  // Move the cursor and read the level; null removes it.
   read(time, frequency) {
     this.cursor = time === null || !this.whole ? null : { time, frequency };
     this.drawMarks();
@@ -185,11 +185,11 @@ function stroke(pen, x1, y1, x2, y2) {
   pen.stroke();
 }
 
-// Colours of levels: the same on every spectrogram of the program, dark on light.
+// Colours of levels, the same on all spectrograms of the program.
 const ANCHORS = "ffffff fde0a1 fec287 fea571 fb8761 f4695c e55064 cf4070 b5367a 9b2e7f 812581 681c81 4f127b 341069 1c1044 090720 000004".split(" ")
   .map((hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16)));
 
-// Colour of each step of a level in bytes, as words of a picture.
+// Colours of all byte levels as pixels.
 function palette(floor, step, top, range) {
   const words = new Uint32Array(256);
   for (let byte = 0; byte < 256; byte++) {

@@ -1,8 +1,8 @@
-// The time axis that all lanes of a recording share: what is in view, where it is, what is chosen.
+// Time axis of all lanes: visible interval, position and selection.
 
 import { ticks } from "../shared/player.js";
 
-const SHORTEST = 0.005; // in view [s]
+const SHORTEST = 0.005; // minimum visible interval [s]
 
 export class Timeline extends EventTarget {
   constructor() {
@@ -43,10 +43,10 @@ export class Timeline extends EventTarget {
 
   whole() { this.look(0, this.duration); }
 
-  // With a tenth of what is on either side.
+  // Show an interval with margins of a tenth.
   fit(start, end) { this.look(start - 0.1 * (end - start), end + 0.1 * (end - start)); }
 
-  // Keep a time in view.
+  // Scroll to a time if it is not visible.
   follow(time) {
     if (time < this.start || time > this.end) this.look(time - 0.1 * this.span, time + 0.9 * this.span);
   }
@@ -64,12 +64,12 @@ export class Timeline extends EventTarget {
   #tell(what) { this.dispatchEvent(new Event(what)); }
 }
 
-// A canvas as fine as the screen, whose unit is the pixel of the page.
+// Cleared canvas at screen resolution with CSS pixels as unit.
 export function sheet(canvas) {
   const { clientWidth: width, clientHeight: height } = canvas;
   const fine = window.devicePixelRatio || 1;
   const [w, h] = [Math.round(width * fine), Math.round(height * fine)];
-  Object.assign(canvas, { width: w, height: h }); // which empties it
+  Object.assign(canvas, { width: w, height: h }); // clears it
   const pen = canvas.getContext("2d");
   pen.setTransform(fine, 0, 0, fine, 0, 0);
   pen.font = "11px system-ui, sans-serif";
@@ -82,7 +82,7 @@ export function seconds(time, step = 0.001) {
 
 export const INK = "#1d2329", SOFT = "#55606b", LINE = "#d9dee3", DEEP = "#0b57a4";
 
-// What a lane shows, in its corner.
+// Caption in the corner of a lane.
 export function caption(pen, text, height) {
   if (!text) return;
   Object.assign(pen, { fillStyle: "#ffffffe0", textAlign: "left", textBaseline: "middle" });
@@ -91,7 +91,7 @@ export function caption(pen, text, height) {
   pen.fillText(text, 6, height - 8);
 }
 
-// Texts beside a lane of this height, [share from the top, text] of each.
+// Axis labels [share from the top, text] beside a lane.
 export function drawAxis(canvas, room, rows, height = canvas.clientHeight) {
   const { pen, width } = sheet(canvas);
   Object.assign(pen, { fillStyle: SOFT, textAlign: "right", textBaseline: "middle" });

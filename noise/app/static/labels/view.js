@@ -1,4 +1,4 @@
-// The view of recordings: their list beside the page of the one that is open.
+// Recordings view: list and page of the open recording.
 import { made, stylesheet } from "../dom.js";
 import { mountList, openRecording } from "./list.js";
 import { RecordingPage } from "./recording.js";
@@ -15,7 +15,7 @@ export function mount(panel) {
     try { await recording.open(id); } catch (error) {
       if (id !== recording.id || recording.sound) throw error;
       recording.player.stop();
-      page.hidden = true; // what it shows is of another one
+      page.hidden = true; // it shows another recording
       empty.hidden = false;
       empty.textContent = error.message;
     }
@@ -24,7 +24,7 @@ export function mount(panel) {
   mountList(list, { onOpen: open, onSeen: (seen) => recording.corrections.seen(seen) }).then(({ rows: [first], marked }) => {
     if (first && marked === null) openRecording(first.id);
   });
-  addEventListener("beforeunload", (event) => { if (recording.corrections.working) event.preventDefault(); }); // it is not in the table yet
+  addEventListener("beforeunload", (event) => { if (recording.corrections.working) event.preventDefault(); }); // not saved yet
   document.addEventListener("view-shown", ({ detail }) => { if (detail !== "labels" && recording.player.playing) recording.player.stop(); });
   return { recording };
 }

@@ -1,4 +1,4 @@
-// Cards, cursors, the bar at the bottom and the keyboard follow the player.
+// Cards, cursors, player bar and keyboard of a page.
 const page = (function () {
   const $ = (id) => document.getElementById(id);
   const each = (selector, act) => document.querySelectorAll(selector).forEach(act);
@@ -82,7 +82,7 @@ const page = (function () {
     requestAnimationFrame(frame);
   }
 
-  // Words for the status line, for as long as this sound is the one listened to.
+  // Set the status line until another sound is played.
   function say(text) {
     said = { key: engine.key, text };
     bar();
@@ -94,7 +94,7 @@ const page = (function () {
     else engine.toggle();
   }
 
-  // Play, or where nothing has been chosen yet, the first sound of the page.
+  // Play or pause; the first sound of the page if none is chosen.
   function start() {
     if (engine.key !== null) engine.toggle();
     else play(chosen || Object.keys(about)[0]);
@@ -118,7 +118,7 @@ const page = (function () {
     each(".recordings .card", (card) => { card.hidden = label !== "*" && !card.dataset.labelled.split(" ").includes(label); });
   }
 
-  // The sound before or after the chosen one; it goes on playing if something plays.
+  // Choose the previous or next sound; playback continues with it.
   function step(by) {
     const seen = cards.filter((card) => !card.hidden);
     if (!seen.length) return;
@@ -140,11 +140,11 @@ const page = (function () {
     else if (button && acts[button.id]) acts[button.id]();
     else if (view) jump(view, event);
   });
-  if (!mini) return { say() {} }; // nothing is heard on this page
-  // A click leaves the focus where it was: the space bar goes on to play and pause.
+  if (!mini) return { say() {} }; // page without sounds
+  // Keep the focus after a click, so that the space bar still plays and pauses.
   document.addEventListener("mousedown", (event) => { if (event.target.closest("button, .seek")) event.preventDefault(); });
 
-  // What a focused button does with space and enter is left to it.
+  // Focused buttons handle space and enter themselves.
   const keys = {
     " ": start, a: () => engine.hear("a"), b: () => engine.hear("b"), x: () => engine.hear(engine.active === "a" ? "b" : "a"),
     l: () => engine.loop(), Home: () => engine.seek(0),

@@ -1,4 +1,4 @@
-// The sounds that a page brings, in two slots.
+// Player of the sounds of a page.
 const about = JSON.parse(document.getElementById("about").textContent);
 
 class ClipPlayer extends Player {
@@ -12,7 +12,7 @@ class ClipPlayer extends Player {
   decode(key) {
     const found = this.#decoded.get(key) ?? this.open().decodeAudioData(
       Uint8Array.from(atob(document.getElementById("sound-" + key).textContent), (one) => one.charCodeAt(0)).buffer);
-    this.#decoded.delete(key); // the one used last is kept longest
+    this.#decoded.delete(key); // least recently used first
     this.#decoded.set(key, found);
     for (const old of this.#decoded.keys()) {
       if (this.#decoded.size <= ClipPlayer.KEPT) break;
@@ -21,7 +21,7 @@ class ClipPlayer extends Player {
     return found;
   }
 
-  // Both as long as the longer one, so that they stay in step when they are repeated.
+  // Pad both to the same length, so that loops stay in step.
   async load() {
     try {
       const found = await Promise.all(Object.entries(this.slots).filter(([, key]) => key !== null).map(async ([slot, key]) => [slot, await this.decode(key)]));

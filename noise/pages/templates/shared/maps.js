@@ -1,5 +1,5 @@
-// Condition maps: a click plays what is there, or the nearest sound of the same label, and says which.
-// Of designs compared it draws what differs between two of them, A and B.
+// Condition maps: a click plays the sound there, or the nearest one of the same label.
+// For compared designs it draws the difference of designs A and B.
 const short = (value) => Number(value.toPrecision(3)).toString();
 const at = (spot) => [parseFloat(spot.style.left) / 100, parseFloat(spot.style.bottom) / 100];
 
@@ -24,7 +24,7 @@ const comparison = (function () {
     return made;
   }
 
-  // What B does against A in a cell.
+  // Difference of B and A in a cell.
   function differing(one, other, cell) {
     if (!has(one, cell) || !has(other, cell)) return "";
     const [before, after] = [noisy(one, cell), noisy(other, cell)];
@@ -34,7 +34,7 @@ const comparison = (function () {
     return (by < 0 ? "softer" : "louder") + (Math.abs(by) >= MUCH ? "-much" : "");
   }
 
-  // Runs of cells of one kind as rectangles, with words where there is room; rows count from the lowest.
+  // Draw runs of equal cells as rectangles with text; the lowest row first.
   function drawDifference(map, { x, y, designs: { [a]: one, [b]: other } }) {
     const group = element("g", { class: "drawn" }), columns = x.length - 1;
     for (let row = 0; row + 1 < y.length; row++) {
@@ -67,7 +67,7 @@ const comparison = (function () {
     return data.labels[of.label[cell]] + (noisy(of, cell) && level !== null ? `, ${Math.round(level)} dB(A)` : "");
   }
 
-  // What designs do at a place of a map, in words, and their labels: both of the pair on its maps.
+  // Words and labels of the designs at a point of a map, of both designs of the pair on their maps.
   function here(map, x, y) {
     const place = placeOf(map), cell = cellAt(map, x, y), own = designOf(map);
     const designs = own === null || own === a || own === b ? [...new Set([a, b])] : [own];
@@ -75,13 +75,13 @@ const comparison = (function () {
     return { words: words.join("; "), labels: designs.map((design) => (has(place.designs[design], cell) ? place.designs[design].label[cell] : -1)).join() };
   }
 
-  // What is heard at a spot: of both designs where both go to the player.
+  // Words of a spot, of both designs if both are playable.
   function words(map, spot) {
     const label = spot.getAttribute("aria-label"), found = here(map, ...at(spot));
     return found.labels.includes(",") ? label.split(":")[0] + ": " + found.words : label;
   }
 
-  // Both designs of the pair go to the player, in step; a click on the other map changes over.
+  // Play both designs in step; a click on the other map switches between them.
   function play(map, spot) {
     const mates = spot.dataset.mates.split(","), own = designOf(map) ?? (engine.active === "a" ? a : b);
     if (own !== a && own !== b) choose(a, own);
@@ -100,7 +100,7 @@ const comparison = (function () {
       const select = document.getElementById("design-" + slot);
       if (select) select.value = String(value);
     }
-    // What plays goes on with the designs now chosen, where they are heard at this condition.
+    // Playback continues with the chosen designs, if they have sounds at this condition.
     const spot = changed && document.querySelector(".spot[aria-pressed=true][data-mates]");
     const mates = spot ? spot.dataset.mates.split(",") : [];
     if (mates[a]) engine.put("a", mates[a]);
@@ -145,7 +145,7 @@ const comparison = (function () {
     if (target.id === "design-a") choose(Number(target.value), b);
     if (target.id === "design-b") choose(a, Number(target.value));
   });
-  // What is folded away is printed as well, and folded again.
+  // Open folded sections for printing.
   let folded = [];
   addEventListener("beforeprint", () => {
     folded = sections.filter((section) => !section.open);

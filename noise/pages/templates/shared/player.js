@@ -1,8 +1,8 @@
-// Two sounds in step, A and B, each through a gain of its own: to change over is to cross the gains.
+// Player of two synchronous sounds A and B; switching crossfades their gains.
 const CROSSING = 0.02, AHEAD = 0.03; // s
 
 class Voices {
-  // Buffers by slot, of one length; `level` gives by what a slot is multiplied, `ended` is called at the end.
+  // Buffers of equal length by slot; `level` returns the gain of a slot, `ended` is called at the end.
   constructor(context, buffers, { offset, loop, level, target, ended }) {
     Object.assign(this, { context, offset, loop, level, voices: {}, began: context.currentTime + AHEAD });
     for (const [slot, buffer] of Object.entries(buffers)) {
@@ -18,7 +18,7 @@ class Voices {
     Object.values(this.voices)[0].source.onended = ended;
   }
 
-  // Where they are, of their length [s].
+  // Position within the buffers [s].
   get position() {
     const played = this.offset + Math.max(0, this.context.currentTime - this.began);
     return this.loop ? played % this.length : Math.min(played, this.length);
@@ -28,7 +28,7 @@ class Voices {
 
   cross() { for (const slot of Object.keys(this.voices)) this.#ramp(slot, this.level(slot), 0); }
 
-  // They end as what is begun now comes in.
+  // Fade out while a new sound fades in.
   silence() {
     for (const [slot, { source }] of Object.entries(this.voices)) {
       source.onended = null;
@@ -45,13 +45,13 @@ class Voices {
   }
 }
 
-// What is derived from it has `load`, which gives a buffer of each slot and when they begin, and `factor` of a slot.
+// Subclasses define `load`, which returns buffers and their start, and `factor`, the gain of a slot.
 export class Player extends EventTarget {
   slots = { a: null, b: null };
   active = "a";
   looping = true;
-  start = 0; // of the stretch that is played [s]
-  position = 0; // where it stands while nothing plays [s]
+  start = 0; // start of the interval [s]
+  position = 0; // position while paused [s]
   running = null;
   context = null;
   request = 0;
@@ -70,7 +70,7 @@ export class Player extends EventTarget {
     return this.context;
   }
 
-  // From a moment on; a sound that runs is taken over at the moment at which the new one begins.
+  // Play from a time on; a running sound crossfades to the new one.
   async play(from, ...what) {
     this.open();
     const mine = ++this.request, found = await this.load(...what);
@@ -110,7 +110,7 @@ export class Player extends EventTarget {
   tell() { this.dispatchEvent(new Event("change")); }
 }
 
-// Round numbers between two, at most so many.
+// Round numbers in an interval, at most `most`.
 export function ticks(low, high, most) {
   const rough = (high - low) / Math.max(1, most), ten = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((one) => one * ten).find((one) => one >= rough * 0.999), found = [];
