@@ -94,10 +94,12 @@ def test_a_stretch_of_both_tracks_is_labelled_by_a_drag_and_a_key(browser, tmp_p
 
 def test_what_another_page_has_changed_is_shown_and_not_overwritten(browser, app, folder):
     one, other = (OpenPage(browser, app).open(TONE) for _ in range(2))
+    go_on = other.holding("recordings?*")  # or it would show the change before its own key
     one.press("]", "1")
     one.saved()
     other.press("[", "2")
     other.page.locator(".saved").filter(has_text="not saved").wait_for()
+    go_on()
     other.page.locator(".strip .creak").wait_for()
     assert [row[2:] for row in in_table(folder)] == [
         ("none", "classifier"),
