@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
 from models.show import short_repr
@@ -373,13 +373,7 @@ class Diagnosis:
         return data_frame([*effects[0]] if effects else ["name"], effects)
 
 
-_RECORDS = {
-    "location": Location, "map": Location, "stages": StageFinding, "effects": EffectFinding,
-    "hypotheses": HypothesisFinding, "agreement": Agreement, "remainder": Remainder,
-}  # fmt: skip
-"""Record classes of keys of a diagnosis: of the value, or of its items."""
-
-_NAMES: dict[type, dict[str, str]] = {
+_KEYS: dict[type, dict[str, str]] = {
     Diagnosis: {"differences": "map", "floor": "gap_floor"},
     Location: {"band": "band_hz"},
     Remainder: {"band": "band_hz"},
@@ -397,14 +391,8 @@ _OF_PARAMETERS, _USUAL = 6, 4
 _MILLIMETRES = 1e3
 
 
-def _keys(kind: type) -> dict[str, Any]:
-    """Return the fields of a record by their keys."""
-    names = _NAMES.get(kind, {})
-    return {names.get(one.name, one.name): one for one in fields(kind) if one.name not in _LEFT_OUT}
-
-
 def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]:
-    """Return the content of ``diagnosis.json``.
+    """Return the content of ``diagnosis.json``, with headline and sentences of the answer.
 
     Parameters
     ----------
@@ -412,77 +400,30 @@ def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]
     improved : str, optional
         Name of the file of the improved rig.
     """
-    written: dict[str, Any] = _written(diagnosis, _USUAL)
-    return written | {"improved": improved}
+    from noise.diagnosis.text.sentences import answer
+    from noise.diagnosis.text.verdict_sentences import headline
+
+    words = {"headline": headline(diagnosis), "sentences": answer(diagnosis)}
+    return {**_plain(diagnosis, _USUAL), "improved": improved, **words}
 
 
-def from_json(data: Mapping[str, Any]) -> Diagnosis:
-    """Return the diagnosis of ``diagnosis.json``, without its illustrations.
-
-    Parameters
-    ----------
-    data : mapping of str to anything
-        As `as_json` gives it.
-
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        The data are no diagnosis.
-    """
-    for key in ("verdict", "equivalent", "location", "effects", "probabilities"):
-        data[key]
-    diagnosis: Diagnosis = _record(Diagnosis, _UNKNOWN | dict(data))
-    return diagnosis
-
-
-_UNKNOWN: dict[str, Any] = {
-    "stages": {}, "parameters": {}, "next_measurement": "", "held_out": [], "gap": None,
-    "gap_floor": None, "p_value": None, "seconds": None,
-}  # fmt: skip
-"""Defaults of keys that a file may lack."""
-
-
-def _written(value: Any, digits: int) -> Any:
+def _plain(value: Any, digits: int) -> Any:
     """Return a value as plain data: records as objects, numbers rounded, NaN as null."""
-    if type(value) in {Diagnosis, *_RECORDS.values()}:
-        many = _OF_PARAMETERS if isinstance(value, EffectFinding) else _USUAL
-        given = {key: getattr(value, one.name) for key, one in _keys(type(value)).items()}
-        if "interference_mm" in given:
-            given["interference_mm"] *= _MILLIMETRES
-        return {
-            key: _written(one, many if key == "parameters" else _DIGITS.get(key, _USUAL))
-            for key, one in given.items()
-        }
+    if is_dataclass(value):
+        keys, many = _KEYS.get(type(value), {}), isinstance(value, EffectFinding)
+        plain = {}
+        for one in fields(value):
+            key, of_field = keys.get(one.name, one.name), getattr(value, one.name)
+            if key == "interference_mm":
+                of_field *= _MILLIMETRES
+            if key not in _LEFT_OUT:
+                usual = _OF_PARAMETERS if many and key == "parameters" else _USUAL
+                plain[key] = _plain(of_field, _DIGITS.get(key, usual))
+        return plain
     if isinstance(value, Mapping):
-        return {name: _written(one, digits) for name, one in value.items()}
+        return {name: _plain(one, digits) for name, one in value.items()}
     if isinstance(value, tuple | list):
-        return [_written(one, digits) for one in value]
+        return [_plain(one, digits) for one in value]
     if value is None or isinstance(value, str):
         return value
     return round(float(value), digits) if math.isfinite(value) else None
-
-
-def _record(kind: type, data: Mapping[str, Any]) -> Any:
-    """Return a record from the data of an object, with defaults for missing keys."""
-    given: dict[str, Any] = {}
-    for key, one in _keys(kind).items():
-        if key in data:
-            holds = _RECORDS.get(key) if kind is Diagnosis else None
-            missing = None if holds is not None or one.default is None else math.nan
-            given[one.name] = missing if data[key] is None else _read(data[key], holds)
-    if kind is Agreement:
-        given["interference"] /= _MILLIMETRES
-    return kind(**given)
-
-
-def _read(value: Any, holds: type | None) -> Any:
-    """Return a value of a file, with its items as records."""
-    if value is None:
-        return math.nan
-    if isinstance(value, Mapping):
-        if holds is not None and set(value) & set(_keys(holds)):
-            return _record(holds, value)
-        return {name: _read(one, holds) for name, one in value.items()}
-    if isinstance(value, list | tuple):
-        return tuple(_read(one, holds) for one in value)
-    return value if isinstance(value, str) else float(value)

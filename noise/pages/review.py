@@ -22,9 +22,6 @@ from models.show import short_repr
 from noise.base.labels import LABELS, MAP_LABELS, PERSISTS
 from noise.base.progress import counted
 from noise.base.tables import read_table
-from noise.diagnosis.outcome import from_json
-from noise.diagnosis.text.sentences import answer
-from noise.diagnosis.text.verdict_sentences import headline
 from noise.labels.table import cell_number, cell_truth, check_name
 from noise.pages import blocks as b
 from noise.pages.clips import Entry, common_gain, label_counts, labels_sentence, make_clips
@@ -200,13 +197,14 @@ def read_diagnosis(path: Path) -> b.Section:
         data = parse_json(path.read_text(encoding="utf-8"))
         if not isinstance(data, dict) or "verdict" not in data or "probabilities" not in data:
             raise RecordingError(f"{path}: has no verdict and probabilities, so is no diagnosis")
-        diagnosis = from_json(data)
+        head, following = str(data["headline"]), str(data["next_measurement"])
+        sentences, notes = ([str(one) for one in data[key]] for key in ("sentences", "notes"))
         return b.Section(
-            f"Diagnosis {path.parent.resolve().name}: {headline(diagnosis)}",
+            f"Diagnosis {path.parent.resolve().name}: {head}",
             [
-                *(b.Text(sentence) for sentence in answer(diagnosis)),
-                b.Text(diagnosis.next_measurement, "next", "To measure next:"),
-                b.Items(diagnosis.notes, "soft"),
+                *(b.Text(sentence) for sentence in sentences),
+                b.Text(following, "next", "To measure next:"),
+                b.Items(notes, "soft"),
                 b.Text("Sounds and figures: report.html beside diagnosis.json.", "soft small"),
             ],
             "diagnosis",
