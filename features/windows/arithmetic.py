@@ -156,13 +156,13 @@ def prominent_maxima(
     >>> row.tolist(), at.tolist()
     ([0, 0], [2, 4])
     """
-    found = np.empty((2, level.size // 2 + len(level)), dtype=np.int64)
-    count = _find(level, first, last, float(prominence), pointed, found)
-    return found[0, :count], found[1, :count]
+    maxima = np.empty((2, level.size // 2 + len(level)), dtype=np.int64)
+    count = _find(level, first, last, float(prominence), pointed, maxima)
+    return maxima[0, :count], maxima[1, :count]
 
 
 @njit(cache=True, **COMPILED)
-def _find(level, first, last, prominence, pointed, found) -> int:
+def _find(level, first, last, prominence, pointed, maxima) -> int:
     count = 0
     for row in range(level.shape[0]):
         lowest = level[row, first]
@@ -181,8 +181,8 @@ def _find(level, first, last, prominence, pointed, found) -> int:
                 candidate = k
             elif v < level[row, candidate] - prominence:
                 # It has fallen far enough: the candidate was a maximum.
-                found[0, count] = row
-                found[1, count] = candidate
+                maxima[0, count] = row
+                maxima[1, count] = candidate
                 count += 1
                 candidate = -1
                 lowest = v

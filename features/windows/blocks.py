@@ -144,10 +144,12 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
     spectrum = fft.rfft(single, axis=1)
     rate_held = _rate_held(spectrum[:count], seconds, rate)
     low, high = _gains(round(1e6 * rate_held), seconds)
-    kept, at_rate = min(low.size, spectrum.shape[1]), round(seconds * RATE)
+    n_bins, at_rate = min(low.size, spectrum.shape[1]), round(seconds * RATE)
     bins = np.zeros((len(single), at_rate // 2 + 1), dtype=np.complex64)
     # Transforms scale with their length.
-    np.multiply(spectrum[:, :kept], low[:kept] * np.float32(at_rate / length), out=bins[:, :kept])
+    np.multiply(
+        spectrum[:, :n_bins], low[:n_bins] * np.float32(at_rate / length), out=bins[:, :n_bins]
+    )
     inside = slice(round(aside * RATE), round((second + aside) * RATE))
     sound = fft.irfft(bins, at_rate, axis=1)[:count, inside].reshape(-1)
     bins[:, : high.size] *= high

@@ -111,8 +111,8 @@ def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
         # With the frame before them, which they are compared with.
         lead = min(first, 1)
         part = slice(first, first + _AT_ONCE)
-        found, of_bands = _described(frames[first - lead : first + _AT_ONCE], last)
-        values[part], bands[part] = found[lead:], of_bands[lead:]
+        columns, of_bands = _described(frames[first - lead : first + _AT_ONCE], last)
+        values[part], bands[part] = columns[lead:], of_bands[lead:]
     if each > 1:
         # The first has none before it.
         flux = values[:, FRAME_COLUMNS.index("flux")]
@@ -250,8 +250,8 @@ class Course:
             (self.centroid_wander, self.peak_wander, self.pitch_wander),
             (_, self.peak_drift, self.pitch_drift),
         ) = (
-            np.split(found, 3)
-            for found in _wander(
+            np.split(columns, 3)
+            for columns in _wander(
                 np.concatenate([centroid, peak, pitch], axis=1),
                 np.concatenate([weight, weight * share, periodic], axis=1),
             )

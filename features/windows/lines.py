@@ -202,8 +202,8 @@ class Lines:
         off = np.where(fits[rows, best], off[rows, best] / np.maximum(order[rows, best], 1.0), 0.0)
         inside, bins = _in_multiples(self.power[rows], fundamental, self.end)
         share = np.minimum(1.0, inside / self.total[rows])
-        found = np.full((5, n), np.nan)
-        found[:, rows] = (
+        harmonics = np.full((5, n), np.nan)
+        harmonics[:, rows] = (
             OCTAVES * np.log(fundamental * (SPACING / 100.0)),
             share,
             number,
@@ -213,7 +213,7 @@ class Lines:
         (
             self.fundamental, self.harmonic_share, self.harmonic_count, self.inharmonicity,
             self.harmonic_gain,
-        ) = found  # fmt: skip
+        ) = harmonics  # fmt: skip
 
 
 def _decibel(share: NDArray[np.floating], least: float) -> NDArray[np.float64]:

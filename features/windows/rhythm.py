@@ -120,7 +120,7 @@ def rhythm_of(power: NDArray[np.float32], size: int) -> dict[str, NDArray[np.flo
     described = (average > _SILENCE) & (n >= _LEAST_SAMPLES)
     smooth, average = smooth[described], average[described]
     peak = smooth.max(axis=1, initial=0.0)
-    found = {
+    features = {
         "crest": 10.0 * np.log10(peak / average),
         "kurtosis": 10.0 * np.log10(fourth[described] / n),
         "concentration": _loudest_tenth(smooth) / (average * n),
@@ -128,7 +128,7 @@ def rhythm_of(power: NDArray[np.float32], size: int) -> dict[str, NDArray[np.flo
         **_period(correlation[described], n),
     }
     return {
-        **{name: _spread(values, described) for name, values in found.items()},
+        **{name: _spread(values, described) for name, values in features.items()},
         **{f"modulation_{i}": share for i, share in enumerate(shares.T, start=1)},
         "modulation_depth": spread / np.maximum(mean, 1e-20),
     }
@@ -277,9 +277,9 @@ def _intervals(at: NDArray[np.int64], count: NDArray[np.int64]) -> dict[str, NDA
     )
     change = np.where(inside[:, 1:], np.abs(np.diff(interval, axis=1)), np.float32(np.inf))
     slope = (n * sum_xy - sum_x * sum_y) / np.maximum(n * sum_xx - sum_x * sum_x, 1e-12)
-    found = {
+    features = {
         "blow_irregularity": padded_medians(change, n - 1),
         "blow_glide": -slope,
         "blow_spread": np.sqrt(np.maximum(sum_yy / n - (sum_y / n) ** 2, 0.0)),
     }
-    return {name: _spread(values, several) for name, values in found.items()}
+    return {name: _spread(values, several) for name, values in features.items()}

@@ -222,7 +222,7 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Cla
 
 
 def _calibration(stored: Mapping[str, Any]) -> Calibration:
-    found = Calibration(float(stored["sharpness"]), tuple(float(w) for w in stored["weights"]))
-    if len(found.weights) != len(LABELS):
+    weights = tuple(float(w) for w in stored["weights"])
+    if len(weights) != len(LABELS):
         raise ValueError("its calibration is not one of its labels")
-    return found
+    return Calibration(float(stored["sharpness"]), weights)

@@ -16,7 +16,7 @@ from noise.commands.options import Option, refuse, whole_number
 
 if TYPE_CHECKING:
     from noise.classifier import Classifier
-    from noise.training.classifier.own_samples import OwnSample
+    from noise.training.classifier.samples import Sample
 
     _Sample = TypeVar("_Sample")
 
@@ -72,7 +72,7 @@ def run(options: Namespace) -> int:
     return int(refused)
 
 
-def _trained(options: Namespace, added: Sequence[OwnSample], progress: Steps) -> Classifier:
+def _trained(options: Namespace, added: Sequence[Sample], progress: Steps) -> Classifier:
     """Return the trained classifier."""
     from noise.training.classifier.fit import N_TEST, N_TRAINING, train
 
@@ -87,18 +87,17 @@ def _trained(options: Namespace, added: Sequence[OwnSample], progress: Steps) ->
     )
 
 
-def _own_samples(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
+def _own_samples(folders: Sequence[Path]) -> tuple[list[Sample], bool]:
     """Return the samples of the user's recordings, and whether files were refused."""
     if not folders:
         return [], False
-    from noise.training.classifier.own_recordings import read_labelled
-    from noise.training.classifier.own_samples import own_samples
+    from noise.training.classifier.own_recordings import own_samples, read_labelled
 
     for folder in folders:
         is_table = folder.is_file() and folder.suffix.lower() in TABLE_ENDINGS
         if not folder.is_dir() and not is_table:
             raise ParameterError(f"--add {folder}: there is no such folder, nor label table")
-    samples: list[OwnSample] = []
+    samples: list[Sample] = []
     refusals: list[str] = []
     for folder in dict.fromkeys(folder.resolve() for folder in folders):
         windows, unread = read_labelled(folder)

@@ -181,8 +181,8 @@ def of_channels(
     array([[nan,  1.]])
     """
     bits = np.array([KINDS.index(name.partition("_")[0]) for name in names])
-    kept = np.atleast_1d(subset)[:, None] >> bits & 1
-    return np.where(kept.astype(bool), table, np.nan)
+    retained = np.atleast_1d(subset)[:, None] >> bits & 1
+    return np.where(retained.astype(bool), table, np.nan)
 
 
 def subset_of(kinds: Sequence[str]) -> int:

@@ -162,7 +162,7 @@ class Inference:
         """
         known = scaled(logged)
         table = np.array([[features.get(name, np.nan) for name in self.names]])
-        found = Inferred()
+        inferred = Inferred()
         for index, name in enumerate(QUANTITIES):
             if not np.isnan(known[index]):
                 continue
@@ -178,8 +178,8 @@ class Inference:
                 continue
             low, high = values[0, outside[2]], values[0, -1 - outside[3]]
             middle = min(max(values[0, values.shape[1] // 2], low), high)
-            found[name] = Interval(*(unscaled(name, float(at)) for at in (middle, low, high)))
-        return found
+            inferred[name] = Interval(*(unscaled(name, float(at)) for at in (middle, low, high)))
+        return inferred
 
     def distribution(self, index: int, x: NDArray[np.float64]) -> NDArray[np.float32]:
         """Values of a quantity that a sample may have, on its scale and in rising order.

@@ -162,16 +162,16 @@ def segment_frequency(features: NDArray[np.float32], label: str) -> float | None
     if 2 * known.sum() > len(known):  # one window in many tells of chance, not of the segment
         return _median(features, torque)
     for kind in ("pressure", "acceleration"):
-        found = None
+        frequency = None
         if label == "creak":
-            found = _blow_rate(features, kind)
-        if slips and found is None:
-            found = _frequency(features, kind, "fundamental")
-        if found is None:
+            frequency = _blow_rate(features, kind)
+        if slips and frequency is None:
+            frequency = _frequency(features, kind, "fundamental")
+        if frequency is None:
             counted = features[features[:, _COLUMN[f"{kind}_line_count"]] > 0]
-            found = _frequency(counted, kind, "line_frequency")
-        if found is not None:
-            return found
+            frequency = _frequency(counted, kind, "line_frequency")
+        if frequency is not None:
+            return frequency
     return None
 
 

@@ -82,8 +82,8 @@ class Place:
     @property
     def label(self) -> str:
         """The label of the longest time that is not ``none``, as a file is named."""
-        heard = [label for label in LABELS if self.segments[label] and label != "none"]
-        return max(heard, key=self.seconds.__getitem__) if heard else "none"
+        audible = [label for label in LABELS if self.segments[label] and label != "none"]
+        return max(audible, key=self.seconds.__getitem__) if audible else "none"
 
 
 def conditions_map(rows: Iterable[Mapping[str, object]]) -> list[Place]:
@@ -139,9 +139,9 @@ def map_rows(places: Sequence[Place]) -> list[dict[str, object]]:
     for place in places:
         row: dict[str, object] = {"material": place.material}
         ranges = (place.speed, place.interference, place.support_stiffness)
-        for axis, found in zip(_AXES, ranges, strict=True):
-            row[f"{axis}_from"] = None if found is None else round(found.low, 6)
-            row[f"{axis}_to"] = None if found is None else round(found.high, 6)
+        for axis, span in zip(_AXES, ranges, strict=True):
+            row[f"{axis}_from"] = None if span is None else round(span.low, 6)
+            row[f"{axis}_to"] = None if span is None else round(span.high, 6)
         row["label"] = place.label
         row["recordings"] = len(place.recordings)
         row["segments"] = sum(place.segments.values())
@@ -218,4 +218,4 @@ def _order(place: Place) -> tuple[tuple[bool, str], list[tuple[bool, float]]]:
     """By which places are sorted: what is not known is last."""
     ranges = (place.support_stiffness, place.interference, place.speed)
     material = (place.material is None, place.material or "")
-    return material, [(found is None, found.middle if found else 0.0) for found in ranges]
+    return material, [(span is None, span.middle if span else 0.0) for span in ranges]

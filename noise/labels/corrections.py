@@ -86,8 +86,8 @@ def version(rows: Sequence[Row]) -> str:
     >>> version([row]) == version([row | {"label": "creak"}])
     False
     """
-    said = sorted(repr((*place(row), row["label"], row.get("label_source"))) for row in rows)
-    return blake2b("\n".join(said).encode(), digest_size=8).hexdigest()
+    identities = sorted(repr((*place(row), row["label"], row.get("label_source"))) for row in rows)
+    return blake2b("\n".join(identities).encode(), digest_size=8).hexdigest()
 
 
 def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[dict[str, object]]:
@@ -238,19 +238,19 @@ def with_corrected_rows(
     beside: dict[tuple[object, object], list[dict[str, object]]] = {}
     for row in before if own else ():
         beside.setdefault(_track(row), []).append(row)
-    kept: dict[tuple[object, object], list[dict[str, object]]] = {}
+    retained: dict[tuple[object, object], list[dict[str, object]]] = {}
     for row in before:
         if _track(row) in corrected:
-            kept.setdefault(_track(row), []).append(row)
+            retained.setdefault(_track(row), []).append(row)
     merged: list[dict[str, object]] = []
     for row in rows:
         at = _track(row)  # what is said of all of a file is said of each track
         whole = at[0], WHOLE
         if at in corrected or whole in corrected:
-            merged += kept.pop(at if at in corrected else whole, [])
+            merged += retained.pop(at if at in corrected else whole, [])
         else:
             merged.append(row | _own(row, beside.get(at, []), own))
-    return merged + [row for of_one in kept.values() for row in of_one]
+    return merged + [row for of_one in retained.values() for row in of_one]
 
 
 def _track(row: Mapping[str, object]) -> tuple[object, object]:

@@ -73,14 +73,14 @@ def human_rows(
         whole = recording.n_samples <= LONGEST_MEASURED * recording.rate
         if not whole:
             segments = _as_many_as_fit(segments if new is None else new)
-        found = [
+        measured = [
             segment
             for channel, track in tracks(recording, per_track=not names_channels(path))
             for segment in with_levels(track, _measured(track, channel, segments))
         ]
         if not whole:
-            found = [replace(segment, snr=None) for segment in found]
-        rows = label_rows(name, recording, found)
+            measured = [replace(segment, snr=None) for segment in measured]
+        rows = label_rows(name, recording, measured)
         return [row | {"label_source": HUMAN} for row in rows]
 
 

@@ -188,8 +188,8 @@ def _in_unit(column: str, value: float | None) -> float | None:
 
 def _inferred_in_unit(column: str, value: float) -> float | None:
     """Return it with as many digits as it is known to: 3745, not 3744.9998."""
-    found = _in_unit(column, value)
-    return None if found is None else float(f"{found:.{_DIGITS}g}")
+    number = _in_unit(column, value)
+    return None if number is None else float(f"{number:.{_DIGITS}g}")
 
 
 def _rounded(value: float | None, digits: int) -> float | None:

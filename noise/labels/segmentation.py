@@ -125,7 +125,7 @@ def labelled_stretches(
         First window of each stretch, and the number of windows.
     names : ndarray of int, shape (n_stretches,)
         Columns of their labels, of which neighbours differ.
-    heard : ndarray, shape (n_stretches, n_labels)
+    audible : ndarray, shape (n_stretches, n_labels)
         Probabilities [-] where each is clearest.
 
     Examples
@@ -141,7 +141,7 @@ def labelled_stretches(
     path = viterbi_path(probabilities)
     group = np.concatenate([[0], np.cumsum(np.diff(path) != 0)])
     speaking = _speaking(path, group, level)
-    p = _heard(probabilities, group, speaking)
+    p = _where_clearest(probabilities, group, speaking)
     if thresholds is None:
         names = p.argmax(axis=1)[group]
     else:
@@ -151,13 +151,13 @@ def labelled_stretches(
     outside = (path == _NONE) & (names < NOISES) & (noise < probabilities[:, _NONE])
     for stretch in np.unique(group[outside]).tolist():
         own = group == stretch
-        heard = np.flatnonzero(own & ~outside)
-        if heard.size:
-            own[heard[0] : heard[-1] + 1] = False
+        audible = np.flatnonzero(own & ~outside)
+        if audible.size:
+            own[audible[0] : audible[-1] + 1] = False
             names[own] = _NONE
     first = np.concatenate([[True], names[1:] != names[:-1]])
     edges = np.concatenate([np.flatnonzero(first), [n]])
-    return edges, names[first], _heard(probabilities, np.cumsum(first) - 1, speaking)
+    return edges, names[first], _where_clearest(probabilities, np.cumsum(first) - 1, speaking)
 
 
 def _over_the_rest(
@@ -196,7 +196,7 @@ def _speaking(
     return speaking
 
 
-def _heard(
+def _where_clearest(
     probabilities: NDArray[np.float64], group: NDArray[np.intp], speaking: NDArray[np.bool_]
 ) -> NDArray[np.float64]:
     """Return probabilities where each group is clearest: of all of it where no window speaks."""
@@ -261,9 +261,9 @@ def clearest(probabilities: NDArray[np.float64], group: NDArray[np.intp]) -> NDA
     taken = np.maximum(1, np.round(_CLEAREST * counts)).astype(int)
     order = np.lexsort((-probabilities[:, :NOISES].max(axis=1), group))
     rank = np.arange(group.size) - np.repeat(np.cumsum(counts) - counts, counts)
-    kept = order[rank < taken[group[order]]]
+    retained = order[rank < taken[group[order]]]
     sums = np.zeros((counts.size, probabilities.shape[1]))
-    np.add.at(sums, group[kept], probabilities[kept])
+    np.add.at(sums, group[retained], probabilities[retained])
     return np.asarray(sums / taken[:, None])
 
 

@@ -89,8 +89,8 @@ class Segments(list[Segment]):
 
     Examples
     --------
-    >>> found = Segments([Segment("all", 0.0, 1.0, "creak", {"creak": 0.9}, 152.0, 78.0, None)])
-    >>> found
+    >>> segments = Segments([Segment("all", 0.0, 1.0, "creak", {"creak": 0.9}, 152.0, 78.0, None)])
+    >>> segments
     Segments(1: creak 0 to 1 s)
     """
 
@@ -176,10 +176,10 @@ def label_recording(
     >>> [segment.label for segment in label_recording(silent, load_classifier())]
     ['none']
     """
-    found = tracks(RecordingBlocks.of(recording), per_track=per_track)
+    described = tracks(RecordingBlocks.of(recording), per_track=per_track)
     return Segments(
         segment
-        for name, track in found
+        for name, track in described
         for segment in with_levels(track, _label(track, classifier, name, surroundings))
     )
 
@@ -219,15 +219,15 @@ def _label(
         certain = {label: float(label == "unknown") for label in LABELS}
         return [Segment(channel, 0.0, blocks.n_samples / blocks.rate, "unknown", certain, None)]
     at_rig = surroundings in (None, "rig") and at_a_condition(blocks)
-    probabilities, of_frequency, found = classified(blocks, classifier, at_rig=at_rig)
+    probabilities, of_frequency, described = classified(blocks, classifier, at_rig=at_rig)
     # At a condition nothing but the bushing is expected to sound: the likeliest label is said.
     thresholds = None if at_rig else classifier.thresholds[surroundings or "any"]
-    edges, names, heard = labelled_stretches(probabilities, thresholds, found.level)
-    cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
+    edges, names, clear = labelled_stretches(probabilities, thresholds, described.level)
+    cells = np.round(change_points(described.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
     times = cell_edges(blocks.rate, blocks.n_samples) / blocks.rate
     last_cell = times.size - 1
     limits = [0, *np.clip(cells, 1, max(1, last_cell - 1)).tolist(), last_cell]
-    parts = zip(pairwise(edges.tolist()), pairwise(limits), names.tolist(), heard, strict=True)
+    parts = zip(pairwise(edges.tolist()), pairwise(limits), names.tolist(), clear, strict=True)
     segments = []
     for windows, (first, last), name, p in parts:
         if last <= first:

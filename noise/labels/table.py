@@ -149,8 +149,8 @@ class LabelTable(list[dict[str, object]]):
     def __repr__(self) -> str:
         counts = Counter(str(row.get("label") or "refused") for row in self)
         files = counted(len({row.get("file") for row in self}), "file")
-        found = ", ".join(f"{number} {label}" for label, number in counts.most_common())
-        return f"LabelTable({files}; segments: {found or 'none'})"
+        numbers = ", ".join(f"{number} {label}" for label, number in counts.most_common())
+        return f"LabelTable({files}; segments: {numbers or 'none'})"
 
 
 def own_columns(rows: Iterable[Mapping[str, object]]) -> tuple[str, ...]:

@@ -86,16 +86,16 @@ def draw_tracks(
         axes.grid(visible=False)
         if len(tracks) > MOST_TRACKS:
             axes.set_title(f"{MOST_TRACKS} of {len(tracks)}", loc="left")
-        found = {label for _, _, label in stretches}
+        present = {label for _, _, label in stretches}
         axes.legend(
             handles=[
                 Patch(facecolor=colour, edgecolor="#444444", label=label)
                 for label, colour in LABEL_COLOURS.items()
-                if label in found
+                if label in present
             ],
             loc="lower right",
             bbox_to_anchor=(1.0, 1.0),
-            ncols=len(found),
+            ncols=len(present),
         )
     return axes
 
@@ -153,7 +153,7 @@ def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
     """
     with reading(path, "label track", error=RecordingError, largest=LARGEST_JSON):
         lines = path.read_text(encoding="utf-8-sig").splitlines()
-    found: list[tuple[float, float, str, str]] = []
+    stretches: list[tuple[float, float, str, str]] = []
     for number, line in enumerate(lines, 1):
         if not line.strip() or line.startswith("\\"):
             continue
@@ -168,9 +168,9 @@ def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
                 "between"
             )
         track = re.fullmatch(r"track (\d+): (.*)", label.strip())
-        channel, said = (track[1], track[2]) if track else ("all", label.strip())
-        found.append((*times, channel, said))
-    return found
+        channel, name = (track[1], track[2]) if track else ("all", label.strip())
+        stretches.append((*times, channel, name))
+    return stretches
 
 
 def write_label_tracks(target: Path, rows: Sequence[Mapping[str, object]]) -> list[Path]:

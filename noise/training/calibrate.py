@@ -424,11 +424,11 @@ def fit(
 
     def cost(point: NDArray[np.float64]) -> float:
         nonlocal best
-        tried = score(rig_of(values_at(point)), targets)
-        if tried.cost < best:
-            best = tried.cost
-            print(f"cost {best:.3f}, log-rms {_rms(tried.simulated):.3f}", file=sys.stderr)
-        return tried.cost
+        judged = score(rig_of(values_at(point)), targets)
+        if judged.cost < best:
+            best = judged.cost
+            print(f"cost {best:.3f}, log-rms {_rms(judged.simulated):.3f}", file=sys.stderr)
+        return judged.cost
 
     steps = np.full(begin.size, step)
     return pattern_search(cost, begin, steps, [0.5**i for i in range(rounds)])[0]

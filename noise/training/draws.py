@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,3 +100,25 @@ def low_pass(x: NDArray[np.float64], corner: float, rate: float) -> NDArray[np.f
     """
     pole = math.exp(-2.0 * math.pi * corner / rate)
     return np.asarray(lfilter([1.0 - pole], [1.0, -pole], x))
+
+
+def picked(shares: Mapping[str, float], rng: np.random.Generator) -> str:
+    """Draw a name by the share of each.
+
+    Parameters
+    ----------
+    shares : mapping of str to float
+        By name; they need not sum to one [-].
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> picked({"creak": 0.0, "squeal": 2.0}, np.random.default_rng(0))
+    'squeal'
+    """
+    weights = np.array(list(shares.values()))
+    return list(shares)[int(rng.choice(weights.size, p=weights / weights.sum()))]

@@ -18,7 +18,7 @@ from noise.training.causes.cases.benches import (
     draw_start,
     scaled_law,
 )
-from noise.training.causes.cases.draw import Truth, seen_through
+from noise.training.causes.cases.draw import Truth, visible_through
 from sim.acquisition import Acquisition
 from sim.friction import LAWS, friction_law
 from sim.parameters import resolve
@@ -92,9 +92,9 @@ def test_a_start_ends_at_the_speed_that_is_stated(name):
 def test_what_acts_in_no_channel_that_was_recorded_is_no_cause():
     pair = Truth("pair", ("clipping", "plate_modes"), ("plain", "modes"), (0.2, 0.3))
     acting = [{"torque", "pressure"}, {"pressure"}]
-    assert seen_through(pair, acting, ("pressure",)).effects == pair.effects
-    one = seen_through(pair, acting, ("torque", "angle"))
+    assert visible_through(pair, acting, ("pressure",)).effects == pair.effects
+    one = visible_through(pair, acting, ("torque", "angle"))
     assert (one.kind, one.effects, one.strengths) == ("one", ("clipping",), (0.2,))
-    assert seen_through(pair, acting, ("angle",)).kind == "none"
+    assert visible_through(pair, acting, ("angle",)).kind == "none"
     offset = Truth("parameters", offsets=(("damping", 1.1),))
-    assert seen_through(offset, (), ("torque",)) == offset
+    assert visible_through(offset, (), ("torque",)) == offset

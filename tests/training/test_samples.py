@@ -8,14 +8,14 @@ import pytest
 from noise.classifier import LABELS
 from noise.noise_definition import label_by_physics
 from noise.training.classifier.bushings import random_run, stretch
-from noise.training.classifier.described_samples import (
+from noise.training.classifier.designs import random_extras
+from noise.training.classifier.samples import (
     SHARES,
     SOURCES,
     bushing_recording,
     draw,
     draw_from,
 )
-from noise.training.classifier.designs import random_extras
 from sim.effects import EFFECTS
 
 
@@ -69,7 +69,7 @@ def test_every_source_gives_a_recording_of_its_label_and_again_the_same(source):
 
 
 def test_groups_come_in_their_shares(monkeypatch):
-    from noise.training.classifier import described_samples as samples
+    from noise.training.classifier import samples
 
     # What each would sound like does not matter here.
     monkeypatch.setattr(samples, "draw_from", lambda source, _: source)

@@ -27,7 +27,7 @@ from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds
 from noise.diagnosis.evidence.case_row import evidence, scale_of
 from noise.diagnosis.evidence.summary import CaseTable
 from noise.diagnosis.simulated.repeats import CHANNELS
-from noise.training.causes.cases.draw import Truth, seen_through
+from noise.training.causes.cases.draw import Truth, visible_through
 from noise.training.trees import as_arrays, boosted_nodes
 
 _OFFERED = 80
@@ -91,7 +91,7 @@ N_LOOKED_AT = 6000
 N_COLUMNS = 1000
 """Of the evidence that are kept: what tells nothing only blurs."""
 
-KEPT_EVERY = 5
+HELD_OUT_EVERY = 5
 
 FALSE_ALARMS = 0.06
 """Share of cases without a cause that may raise the alarm, at the setting, of trees that have seen
@@ -162,9 +162,10 @@ def train_posterior(
     x = x[:, columns]
     # Every fifth rig is kept from the trees whose answers set calibration and alarm; of those that
     # answer afterwards none is.
-    kept = np.unique(rigs, return_inverse=True)[1] % KEPT_EVERY == 0
-    unseen = kept & np.array(as_drawn)
-    odds = grow_cause_trees(x[~kept], y[~kept], n_rounds=n_rounds, seed=seed).scores(x[unseen])
+    held_out = np.unique(rigs, return_inverse=True)[1] % HELD_OUT_EVERY == 0
+    unseen = held_out & np.array(as_drawn)
+    learned = grow_cause_trees(x[~held_out], y[~held_out], n_rounds=n_rounds, seed=seed)
+    odds = learned.scores(x[unseen])
     weights = _fitted_weights(odds, y[unseen])
     without = y[unseen, CAUSES.index("none")] == 1
     alarm = float(np.quantile(calibrated(odds, weights)[without, -1], FALSE_ALARMS))
@@ -228,17 +229,17 @@ def with_channels(case: Known, channels: Sequence[str]) -> Known:
     that acts in none of the channels is gone.
     """
     table, truth = case.table, case.truth
-    kept = np.array([_is_known(name, channels) for name in table.names])
+    retained = np.array([_is_known(name, channels) for name in table.names])
 
     def without(rows: Array) -> Array:
-        return np.where(kept, rows, np.nan)
+        return np.where(retained, rows, np.nan)
 
     lost = {f"{kind}_{what}" for kind in CHANNELS for what in ("noise", "step")} - {
         f"{kind}_{what}" for kind in channels for what in ("noise", "step")
     }
     bench = {name: value for name, value in table.bench.items() if name not in lost}
     if truth.channels:
-        truth = seen_through(truth, truth.channels, channels)
+        truth = visible_through(truth, truth.channels, channels)
     return replace(case, table=replace(with_rows(table, without), bench=bench), truth=truth)
 
 

@@ -21,7 +21,7 @@ from models.errors import ParameterError
 from noise.noise_definition import is_ambiguous, label_by_physics, run_criteria
 from noise.training.classifier.augmentation.recorder import RATES
 from noise.training.classifier.designs import Design, random_design, random_extras
-from noise.training.draws import log_uniform
+from noise.training.draws import log_uniform, picked
 from sim.acquisition import Acquisition
 from sim.analysis.regime import Regime, friction_regime
 from sim.effects import EFFECTS
@@ -70,9 +70,8 @@ def random_run(rng: np.random.Generator) -> LabelledRun:
     >>> drawn.label in ("creak", "squawk", "squeal", "none")
     True
     """
-    labels = list(_SHARES)
-    wanted = labels[int(rng.choice(len(labels), p=list(_SHARES.values())))]
-    for tried in itertools.count():
+    wanted = picked(_SHARES, rng)
+    for attempt in itertools.count():
         design = random_design(rng)
         while not _likely(design, wanted) and rng.random() < _WHERE_LIKELY:
             design = random_design(rng)
@@ -83,16 +82,16 @@ def random_run(rng: np.random.Generator) -> LabelledRun:
             ),
         )
         try:
-            if tried < _MOST_TRIES and _guessed(design) != wanted:
+            if attempt < _MOST_TRIES and _guessed(design) != wanted:
                 continue
-            found = _labelled(design, rng)
+            labelled = _labelled(design, rng)
         except ParameterError:  # a drawn design that cannot be built
             continue
-        if found is None:
+        if labelled is None:
             continue
-        spare = found.label == "squawk" != wanted
+        spare = labelled.label == "squawk" != wanted
         if not (spare and rng.random() < _SPARE_SQUAWKS):
-            return found
+            return labelled
     raise AssertionError  # the loop has no end
 
 
@@ -150,17 +149,17 @@ def _labelled(design: Design, rng: np.random.Generator) -> LabelledRun | None:
         rng=rng,
     )
     if isinstance(shaft, ConstantSpeed):
-        seen = run_criteria(run)
-        label = seen.label
+        criteria = run_criteria(run)
+        label = criteria.label
         half = run.pressure.size // 2 / run.motion.rate
-        found: LabelledRun | None = LabelledRun(run, label, is_ambiguous(seen))
+        labelled: LabelledRun | None = LabelledRun(run, label, is_ambiguous(criteria))
         if seconds > 2 * _SHORTEST and label_by_physics(stretch(run, 0.0, half)) != label:
-            found = _uniform_part(run)
+            labelled = _uniform_part(run)
     else:
-        found = _uniform_part(run)
-    if found is None or (found.label != "none" and _drowned(found.run)):
+        labelled = _uniform_part(run)
+    if labelled is None or (labelled.label != "none" and _drowned(labelled.run)):
         return None
-    return found
+    return labelled
 
 
 def _random_shaft(speed: float, seconds: float, rng: np.random.Generator) -> ShaftMotion:
@@ -201,15 +200,15 @@ def stretch(run: Run, start: float, end: float) -> Run:
 def _uniform_part(run: Run) -> LabelledRun | None:
     """Return the longest stretch with one noise; ``None`` where it is short."""
     n = int(run.pressure.size / run.motion.rate / _PIECE)
-    seen = [run_criteria(stretch(run, i * _PIECE, (i + 1) * _PIECE)) for i in range(n)]
-    labels = [found.label for found in seen]
+    criteria = [run_criteria(stretch(run, i * _PIECE, (i + 1) * _PIECE)) for i in range(n)]
+    labels = [one.label for one in criteria]
     runs = [(label, len(list(group))) for label, group in itertools.groupby(labels)]
     longest = max(range(len(runs)), key=lambda i: runs[i][1])
     label, length = runs[longest]
     if length * _PIECE < _SHORTEST:
         return None
     first = sum(count for _, count in runs[:longest])
-    unclear = sum(map(is_ambiguous, seen[first : first + length]))
+    unclear = sum(map(is_ambiguous, criteria[first : first + length]))
     part = stretch(run, first * _PIECE, (first + length) * _PIECE)
     return LabelledRun(part, label, 2 * unclear > length)
 

@@ -1,16 +1,20 @@
-"""Cross-fitting: what trees say of sounds of kinds and sources that they were grown without.
+"""Cross-fitting: probabilities of sounds by trees that were grown without their source.
 
 How probable a name is, and from where on it is said, is not asked of what the trees have seen: the
 kinds of body and of background, and the sources of real sounds, are parted into five, and trees
 that were grown without one part vote on it. Those votes calibrate, and those votes are scored:
 each part by the calibration of the other four.
 
-A few dozen real sounds of friction are lost among thousands of simulated ones, so trees are grown
-of the real sounds alone as well, and a share of their log odds is added.
+The classifier has to work with whatever channels there are, so each recording of three channels is
+learned several times, with some of them masked. A few dozen real sounds of friction are lost among
+thousands of simulated ones, so trees are grown of the real sounds alone as well, and a share of
+their log odds is added.
 """
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -22,16 +26,9 @@ from noise.base.labels import LABELS, SURROUNDINGS
 from noise.base.processes import ending_with_parent
 from noise.base.trees import BoostedTrees
 from noise.classifier.model import Calibration, Classifier, Thresholds, has_more_than_sound
-from noise.labels.segmentation import NOISES, clearest, named as labels_named
+from noise.labels.segmentation import NOISES, clearest, named
 from noise.labels.windows import FEATURE_NAMES, columns_of
-from noise.training.classifier.described_samples import Sample
-from noise.training.classifier.masked_rows import (
-    KINDS,
-    SUBSETS,
-    columns_of_labels,
-    mask,
-    masked_rows,
-)
+from noise.training.classifier.background_sounds import BACKGROUND_SOUNDS
 from noise.training.classifier.operating_point import (
     Background,
     false_name_rates,
@@ -39,9 +36,11 @@ from noise.training.classifier.operating_point import (
     fit_thresholds,
     scores,
 )
-from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
-from noise.training.classifier.surroundings import may_sound
+from noise.training.classifier.samples import Sample
 from noise.training.trees import grow_boosted_trees
+
+N_FOLDS = 5
+"""Parts, each of which is left out once."""
 
 _N_ROUNDS, _REAL_ROUNDS = 220, 50
 """Trees a class: of all sounds, and of the real ones alone."""
@@ -61,15 +60,113 @@ these alone name 11 of 219 in a car, and 11 of 175 at a rig; those chosen so nam
 _SENSITIVITIES = (0.5, 1.0, 2.0, 4.0)
 """For which false names are counted [ratio of odds]."""
 
+_KINDS = ("pressure", "acceleration", "torque")
+_SUBSETS = (
+    ("pressure",),
+    _KINDS,
+    ("pressure", "acceleration"),
+    ("pressure", "torque"),
+    ("acceleration", "torque"),
+    ("acceleration",),
+    ("torque",),
+)
+"""Which channels are left of three; what is most often measured comes first."""
+
+_SELDOM = 0.4
+"""How much all but the first two subsets count."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Windows of sounds under several masks of their channels, which trees are grown of.
+
+    Parameters
+    ----------
+    x : ndarray of float32, shape (n_rows, n_features)
+        By `noise.labels.windows.FEATURE_NAMES` [unit of each feature].
+    y : ndarray of int, shape (n_rows,)
+        Columns of `LABELS`.
+    weight : ndarray, shape (n_rows,)
+        How much each counts [-].
+    real : ndarray of bool, shape (n_rows,)
+        Whether each is of a real sound.
+    owner : ndarray of int, shape (n_rows,)
+        Which of the sounds each is of.
+    """
+
+    x: NDArray[np.float32]
+    y: NDArray[np.int64]
+    weight: NDArray[np.float64]
+    real: NDArray[np.bool_]
+    owner: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, sounds: Sequence[Sample]) -> Rows:
+        """Return the rows of sounds."""
+        x, counts, weight, owner = [], [], [], []
+        for i, sound in enumerate(sounds):
+            several = has_more_than_sound(sound.features, FEATURE_NAMES).any()
+            for subset in _SUBSETS if several else _SUBSETS[:1]:
+                x.append(masked(sound.features, subset))
+                counts.append(len(sound.features))
+                share = 1.0 if subset in _SUBSETS[:2] else _SELDOM
+                weight.append(share * sound.weight / len(sound.features))
+                owner.append(i)
+        owners = np.repeat(owner, counts)
+        real = np.array([sound.real for sound in sounds])
+        labels = columns_of_labels(sounds)
+        return cls(
+            np.concatenate(x), labels[owners], np.repeat(weight, counts), real[owners], owners
+        )
+
+    def part(self, rows: NDArray[np.bool_], columns: NDArray[np.bool_] | Sequence[int]) -> Rows:
+        """Return some of the rows and columns."""
+        return Rows(
+            self.x[rows][:, columns], self.y[rows], self.weight[rows], self.real[rows],
+            self.owner[rows],
+        )  # fmt: skip
+
+
+def masked(features: NDArray[np.float32], kinds: Sequence[str] = _KINDS) -> NDArray[np.float32]:
+    """Return features of windows with those of other kinds of channel than `kinds` missing."""
+    retained = [name.partition("_")[0] in kinds for name in FEATURE_NAMES]
+    return np.where(retained, features, np.float32(np.nan))
+
+
+def columns_of_labels(sounds: Sequence[Sample]) -> NDArray[np.int64]:
+    """Return the columns of `LABELS` that sounds belong to."""
+    return np.array([LABELS.index(sound.label) for sound in sounds], dtype=np.int64)
+
+
+def parts(sounds: Sequence[Sample], seed: int) -> NDArray[np.int64]:
+    """Part sounds into `N_FOLDS`, those of one source together, each label spread over all parts.
+
+    A bushing, and a quiet place, is a source by itself.
+
+    Returns
+    -------
+    ndarray of int, shape (n_sounds,)
+    """
+    alone = ("bushing", "quiet")
+    names = [f"{s.source} {i}" if s.source in alone else s.source for i, s in enumerate(sounds)]
+    labels: dict[str, Counter[str]] = {}
+    for name, sound in zip(names, sounds, strict=True):
+        labels.setdefault(name, Counter())[sound.label] += 1
+    sources = sorted(labels)
+    np.random.default_rng([seed, 2]).shuffle(sources)
+    sources.sort(key=lambda name: labels[name].most_common(1)[0][0])  # stable: in groups
+    part = {name: i % N_FOLDS for i, name in enumerate(sources)}
+    return np.array([part[name] for name in names], dtype=np.int64)
+
 
 @dataclass(frozen=True, eq=False)
 class LeftOut:
-    """What trees and a calibration say of each sound that knew none of its part.
+    """Probabilities of each sound by trees and a calibration that knew none of its part.
 
     Parameters
     ----------
     alone : list of ndarray, shape (n_windows, 5)
-        Probabilities of the windows, by the sound alone [-].
+        By the sound alone [-].
     together : list of ndarray, shape (n_windows, 5)
         The same with its other channels [-]; None where it has none.
     part : ndarray of int, shape (n_sounds,)
@@ -81,14 +178,14 @@ class LeftOut:
     part: NDArray[np.int64]
 
 
-def grown(
-    sounds: Sequence[Sample | OwnSample], seed: int, fits: Iterator[object]
+def cross_fitted(
+    sounds: Sequence[Sample], seed: int, fits: Iterator[object]
 ) -> tuple[Classifier, LeftOut]:
     """Grow trees, calibrate them by trees that knew other kinds alone, and find the thresholds.
 
     Parameters
     ----------
-    sounds : sequence of Sample or OwnSample
+    sounds : sequence of Sample
     seed : int
     fits : iterator
         Gone on with as each fit begins, of which there are `N_FOLDS` and one: a progress bar.
@@ -99,15 +196,12 @@ def grown(
     left_out : LeftOut
         Of the same sounds.
     """
-    part = parts([_source(s, i) for i, s in enumerate(sounds)], [s.label for s in sounds], seed)
-    x, y, weight, owner = masked_rows(sounds)
-    known: NDArray[np.bool_] = np.asarray(np.isfinite(x).any(axis=0))
-    x = x[:, known]
-    real = np.array([isinstance(sound, OwnSample) for sound in sounds])[owner]
+    part, rows = parts(sounds, seed), Rows.of(sounds)
+    known: NDArray[np.bool_] = np.asarray(np.isfinite(rows.x).any(axis=0))
     grow = ending_with_parent(_summed_trees)
     growing = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(grow)(x[rows], y[rows], weight[rows], real[rows], seed, _N_ROUNDS)
-        for rows in (part[owner] != k for k in range(N_FOLDS + 1))  # the last has all
+        delayed(grow)(rows.part(part[rows.owner] != k, known), seed, _N_ROUNDS)
+        for k in range(N_FOLDS + 1)  # the last has all
     )
     alone: list[NDArray[np.float64]] = [np.empty(0)] * len(sounds)
     together: list[NDArray[np.float64] | None] = [None] * len(sounds)
@@ -115,22 +209,21 @@ def grown(
         next(fits, None)
         for i in np.flatnonzero(part == k).tolist():
             features = sounds[i].features
-            kinds = SUBSETS[0] if isinstance(sounds[i], Sample) else KINDS
-            alone[i] = trees.probabilities(mask(features, kinds)[:, known])
+            sound = masked(features, _KINDS if sounds[i].real else _SUBSETS[0])
+            alone[i] = trees.probabilities(sound[:, known])
             if has_more_than_sound(features, FEATURE_NAMES).any():
                 together[i] = trees.probabilities(features[:, known])
     labels = columns_of_labels(sounds)
-    heavy = np.array([s.weight for s in sounds])
-    counts = np.array([not (isinstance(s, OwnSample) and s.varied) for s in sounds])
+    weight = np.array([s.weight for s in sounds])
+    counts = np.array([not s.varied for s in sounds])
     several = np.array([p is not None for p in together])
     calibrations, calibrated = [], []
-    for votes, held in ((alone, counts), (together, several & counts)):
-        held = held if held.any() else counts
-        voted = [p if p is not None else alone[i] for i, p in enumerate(votes)]
-        calibrations.append(_calibration(voted, labels, heavy, np.flatnonzero(held)))
+    for votes, chosen in ((alone, counts), (together, several & counts)):
+        chosen = chosen if chosen.any() else counts
+        voted = [alone[i] if p is None else p for i, p in enumerate(votes)]
+        calibrations.append(_calibration(voted, labels, weight, chosen))
         without = [
-            _calibration(voted, labels, heavy, np.flatnonzero(held & (part != k)))
-            for k in range(N_FOLDS)
+            _calibration(voted, labels, weight, chosen & (part != k)) for k in range(N_FOLDS)
         ]
         calibrated.append([without[part[i]](p) for i, p in enumerate(voted)])
     left_out = LeftOut(
@@ -144,47 +237,31 @@ def grown(
     return Classifier(names, trees, (calibrations[0], calibrations[1]), {}, thresholds), left_out
 
 
-def with_trees_of(
-    classifier: Classifier, sounds: Sequence[Sample | OwnSample], seed: int
-) -> Classifier:
-    """Return a classifier with trees that were grown of other sounds, all else as it is.
-
-    Parameters
-    ----------
-    classifier : Classifier
-    sounds : sequence of Sample or OwnSample
-    seed : int
-    """
-    x, y, weight, owner = masked_rows(sounds)
-    real = np.array([isinstance(sound, OwnSample) for sound in sounds])[owner]
-    trees = _summed_trees(x[:, columns_of(classifier)], y, weight, real, seed, _N_ROUNDS)
-    return replace(classifier, trees=trees, card={})
+def with_trees_of(classifier: Classifier, sounds: Sequence[Sample], seed: int) -> Classifier:
+    """Return a classifier with trees that were grown of other sounds, all else as it is."""
+    rows = Rows.of(sounds)
+    rows = rows.part(np.ones(len(rows.y), dtype=bool), columns_of(classifier))
+    return replace(classifier, trees=_summed_trees(rows, seed, _N_ROUNDS), card={})
 
 
-def _summed_trees(
-    x: NDArray[np.float32],
-    y: NDArray[np.int64],
-    weight: NDArray[np.float64],
-    real: NDArray[np.bool_],
-    seed: int,
-    n_rounds: int,
-) -> BoostedTrees:
-    """Grow trees of all rows, and add a share of what trees of the real ones say."""
-    trees = _trees(x, y, weight, seed, n_rounds)
+def _summed_trees(rows: Rows, seed: int, n_rounds: int) -> BoostedTrees:
+    """Grow trees of all rows, and add a share of the log odds by trees of the real ones."""
+    trees = _trees(rows, seed, n_rounds)
     unknown = LABELS.index("unknown")
-    known = np.unique(y[real])
+    known = np.unique(rows.y[rows.real])
     if known.min(initial=unknown) >= NOISES or unknown not in known:
         return trees
-    own = _trees(x[real], y[real], weight[real], seed, _REAL_ROUNDS)
+    own = _trees(rows.part(rows.real, slice(None)), seed, _REAL_ROUNDS)
     # A label of which there is no real sound is as likely as `unknown`.
-    alike = np.where(np.isin(np.arange(len(LABELS)), known), np.arange(len(LABELS)), unknown)
+    columns = np.arange(len(LABELS))
+    alike = np.where(np.isin(columns, known), columns, unknown)
     chosen = [np.flatnonzero(own.classes == k) for k in alike]
     n = len(trees.feature)
     return BoostedTrees(
         roots=np.concatenate([trees.roots, *(own.roots[c] + n for c in chosen)]),
-        classes=np.concatenate(
-            [trees.classes, np.repeat(np.arange(len(LABELS)), list(map(len, chosen)))]
-        ).astype(np.int16),
+        classes=np.concatenate([trees.classes, np.repeat(columns, list(map(len, chosen)))]).astype(
+            np.int16
+        ),
         feature=np.concatenate([trees.feature, own.feature]),
         threshold=np.concatenate([trees.threshold, own.threshold]),
         children=np.concatenate([trees.children, own.children + np.int32(n)]),
@@ -194,57 +271,65 @@ def _summed_trees(
     )
 
 
-def _trees(
-    x: NDArray[np.float32],
-    y: NDArray[np.int64],
-    weight: NDArray[np.float64],
-    seed: int,
-    n_rounds: int,
-) -> BoostedTrees:
+def _trees(rows: Rows, seed: int, n_rounds: int) -> BoostedTrees:
     """Grow trees of rows whose labels are balanced."""
-    x = x.copy()
+    x, y = rows.x.copy(), rows.y
     # Bins need one value at least of what none of these has, and trees one row of each label.
     x[0, ~np.isfinite(x).any(axis=0)] = 0.0
     absent = np.setdiff1d(np.arange(len(LABELS)), y)
-    weight = weight / np.bincount(y, weight, len(LABELS))[y]
+    weight = rows.weight / np.bincount(y, rows.weight, len(LABELS))[y]
     x = np.concatenate([x, np.repeat(x[:1], absent.size, axis=0)])
-    y = np.concatenate([y, absent])
     weight = np.concatenate([weight, np.full(absent.size, 1e-9)])
+    y = np.concatenate([y, absent])
     return grow_boosted_trees(x, y, weight=weight / weight.mean(), n_rounds=n_rounds, seed=seed)
-
-
-def _source(sound: Sample | OwnSample, i: int) -> str:
-    """Return what is left out together: a kind of body or background, a source of recordings."""
-    return f"{sound.name} {i}" if sound.name in ("bushing", "quiet") else sound.name
 
 
 def _calibration(
     votes: Sequence[NDArray[np.float64]],
     labels: NDArray[np.int64],
     weight: NDArray[np.float64],
-    held: NDArray[np.intp],
+    chosen: NDArray[np.bool_],
 ) -> Calibration:
-    group = np.repeat(np.arange(held.size), [len(votes[i]) for i in held])
-    return fit_calibration(
-        np.concatenate([votes[i] for i in held]), group, labels[held], weight[held]
-    )
+    windows = [p for p, one in zip(votes, chosen, strict=True) if one]
+    group = np.repeat(np.arange(len(windows)), [len(p) for p in windows])
+    return fit_calibration(np.concatenate(windows), group, labels[chosen], weight[chosen])
 
 
-def real_backgrounds(
-    sounds: Sequence[Sample | OwnSample], left_out: LeftOut
-) -> dict[str, list[Background]]:
-    """Return the real sounds that are no noise, by the surroundings in which they may be heard.
+def may_sound(kind: str, surroundings: str) -> bool:
+    """Whether a kind of sound may be heard in a place.
 
     Parameters
     ----------
-    sounds : sequence of Sample or OwnSample
-    left_out : LeftOut
-        Of these sounds.
+    kind : str
+        Of a made-up sound, or a file's name with a kind in it.
+    surroundings : str
+        One of `noise.base.labels.SURROUNDINGS`.
+
+    Examples
+    --------
+    >>> may_sound("dog", "car"), may_sound("001_Dogbark_1-59513", "rig"), may_sound("horn", "car")
+    (False, False, True)
     """
+    kind = kind.lower()
+    if surroundings == "any":
+        return True
+    if kind in BACKGROUND_SOUNDS:
+        return surroundings in BACKGROUND_SOUNDS[kind]["heard"]
+    elsewhere = tuple(
+        word
+        for name, row in BACKGROUND_SOUNDS.items()
+        if surroundings not in row["heard"]
+        for word in (name.partition("_")[0], *row.get("also", ()))
+    )
+    return not any(word.startswith(elsewhere) for word in (kind, *re.split(r"[^a-z]+", kind)))
+
+
+def real_backgrounds(sounds: Sequence[Sample], left_out: LeftOut) -> dict[str, list[Background]]:
+    """Return the real sounds that are no noise, by the surroundings in which they may be heard."""
     strangers = [
         (sound.kind, Background(p, int(part)))
         for sound, p, part in zip(sounds, left_out.alone, left_out.part, strict=True)
-        if isinstance(sound, OwnSample) and LABELS.index(sound.label) >= NOISES
+        if sound.real and LABELS.index(sound.label) >= NOISES
     ]
     return {
         name: [background for kind, background in strangers if may_sound(kind, name)]
@@ -265,13 +350,13 @@ def _thresholds(
 
 
 def left_out_scores(
-    sounds: Sequence[Sample | OwnSample], left_out: LeftOut, thresholds: Mapping[str, Thresholds]
+    sounds: Sequence[Sample], left_out: LeftOut, thresholds: Mapping[str, Thresholds]
 ) -> dict[str, object]:
-    """Scores of kinds and of sources that the trees and the calibration had not known.
+    """Score sounds of kinds and sources that the trees and the calibration had not known.
 
     Parameters
     ----------
-    sounds : sequence of Sample or OwnSample
+    sounds : sequence of Sample
     left_out : LeftOut
         Of these sounds.
     thresholds : mapping of str to tuple of 3 floats
@@ -282,40 +367,37 @@ def left_out_scores(
     dict
         For the card.
     """
-    said: dict[str, object] = {}
+    card: dict[str, object] = {}
     for name, votes in (("pressure", left_out.alone), ("three_channels", left_out.together)):
-        held = [
-            (s, p)
-            for s, p in zip(sounds, votes, strict=True)
-            if p is not None and isinstance(s, Sample)
-        ]
-        if held:
-            said[f"{name}_kinds_left_out"] = _scores(held)
+        voted = [(s, p) for s, p in zip(sounds, votes, strict=True) if p is not None and not s.real]
+        if voted:
+            card[f"{name}_kinds_left_out"] = _scores(voted)
     recall = {}
-    for label in LABELS[:NOISES]:
+    for k, label in enumerate(LABELS[:NOISES]):
         right = [
-            _name(p, thresholds["any"]) == LABELS.index(label)
+            named_as(p, thresholds["any"]) == k
             for s, p in zip(sounds, left_out.alone, strict=True)
-            if isinstance(s, OwnSample) and s.label == label and not s.varied
+            if s.real and s.label == label and not s.varied
         ]
         if right:
             recall[label] = {"n": len(right), "recall": round(float(np.mean(right)), 4)}
-    said["real_sources_left_out"] = recall
     backgrounds = real_backgrounds(sounds, left_out)
-    said["false_names"] = {
-        name: false_name_rates(
-            found,
-            {part: _thresholds(backgrounds, name, part) for part in {b.part for b in found}},
-            _SENSITIVITIES,
-        )
-        for name, found in backgrounds.items()
-        if found
+    return card | {
+        "real_sources_left_out": recall,
+        "false_names": {
+            name: false_name_rates(
+                of_place,
+                {k: _thresholds(backgrounds, name, k) for k in {b.part for b in of_place}},
+                _SENSITIVITIES,
+            )
+            for name, of_place in backgrounds.items()
+            if of_place
+        },
     }
-    return said
 
 
 def unlearned_scores(classifier: Classifier, samples: Sequence[Sample]) -> dict[str, object]:
-    """Scores of samples that were not learned, by their sound alone and by three channels.
+    """Score samples that were not learned, by their sound alone and by three channels.
 
     Parameters
     ----------
@@ -331,37 +413,33 @@ def unlearned_scores(classifier: Classifier, samples: Sequence[Sample]) -> dict[
     several = [s for s in samples if has_more_than_sound(s.features, FEATURE_NAMES).any()]
     return {
         name: _scores(
-            [(s, classifier.predict_proba(mask(s.features, kinds)[:, columns])) for s in scored]
+            [(s, classifier.predict_proba(masked(s.features, kinds)[:, columns])) for s in scored]
         )
         for name, kinds, scored in (
-            ("pressure", SUBSETS[0], samples),
-            ("three_channels", SUBSETS[1], several),
+            ("pressure", _SUBSETS[0], samples),
+            ("three_channels", _KINDS, several),
         )
         if scored
     }
 
 
 def _scores(voted: Sequence[tuple[Sample, NDArray[np.float64]]]) -> dict[str, object]:
-    """Scores of samples, each with the probabilities of its windows."""
+    """Score samples, each with the probabilities of its windows."""
     p = np.concatenate([_clearest(of_windows) for _, of_windows in voted])
     return scores(p, columns_of_labels([sample for sample, _ in voted]), LABELS.index("unknown"))
 
 
-def named(p: NDArray[np.float64], classifier: Classifier) -> int:
-    """Return what a recording's windows are called together, as a column of `LABELS`.
+def named_as(p: NDArray[np.float64], thresholds: Sequence[float]) -> int:
+    """Return the column of `LABELS` that a recording's windows are called together.
 
     Parameters
     ----------
     p : ndarray, shape (n_windows, 5)
         Probabilities [-].
-    classifier : Classifier
-        Whose thresholds count.
+    thresholds : sequence of 3 floats
+        Probability [-] from which each noise is named.
     """
-    return _name(p, classifier.thresholds["any"])
-
-
-def _name(p: NDArray[np.float64], thresholds: Sequence[float]) -> int:
-    return int(labels_named(_clearest(p), thresholds)[0])
+    return int(named(_clearest(p), thresholds)[0])
 
 
 def _clearest(p: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from models.rig import Fit, LawSpec, Rig
 from models.rig_file import load_material_rig
 from noise.base import packaged_toml
 from noise.diagnosis.cases.draws import draw_numbers
-from noise.training.draws import log_uniform
+from noise.training.draws import log_uniform, picked
 from sim.effects import EFFECTS
 from sim.friction import friction_law
 from sim.parameters import Parameter
@@ -71,8 +71,7 @@ def random_design(rng: np.random.Generator) -> Design:
     >>> random_design(np.random.default_rng(3)).rig.material
     'fluorocarbon'
     """
-    names = list(_MATERIALS)
-    rig = _material_rig(names[int(rng.choice(len(names), p=list(_MATERIALS.values())))])
+    rig = _material_rig(picked(_MATERIALS, rng))
     # Half of them tight, where creak is, the others looser and fast enough to squeal.
     tight = bool(rng.random() < 0.5)
     interference = float(rng.uniform(0.32e-3, 0.42e-3) if tight else rng.uniform(0.15e-3, 0.34e-3))

@@ -1,6 +1,6 @@
 """Training of the classifier: on simulation, made-up background sounds and some real ones.
 
-What a simulated sample is called follows from its physics (`.described_samples`),
+What a simulated sample is called follows from its physics (`.samples`),
 never from its features; samples whose name hangs on a bound of the definition are not used. What
 calibrates, and what is scored, was left out of what the trees were grown of
 (`noise.training.classifier.cross_fitting`). Another set of samples, of kinds that are known, is
@@ -34,34 +34,40 @@ from numpy.typing import NDArray
 
 from models.blocks import RecordingBlocks
 from models.errors import ParameterError
-from models.recording import Channel, Recording
 from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.processes import ending_with_parent
 from noise.classifier.model import Classifier
 from noise.labels.windows import FEATURE_NAMES, columns_of, window_features
 from noise.recordings import read_recording
-from noise.training.classifier.augmentation.recorder import augmented
 from noise.training.classifier.cross_fitting import (
-    grown,
+    N_FOLDS,
+    cross_fitted,
     left_out_scores,
-    named,
+    masked,
+    named_as,
     unlearned_scores,
     with_trees_of,
 )
-from noise.training.classifier.described_samples import (
+from noise.training.classifier.own_recordings import own_card
+from noise.training.classifier.samples import (
     Drawn,
     Sample,
-    describe_drawn,
+    described,
     draw_sample,
+    sound_recording,
     swelling,
 )
-from noise.training.classifier.masked_rows import (
-    KINDS,
-    mask,
-)
-from noise.training.classifier.own_samples import N_FOLDS, OwnSample, own_card
 from noise.training.draws import log_uniform, low_pass
+
+N_TRAINING = 4300
+"""Samples that are learned from."""
+
+_MADE_UP = 0.6
+"""So many sounds that are no bushing's are learned beside each sample: they cost little."""
+
+N_TEST = 480
+"""Samples that are scored."""
 
 _KIND = ModelKind(
     "set of real sounds",
@@ -78,7 +84,7 @@ _LABELS = {
     "background": "unknown",
     "background: vehicle": "unknown",
 }
-"""What a class is called; others hang on a bound of the definition."""
+"""By class; others hang on a bound of the definition."""
 
 _FRICTION = ("hacksaw", "hand_saw")
 """Files called so are friction, whatever their class: neither a noise nor a stranger."""
@@ -99,6 +105,12 @@ _SPEEDS = (0.78, 1.28)
 _LENGTHS = (0.15, 2.5)
 """Of a variation, over the sound's own [-] and as a part of it [s]."""
 
+_RATE = 48_000.0
+"""Sampling rate of variations [Hz]."""
+
+_COLUMNS = [i for i, name in enumerate(FEATURE_NAMES) if name.startswith("pressure_")]
+"""Features that real sounds have."""
+
 
 @dataclass(frozen=True, eq=False)
 class RealSounds:
@@ -106,18 +118,18 @@ class RealSounds:
 
     Parameters
     ----------
-    samples : tuple of OwnSample
-        Each a whole sound, by the name of its source.
+    samples : tuple of Sample
+        Each a whole sound, or a variation of one.
     licences : mapping of str to str
         By source.
     """
 
-    samples: tuple[OwnSample, ...]
+    samples: tuple[Sample, ...]
     licences: Mapping[str, str]
 
 
 def load_real_sounds() -> RealSounds:
-    """Load those that are stored with the program.
+    """Load the real sounds that are stored with the program.
 
     Examples
     --------
@@ -137,16 +149,15 @@ def describe_folder(folder: Path) -> RealSounds:
         if label is None or any(word in row["file"] for word in _FRICTION):
             continue
         recording = read_recording(folder / row["file"])
-        found = window_features(RecordingBlocks.of(recording).track(0))
-        loud = found.level > found.level.max() - _QUIET_DB
+        windows = window_features(RecordingBlocks.of(recording).track(0))
+        loud = windows.level > windows.level.max() - _QUIET_DB
         source, kind = _source(row["source"], row["licence"]), Path(row["file"]).stem
-        samples.append(_sample(found.features[loud], label, source, kind))
+        samples.append(_sample(windows.features[loud], label, source, kind))
         licences[source] = row["licence"]
         if label != "unknown":
             rng = np.random.default_rng([number, 3])
             for _ in range(_VARIATIONS):
-                varied = _varied(recording.samples[0], recording.rate, rng)
-                features = describe_drawn(varied).features
+                features = described(_varied(recording.samples[0], recording.rate, rng)).features
                 samples.append(_sample(features, label, source, kind, varied=True))
     return RealSounds(tuple(samples), licences)
 
@@ -157,8 +168,7 @@ def _varied(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -
     loudest = np.abs(sound).max()
     parts = [sound[first : first + n] for first in rng.integers(0, sound.size - n + 1, 10)]
     part = next((one for one in parts if np.abs(one).max() > 0.5 * loudest), parts[-1])
-    speed = log_uniform(*_SPEEDS, rng)
-    step = speed * rate / _RATE
+    step = log_uniform(*_SPEEDS, rng) * rate / _RATE
     if step > 1.0:  # what is above half the new rate would fold back
         part = low_pass(part, 0.45 * _RATE, rate)
     part = np.interp(np.arange(0.0, part.size - 1.0, step), np.arange(part.size), part)
@@ -168,20 +178,13 @@ def _varied(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -
     part[part.size - fade :] *= ramp[::-1]
     before, after = (rng.uniform(0.0, 0.7, 2) * _RATE).astype(int) if rng.random() < 0.5 else (0, 0)
     span = (before / _RATE, (before + part.size) / _RATE)
-    clip = augmented(np.pad(part, (before, after)), _RATE, rng, span=span)
-    recording = Recording(
-        clip.samples[None, :], float(clip.rate), (Channel("pressure"),), calibrated=False
-    )
-    return swelling(Drawn(recording, "", None, "", clip.span), rng)
+    recording, span = sound_recording(np.pad(part, (before, after)), _RATE, rng, span=span)
+    return swelling(Drawn(recording, "", "", span), rng)
 
 
-_RATE = 48_000.0
-"""Sampling rate of variations [Hz]."""
-
-
-def _source(said: str, licence: str) -> str:
+def _source(name: str, licence: str) -> str:
     """Return who recorded a sound, as far as it is known: the same name, the same source."""
-    repository, _, file = said.partition(":")
+    repository, _, file = name.partition(":")
     stem = Path(file).stem
     if "ESC-10" in repository:  # 5-198411-F: fold, recording, cut
         return f"{repository.partition('@')[0]}:{stem.split('-')[1]}"
@@ -194,32 +197,28 @@ def _source(said: str, licence: str) -> str:
 
 def _sample(
     features: NDArray[np.float32], label: str, source: str, kind: str, *, varied: bool = False
-) -> OwnSample:
-    weight = _WEIGHT_OF_NOISE if label != "unknown" else _WEIGHT_OF_OTHERS
-    return OwnSample(
-        features, label, source, weight / _VARIATIONS if varied else weight, kind, varied
-    )
+) -> Sample:
+    weight = _WEIGHT_OF_OTHERS if label == "unknown" else _WEIGHT_OF_NOISE
+    weight = weight / _VARIATIONS if varied else weight
+    return Sample(features, label, source, weight, kind, real=True, varied=varied)
 
 
-def _store(found: RealSounds, path: Path) -> None:
+def _store(sounds: RealSounds, path: Path) -> None:
     header = {
         "feature_names": FEATURE_NAMES,
-        "labels": [s.label for s in found.samples],
-        "sources": [s.name for s in found.samples],
-        "kinds": [s.kind for s in found.samples],
-        "varied": [s.varied for s in found.samples],
-        "licences": found.licences,
+        "labels": [s.label for s in sounds.samples],
+        "sources": [s.source for s in sounds.samples],
+        "kinds": [s.kind for s in sounds.samples],
+        "varied": [s.varied for s in sounds.samples],
+        "licences": sounds.licences,
         "card": {},
     }
-    features = np.concatenate([s.features for s in found.samples])
+    features = np.concatenate([s.features for s in sounds.samples])
     arrays = {
         "features": features[:, _COLUMNS].astype(np.float16),
-        "counts": np.array([len(s.features) for s in found.samples]),
+        "counts": np.array([len(s.features) for s in sounds.samples]),
     }
     save_model(path, _KIND, header, arrays)
-
-
-_COLUMNS = [i for i, name in enumerate(FEATURE_NAMES) if name.startswith("pressure_")]
 
 
 def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> RealSounds:
@@ -235,27 +234,12 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Rea
     )
 
 
-if __name__ == "__main__":
-    target = resources.files("noise.training.classifier") / "data" / "real_sounds.npz"
-    _store(describe_folder(Path(sys.argv[1])), Path(str(target)))
-
-
-N_TRAINING = 4300
-"""Samples that are learned from."""
-
-_MADE_UP = 0.6
-"""So many sounds that are no bushing's are learned beside each sample: they cost little."""
-
-N_TEST = 480
-"""Samples that are scored."""
-
-
 def train(
     *,
     seed: int = 0,
     n_training: int = N_TRAINING,
     n_test: int = N_TEST,
-    added: Sequence[OwnSample] = (),
+    added: Sequence[Sample] = (),
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
     growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
@@ -266,7 +250,7 @@ def train(
     seed : int
     n_training, n_test : int
         Samples to learn from and to score.
-    added : sequence of OwnSample
+    added : sequence of Sample
         Of the user's own recordings, to learn from as well
         (`noise.training.classifier.own_samples`).
     progress : callable, optional
@@ -299,20 +283,20 @@ def train(
         delayed(draw)(one, bushings=i >= n_made_up) for i, one in enumerate(seeds)
     )
     real = load_real_sounds()
-    card: dict[str, object] = {
-        "seed": seed,
-        "real_sounds": _counts(sample for sample in real.samples if not sample.varied),
-        "licences": sorted(f"{name}: {licence}" for name, licence in real.licences.items()),
-    }
-    return learn(
+    classifier = learn(
         list(progress(drawn, total) if progress else drawn),
         n_made_up + n_training,
         seed=seed,
         real=real.samples,
         added=added,
-        card=card,
         growing=growing,
     )
+    card = {
+        "seed": seed,
+        "real_sounds": _counts(sample for sample in real.samples if not sample.varied),
+        "licences": sorted(f"{name}: {licence}" for name, licence in real.licences.items()),
+    }
+    return replace(classifier, card=card | dict(classifier.card))
 
 
 def learn(
@@ -320,12 +304,11 @@ def learn(
     n_training: int,
     *,
     seed: int,
-    real: Sequence[OwnSample] = (),
-    added: Sequence[OwnSample] = (),
-    card: Mapping[str, object] | None = None,
+    real: Sequence[Sample] = (),
+    added: Sequence[Sample] = (),
     growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
-    """Learn from the first samples and all recorded sounds, and score on the other samples.
+    """Learn from the first samples and all recorded sounds, and score the other samples.
 
     Raises
     ------
@@ -336,32 +319,37 @@ def learn(
         [sample for sample in some if not sample.ambiguous]
         for some in (samples[:n_training], samples[n_training:])
     )
-    found = {sample.label for sample in training}
-    absent = ", ".join(label for label in LABELS if label not in found)
+    labels = {sample.label for sample in training}
+    absent = ", ".join(label for label in LABELS if label not in labels)
     if absent:
         raise ParameterError(f"{n_training} training samples hold no {absent}; draw more of them")
-    said: dict[str, object] = {
-        **(card or {}),
-        "samples": _counts(training),
-        "ambiguous": round(float(np.mean([sample.ambiguous for sample in samples])), 4),
-    }
-    known: list[Sample | OwnSample] = [*training, *real]
+    known = [*training, *real]
     n_fits = N_FOLDS + 1 + bool(added)
     fits = iter(growing(range(n_fits), n_fits) if growing else range(n_fits))
-    classifier, left_out = grown([*known, *added], seed, fits)
-    said |= left_out_scores([*known, *added], left_out, classifier.thresholds)
+    classifier, left_out = cross_fitted([*known, *added], seed, fits)
+    card: dict[str, object] = {
+        "samples": _counts(training),
+        "ambiguous": round(float(np.mean([sample.ambiguous for sample in samples])), 4),
+        **left_out_scores([*known, *added], left_out, classifier.thresholds),
+    }
     if added:
         next(fits, None)
-        without = with_trees_of(classifier, known, seed)
+        without, thresholds = with_trees_of(classifier, known, seed), classifier.thresholds["any"]
+        columns = columns_of(without)
         before = [
-            named(without.predict_proba(mask(s.features, KINDS)[:, columns_of(without)]), without)
+            named_as(without.predict_proba(masked(s.features)[:, columns]), thresholds)
             for s in added
         ]
-        after = [named(p, classifier) for p in left_out.alone[-len(added) :]]
-        said["own"] = own_card(added, np.array(before), np.array(after))
+        after = [named_as(p, thresholds) for p in left_out.alone[-len(added) :]]
+        card["own"] = own_card(added, np.array(before), np.array(after))
     next(fits, None)  # the bar is at its end
-    return replace(classifier, card=said | unlearned_scores(classifier, test))
+    return replace(classifier, card=card | unlearned_scores(classifier, test))
 
 
-def _counts(sounds: Iterable[Sample | OwnSample]) -> dict[str, int]:
+def _counts(sounds: Iterable[Sample]) -> dict[str, int]:
     return dict(sorted(Counter(sound.label for sound in sounds).items()))
+
+
+if __name__ == "__main__":
+    target = resources.files("noise.training.classifier") / "data" / "real_sounds.npz"
+    _store(describe_folder(Path(sys.argv[1])), Path(str(target)))

@@ -102,13 +102,13 @@ def fit_thresholds(
     hours = HOP * max(1, sum(map(len, backgrounds))) / 3600.0
     # One name in little time is no evidence.
     most = np.maximum(FALSE_NAMES_AN_HOUR, 1.0 / hours)
-    tried = np.append(np.arange(_LEAST, _MOST, 0.01), _MOST)
-    low, high = np.zeros(NOISES, dtype=int), np.full(NOISES, tried.size - 1)
+    limits = np.append(np.arange(_LEAST, _MOST, 0.01), _MOST)
+    low, high = np.zeros(NOISES, dtype=int), np.full(NOISES, limits.size - 1)
     while (low < high).any():  # the higher, the fewer
         middle = (low + high) // 2
-        few = false_names(backgrounds, tried[middle]) <= most
+        few = false_names(backgrounds, limits[middle]) <= most
         low, high = np.where(few, low, np.minimum(middle + 1, high)), np.where(few, middle, high)
-    creak, squawk, squeal = tried[low].tolist()
+    creak, squawk, squeal = limits[low].tolist()
     return creak, squawk, squeal
 
 
@@ -136,8 +136,8 @@ def false_names(
     [1.0, 0.0, 0.0]
     """
     names = [labelled_stretches(p, thresholds)[1] for p in backgrounds]
-    found = np.bincount(np.concatenate([*names, np.arange(0)]), minlength=NOISES)[:NOISES]
-    return np.asarray(found * 3600.0 / (HOP * max(1, sum(map(len, backgrounds)))))
+    counts = np.bincount(np.concatenate([*names, np.arange(0)]), minlength=NOISES)[:NOISES]
+    return np.asarray(counts * 3600.0 / (HOP * max(1, sum(map(len, backgrounds)))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,8 +189,8 @@ def false_name_rates(
         own = [b.probabilities for b in backgrounds if b.part == part]
         for sensitivity in sensitivities:
             limits = at_sensitivity(chosen, sensitivity)
-            found = [labelled_stretches(p, limits)[1] for p in own]
-            names[sensitivity] += int(sum(np.sum(labels < NOISES) for labels in found))
+            labels = [labelled_stretches(p, limits)[1] for p in own]
+            names[sensitivity] += int(sum(np.sum(one < NOISES) for one in labels))
     hours = HOP * max(1, sum(len(b.probabilities) for b in backgrounds)) / 3600.0
     return {
         f"{sensitivity:g}": {
@@ -228,21 +228,21 @@ def scores(p: NDArray[np.float64], y: NDArray[np.int64], unknown: int) -> dict[s
     """
     from sklearn.metrics import confusion_matrix, f1_score
 
-    found = p.argmax(axis=1)
+    names = p.argmax(axis=1)
     certainty = p.max(axis=1)
     bins = np.minimum((10.0 * certainty).astype(int), 9)
-    right = found == y
+    right = names == y
     ece = sum(
         np.mean(bins == b) * abs(np.mean(right[bins == b]) - np.mean(certainty[bins == b]))
         for b in np.unique(bins)
     )
-    others = found[y == unknown]
+    others = names[y == unknown]
     false = float(np.mean(others < unknown - 1)) if others.size else 0.0
     return {
         "n": int(y.size),
         "accuracy": round(float(np.mean(right)), 4),
-        "macro_f1": round(float(f1_score(y, found, average="macro", zero_division=0.0)), 4),
+        "macro_f1": round(float(f1_score(y, names, average="macro", zero_division=0.0)), 4),
         "expected_calibration_error": round(float(ece), 4),
         "strangers_named": round(false, 4),
-        "confusion": confusion_matrix(y, found, labels=np.arange(p.shape[1])).tolist(),
+        "confusion": confusion_matrix(y, names, labels=np.arange(p.shape[1])).tolist(),
     }

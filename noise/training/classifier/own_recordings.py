@@ -12,22 +12,26 @@ over: one bad file is no reason to lose the others.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.blocks import RecordingBlocks
 from models.errors import BushingNoiseError, RecordingError
 from models.recording import Recording
 from noise.base.labels import LABELS
 from noise.base.tables import TABLE_ENDINGS
+from noise.labels.segmentation import NOISES
 from noise.labels.table import HUMAN, read_label_table
 from noise.labels.tracks import read_label_track
+from noise.labels.windows import has_window_channel, window_features
 from noise.recordings import find_recordings
 from noise.recordings.files import open_blocks
 from noise.recordings.folders import files_below, is_file
+from noise.training.classifier.samples import Sample
 
 LONGEST_WINDOW = 1.0
 """What is labelled is cut into equal windows no longer than this [s], so of 0.5 s and more."""
@@ -37,6 +41,12 @@ SHORTEST_WINDOW = 0.1
 
 MOST_WINDOWS = 60
 """Of one stretch, spread evenly over it: an hour of one noise is not an hour of news."""
+
+OWN_WEIGHT = 5.0
+"""Simulated samples that an own window counts as: it is rare, and what the classifier is for."""
+
+TOO_FEW = 5
+"""Fewer files of a label tell nothing of how well it is known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,19 +123,85 @@ def read_labelled(source: Path) -> tuple[list[OwnWindow], list[str]]:
         tabled = _from_tables(source, {path.resolve() for path in recordings}, refusals)
     for path in recordings:
         try:
-            said = tabled.get(path.resolve())
+            stretches = tabled.get(path.resolve())
             if source.is_dir():
-                said = _from_track(path, refusals) or said or _from_folders(path, source) or said
-            if said is None:
+                folders = _from_folders(path, source)
+                stretches = _from_track(path, refusals) or stretches or folders or stretches
+            if stretches is None:
                 known = ", ".join(LABELS)
                 raise RecordingError(
                     f"{path}: has no label; put it into a folder called {known}, or beside a "
                     "label table or a label track"
                 )
-            windows += _windows(path, said, refusals)  # none of what nobody has corrected
+            windows += _windows(path, stretches, refusals)  # none of what nobody has corrected
         except (BushingNoiseError, OSError) as error:
             refusals.append(_naming(path, str(error)))
     return windows, refusals
+
+
+def own_samples(windows: Iterable[OwnWindow]) -> tuple[list[Sample], list[str]]:
+    """Describe windows, as samples to learn from.
+
+    Parameters
+    ----------
+    windows : iterable of OwnWindow
+
+    Returns
+    -------
+    samples : list of Sample
+        The source of each is its file.
+    refusals : list of str
+        One line for each file with a window that has nothing to learn from.
+    """
+    samples: list[Sample] = []
+    refusals: dict[str, str] = {}
+    for window in windows:
+        blocks = RecordingBlocks.of(window.recording)
+        if has_window_channel(blocks):
+            features = window_features(blocks).features
+            if np.isfinite(features).any():
+                samples.append(Sample(features, window.label, window.name, OWN_WEIGHT, real=True))
+                continue
+        refusals.setdefault(window.name, f"{window.name}: has nothing to learn from in it")
+    return samples, list(refusals.values())
+
+
+def own_card(
+    samples: Sequence[Sample], before: NDArray[np.intp], after: NDArray[np.intp]
+) -> dict[str, object]:
+    """Return the scores of the user's recordings for the classifier's card.
+
+    Parameters
+    ----------
+    samples : sequence of Sample
+    before, after : ndarray of int, shape (n_samples,)
+        Columns of `LABELS` that each is called by trees without any of them, and by trees that
+        were grown without its file.
+    """
+    y = np.array([LABELS.index(sample.label) for sample in samples])
+    labels = {}
+    for i, label in enumerate(LABELS):
+        files, own = {s.source for s in samples if s.label == label}, y == i
+        if files or np.any(after == i):
+            labels[label] = {
+                "files": len(files),
+                "windows": int(own.sum()),
+                "enough": len(files) >= TOO_FEW,
+                "recall_before": _share(before[own] == i),
+                "recall": _share(after[own] == i),
+                "false_names_before": int(np.sum((before == i) & ~own)),
+                "false_names": int(np.sum((after == i) & ~own)),
+            }
+    return {
+        "weight": OWN_WEIGHT,
+        "files": len({sample.source for sample in samples}),
+        "noises": int(np.sum(y < NOISES)),
+        "labels": labels,
+    }
+
+
+def _share(right: NDArray[np.bool_]) -> float | None:
+    return round(float(np.mean(right)), 4) if right.size else None
 
 
 def _from_folders(path: Path, folder: Path) -> list[_Stretch]:
@@ -137,37 +213,37 @@ def _from_folders(path: Path, folder: Path) -> list[_Stretch]:
 
 def _from_track(path: Path, refusals: list[str]) -> list[_Stretch]:
     """Return what a label track beside a recording says."""
-    found = []
+    of_recording = []
     for track in (path.with_suffix(".txt"), path.with_name(f"{path.name}.txt")):
         if not track.is_file():
             continue
         for number, (start, end, channel, label) in enumerate(read_label_track(track), 1):
             if label.lower() in LABELS:
-                found.append(_Stretch(label.lower(), start, end, channel))
+                of_recording.append(_Stretch(label.lower(), start, end, channel))
             else:
                 refusals.append(
                     f"{track}: label {number} is {label!r}, expected {', '.join(LABELS)}"
                 )
-        if not found:
+        if not of_recording:
             raise RecordingError(f"{track}: holds no label of ours, so {path.name} is left out")
-    return found
+    return of_recording
 
 
 def _from_tables(
     folder: Path, recordings: set[Path], refusals: list[str]
 ) -> dict[Path, list[_Stretch]]:
-    """Return what the label tables say, by recording; files are relative to their table."""
-    said: dict[Path, list[_Stretch]] = {}
+    """Return what the label tables say, by file; files are relative to their table."""
+    by_file: dict[Path, list[_Stretch]] = {}
     tables = (path for path, _ in files_below(folder) if path.suffix.lower() in TABLE_ENDINGS)
     for table in sorted(tables):
         try:
-            found = _from_table(table, folder, recordings, refusals)
+            of_table = _from_table(table, folder, recordings, refusals)
         except BushingNoiseError as error:
             refusals.append(_naming(table, str(error)))
             continue
-        for path, stretches in found.items():
-            said.setdefault(path, []).extend(stretches)
-    return said
+        for path, stretches in of_table.items():
+            by_file.setdefault(path, []).extend(stretches)
+    return by_file
 
 
 def _from_table(
@@ -177,7 +253,7 @@ def _from_table(
 
     Of those that nobody has corrected, where somebody has corrected others, it says nothing.
     """
-    said: dict[Path, list[_Stretch]] = {}
+    by_file: dict[Path, list[_Stretch]] = {}
     unknown = set()
     rows = [row for row in read_label_table(table, refusals) if row["label"] is not None]
     by_human = any(row["label_source"] == HUMAN for row in rows)
@@ -188,7 +264,7 @@ def _from_table(
         if not there:
             unknown.add(file)
             continue
-        stretches = said.setdefault(there[0], [])
+        stretches = by_file.setdefault(there[0], [])
         if by_human and row["label_source"] != HUMAN:
             continue
         start, end = row["start_s"], row["end_s"]
@@ -201,7 +277,7 @@ def _from_table(
             )
         )
     refusals += [f"{table}: names {file}, which is not there" for file in sorted(unknown)]
-    return said
+    return by_file
 
 
 def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iterator[OwnWindow]:
@@ -225,8 +301,8 @@ def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iter
                 continue
             n = math.ceil((last - first) / (LONGEST_WINDOW * blocks.rate))
             edges = np.linspace(first, last, n + 1).round().astype(int)
-            kept = np.unique(np.linspace(0, n - 1, min(n, MOST_WINDOWS)).round().astype(int))
-            for index in kept.tolist():
+            chosen = np.unique(np.linspace(0, n - 1, min(n, MOST_WINDOWS)).round().astype(int))
+            for index in chosen.tolist():
                 cut = blocks.cut(int(edges[index]), int(edges[index + 1]))
                 yield OwnWindow(cut, stretch.label, str(path))
 

@@ -76,10 +76,10 @@ def calibrate_intervals(model: Inference, runs: Runs) -> Inference:
         index, calibrated, subset, others = case
         at = (index, subset, calibrated, others)
         values = _distribution(model, runs, *case)
-        found = _counts_outside(model, index, values, rounded(runs.scaled[:, index]))
-        if found is not None:
-            used[at], outside[at] = subset, found
-            widths[at] = _mean_width(model, index, values, found)
+        counts = _counts_outside(model, index, values, rounded(runs.scaled[:, index]))
+        if counts is not None:
+            used[at], outside[at] = subset, counts
+            widths[at] = _mean_width(model, index, values, counts)
     for index, calibrated, subset, others in _cases():
         at = (index, subset, calibrated, others)
         parts = [part for part in range(1, subset + 1) if part & subset == part]
@@ -263,7 +263,7 @@ def coverage(model: Inference, samples: Iterable[RunSample]) -> dict[str, dict[s
         ``n`` samples, share ``told`` of them with an interval, share ``covered`` of those told.
     """
     runs = _as_arrays(list(samples), model.names)
-    found: dict[str, dict[str, float | int]] = {}
+    counts: dict[str, dict[str, float | int]] = {}
     for index, calibrated, subset, others in _cases():
         at = (index, subset, calibrated, others)
         outside, y = model.outside[at], rounded(runs.scaled[:, index])
@@ -273,12 +273,12 @@ def coverage(model: Inference, samples: Iterable[RunSample]) -> dict[str, dict[s
         else:
             narrow = model.is_narrow(index, values, outside)
         held = (values[:, outside[2]] <= y) & (y <= values[:, -1 - outside[3]])
-        found[_case_name(index, calibrated, subset, others)] = {
+        counts[_case_name(index, calibrated, subset, others)] = {
             "n": len(y),
             "told": round(float(np.mean(narrow)), 4),
             "covered": round(float(np.mean(held[narrow])), 4) if narrow.any() else 0.0,
         }
-    return found
+    return counts
 
 
 def _as_arrays(samples: list[RunSample], names: tuple[str, ...]) -> Runs:
@@ -302,8 +302,8 @@ def _grown(runs: Runs, names: tuple[str, ...], seed: int) -> Inference:
                 )
                 known = np.where(rng.random((n, 3)) < 0.5, runs.scaled, np.nan)
                 known[:, index] = np.nan
-                table_seen = of_channels(table, names, subsets)
-                rows.append(segment_features(table_seen, names, known))
+                partial = of_channels(table, names, subsets)
+                rows.append(segment_features(partial, names, known))
         forests.append(
             grow_quantile_forest(
                 np.concatenate(rows),

@@ -46,7 +46,7 @@ from noise.inference.inputs import (
     scaled,
 )
 from noise.noise_definition import label_by_physics
-from noise.training.classifier.augmentation.recorder import resampled
+from noise.training.classifier.augmentation.recorder import resampled, with_sensor_noise
 from noise.training.classifier.designs import SHAPES, scaled as scaled_fit
 from noise.training.draws import coloured_noise, log_uniform
 from sim.run import Run, simulate
@@ -218,14 +218,9 @@ def _on_the_rig(run: Run, rng: np.random.Generator) -> Recording:
 def _in_the_field(run: Run, rng: np.random.Generator) -> Recording:
     rate = float(rng.choice(RATES))
     recording, computed = run.recording, run.motion.rate
-    torque, acceleration = recording["torque"], recording["acceleration"]
-    torque = torque + 10.0 ** rng.uniform(-3.5, -1.5) * np.abs(torque).mean() * rng.standard_normal(
-        torque.size
-    )
-    acceleration = acceleration + 10.0 ** rng.uniform(-3.0, 0.5) * rng.standard_normal(torque.size)
+    sensed = with_sensor_noise(recording["torque"], recording["acceleration"], rng)
     rows = (
-        resampled(torque, recording.rate, rate),
-        resampled(acceleration, recording.rate, rate),
+        *(resampled(signal, recording.rate, rate) for signal in sensed),
         resampled(recorded(run.pressure, computed, rng), computed, rate),
     )
     n = min(row.size for row in rows)

@@ -77,7 +77,7 @@ class Truth:
     channels: tuple[tuple[str, ...], ...] = ()
 
 
-def seen_through(
+def visible_through(
     truth: Truth, acting: Sequence[Collection[str]], channels: Collection[str]
 ) -> Truth:
     """Return what can be told of a cause from some channels: what acts in others is not there.
@@ -93,21 +93,21 @@ def seen_through(
     Examples
     --------
     >>> noisy = Truth("pair", ("room_reflections", "clipping"), ("a", "b"), (1.0, 0.5))
-    >>> seen_through(noisy, [("pressure",), ("torque", "pressure")], ("torque", "angle"))
+    >>> visible_through(noisy, [("pressure",), ("torque", "pressure")], ("torque", "angle"))
     Truth(kind='one', effects=('clipping',), forms=('b',), strengths=(0.5,), offsets=(), \
 channels=(('pressure', 'torque'),))
     """
-    kept = [i for i, seen in enumerate(acting) if set(seen) & set(channels)]
+    visible = [i for i, of_effect in enumerate(acting) if set(of_effect) & set(channels)]
     kind = truth.kind
-    if len(kept) < len(truth.effects):
-        kind = {0: "none", 1: "one", 2: "pair"}[len(kept)]
+    if len(visible) < len(truth.effects):
+        kind = {0: "none", 1: "one", 2: "pair"}[len(visible)]
     return replace(
         truth,
         kind=kind,
-        effects=tuple(truth.effects[i] for i in kept),
-        forms=tuple(truth.forms[i] for i in kept),
-        strengths=tuple(truth.strengths[i] for i in kept),
-        channels=tuple(tuple(sorted(acting[i])) for i in kept),
+        effects=tuple(truth.effects[i] for i in visible),
+        forms=tuple(truth.forms[i] for i in visible),
+        strengths=tuple(truth.strengths[i] for i in visible),
+        channels=tuple(tuple(sorted(acting[i])) for i in visible),
     )
 
 
@@ -176,7 +176,7 @@ def draw_case(seed: int) -> DrawnCase:
         for place in range(len(setting.conditions))
     )
     return DrawnCase(
-        setting.rig, recordings, seen_through(truth, acting, recordings[0].channel_names),
+        setting.rig, recordings, visible_through(truth, acting, recordings[0].channel_names),
         setting.bench.departures,
     )  # fmt: skip
 
@@ -331,7 +331,7 @@ def _record(
     paths, stream = drawn.plain[stated.support_stiffness], np.random.default_rng(chain_seed)
     for channels, effect in zip(acting, effects, strict=True):
         changed = apply_chain_effects(paths, [effect], stream)
-        channels |= _heard_in(effect, paths, changed)
+        channels |= _channels_of(effect, paths, changed)
         paths = changed
     sound = radiate_motion(motion, paths, plan.effects)
     signals = sensor_signals(motion, sound, plan.n_settling)
@@ -346,7 +346,9 @@ def _record(
     return Recording(np.stack(samples), bench.rate, tuple(map(Channel, kinds)), stated)
 
 
-def _heard_in(effect: ActiveEffect, before: ImpulseResponses, after: ImpulseResponses) -> set[str]:
+def _channels_of(
+    effect: ActiveEffect, before: ImpulseResponses, after: ImpulseResponses
+) -> set[str]:
     """Return the channels in which an effect on motion, force or chain can be seen."""
     acts = effect.effect
     if acts.contact is not None or acts.drive is not None:

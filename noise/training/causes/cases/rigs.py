@@ -185,8 +185,8 @@ def _conditions(rig: Rig, bench: Bench, rng: np.random.Generator) -> tuple[Known
     interferences = [fit.interference for fit in rig.fits]
     count = min(int(rng.integers(1, 4)), len(interferences))
     fits = rng.choice(interferences, count, replace=False).tolist()
-    found: list[KnownCondition] = []
-    while len(found) < different:
+    drawn: list[KnownCondition] = []
+    while len(drawn) < different:
         fit = fits[int(rng.integers(len(fits)))]
         creeping = _CREEPING.get(fit, _ELSEWHERE)
         fastest = creeping if rng.random() < 0.9 else max(_FASTEST, creeping)
@@ -198,6 +198,6 @@ def _conditions(rig: Rig, bench: Bench, rng: np.random.Generator) -> tuple[Known
             material=rig.material,
             temperature=23.0,
         )
-        if condition not in found:
-            found.append(condition)
-    return tuple(found + [found[i] for i in rng.choice(different, again, replace=False)])
+        if condition not in drawn:
+            drawn.append(condition)
+    return tuple(drawn + [drawn[i] for i in rng.choice(different, again, replace=False)])

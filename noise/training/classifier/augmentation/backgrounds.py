@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from noise.training.classifier.augmentation.places import place
-from noise.training.draws import coloured_noise, log_uniform
+from noise.training.draws import coloured_noise, log_uniform, picked
 
-_QUIETS = ("hiss", "hum", "background", "sliding", "place", "silence")
-_SHARES = (0.12, 0.14, 0.09, 0.07, 0.56, 0.02)
-"""Kinds of quiet, and the share of each [-]."""
+_QUIETS = {
+    "hiss": 0.12, "hum": 0.14, "background": 0.09, "sliding": 0.07, "place": 0.56, "silence": 0.02,
+}  # fmt: skip
+"""Shares of the kinds of quiet [-]."""
 
 
 def background(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -103,7 +104,7 @@ def quiet(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     >>> quiet(480, 48e3, np.random.default_rng(0)).shape
     (480,)
     """
-    kind = _QUIETS[int(rng.choice(len(_QUIETS), p=_SHARES))]
+    kind = picked(_QUIETS, rng)
     if kind == "silence":
         return np.zeros(n)
     if kind == "place":

@@ -355,10 +355,10 @@ LEFT_OUT = ("lorry", "convertible", "climate_chamber", "compressor_room")
 LEARNED = tuple(name for name in PLACES if name not in LEFT_OUT)
 """All others."""
 
-_HEARD_DB = 3.0
+_AUDIBLE_DB = 3.0
 """What is heard stands so far above the place in some half octave for some time [dB]."""
 
-_HEARD_SHARE = 0.95
+_AUDIBLE_SHARE = 0.95
 """Quantile of its frames that must stand out for it to be heard [-]."""
 
 _FRAME = 0.032
@@ -459,7 +459,7 @@ def in_a_place(
         return surroundings, (0.0, sound.size / rate)
     share = level / (float(around.std()) + 1e-300) * 10.0 ** (-snr / 20.0)
     stands = _stands_out(weighted, share * around, rate)
-    lift = max(0.0, _HEARD_DB - float(np.quantile(stands, _HEARD_SHARE)))
+    lift = max(0.0, _AUDIBLE_DB - float(np.quantile(stands, _AUDIBLE_SHARE)))
     for more in _LIFTS:
         span = _longest(stands + lift + more > 0.0, sound.size / rate)
         if span[1] - span[0] >= _SHORTEST:
@@ -503,12 +503,12 @@ def _stands_out(
     So far below its loudest that it makes a pause, it does not; [dB].
     """
     frame = round(_FRAME * rate)
-    heard, around = (
+    of_sound, around = (
         np.abs(np.fft.rfft(x[: x.size // frame * frame].reshape(-1, frame) * np.hanning(frame)))
         for x in (sound, surroundings)
     )
     edges = np.unique(np.minimum(np.round(_BANDS * frame / rate).astype(int), frame // 2))[:-1]
-    power = np.add.reduceat(heard**2, edges, axis=1)
+    power = np.add.reduceat(of_sound**2, edges, axis=1)
     mean = np.add.reduceat(around**2, edges, axis=1).mean(axis=0)
     stands = 10.0 * np.log10((power / (mean + 1e-300)).max(axis=1) + 1e-300)
     pause = power.sum(axis=1) < 10.0 ** (-0.1 * _PAUSE_DB) * power.sum(axis=1).max()

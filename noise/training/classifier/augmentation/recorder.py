@@ -23,7 +23,7 @@ from scipy.signal import firwin, lfilter, oaconvolve, resample_poly
 from noise.training.classifier.augmentation.backgrounds import background
 from noise.training.classifier.augmentation.places import a_weighted, in_a_place, place
 from noise.training.classifier.augmentation.rooms import in_a_room
-from noise.training.draws import coloured_noise, log_uniform, low_pass, wandering
+from noise.training.draws import coloured_noise, log_uniform, low_pass, picked, wandering
 
 _BANDS = {
     "free": ((15.0, 250.0), (5e3, 20e3), 2, 4.0),
@@ -72,8 +72,8 @@ def through_a_microphone(
     octaves = np.log2(np.maximum(frequency, 20.0) / 1e3)
     ripple = np.sin(rng.uniform(1.0, 4.0) * octaves + rng.uniform(0.0, 6.3))
     gain *= 10.0 ** (rng.uniform(0.0, most) / 20.0 * ripple)
-    heard = irfft(rfft(sound, m) * gain, m)[: sound.size]
-    return heard + _rubbing(heard, rate, rng) if kind == "pocket" else np.asarray(heard)
+    coloured = irfft(rfft(sound, m) * gain, m)[: sound.size]
+    return coloured + _rubbing(coloured, rate, rng) if kind == "pocket" else np.asarray(coloured)
 
 
 def _rubbing(
@@ -84,6 +84,28 @@ def _rubbing(
     noise = low_pass(coloured_noise(n, rng.uniform(0.5, 1.5), rng), rng.uniform(500, 4000), rate)
     strokes = np.maximum(wandering(n, rate, log_uniform(0.5, 6.0, rng), rng), 0.0) ** 2
     return np.asarray(10.0 ** rng.uniform(-2.0, -0.5) * sound.std() * strokes * noise / noise.std())
+
+
+def with_sensor_noise(
+    torque: NDArray[np.float64], acceleration: NDArray[np.float64], rng: np.random.Generator
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Add to the torque noise of 0.03 to 3 % of its mean size, and some to the acceleration.
+
+    Parameters
+    ----------
+    torque, acceleration : ndarray, shape (n,)
+        [Nm], [m/s^2]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    torque, acceleration : ndarray, shape (n,)
+        [Nm], [m/s^2]
+    """
+    size = 10.0 ** rng.uniform(-3.5, -1.5) * np.abs(torque).mean()
+    torque = torque + size * rng.standard_normal(torque.size)
+    size = 10.0 ** rng.uniform(-3.0, 0.5)
+    return torque, acceleration + size * rng.standard_normal(acceleration.size)
 
 
 def levelled(
@@ -380,7 +402,7 @@ def augmented(
     low = int(rng.choice(_LOW_RATES)) if rng.random() < 2.0 * _LOW else wanted
     if low < wanted and not _left(sound, rate, low):
         low = wanted
-    kind = list(_KINDS)[int(rng.choice(len(_KINDS), p=list(_KINDS.values())))]
+    kind = picked(_KINDS, rng)
     signal, lasts = recorded(sound, rate, rng, kind=kind, span=span)
     signal = resampled(signal, rate, wanted)
     if low < wanted and rng.random() < 0.5:
@@ -425,5 +447,5 @@ def _cut(
 
 def _left(sound: NDArray[np.float64], rate: float, low: float) -> bool:
     """Whether enough of a sound is left at a low rate."""
-    heard = float(a_weighted(sound, rate).std()) ** 2
-    return float(a_weighted(resampled(sound, rate, low), low).std()) ** 2 >= _LEFT * heard
+    audible = float(a_weighted(sound, rate).std()) ** 2
+    return float(a_weighted(resampled(sound, rate, low), low).std()) ** 2 >= _LEFT * audible

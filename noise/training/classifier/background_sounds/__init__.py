@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from noise.base import packaged_toml
 from noise.training.classifier.background_sounds.synthesis import synthesised
-from noise.training.draws import log_uniform, low_pass
+from noise.training.draws import log_uniform, low_pass, picked
 
 __all__ = ["BACKGROUND_SOUNDS", "WEIGHTS", "background_sound"]
 
@@ -71,8 +71,7 @@ def background_sound(
 def _alone(
     n: int, rate: float, rng: np.random.Generator, name: str | None = None
 ) -> NDArray[np.float64]:
-    weights = np.array(list(WEIGHTS.values()))
-    drawn = name or list(WEIGHTS)[int(rng.choice(weights.size, p=weights / weights.sum()))]
+    drawn = name or picked(WEIGHTS, rng)
     for _ in range(5):  # a rest between two blows may be longer than this
         sound = synthesised(BACKGROUND_SOUNDS[drawn], n, rate, rng)
         if sound.std() > 1e-3:

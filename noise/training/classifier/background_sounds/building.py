@@ -238,8 +238,8 @@ def placed(
     """
     hits = np.zeros(n)
     index = (np.asarray(times) * rate).astype(int)
-    kept = (index >= 0) & (index < n)
-    np.add.at(hits, index[kept], strength[kept])
+    inside = (index >= 0) & (index < n)
+    np.add.at(hits, index[inside], strength[inside])
     return hits
 
 

@@ -344,11 +344,11 @@ def _through(sound: Sound, part: Row, rate: float, draws: Draws) -> Sound:
     if "through" not in part:
         return sound
     level = sound.std() + 1e-12
-    heard = draws(part.get("direct", 1.0)) * sound
+    resounding = draws(part.get("direct", 1.0)) * sound
     for centre, width, gain in part["through"]:
         rung = resonance(sound, draws(centre), draws(width), rate)
-        heard = heard + max(draws(gain), 0.0) * level * rung / (rung.std() + 1e-12)
-    return np.asarray(heard)
+        resounding = resounding + max(draws(gain), 0.0) * level * rung / (rung.std() + 1e-12)
+    return np.asarray(resounding)
 
 
 def _changed(sound: Sound, row: Row, rate: float, draws: Draws) -> Sound:

@@ -203,8 +203,8 @@ def lost_samples(run, a, often, long):
 def aliased(x, rate, _rng, a, slow):
     """Sample too seldom without a filter."""
     at = np.arange(x.size)
-    kept = at[:: max(2, round(rate / slow))]
-    return x + a * (np.interp(at, kept, x[kept]) - x)
+    sampled = at[:: max(2, round(rate / slow))]
+    return x + a * (np.interp(at, sampled, x[sampled]) - x)
 
 
 @_signals

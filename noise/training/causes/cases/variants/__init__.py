@@ -60,8 +60,8 @@ def made(
         Hooks of an `sim.effects.effect.Effect`.
     """
     (function,) = (getattr(module, make) for module in modules if hasattr(module, make))
-    asked = inspect.signature(function).parameters
-    given = {name: value for name, value in known.items() if name in asked}
+    parameters = inspect.signature(function).parameters
+    given = {name: value for name, value in known.items() if name in parameters}
     acting: dict[str, Any] = function(strength, **given, **draw_numbers(specs, rng))
     return acting
 

@@ -129,18 +129,28 @@ def moved(way, response, rate, amount):
 
 
 def _both(paths, of, change):
-    """Change both ways to the acceleration, what is heard stays; or both to the pressure."""
+    """Change both ways to the acceleration, the sound stays; or both to the pressure."""
     ways = (f"torque_to_{of}", f"pulse_to_{of}")
     return replace(paths, **{way: change(getattr(paths, way)) for way in ways})
 
 
 def beams(
-    a, frequency, damping, signs, mass, constant=0.0, sizes=1.0, dense=0.0, *, heard=True, **_drawn
+    a,
+    frequency,
+    damping,
+    signs,
+    mass,
+    constant=0.0,
+    sizes=1.0,
+    dense=0.0,
+    *,
+    audible=True,
+    **_drawn,
 ):
     """Add modes of modal constants [1/(kg m)]; that of the first torsional mode is about 100."""
     n = frequency.size
     constants = dense / np.sqrt(n) * signs if dense else constant * signs * sizes
-    return _with_modes(a, _modes(frequency, damping, constants), mass * heard)
+    return _with_modes(a, _modes(frequency, damping, constants), mass * audible)
 
 
 def beam_pair(a, frequency, constant, damping, apart, second, mass):

@@ -154,13 +154,13 @@ def _ricker(x):
     return (1.0 - 2.0 * y) * np.exp(-y)
 
 
-def _bounce(rate, _rng, duration, apart, kept, n):
+def _bounce(rate, _rng, duration, apart, restitution, n):
     pulse = _half_sine(rate, None, duration)
-    starts = np.concatenate([[0.0], np.cumsum(apart * kept ** np.arange(n))])
+    starts = np.concatenate([[0.0], np.cumsum(apart * restitution ** np.arange(n))])
     shape = np.zeros(int(starts[-1] * rate) + pulse.size + 2)
     for i, start in enumerate(starts.tolist()):
         at = int(start * rate)
-        shape[at : at + pulse.size] += kept**i * pulse
+        shape[at : at + pulse.size] += restitution**i * pulse
     return shape
 
 
@@ -188,14 +188,14 @@ _IMPACTS = {
 }  # fmt: skip
 
 
-def heard_clicks(a, frequency, cycles, power, level):
+def clicks_beside(a, frequency, cycles, power, level):
     """Click into the air alone, from the bushing's own rim."""
 
     def change(signals, rate, _rng):
         where, drops = torque_drops(signals["torque"], 0.05)
         clicks = np.zeros_like(signals["pressure"])
         clicks[where] = a * level * (drops / _REFERENCE_DROP) ** power
-        heard = fftconvolve(clicks, _ring(rate, None, frequency, cycles, 5.0, 2))[: clicks.size]
-        return signals | {"pressure": signals["pressure"] + heard}
+        ringing = fftconvolve(clicks, _ring(rate, None, frequency, cycles, 5.0, 2))[: clicks.size]
+        return signals | {"pressure": signals["pressure"] + ringing}
 
     return on_signals(a, change)

@@ -316,7 +316,7 @@ _LATE = {
 """A buffer lost once (step), two clocks that are made to agree again and again (corrected)."""
 
 
-def lost_packets(a, size, kept, mean, shares):
+def lost_packets(a, size, repeated, mean, shares):
     """Lose packets: the one before is read again, or silence."""
 
     def change(x, share, rate, rng):
@@ -324,13 +324,13 @@ def lost_packets(a, size, kept, mean, shares):
         lost = (rng.random(x.size // length + 1) < 0.5 * a * abs(share))[at // length]
         late = np.interp(at - share * (a * mean) * rate, at, x)
         again = late[np.maximum(at - length, 0)]
-        return np.where(lost, kept * again + (1.0 - kept) * x.mean(), late)
+        return np.where(lost, repeated * again + (1.0 - repeated) * x.mean(), late)
 
     return _on_channels(a, shares, change)
 
 
 def dispersive(a, latest, corner, steep, way, shares):
-    """Delay by an amount that depends on frequency, all levels being kept."""
+    """Delay by an amount that depends on frequency, all levels being as they were."""
 
     def change(x, share, rate, _rng):
         n = 2 * x.size
