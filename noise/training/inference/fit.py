@@ -16,6 +16,7 @@ first, by other counts, so that it is those with one that the final counts hold 
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -166,11 +167,8 @@ def _case_name(index: int, calibrated: int, subset: int, others: int) -> str:
 
 
 def _cases() -> Iterator[tuple[int, int, int, int]]:
-    for index in range(len(QUANTITIES)):
-        for calibrated in (0, 1):
-            for subset in range(1, 1 << len(KINDS)):
-                for others in range(4):
-                    yield index, calibrated, subset, others
+    """Yield quantity, calibrated or not, subset of channels, and others that are logged."""
+    return itertools.product(range(len(QUANTITIES)), (0, 1), range(1, 1 << len(KINDS)), range(4))
 
 
 N_TRAINING = 1800
