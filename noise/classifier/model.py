@@ -1,7 +1,7 @@
-"""Classifier of noises: features of windows in, probabilities of the five labels out.
+"""Classifier that gives the probabilities of the five labels from features of windows.
 
-Trained on simulation and some real sounds, it ships with the package (``data/classifier.npz``);
-how it is trained is the business of `noise.training.classifier.fit`.
+The shipped one (``data/classifier.npz``) is trained on simulation and some real sounds by
+`noise.training.classifier.fit`.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ CLASSIFIER = ModelKind(
 )
 
 Thresholds = tuple[float, float, float]
-"""Probability from which creak, squawk and squeal are named [-]."""
+"""Minimum probabilities of creak, squawk and squeal [-]."""
 
 _FLOOR = 1e-3
-"""Share of the votes that no few hundred trees can tell less than [-]."""
+"""Share added to the votes, the resolution of a few hundred trees [-]."""
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """What makes votes probabilities.
+    """Calibration from votes of trees to probabilities.
 
     Parameters
     ----------
     sharpness : float
-        Exponent [-]: above 1 it makes them more certain.
+        Exponent; above 1, probabilities are more extreme [-].
     weights : tuple of float
-        Of the labels [-].
+        Weights of the labels [-].
 
     Examples
     --------
@@ -51,7 +51,7 @@ class Calibration:
     weights: tuple[float, ...]
 
     def __call__(self, votes: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return probabilities, each row of which sums to 1."""
+        """Return probabilities; each row sums to 1."""
         p = (votes + _FLOOR) ** self.sharpness * np.array(self.weights)
         return np.asarray(p / p.sum(axis=1, keepdims=True))
 
@@ -64,15 +64,15 @@ class Classifier:
     Parameters
     ----------
     feature_names : tuple of str
-        Features in the order of the trees; of `noise.labels.windows.FEATURE_NAMES`.
+        Features of the trees, a subset of `noise.labels.windows.FEATURE_NAMES`.
     trees : BoostedTrees
     calibrations : pair of Calibration
-        For sound alone, and for sound with what else was measured.
+        For sound alone, and for sound with other channels.
     card : mapping
-        How it was trained: seed, counts, scores.
+        Summary of the training: seed, counts, scores.
     thresholds : mapping of str to tuple of 3 floats
-        By `noise.base.labels.SURROUNDINGS`: probability [-] from which creak, squawk and squeal
-        are named; below it the label is ``unknown``.
+        By `noise.base.labels.SURROUNDINGS`: minimum probabilities of creak, squawk and squeal [-];
+        below them the label is ``unknown``.
 
     Examples
     --------
@@ -93,7 +93,7 @@ class Classifier:
     classes = LABELS
 
     def predict_proba(self, features: NDArray[np.float32]) -> NDArray[np.float64]:
-        """Probabilities of `LABELS`.
+        """Return the probabilities of `LABELS`.
 
         Parameters
         ----------
@@ -111,12 +111,12 @@ class Classifier:
         return np.where(more[:, None], among_others, alone)
 
     def sensitive(self, sensitivity: float) -> Classifier:
-        """Return one that names a noise at other odds.
+        """Return a classifier with thresholds for another sensitivity.
 
         Parameters
         ----------
         sensitivity : float
-            Above 1 fainter noises are named, and more that are none [ratio of odds].
+            Factor on the odds of a noise [-]; above 1, more noises and more false names result.
 
         Examples
         --------
@@ -131,7 +131,7 @@ class Classifier:
         return replace(self, thresholds=others)
 
     def save(self, path: str | Path) -> None:
-        """Write the classifier into an NPZ file, whole or not at all.
+        """Write the classifier to an NPZ file atomically.
 
         Raises
         ------
@@ -149,14 +149,14 @@ class Classifier:
 
 
 def at_sensitivity(thresholds: Thresholds, sensitivity: float) -> Thresholds:
-    """Return the probabilities from which noises are named at other odds [-].
+    """Return the thresholds for another sensitivity [-].
 
     Parameters
     ----------
     thresholds : tuple of 3 floats
-        Probability of each at a sensitivity of 1 [-].
+        Thresholds at a sensitivity of 1 [-].
     sensitivity : float
-        [ratio of odds]
+        Factor on the odds of a noise [-].
 
     Examples
     --------
@@ -168,7 +168,7 @@ def at_sensitivity(thresholds: Thresholds, sensitivity: float) -> Thresholds:
 
 
 def has_more_than_sound(features: NDArray[np.float32], names: Sequence[str]) -> NDArray[np.bool_]:
-    """Whether windows have features of other channels than the pressure, shape (n_windows,).
+    """Whether each window has features of other channels than pressure, shape (n_windows,).
 
     Examples
     --------
@@ -181,12 +181,12 @@ def has_more_than_sound(features: NDArray[np.float32], names: Sequence[str]) -> 
 
 
 def load_classifier(path: str | Path | None = None) -> Classifier:
-    """Load a classifier, by default the one that is shipped.
+    """Load a classifier, by default the shipped one.
 
     Parameters
     ----------
     path : path-like, optional
-        NPZ file that `Classifier.save` wrote.
+        NPZ file of `Classifier.save`.
 
     Returns
     -------
@@ -195,7 +195,7 @@ def load_classifier(path: str | Path | None = None) -> Classifier:
     Raises
     ------
     ParameterError
-        If the file is none that `Classifier.save` wrote.
+        The file was not written by `Classifier.save`.
 
     Examples
     --------

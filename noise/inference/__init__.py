@@ -1,6 +1,6 @@
-"""The inference of conditions that were not logged, as it is used on labelled segments.
+"""Inference of operating conditions that were not logged, from labelled segments.
 
-What is "assumed" was chosen by judgement, and no measurement of it is on record.
+Values marked "assumed" were chosen by judgement, without a recorded measurement.
 """
 
 from noise.inference.model import Inference, Inferred, Interval, infer_stretch, load_inference

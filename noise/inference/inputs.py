@@ -1,11 +1,11 @@
-"""Inputs of the inference: conditions on the scales they are inferred on, and segment features.
+"""Inputs of the inference: scaled conditions and features of segments.
 
-Speed and support stiffness count by their logarithm, interference as it is. The bolted clamp is
-infinitely stiff, so it stands at the upper end of its scale as a point of its own: an interval that
+Speed and support stiffness are scaled by their logarithm, the interference is not. The bolted clamp
+has infinite stiffness, so it is a separate point at the upper end of the scale: an interval that
 reaches it reads "from 5000 Nm/rad up to the bolted clamp".
 
-Slips follow the shaft's turning, so with the speed logged their number in a radian tells of torque
-and stiffness alone; it is a feature of its own because trees are poor at division.
+With a logged speed, the number of slips per radian depends on torque and stiffness alone. It is a
+feature of its own because trees approximate quotients poorly.
 """
 
 from __future__ import annotations
@@ -19,28 +19,28 @@ from numpy.typing import NDArray
 from models.condition import FIXED, Condition
 
 MATERIAL = "fluorocarbon"
-"""Of all bushings that the intervals hold for."""
+"""Material of the bushings for which the intervals hold."""
 
 SPEED_RANGE = (0.1, 15.0)
-"""Of the shaft, in training and in what is inferred [rad/s]; the thesis's lie within; assumed."""
+"""Range of the speed of the shaft [rad/s]; includes that of the thesis; assumed."""
 
 INTERFERENCE_RANGE = (0.15e-3, 0.42e-3)
-"""About the thesis's fits, 0.178 to 0.381 mm [m]; assumed."""
+"""Range of the interference [m]; includes the 0.178 to 0.381 mm of the thesis; assumed."""
 
 SUPPORT_RANGE = (1e3, 1e4)
-"""Of the clamp on beams [Nm/rad]; about the thesis's 2214 and 3745; assumed."""
+"""Range of the support stiffness [Nm/rad]; includes the 2214 and 3745 of the thesis; assumed."""
 
 SHORTEST, LONGEST = 0.25, 1.0
-"""Lengths of what the features are taken of [s]; assumed."""
+"""Minimum and maximum duration of a described stretch [s]; assumed."""
 
 RATES = (16_000, 22_050, 30_000, 44_100, 48_000)
-"""Sampling rates that recordings come in [Hz]."""
+"""Sampling rates of recordings in training [Hz]."""
 
 QUANTITIES = ("speed", "interference", "support_stiffness")
 """Fields of `models.condition.Condition`, in the order of all arrays."""
 
 KINDS = ("pressure", "acceleration", "torque")
-"""Kinds of channel that tell of a condition; their subsets are numbered as bits in this order."""
+"""Kinds of channel with features, in the order of the bits that number their subsets."""
 
 _SLIPS_A_SECOND = (
     "pressure_fundamental",
@@ -50,10 +50,10 @@ _SLIPS_A_SECOND = (
     "torque_fundamental",
     "torque_slip_rate",
 )
-"""Features that are numbers of slips in a second [Hz]."""
+"""Features that are slip rates [Hz]."""
 
 _FIXED = 10.0
-"""Of the bolted clamp on a scale of logarithms that end at 9.2 [-]; assumed."""
+"""Scaled support stiffness of the bolted clamp; others end at 9.2 [-]; assumed."""
 
 
 _RANGES = {
@@ -72,7 +72,7 @@ def scaled(condition: Condition) -> NDArray[np.float64]:
     -------
     ndarray, shape (3,)
         Logarithm of the speed in rad/s [-], interference [mm], logarithm of the support stiffness
-        in Nm/rad [-]; NaN where it is not known.
+        in Nm/rad [-]; NaN if unknown.
 
     Examples
     --------
@@ -91,14 +91,14 @@ def scaled(condition: Condition) -> NDArray[np.float64]:
 
 
 def unscaled(name: str, point: float) -> float:
-    """Return the value of a quantity at a point of its scale, within its stated range.
+    """Return the value of a scaled quantity, limited to its range.
 
     Parameters
     ----------
     name : str
-        Of `QUANTITIES`.
+        One of `QUANTITIES`.
     point : float
-        As `scaled` gives it.
+        Scaled value, as from `scaled`.
 
     Returns
     -------
@@ -120,16 +120,16 @@ def unscaled(name: str, point: float) -> float:
 def segment_features(
     table: NDArray[np.float64], names: Sequence[str], known: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Join features and logged conditions.
+    """Return features of segments joined with logged conditions and slips per radian.
 
     Parameters
     ----------
     table : ndarray, shape (n, n_names)
         Features of segments [unit of each feature].
     names : sequence of str
-        Of its columns, as `features.table.recording_feature_names` has them.
+        Names of the columns, as from `features.table.recording_feature_names`.
     known : ndarray, shape (n, 3)
-        Conditions as `scaled` gives them, NaN where not logged.
+        Conditions as from `scaled`, NaN if not logged.
 
     Returns
     -------
@@ -160,7 +160,7 @@ def n_segment_features(names: Sequence[str]) -> int:
 def of_channels(
     table: NDArray[np.float64], names: Sequence[str], subset: int | NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """Return features without those of channels that are not in a subset, which become NaN.
+    """Return features in which those of channels outside a subset are NaN.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def of_channels(
         [unit of each feature]
     names : sequence of str
     subset : int or ndarray of int, shape (n,)
-        As `subset_of` numbers them; one for all samples, or one for each.
+        Number from `subset_of`, one for all samples or one for each.
 
     Returns
     -------
@@ -197,14 +197,14 @@ def subset_of(kinds: Sequence[str]) -> int:
 
 
 def others_of(known: NDArray[np.float64], index: int) -> int:
-    """Return which of the other two quantities are logged, as a number from 0 to 3.
+    """Return the number, 0 to 3, of the set of other quantities that are logged.
 
     Parameters
     ----------
     known : ndarray, shape (3,)
-        A condition as `scaled` gives it.
+        Condition as from `scaled`.
     index : int
-        Of the quantity that is asked for.
+        Index of the inferred quantity.
 
     Examples
     --------

@@ -1,14 +1,14 @@
-"""Inference of conditions from a segment, with intervals that cover 90 %, or nothing.
+"""Model that infers conditions of a segment with intervals of 90 %.
 
-A quantile forest gives what is asked for as a distribution. How much of it lies outside of the
-interval is calibrated on recordings that no tree has seen, for each set of channels, of calibration
-and of other conditions that are logged (split conformal prediction on the levels of the
-distribution: V. Chernozhukov, K. Wuethrich, Y. Zhu, *Distributional conformal prediction*, PNAS
-118, 2021); so the bolted clamp, which is a point by itself, needs no treatment of its own. Where
-some of the channels give a narrower interval than all together, as the torque does for the
-interference, only those count. An interval hardly narrower than what is known beforehand is none.
+A quantile forest predicts the distribution of a condition. The share of it outside of the interval
+is calibrated on recordings that were not used to grow trees, for each set of channels, with and
+without calibration, and for each set of logged conditions (split conformal prediction: V.
+Chernozhukov, K. Wuethrich, Y. Zhu, *Distributional conformal prediction*, PNAS 118, 2021). So the
+bolted clamp, a separate point, needs no special treatment. If a subset of the channels gives a
+narrower interval than all, as the torque does for the interference, only the subset is used. An
+interval hardly narrower than that of the population is not reported.
 
-The population that the intervals hold for is that of `noise.training.inference.population`.
+The intervals hold for the population of `noise.training.inference.population`.
 """
 
 from __future__ import annotations
@@ -47,8 +47,7 @@ if TYPE_CHECKING:
 
 
 _NARROWER = 0.8
-"""An interval as wide as this share of the one known beforehand, or wider, is none [-];
-assumed."""
+"""Maximum width of a reported interval, as a share of that of the population [-]; assumed."""
 
 INFERENCE = ModelKind(
     "model of conditions", 1, "bushing-noise train --inference",
@@ -58,14 +57,14 @@ INFERENCE = ModelKind(
 
 @dataclass(frozen=True)
 class Interval:
-    """A condition as far as the signal tells it, in SI units.
+    """Interval of an inferred condition, in SI units.
 
     Parameters
     ----------
     value : float
-        As likely too high as too low [rad/s], [m] or [Nm/rad].
+        Median [rad/s], [m] or [Nm/rad].
     low, high : float
-        Bounds of 90 %, in the same unit; the bolted clamp is ``math.inf``.
+        Bounds of the 90 % interval, in the same unit; the bolted clamp is ``math.inf``.
 
     Examples
     --------
@@ -80,7 +79,7 @@ class Interval:
 
 
 class Inferred(dict[str, Interval]):
-    """Conditions that a segment tells of, by name.
+    """Inferred conditions of a segment by name.
 
     Examples
     --------
@@ -98,21 +97,21 @@ class Inference:
     Parameters
     ----------
     names : tuple of str
-        Features in the forests' order, before the logged conditions.
+        Features of the forests, before the logged conditions.
     forests : tuple of QuantileForest
         One for each of `QUANTITIES`.
     prior : ndarray of float32, shape (3, n)
-        Values of the population [on the scale of each quantity], which join those of the leaves:
-        nothing in it is ruled out.
+        Values of the population, which are added to those of the leaves, so that no value of it
+        is ruled out [on the scale of each quantity].
     used : ndarray of int16, shape (3, 8, 2, 4)
-        By quantity, subset of channels, calibrated or not, and others that are logged: the part
-        of the subset that counts, as `noise.inference.inputs.subset_of` numbers it.
+        By quantity, subset of channels, calibration and other logged conditions: the part of the
+        subset that is used, by `noise.inference.inputs.subset_of`.
     outside : ndarray of int16, shape (3, 8, 2, 4, 4)
-        Likewise, how many of the lowest and highest values lie outside, first over all
-        recordings, by which it is decided whether there is an interval, then over those for which
-        there is. -1 where there is never one.
+        Likewise, the numbers of lowest and highest values outside of the interval: two over all
+        recordings, which decide whether an interval is reported, then two over those with an
+        interval. -1 if an interval is never reported.
     card : mapping
-        How it was trained: seed, counts, coverage.
+        Summary of the training: seed, counts, coverage.
 
     Examples
     --------
@@ -135,24 +134,24 @@ class Inference:
         kinds: Sequence[str],
         calibrated: bool,
     ) -> Inferred:
-        """Infer what is not logged.
+        """Return inferred conditions of a segment that are not logged.
 
         Parameters
         ----------
         features : mapping of str to float
-            Of a segment, as `features.recording_features` gives them.
+            Features of the segment, from `features.recording_features`.
         logged : Condition
-            What is known.
+            Logged conditions.
         kinds : sequence of str
-            Of the channels that the features are of.
+            Kinds of the recorded channels.
         calibrated : bool
             Whether the samples are in physical units.
 
         Returns
         -------
         Inferred
-            A dict of str to Interval, by `QUANTITIES`; those that are logged, and those that the
-            signal does not tell, are left out.
+            Dict of str to Interval, by `QUANTITIES`, without logged conditions and those without
+            a narrow interval.
 
         Examples
         --------
@@ -182,12 +181,12 @@ class Inference:
         return inferred
 
     def distribution(self, index: int, x: NDArray[np.float64]) -> NDArray[np.float32]:
-        """Values of a quantity that a sample may have, on its scale and in rising order.
+        """Return the predicted distributions of a quantity as sorted values on its scale.
 
         Parameters
         ----------
         index : int
-            Of the quantity.
+            Index of the quantity.
         x : ndarray, shape (n, n_segment_features)
             [unit of each feature]
 
@@ -203,13 +202,13 @@ class Inference:
     def is_narrow(
         self, index: int, values: NDArray[np.float32], outside: NDArray[np.int16]
     ) -> NDArray[np.bool_]:
-        """Whether distributions, shape (n, n_values), are narrower than the population's."""
+        """Whether distributions, shape (n, n_values), are narrower than that of the population."""
         low, high = np.quantile(self.prior[index], [0.05, 0.95])
         width = values[:, -1 - outside[1]] - values[:, outside[0]]
         return np.asarray(width < _NARROWER * (high - low))
 
     def save(self, path: str | Path) -> None:
-        """Write the model into an NPZ file, whole or not at all.
+        """Write the model to an NPZ file atomically.
 
         Raises
         ------
@@ -225,12 +224,12 @@ class Inference:
 
 
 def load_inference(path: str | Path | None = None) -> Inference:
-    """Load a model, by default the one that is shipped.
+    """Load a model, by default the shipped one.
 
     Parameters
     ----------
     path : path-like, optional
-        NPZ file that `Inference.save` wrote.
+        NPZ file of `Inference.save`.
 
     Returns
     -------
@@ -239,7 +238,7 @@ def load_inference(path: str | Path | None = None) -> Inference:
     Raises
     ------
     ParameterError
-        If the file is none that `Inference.save` wrote.
+        The file was not written by `Inference.save`.
 
     Examples
     --------
@@ -267,21 +266,21 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Inf
 def infer_stretch(
     blocks: RecordingBlocks, first: int, last: int, logged: Condition, inference: Inference
 ) -> Inferred:
-    """Infer what is not logged of a stretch that creaks, squawks or squeals.
+    """Return inferred conditions of a stretch with a creak, squawk or squeal.
 
     Parameters
     ----------
     blocks : RecordingBlocks
     first, last : int
-        The stretch from sample `first` up to `last`; of a longer one than 1 s the middle counts.
+        Range of samples of the stretch; of more than 1 s the middle is used.
     logged : Condition
     inference : Inference
 
     Returns
     -------
     Inferred
-        As `Inference.infer` gives it; nothing where the recording is none of those that the
-        intervals hold for: shorter, sampled more slowly, or of another material.
+        As from `Inference.infer`; empty if the intervals do not hold for the recording: it is too
+        short, its sampling rate too low, or its material another.
 
     Examples
     --------

@@ -1,1 +1,1 @@
-"""Labels in time, and the table that links them to operating conditions."""
+"""Labelling of recordings: segments with labels, and the label table with operating conditions."""

@@ -1,7 +1,6 @@
-"""Windows of a recording, classified page by page, and what they tell of the frequency.
+"""Classification of the windows of a recording, and the frequency of a segment.
 
-Of a page's hundreds of features a few tell the frequency of a segment later on; the others have
-been used when the classifier has spoken, and are not kept.
+Features are classified page by page. Only the few that give the frequency of a segment are stored.
 """
 
 from __future__ import annotations
@@ -22,18 +21,17 @@ from noise.labels.levels import CELL_RATE, cell_edges, rms_level, sound_levels
 from noise.labels.windows import FEATURE_NAMES, WindowFeatures, columns_of, window_features
 
 _SILENT_LEVEL = 10.0
-"""Calibrated sound below it is silence [dB re 20 uPa]: below any microphone's own noise."""
+"""Level below which calibrated sound is silent, below the noise of microphones [dB re 20 uPa]."""
 
 _SILENT_LEVEL_DBFS = -90.0
-"""Uncalibrated sound below it is silence [dBFS]: the last bit of 16."""
+"""Level below which uncalibrated sound is silent, the last of 16 bits [dBFS]."""
 
 _SURELY = 6.0
-"""What is louder than silence by so much in its described part needs no second look [dB]."""
+"""Level of the described band above silence from which a window is not checked [dB]."""
 
 _STRANGERS = 0.3
-"""Odds of a sound that is none of the noises and no quiet where an operating condition is stated,
-over those elsewhere [-]; assumed: of the recordings that the classifier learned from, a third are
-such sounds."""
+"""Odds of `unknown` in recordings with a stated operating condition, relative to others [-];
+assumed: a third of the training recordings are background sounds."""
 
 
 def classified(
@@ -52,7 +50,7 @@ def classified(
     Returns
     -------
     probabilities : ndarray, shape (n_windows, n_labels)
-        [-]; what is silent is ``none``.
+        Probabilities [-]; silent windows are ``none``.
     of_frequency : ndarray of float32, shape (n_windows, n_features)
         By `FREQUENCY_NAMES` [unit of each feature].
     windows : WindowFeatures
@@ -74,19 +72,19 @@ def classified(
 
 
 def at_a_condition(blocks: RecordingBlocks) -> bool:
-    """Whether it is of a bushing at a stated condition, where nothing else is expected to sound."""
+    """Whether an operating condition is stated, so that only a bushing is expected to sound."""
     at = blocks.condition
     stated = (at.speed, at.interference, at.support_stiffness)
     return any(value is not None for value in stated)
 
 
 def _silent_windows(blocks: RecordingBlocks, windows: WindowFeatures) -> NDArray[np.bool_]:
-    """Whether nothing is to be heard in each window."""
+    """Whether each window is silent."""
     edges, n = cell_edges(blocks.rate, blocks.n_samples), len(windows.level)
     row = blocks.first("pressure")
     full_scale = 1.0 if row is None else blocks.channels[row].full_scale
     silent = np.zeros(n, dtype=np.bool_)
-    # What is audible is no less than the part of it that is described.
+    # The level of all frequencies is at least that of the described band.
     limit = _SILENT_LEVEL_DBFS + 20.0 * math.log10(full_scale)
     if blocks.calibrated:
         limit = _SILENT_LEVEL + 20.0 * math.log10(REFERENCE_PRESSURE)
@@ -116,23 +114,23 @@ FREQUENCY_NAMES = (
     *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in _OF_FREQUENCY),
     "torque_fundamental", "torque_line_frequency",
 )  # fmt: skip
-"""Features of windows by which the frequency is told; of `FEATURE_NAMES`."""
+"""Window features that give the frequency of a segment, a subset of `FEATURE_NAMES`."""
 
 FREQUENCY_COLUMNS = [FEATURE_NAMES.index(name) for name in FREQUENCY_NAMES]
-"""Their columns among the others."""
+"""Columns of these features."""
 
 _PERIODIC = 0.3
-"""Least autocorrelation of an envelope for its period to be that of slips."""
+"""Minimum autocorrelation at which the period of an envelope is that of slips."""
 
 _LEAST_BLOWS = math.log2(3.0 / 10.0)
-"""Fewer blows a second tell no rate [octave re 10 Hz]."""
+"""Minimum rate of blows [octave re 10 Hz]."""
 
 _COLUMN = {name: i for i, name in enumerate(FREQUENCY_NAMES)}
 _DECLARED = {feature.name: feature for feature in WINDOW_FEATURES}
 
 
 def segment_frequency(features: NDArray[np.float32], label: str) -> float | None:
-    """Return slip frequency of creak and squawk, else of the strongest line [Hz].
+    """Return the slip frequency of a creak or squawk, else the frequency of the strongest line.
 
     Parameters
     ----------
@@ -143,8 +141,8 @@ def segment_frequency(features: NDArray[np.float32], label: str) -> float | None
     Returns
     -------
     float or None
-        [Hz], of the torque where most windows have one; ``None`` for ``none``, or where nothing is
-        found.
+        Frequency [Hz], of the torque if most windows have one; ``None`` for ``none``, and without
+        a frequency in the windows.
 
     Examples
     --------
@@ -159,7 +157,7 @@ def segment_frequency(features: NDArray[np.float32], label: str) -> float | None
     slips = label in ("creak", "squawk")
     torque = "torque_fundamental" if slips else "torque_line_frequency"
     known = np.isfinite(features[:, _COLUMN[torque]])
-    if 2 * known.sum() > len(known):  # one window in many tells of chance, not of the segment
+    if 2 * known.sum() > len(known):  # a frequency in few windows is by chance
         return _median(features, torque)
     for kind in ("pressure", "acceleration"):
         frequency = None
@@ -176,7 +174,7 @@ def segment_frequency(features: NDArray[np.float32], label: str) -> float | None
 
 
 def _blow_rate(features: NDArray[np.float32], kind: str) -> float | None:
-    """Rate of a creak's blows [Hz], of their period where most windows have one."""
+    """Return the rate of blows of a creak [Hz], from their period if most windows have one."""
     for part in ("high_", ""):
         strength = features[:, _COLUMN[f"{kind}_{part}period_strength"]]
         periodic = features[strength > _PERIODIC]
@@ -187,13 +185,13 @@ def _blow_rate(features: NDArray[np.float32], kind: str) -> float | None:
 
 
 def _frequency(features: NDArray[np.float32], kind: str, name: str) -> float | None:
-    """Median of a window feature that counts in octaves [Hz]."""
+    """Return the median of a window feature in octaves, as a frequency [Hz]."""
     octave = _median(features, f"{kind}_{name}")
     return None if octave is None else _DECLARED[name].hertz(octave)
 
 
 def _median(features: NDArray[np.float32], name: str) -> float | None:
-    """Median of what is known of a column, in the column's unit."""
+    """Return the median of the finite values of a column, in the unit of the column."""
     values = features[:, _COLUMN[name]]
     values = values[np.isfinite(values)]
     return float(np.median(values)) if values.size else None

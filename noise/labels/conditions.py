@@ -1,12 +1,11 @@
-"""Conditions map: the labels found over speed, interference and support stiffness.
+"""Conditions map: counts of labels by speed, interference and support stiffness.
 
-Logged speeds differ in their last digits and ramps pass through all of them, so speeds are counted
-in steps of a round number about its multiples, whatever the sense of rotation. Fits and supports
-are few in most campaigns and stay themselves, what lies within 5 % taken together; where there are
-too many, they are counted in steps as well. A condition that is not known is a place of its own: to
-leave it out would hide how much of the data it is. What was inferred from the signal counts as not
-known: one number out of a wide interval would look like a measurement, and a map made of what the
-noise tells of its condition could not say at which condition the noise is made.
+Logged speeds scatter and ramps cover ranges, so speeds are binned in steps of a round width,
+without the sign of the rotation. Interferences and supports are few in most campaigns; values
+within 5 % are one group, and many values are binned too. An unknown condition is a bin of its own,
+so that the map shows how much of the data has none. Inferred conditions count as unknown: a number
+from a wide interval would look like a measurement, and conditions inferred from the noise cannot
+show at which conditions the noise occurs.
 """
 
 from __future__ import annotations
@@ -24,13 +23,13 @@ if TYPE_CHECKING:
 
 
 _NEAR = 1.02
-"""Values whose ratio is below it belong together ..."""
+"""Maximum ratio of neighbouring values in a group."""
 
 _WIDEST = 1.05
-"""... unless that makes a range wider than this."""
+"""Maximum ratio of the largest to the smallest value of a group."""
 
 _FINEST = 0.04
-"""Steps are no narrower than this share of the highest value."""
+"""Minimum step width, as a share of the largest value."""
 
 _MOST_SPEEDS, _MOST_FITS, _MOST_SUPPORTS = 15, 8, 6
 
@@ -43,11 +42,11 @@ MAP_COLUMNS = (
     *(f"{label}_segments" for label in LABELS),
     *(f"{label}_s" for label in LABELS),
 )  # fmt: skip
-"""Columns of the map as a table."""
+"""Columns of the table of the map."""
 
 
 class Range(NamedTuple):
-    """Values of a condition that are counted together, and what a picture calls them."""
+    """Range of a condition in the map, and the value that represents it in a picture."""
 
     low: float
     high: float
@@ -56,19 +55,19 @@ class Range(NamedTuple):
 
 @dataclass
 class Place:
-    """What was found at one condition.
+    """Counts of labels at one condition.
 
     Parameters
     ----------
     material : str or None
     speed, interference, support_stiffness : Range or None
-        In rad/s, mm and Nm/rad as in the table; ``None`` where not known.
+        In rad/s, mm and Nm/rad as in the table; ``None`` if unknown.
     segments : dict of str to int
         Number of segments by label.
     seconds : dict of str to float
-        Their length together by label [s].
+        Total duration of the segments by label [s].
     recordings : set of str
-        Files that they come from.
+        Files of the segments.
     """
 
     material: str | None
@@ -81,24 +80,24 @@ class Place:
 
     @property
     def label(self) -> str:
-        """The label of the longest time that is not ``none``, as a file is named."""
+        """Label with the longest total duration, ``none`` aside."""
         audible = [label for label in LABELS if self.segments[label] and label != "none"]
         return max(audible, key=self.seconds.__getitem__) if audible else "none"
 
 
 def conditions_map(rows: Iterable[Mapping[str, object]]) -> list[Place]:
-    """Count the segments of a label table by the conditions they were recorded at.
+    """Count the segments of a label table by operating condition.
 
     Parameters
     ----------
     rows : iterable of mapping
-        Of the label table; those without a label are passed over, and conditions whose source is
-        ``inferred`` count as not known.
+        Rows of the label table; rows without a label are ignored, and conditions with the source
+        ``inferred`` count as unknown.
 
     Returns
     -------
     list of Place
-        In the order of material, support, interference and speed; what is not known comes last.
+        Sorted by material, support, interference and speed; unknown conditions come last.
 
     Examples
     --------
@@ -152,7 +151,7 @@ def map_rows(places: Sequence[Place]) -> list[dict[str, object]]:
 
 
 def _groups(values: Sequence[float], most: int, otherwise: Grouping | None = None) -> Grouping:
-    """Give each value the few that it belongs to, or a step where there are too many."""
+    """Return a function from a value to its group, or to its step if there are too many groups."""
     groups: list[list[float]] = []
     for value in sorted(set(values)):
         if groups and value < _NEAR * groups[-1][-1]:
@@ -170,7 +169,7 @@ def _groups(values: Sequence[float], most: int, otherwise: Grouping | None = Non
 
 
 def _steps(values: Sequence[float], most: int) -> Grouping:
-    """Count in steps of a round width about its multiples, `most` of them or so."""
+    """Return a function from a value to its step; there are about `most` steps of a round width."""
     if not values:
         return _itself
     highest = max(values)
@@ -184,7 +183,7 @@ def _steps(values: Sequence[float], most: int) -> Grouping:
 
 
 def _factor(value: float) -> Range:
-    """Count from 1 to 2 to 5 to 10."""
+    """Return the range of a value on a scale of 1, 2, 5, 10."""
     if math.isinf(value) or value <= 0.0:
         return _itself(value)
     high = _round_up(value)
@@ -197,10 +196,10 @@ def _itself(value: float) -> Range:
 
 
 def _round_up(value: float) -> float:
-    """Return the next of 1, 2, 5, 10 ... of whatever power of ten."""
+    """Return the smallest of 1, 2, 5 times a power of ten that is not below a value."""
     if value <= 0.0:
         return 0.0
-    if value < sys.float_info.min:  # powers of ten end there
+    if value < sys.float_info.min:  # subnormal numbers have no such power of ten
         return value
     decade = 10.0 ** math.floor(math.log10(value) + 1e-9)
     return next(step * decade for step in (1, 2, 5, 10) if value <= step * decade * (1 + 1e-9))
@@ -215,7 +214,7 @@ def _number(value: object) -> float | None:
 
 
 def _order(place: Place) -> tuple[tuple[bool, str], list[tuple[bool, float]]]:
-    """By which places are sorted: what is not known is last."""
+    """Return the sort key of a place: unknown conditions come last."""
     ranges = (place.support_stiffness, place.interference, place.speed)
     material = (place.material is None, place.material or "")
     return material, [(span is None, span.middle if span else 0.0) for span in ranges]

@@ -1,6 +1,6 @@
-"""What somebody has written into a label table stays in it when recordings are labelled again.
+"""Corrections of a label table, which stay when recordings are labelled again.
 
-That is what was corrected, and what stands in columns of its own.
+Rows labelled by a person and additional columns are preserved.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ Place = tuple[str, float, float]
 
 
 WHOLE = "all"
-"""The track of what holds for all channels."""
+"""Track of a row that holds for all channels."""
 
 _DECIMALS = 6
-"""Of times that are told apart, as `label` writes them."""
+"""Decimals of times, as `label` writes them."""
 
 
 def track(row: Row) -> str:
-    """Return the track that a row is of; ``all`` where the table does not say.
+    """Return the track of a row; ``all`` without a channel.
 
     Examples
     --------
@@ -47,7 +47,7 @@ def track(row: Row) -> str:
 
 
 def place(row: Row) -> Place:
-    """Return track, start and end [s] of a row; all of the recording where the table has no times.
+    """Return track, start and end [s] of a row; the whole recording without times.
 
     Examples
     --------
@@ -63,7 +63,7 @@ def place(row: Row) -> Place:
 
 
 def common_time(one: Place, other: Place) -> float:
-    """Return the time that two places have in common; below zero how far they are apart [s].
+    """Return the overlap of two places in time [s]; negative if they are apart.
 
     Examples
     --------
@@ -74,9 +74,7 @@ def common_time(one: Place, other: Place) -> float:
 
 
 def version(rows: Sequence[Row]) -> str:
-    """Return what is another where a segment, its label, or who gave it is another.
-
-    A table that was written again with the same labels is the same by it.
+    """Return a hash of the segments of rows, their labels and the sources of the labels.
 
     Examples
     --------
@@ -91,29 +89,28 @@ def version(rows: Sequence[Row]) -> str:
 
 
 def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[dict[str, object]]:
-    """Return new rows of a table, with those recordings as they were that somebody has corrected.
+    """Return new rows of a label table, merged with the corrections of the present table.
 
     Parameters
     ----------
     path : Path or None
-        The label table that the rows are for; there need be none yet.
+        Label table to be replaced; it need not exist.
     rows : list of dict
         By `COLUMNS`.
 
     Returns
     -------
     list of dict
-        Where some row of a recording's track is by a human in the table that is there, all rows of
-        that track are those of that table: whoever moves a border changes both sides of it. So are
-        labels of a table of one's own, which says of none that a classifier gave it. Tracks
-        that the new rows do not have come last. What the table has in columns of its own stays with
-        the stretch of time that it is beside.
+        If a row of a track has a label by a person in the present table, all rows of the track are
+        taken from that table, because a moved border changes both segments. Rows without any
+        column of a classifier count as a person's. Tracks without new rows come last. Values of
+        additional columns stay with the segment that they overlap most.
 
     Raises
     ------
     ParameterError
-        What is there cannot be read as a label table or has a row that cannot be used, so that it
-        must not be written over.
+        The present table cannot be read as a label table or has an invalid row, so it is not
+        replaced.
 
     Examples
     --------
@@ -134,23 +131,23 @@ def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[d
 
 
 def sign_corrections(path: Path, names: Iterable[str]) -> None:
-    """Mark labels of a table as a human's that differ from those that the program wrote.
+    """Mark labels that differ from those written by the program as labels by a person.
 
-    Whoever corrects a table in a spreadsheet may leave `label_source` as it was. The journal of the
-    table knows what was written. It is forgotten by a call with other options, so this is done
-    before the journal is opened.
+    A person who edits a table in a spreadsheet may leave `label_source` unchanged. The journal of
+    the table stores the written rows until a call with other options, so this is done before the
+    journal is opened.
 
     Parameters
     ----------
     path : Path
-        The label table; there need be none yet.
+        Label table; it need not exist.
     names : iterable of str
-        Recordings that are to be labelled.
+        Names of the recordings to be labelled.
 
     Raises
     ------
     ParameterError
-        As of `with_corrections`: corrections could not be kept after all the work.
+        As in `with_corrections`, before the work is done.
     """
     if not path.exists():
         return
@@ -163,7 +160,7 @@ def sign_corrections(path: Path, names: Iterable[str]) -> None:
 
 
 def _corrected_table(path: Path, names: Iterable[str]) -> list[dict[str, object]] | None:
-    """Read a table that must not be written over unread; None where there is none."""
+    """Read the present label table; return None if there is none."""
     if not path.exists() or not path.stat().st_size:
         return None
     known = {readable(name) for name in names}
@@ -181,7 +178,7 @@ def _corrected_table(path: Path, names: Iterable[str]) -> list[dict[str, object]
 def _signed(
     before: Iterable[dict[str, object]], rows: Iterable[dict[str, object]]
 ) -> list[dict[str, object]]:
-    """Sign rows whose label alone was changed: same segment and probabilities, other label."""
+    """Mark rows in which only the label was changed as labelled by a person."""
     new = {(readable(str(row.get("file"))), place(row)): row for row in rows}
 
     def changed(row: dict[str, object]) -> bool:
@@ -197,7 +194,7 @@ def _signed(
 
 
 def _check_names(path: Path, before: Iterable[dict[str, object]], known: set[str]) -> None:
-    """Refuse corrections of recordings whose names were saved in letters that say others."""
+    """Refuse corrections of recordings whose names were garbled by another encoding."""
     plain = {_ascii(name): name for name in known if not name.isascii()}
     for name in {str(row["file"]) for row in before if _is_by_a_person(row)} - known:
         if not name.isascii() and _ascii(name) in plain:
@@ -214,7 +211,7 @@ def _ascii(name: str) -> str:
 def with_corrected_rows(
     before: Iterable[dict[str, object]], rows: Iterable[dict[str, object]]
 ) -> list[dict[str, object]]:
-    """Return new rows, with those tracks as they were `before` that somebody has corrected.
+    """Return new rows, in which corrected tracks are replaced by the rows `before`.
 
     Parameters
     ----------
@@ -244,7 +241,7 @@ def with_corrected_rows(
             retained.setdefault(_track(row), []).append(row)
     merged: list[dict[str, object]] = []
     for row in rows:
-        at = _track(row)  # what is said of all of a file is said of each track
+        at = _track(row)  # a correction of the whole file holds for each track
         whole = at[0], WHOLE
         if at in corrected or whole in corrected:
             merged += retained.pop(at if at in corrected else whole, [])
@@ -258,7 +255,7 @@ def _track(row: Mapping[str, object]) -> tuple[object, object]:
 
 
 def _is_by_a_person(row: Mapping[str, object]) -> bool:
-    """Whether a person has named a row: it says so, or nothing of it is a classifier's."""
+    """Whether a person labelled a row: by its source, or because it has no probabilities."""
     if row.get("label_source") is not None or row.get("label") is None:
         return row.get("label_source") == HUMAN
     return all(row.get(f"p_{label}") is None for label in LABELS)
@@ -267,6 +264,6 @@ def _is_by_a_person(row: Mapping[str, object]) -> bool:
 def _own(
     row: Mapping[str, object], before: list[dict[str, object]], own: tuple[str, ...]
 ) -> dict[str, object]:
-    """Return the columns of its own that a table had for the time of a new row."""
+    """Return the additional columns of the present row that overlaps a new row most."""
     nearest = max(before, key=lambda one: common_time(place(one), place(row)), default={})
     return {name: nearest.get(name) for name in own}

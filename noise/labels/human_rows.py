@@ -1,4 +1,4 @@
-"""Rows of the label table for segments that a person has drawn, measured as `label` does."""
+"""Rows of the label table for segments drawn by a person, measured as by `label`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from noise.recordings.files import names_channels, open_blocks
 from noise.recordings.meaning import PascalPerFullScale
 
 LONGEST_MEASURED = 120.0
-"""No more is measured while a person waits [s]: of a longer recording what is new alone."""
+"""Maximum duration to be measured at once [s]; in longer recordings, only new segments are."""
 
 
 def human_rows(
@@ -27,7 +27,7 @@ def human_rows(
     full_scale: PascalPerFullScale | None = None,
     new: Sequence[tuple[str, float, float, str]] | None = None,
 ) -> list[dict[str, object]]:
-    """Return a row for each segment of a recording that a person has drawn.
+    """Return the rows of the label table for segments drawn by a person.
 
     Parameters
     ----------
@@ -37,22 +37,22 @@ def human_rows(
     segments : sequence of (str, float, float, str)
         Channel, start [s], end [s] and label of all segments.
     full_scale : float or tuple of float, optional
-        Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+        Sound pressure of a full-scale sample [Pa], for sound files without a calibration.
     new : sequence of (str, float, float, str), optional
-        As in `segments`: those that are measured where the recording is longer than
-        `LONGEST_MEASURED`, the shortest of them up to that; by default all segments.
+        Segments to be measured if the recording is longer than `LONGEST_MEASURED`, the shortest
+        up to that total; by default all segments.
 
     Returns
     -------
     list of dict
-        By `noise.labels.table.COLUMNS`, without probabilities; those that are not measured, of
-        a channel that it does not have, and beyond its end are left out. Where not all are
-        measured, none has a level over the background, which lies in all of them.
+        By `noise.labels.table.COLUMNS`, without probabilities. Segments that are not measured, of
+        a missing channel or beyond the end are left out. Unless all are measured, none has a level
+        over the background, which is that of the whole recording.
 
     Raises
     ------
     RecordingError
-        It cannot be read.
+        The recording cannot be read.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def human_rows(
 def _as_many_as_fit(
     segments: Sequence[tuple[str, float, float, str]],
 ) -> list[tuple[str, float, float, str]]:
-    """Return the shortest of some segments, `LONGEST_MEASURED` together, in order of time."""
+    """Return the shortest segments, up to `LONGEST_MEASURED` in total, in order of time."""
     fit, left = [], LONGEST_MEASURED
     for segment in sorted(segments, key=lambda one: one[2] - one[1]):
         left -= segment[2] - segment[1]

@@ -1,4 +1,4 @@
-"""Labelling of recordings in one call, and the work on each, here or in other processes."""
+"""Labelling of many recordings, also in several processes or on a cluster."""
 
 from __future__ import annotations
 
@@ -42,38 +42,37 @@ def label(
     workers: int = 1,
     scheduler: str | None = None,
 ) -> LabelTable:
-    """Label recordings; a file that cannot be read is a row that says why.
+    """Label recordings; a file that cannot be read is a row with the reason.
 
     Parameters
     ----------
     paths : path or sequence of paths
-        Recordings, or folders that are searched at any depth.
+        Recordings, or folders, which are searched recursively.
     classifier, inference : path, optional
         Files that ``bushing-noise train`` made; by default those that are shipped.
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     surroundings : {"any", "car", "rig"}, optional
-        What else may be heard; by default ``rig`` where an operating condition is logged, else
-        ``any``.
+        Place of the recording, which decides the expected background sounds; by default ``rig`` if
+        an operating condition is logged, else ``any``.
     loudness : bool
-        Whether the loudness N5 of segments is told as well, by the extra ``sound-quality``.
+        Whether to compute the loudness N5 of segments, with the extra ``sound-quality``.
     out : path, optional
         File for the table: .csv, .xlsx, .jsonl or .parquet. As with
-        ``bushing-noise label --out``, a journal beside it keeps each recording that is done:
-        whichever of the two is called next with the same table goes on where the last call ended,
-        however it ended. What somebody has corrected in the table stays as it is.
+        ``bushing-noise label --out``, a journal beside it stores each finished recording: the next
+        call of either with the same table resumes. Corrections in the table are preserved.
     fresh : bool
-        Whether to do all recordings again, whatever earlier calls with the same `out` did.
+        Whether to discard the results of earlier calls with the same `out`.
     workers : int
-        Processes that share the work; with more than one, a script needs
+        Number of processes; with more than one, a script needs
         ``if __name__ == "__main__":`` around the call.
     scheduler : str, optional
-        Address of a Dask cluster that does the work instead.
+        Address of a Dask cluster to use instead.
 
     Returns
     -------
     LabelTable
-        A list of one dict a segment, by `noise.labels.table.COLUMNS`, in the files' order.
+        List of one dict per segment, by `noise.labels.table.COLUMNS`, in the order of the files.
 
     Raises
     ------
@@ -123,7 +122,7 @@ def label(
         rows = list(BatchRows(work.columns, journal, jobs, refused))
         if out is None:
             return LabelTable(rows)
-        # Nobody may correct the table between the look at its corrections and the writing.
+        # The lock prevents corrections between reading and writing the table.
         with locked(Path(out)):
             table = LabelTable(with_corrections(Path(out), rows))
             table.write(out)
@@ -132,13 +131,13 @@ def label(
 
 
 def _absolute(path: str | Path | None) -> Path | None:
-    """Return a path that other processes and machines find."""
+    """Return the absolute path, which holds in other processes and on other machines."""
     return None if path is None else Path(path).absolute()
 
 
 @dataclass(frozen=True)
 class Labelling:
-    """A `noise.batch.Work`: the labelled segments of a recording.
+    """Work of a batch: labelled segments of each recording.
 
     Parameters
     ----------
@@ -147,11 +146,11 @@ class Labelling:
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     sensitivity : float
-        Odds at which a noise is named, over the classifier's own [ratio].
+        Factor on the odds of a noise [-].
     surroundings : str, optional
-        What else may be heard, as `noise.labels.segments.label_recording` takes it.
+        As in `noise.labels.segments.label_recording`.
     loudness : bool
-        Whether the loudness N5 of each segment is told as well.
+        Whether to compute the loudness N5 of segments.
 
     Examples
     --------
@@ -170,11 +169,11 @@ class Labelling:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Of the label table."""
+        """Columns of the label table."""
         return COLUMNS
 
     def prepare(self) -> None:
-        """Load the classifier and, where the user names one, what infers conditions."""
+        """Load the classifier and, if one is named, the model that infers conditions."""
         if self.loudness:
             from features.sound_quality import check_available
 
@@ -182,7 +181,7 @@ class Labelling:
         _ = self._loaded, self._inference
 
     def identity(self) -> dict[str, object]:
-        """Return what decides the rows: the options, and the models by their content."""
+        """Return what determines the rows: options and digests of the models."""
         return {
             "full_scale": self.full_scale,
             "sensitivity": self.sensitivity,
@@ -193,15 +192,15 @@ class Labelling:
         }
 
     def false_names(self) -> Mapping[str, Any]:
-        """Return the card's count of false names in these surroundings; empty where it has none.
+        """Return the false names in these surroundings by the card of the classifier; may be empty.
 
-        By sensitivity, as `noise.training.classifier.operating_point.false_name_rates` gives it.
+        Keys are sensitivities, as in `noise.training.classifier.operating_point.false_name_rates`.
         """
         counted = self._loaded.card.get("false_names")
         return counted[self.surroundings or "any"] if isinstance(counted, dict) else {}
 
     def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
-        """Return the rows of a recording, and whether it is calibrated."""
+        """Return the rows of a recording and whether it is calibrated."""
         with open_blocks(path, full_scale=self.full_scale) as recording:
             per_track = not names_channels(path)
             segments: list[Segment] = label_recording(
@@ -218,12 +217,12 @@ class Labelling:
 
     @cached_property
     def _inference(self) -> Inference | None:
-        # The shipped one is loaded by the first noise whose condition is not logged.
+        # The shipped model is loaded for the first noise without a logged condition.
         if self.inference is None:
             return None
 
         return load_inference(self.inference)
 
     def __getstate__(self) -> dict[str, object]:
-        """Leave the loaded models here: elsewhere they are loaded again."""
+        """Pickle the fields without the loaded models."""
         return {field.name: getattr(self, field.name) for field in fields(self)}

@@ -1,11 +1,11 @@
-"""Levels of any part of a recording, and of each of its segments over the background.
+"""Sound levels of segments, and their levels over the background.
 
-A-weighted levels are those that `features.kernels.level_meter` measures of the same samples, the
-loudness N5 that of the library that the field keeps for it.
+A-weighted levels are those that `features.kernels.level_meter` measures of the same samples, and
+the loudness N5 is that of a library.
 
-The background is what is left where no noise is named. Its level is the one exceeded for 90 % of
-that time, L_A90, as the field has it (ISO 1996-1): a door that slams in between does not raise it.
-Digital silence is no background: a gate, a fade or an editor put it there.
+The background is all that is not labelled as a noise. Its level is the one exceeded for 90 % of the
+time, L_A90 (ISO 1996-1), which a slamming door does not raise. Digital silence, as of a gate or an
+editor, is excluded.
 """
 
 from __future__ import annotations
@@ -30,24 +30,24 @@ if TYPE_CHECKING:
 
 
 _EXCEEDED = 90.0
-"""Share of the time for which the background is louder than its level [%]."""
+"""Share of the time for which the background exceeds its level [%]."""
 
 _LEAST_BACKGROUND = 4
-"""Eighths of a second without which a background has no level."""
+"""Minimum number of eighths of a second of a background."""
 
 _RANGE = 110.0
-"""What lies farther below the loudest eighth of a second is digital silence [dB]: 16 bits reach 98,
-and what is left beside zeros by the weighting lies at 130."""
+"""Range below the loudest eighth of a second beyond which sound is digital silence [dB]: 16 bits
+have 98, and the ringing of the weighting filter beside zeros lies at 130."""
 
 CELL_RATE = 100
-"""Cells in a second; segments begin and end with one."""
+"""Cells per second; segments consist of whole cells."""
 
 _PIECE = 1 << 16
-"""Samples that are squared at a time."""
+"""Samples per block."""
 
 
 def cell_edges(rate: float, n_samples: int) -> NDArray[np.int64]:
-    """Return the samples at which cells of 10 ms begin, and the end of the last.
+    """Return the first samples of cells of 10 ms, and the end of the last cell.
 
     Parameters
     ----------
@@ -65,27 +65,27 @@ def cell_edges(rate: float, n_samples: int) -> NDArray[np.int64]:
     [0, 10, 25]
     """
     count = max(1, round(n_samples * CELL_RATE / rate))
-    # Fewer samples than cells: rates of less than 100 Hz.
+    # Sampling rates below 100 Hz give fewer samples than cells.
     edges = np.round(np.arange(count + 1) * (rate / CELL_RATE)).astype(np.int64)
     edges[-1] = n_samples
     return np.unique(np.minimum(edges, n_samples))
 
 
 def rms_level(blocks: RecordingBlocks, row: int, first: int, last: int) -> float | None:
-    """Return the level of a part of a channel, without its mean.
+    """Return the rms level of a part of a channel about its mean.
 
     Parameters
     ----------
     blocks : RecordingBlocks
     row : int
-        Of the channel.
+        Row of the channel.
     first, last : int
-        Samples from which and up to which.
+        Range of samples.
 
     Returns
     -------
     float or None
-        Of the root mean square [dB re the channel's unit]; ``None`` where all samples are equal.
+        Level [dB re the unit of the channel]; ``None`` if all samples are equal.
 
     Examples
     --------
@@ -107,7 +107,7 @@ def rms_level(blocks: RecordingBlocks, row: int, first: int, last: int) -> float
 
 
 def _rms(x: NDArray[np.float64], weight: NDArray[np.float64] | None = None) -> float:
-    """Root of the mean square, in which shares of the peak are squared: values may overflow."""
+    """Return the root mean square, scaled by the peak to avoid overflow."""
     peak = float(max(x.max(), -x.min()))
     if not peak > 0.0:
         return 0.0
@@ -119,21 +119,21 @@ def _rms(x: NDArray[np.float64], weight: NDArray[np.float64] | None = None) -> f
 def sound_levels(
     rms_db: float | None, *, calibrated: bool, full_scale: float
 ) -> tuple[float | None, float | None]:
-    """Return the level re 20 uPa and the level re full scale.
+    """Return the sound pressure level and the level re full scale.
 
     Parameters
     ----------
     rms_db : float or None
         Root mean square of the samples [dB re their unit]; ``None`` for digital zero.
     calibrated : bool
-        Whether their unit is the pascal.
+        Whether the unit of the samples is the pascal.
     full_scale : float
-        Sample that is full scale [Pa]; it counts where they are calibrated.
+        Sound pressure of a full-scale sample, for calibrated samples [Pa].
 
     Returns
     -------
     level : float or None
-        [dB re 20 uPa]; ``None`` where not calibrated.
+        [dB re 20 uPa]; ``None`` if not calibrated.
     level_dbfs : float or None
         [dB re full scale]
 
@@ -150,14 +150,14 @@ def sound_levels(
 
 
 def with_levels(blocks: RecordingBlocks, segments: list[Segment]) -> list[Segment]:
-    """Add the levels of a track's segments, and their level over the background.
+    """Return the segments of a track with their levels and levels over the background.
 
     Parameters
     ----------
     blocks : RecordingBlocks
-        The track; where it has no pressure, nothing is added.
+        The track; without a pressure channel, segments are returned unchanged.
     segments : list of Segment
-        All of it, in order of time; there may be none.
+        All segments of the track, in order of time.
 
     Returns
     -------
@@ -179,7 +179,7 @@ def with_levels(blocks: RecordingBlocks, segments: list[Segment]) -> list[Segmen
         measured.append(weighted_levels(read, last - first, blocks.rate, reference=reference))
         rms = rms_level(blocks, row, first, last)
         unweighted.append(sound_levels(rms, calibrated=blocks.calibrated, full_scale=full_scale))
-    # The first and the last eighth of a second may hold the end of a noise beside it.
+    # The first and last eighth of a second may contain the end of a neighbouring noise.
     outside = [
         levels.short[1:-1]
         for segment, levels in zip(segments, measured, strict=True)
@@ -204,19 +204,19 @@ def with_levels(blocks: RecordingBlocks, segments: list[Segment]) -> list[Segmen
 
 
 def background_level(levels: NDArray[np.float64], silent: float = -math.inf) -> float | None:
-    """Level of a background, L_A90.
+    """Return the level of a background, L_A90.
 
     Parameters
     ----------
     levels : ndarray, shape (n,)
-        Of each eighth of a second of it [dB].
+        Levels of its eighths of a second [dB].
     silent : float
-        What is not above it is digital silence and does not count [dB].
+        Level up to which an eighth of a second is digital silence and is excluded [dB].
 
     Returns
     -------
     float or None
-        [dB re what the levels are]; ``None`` where there is too little of it.
+        [dB re the reference of the levels]; ``None`` if there are too few levels.
 
     Examples
     --------
@@ -237,16 +237,16 @@ def _finite(level: float) -> float | None:
 
 
 _LONGEST = 600.0
-"""Longest segment that is analysed [s]: a second of sound takes a second."""
+"""Maximum duration of an analysed segment [s]; the analysis takes about as long as the sound."""
 
 
 def with_loudness(blocks: RecordingBlocks, segments: Sequence[Segment]) -> list[Segment]:
-    """Add the loudness N5 of segments, as `noise.audio.assessment.assess` tells it of such a sound.
+    """Return the segments with their loudness N5, as computed by `noise.audio.assessment.assess`.
 
     Parameters
     ----------
     blocks : RecordingBlocks
-        The whole recording; where it is not calibrated or has no sound, nothing is added.
+        The whole recording; without calibration or pressure, segments are returned unchanged.
     segments : sequence of Segment
 
     Returns

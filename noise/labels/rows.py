@@ -1,9 +1,8 @@
-"""Rows of the label table: what is known of a segment, linked to the condition it was recorded at.
+"""Rows of the label table: segments with the operating condition of the recording.
 
-What was logged stands as it is. What was not is inferred where there is a noise to tell it, with
-the bounds of an interval of 90 %; the material is never. The intervals are those of a fluorocarbon
-bushing like the shipped one: a recording of another material has none, nor has a sound that nothing
-says to be of a rig. Segments that a person has drawn are measured as `label` does.
+Logged conditions are used as they are. Conditions that are not logged, except the material, are
+inferred from noises, with an interval of 90 %. The intervals hold for a fluorocarbon bushing like
+the shipped one, so recordings of other materials, and sounds without a sign of a rig, have none.
 """
 
 from __future__ import annotations
@@ -28,15 +27,15 @@ from noise.recordings.files import names_channels
 from noise.recordings.rotation import agrees, as_logged
 
 _SHORTEST = 0.1
-"""Shortest segment whose name can be trusted [s]: a shorter event is not described by itself
-(`features.windows.events`); squeals of the rig of this length are named."""
+"""Minimum duration of a reliable label [s]: shorter events are not described on their own
+(`features.windows.events`); squeals of the rig of this duration are labelled correctly."""
 
 _DIGITS = 4
-"""Of what is inferred, which is known to far fewer."""
+"""Significant digits of inferred values, more than their precision."""
 
 
 def labelled_tracks(path: Path, n_channels: int) -> list[str]:
-    """Return what of a recording has labels of its own, as the column ``channel`` names it.
+    """Return the tracks of a recording that are labelled separately, by the column ``channel``.
 
     Examples
     --------
@@ -54,24 +53,24 @@ def label_rows(
     segments: list[Segment],
     inference: Inference | None = None,
 ) -> list[dict[str, object]]:
-    """Return one row for each segment.
+    """Return one row of the label table per segment.
 
     Parameters
     ----------
     name : str
-        File as found, relative to the folder named.
+        File name, relative to the named folder.
     recording : Recording or RecordingBlocks
-        Where the shaft's speed was recorded, each segment gets its mean over that segment.
+        If the speed of the shaft was recorded, each segment has its mean speed.
     segments : list of Segment
     inference : Inference, optional
-        By which conditions that were not logged are inferred; by default the one that is shipped.
+        Model that infers conditions; by default the shipped one.
 
     Returns
     -------
     list of dict
-        By `COLUMNS`; a condition's source is ``logged``, ``inferred`` or ``missing``, and it has
-        bounds where it is inferred. An inferred speed is a magnitude. The bolted clamp's support
-        stiffness is ``inf``.
+        By `COLUMNS`; the source of a condition is ``logged``, ``inferred`` or ``missing``, and an
+        inferred condition has bounds. An inferred speed is a magnitude. The support stiffness of
+        the bolted clamp is ``inf``.
 
     Examples
     --------
@@ -89,7 +88,7 @@ def label_rows(
 
 
 def segment_cells(segment: Segment) -> dict[str, object]:
-    """Return what a segment says by itself, by `SEGMENT_COLUMNS`.
+    """Return the cells of a segment without its condition, by `SEGMENT_COLUMNS`.
 
     Examples
     --------
@@ -153,11 +152,11 @@ def _row(
 def _inferred(
     blocks: RecordingBlocks, segment: Segment, logged: Condition, inference: Inference | None
 ) -> dict[str, Interval]:
-    """Infer what is not logged of a segment whose label tells of it."""
+    """Return inferred conditions of a noise that are not logged."""
     unknown = any(getattr(logged, field) is None for field in CONDITIONS.values())
     if not unknown or segment.label not in NAMED:
         return {}
-    # Who names a model says by it which rig the recordings are of.
+    # A named model states the rig of the recordings.
     if inference is None and not _is_of_a_rig(blocks):
         return {}
     from noise.inference import infer_stretch, load_inference
@@ -170,9 +169,9 @@ def _inferred(
 
 
 def _is_of_a_rig(blocks: RecordingBlocks) -> bool:
-    """Whether anything says so: another channel than sound, or a condition.
+    """Whether a recording is of a rig: it has another channel than pressure, or a condition.
 
-    A calibration says how loud a sound is, not what made it.
+    A calibration is no sign of a rig.
     """
     at = blocks.condition
     stated = (at.material, at.speed, at.interference, at.support_stiffness)
@@ -187,7 +186,7 @@ def _in_unit(column: str, value: float | None) -> float | None:
 
 
 def _inferred_in_unit(column: str, value: float) -> float | None:
-    """Return it with as many digits as it is known to: 3745, not 3744.9998."""
+    """Return an inferred value in the unit of its column, rounded: 3745, not 3744.9998."""
     number = _in_unit(column, value)
     return None if number is None else float(f"{number:.{_DIGITS}g}")
 
@@ -197,25 +196,25 @@ def _rounded(value: float | None, digits: int) -> float | None:
 
 
 _SPEED_BLOCK = 0.02
-"""Length over which the angle is averaged before its slope is taken [s]."""
+"""Duration of the means of the angle whose differences give the speed [s]."""
 
 _BLOCKS_AT_ONCE = 500
-"""How many of them are read together."""
+"""Means per block of samples that is read."""
 
 OF_CHANNEL = "is that of the channel"
-"""What a remark says of a speed that stands in place of the one that was logged."""
+"""Text of the remark on a measured speed that replaces the logged speed."""
 
 
 def segment_speed(blocks: RecordingBlocks, start: float, end: float) -> float | None:
-    """Mean speed of the shaft over a segment: from its channels, else as it was logged.
+    """Return the mean speed of the shaft in a segment, measured or else as logged.
 
-    Its magnitude where the shaft swings to and fro, whose mean speed is nothing.
+    For an oscillating shaft, the mean magnitude.
 
     Parameters
     ----------
     blocks : RecordingBlocks
     start, end : float
-        Of the segment [s].
+        Times of the segment [s].
 
     Returns
     -------
@@ -237,13 +236,13 @@ def segment_speed(blocks: RecordingBlocks, start: float, end: float) -> float | 
 
 
 def speed_remark(blocks: RecordingBlocks, speed: float | None) -> str:
-    """Say that the speed of a segment is not the one that was logged; empty where it is.
+    """Return a remark if the speed of a segment differs from the logged speed, else an empty text.
 
     Parameters
     ----------
     blocks : RecordingBlocks
     speed : float or None
-        As `segment_speed` gives it [rad/s].
+        From `segment_speed` [rad/s].
 
     Examples
     --------
@@ -262,7 +261,7 @@ def speed_remark(blocks: RecordingBlocks, speed: float | None) -> str:
 
 
 def _measured_speed(blocks: RecordingBlocks, start: float, end: float) -> float | None:
-    """Mean speed from the channels [rad/s], None where none tells it."""
+    """Return the mean speed from the channels [rad/s]; None without a suitable channel."""
     first = round(start * blocks.rate)
     last = min(round(end * blocks.rate), blocks.n_samples)
     block = max(1, round(_SPEED_BLOCK * blocks.rate))
@@ -277,7 +276,7 @@ def _measured_speed(blocks: RecordingBlocks, start: float, end: float) -> float 
     if last - first < 3 * block:
         time = np.arange(last - first) / blocks.rate
         return float(np.polyfit(time, blocks.read(first, last)[angle], 1)[0])
-    # Means of blocks first: the difference of single samples would be that of their noise.
+    # Differences of means, because differences of samples would be dominated by noise.
     means = [_block_means(piece.samples[angle], block) for piece in pieces]
     return _mean_speed([np.diff(np.concatenate(means)) * blocks.rate / block])
 

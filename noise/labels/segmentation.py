@@ -1,11 +1,10 @@
-"""Segmentation of a recording: the Viterbi path of labels, and when each change happens.
+"""Segmentation of a recording: Viterbi path of labels, and times of their changes.
 
-Neighbouring windows share half of what they hold, so each speaks for itself by half only; and a
-noise seldom changes into another within a second. The best path under both is Viterbi's.
+Neighbouring windows overlap by half, so each counts by half, and a noise seldom changes into
+another within a second. Viterbi's algorithm finds the most probable path under both assumptions.
 
-Windows tell what is heard but not when it began. Between two of different labels lies one change at
-most, and it is where the short frames before and after it differ most: the split with the largest
-sum of squares between its two sides, the classical change of mean.
+The time of a change between two windows with different labels is found in the short frames: it is
+the split with the largest between-group sum of squares, as in classical change-point detection.
 """
 
 from __future__ import annotations
@@ -20,54 +19,54 @@ from features.windows.frames import FRAME, FRAME_COLUMNS
 from features.windows.table import HOP
 
 NOISES = 3
-"""The first labels are the noises."""
+"""Number of noises, which are the first labels."""
 
 _NONE = NOISES
-"""The label after them is ``none``."""
+"""Column of the label ``none``."""
 
 _CLEAREST = 0.25
-"""Share of a stretch's windows that its name is heard from [-]."""
+"""Share of the windows of a stretch that determine its label [-]."""
 
 QUIET = 30.0
-"""A window that lies farther below the loudest of its stretch does not name it [dB]: what is heard
-in it is echo, the end of a fade or a codec's rest, which a trim or another format changes."""
+"""Level below the loudest window of a stretch beyond which a window does not count for the label
+[dB]: it contains echo, the end of a fade or codec artefacts."""
 
 _OWN_SHARE = 0.5
-"""Of a window in what it holds [-]."""
+"""Weight of a window, because of the overlap [-]."""
 
 _CHANGE = 0.3
-"""How likely a change of label from one window to the next is, relative to none [-]: with less, a
-squeal of two windows is lost among those beside it."""
+"""Probability of a change of label between windows, relative to no change [-]: with less, a squeal
+of two windows is missed."""
 
 _OVER_REST = 3.0
-"""Odds that a name needs over those that it has in the rest of the recording [ratio]."""
+"""Minimum odds of a noise, relative to its odds in the rest of the recording [-]."""
 
 _LEAST_REST = 4
-"""Fewer windows are no rest to compare with."""
+"""Minimum number of windows of the rest."""
 
 _LEAST = 1e-4
-"""Probability that none falls below [-]."""
+"""Lower limit of probabilities [-]."""
 
 _SPREADS = {"flatness": 6.0, "peak_share": 0.25, "second": 10.0, "flux": 0.3, "voiced": 0.3}
-"""By how much frames of one noise differ in what is compared beside the bands."""
+"""Scatter of the frame features that are compared beside the bands, within one noise."""
 
 _BAND_SPREAD = 8.0
 _BAND_RANGE = 50.0
-"""Spread of a band's level, and how far below the loudest it counts [dB]."""
+"""Scatter of the level of a band, and its range below the loudest level [dB]."""
 
 _CONTEXT = 0.75
-"""How far to either side the frames are compared [s]."""
+"""Duration on either side in which frames are compared [s]."""
 
 _REACH = 0.4
-"""How far from the middle between two windows the change may lie [s]: a noise is heard in a window
-that holds little of it."""
+"""Maximum distance of the change from the middle between two windows [s]: a short part of a noise
+can determine the label of a window."""
 
 _LEAD = 0.5 * FRAME / RATE - 0.5 / FRAME_RATE
-"""From a frame's place in the row to the moment halfway between its middle and the one before."""
+"""Offset from the start of a frame to the middle between it and the frame before [s]."""
 
 
 def viterbi_path(probabilities: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return the label of each window on the likeliest path.
+    """Return the label of each window on the most probable path.
 
     Parameters
     ----------
@@ -107,26 +106,26 @@ def labelled_stretches(
     thresholds: Sequence[float] | None = None,
     level: NDArray[np.floating] | None = None,
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:
-    """Return the stretches of the Viterbi path, each called what is heard where it is clearest.
+    """Return the stretches of the Viterbi path, each with the label of its clearest windows.
 
     Parameters
     ----------
     probabilities : ndarray, shape (n_windows, n_labels)
         [-]; each row sums to 1; noises first, ``unknown`` last.
     thresholds : sequence of 3 floats, optional
-        Probability [-] from which each noise is named, as of `named`. By default the likeliest
-        label is said.
+        Minimum probability of each noise [-], as in `named`. By default the most probable label is
+        taken.
     level : ndarray, shape (n_windows,), optional
-        Of each window [dB]; without it none is taken for `QUIET`.
+        Level of each window [dB]; without it, no window is excluded as `QUIET`.
 
     Returns
     -------
     edges : ndarray of int, shape (n_stretches + 1,)
         First window of each stretch, and the number of windows.
     names : ndarray of int, shape (n_stretches,)
-        Columns of their labels, of which neighbours differ.
+        Columns of their labels; neighbours differ.
     audible : ndarray, shape (n_stretches, n_labels)
-        Probabilities [-] where each is clearest.
+        Probabilities of their clearest windows [-].
 
     Examples
     --------
@@ -146,7 +145,7 @@ def labelled_stretches(
         names = p.argmax(axis=1)[group]
     else:
         names = _over_the_rest(named(p, thresholds), p, probabilities, group)[group]
-    # A noise too short to leave the path of `none` is no longer than it is heard.
+    # A noise in a path of `none` is cut to the windows in which it is more probable.
     noise = probabilities[np.arange(n), names]
     outside = (path == _NONE) & (names < NOISES) & (noise < probabilities[:, _NONE])
     for stretch in np.unique(group[outside]).tolist():
@@ -166,9 +165,9 @@ def _over_the_rest(
     probabilities: NDArray[np.float64],
     group: NDArray[np.intp],
 ) -> NDArray[np.intp]:
-    """Take back the names of stretches that are hardly likelier there than in what has no name.
+    """Return names without noises that are hardly more probable than in the rest of the recording.
 
-    What hums or clicks all through a recording is a part of its background.
+    A hum or click throughout a recording belongs to its background.
     """
     rest = probabilities[names[group] >= NOISES, :NOISES]
     if len(rest) < _LEAST_REST:
@@ -184,8 +183,8 @@ def _over_the_rest(
 def _speaking(
     path: NDArray[np.intp], group: NDArray[np.intp], level: NDArray[np.floating] | None
 ) -> NDArray[np.bool_]:
-    """Whether each window has a say in what its stretch is called."""
-    # At the border of `none` half a window is of what lies beside it.
+    """Whether each window counts for the label of its stretch."""
+    # Half of a window at the border of `none` belongs to its neighbour.
     other = np.concatenate([[False], np.diff(path) != 0, [False]])
     speaking: NDArray[np.bool_] = (path != _NONE) | ~(other[:-1] | other[1:])
     if level is None:
@@ -199,27 +198,26 @@ def _speaking(
 def _where_clearest(
     probabilities: NDArray[np.float64], group: NDArray[np.intp], speaking: NDArray[np.bool_]
 ) -> NDArray[np.float64]:
-    """Return probabilities where each group is clearest: of all of it where no window speaks."""
+    """Return probabilities of the clearest windows that count, else of all windows, by group."""
     speaking = speaking | ~np.isin(group, group[speaking])
     return clearest(probabilities[speaking], group[speaking])
 
 
 def named(p: NDArray[np.float64], thresholds: Sequence[float]) -> NDArray[np.intp]:
-    """Name what is probable enough: a noise from its own threshold on.
+    """Return labels by probability, with a threshold for each noise.
 
     Parameters
     ----------
     p : ndarray, shape (n, n_labels)
-        [-]; noises first, ``unknown`` last.
+        Probabilities [-]; noises first, ``unknown`` last.
     thresholds : sequence of 3 floats
-        Probability [-] from which each noise is named: one that is taken for others more easily
-        has to be surer.
+        Minimum probability of each noise [-].
 
     Returns
     -------
     ndarray of int, shape (n,)
-        Columns of `p`: the likeliest noise that reaches its threshold, else the likeliest of the
-        others; ``unknown`` where a noise is likeliest and not probable enough.
+        Columns of `p`: the most probable noise that reaches its threshold, else the most probable
+        other label; ``unknown`` if the most probable label is a noise below its threshold.
 
     Examples
     --------
@@ -235,16 +233,16 @@ def named(p: NDArray[np.float64], thresholds: Sequence[float]) -> NDArray[np.int
 
 
 def clearest(probabilities: NDArray[np.float64], group: NDArray[np.intp]) -> NDArray[np.float64]:
-    """Mean over the quarter of each group's windows that sounds most like a noise.
+    """Return mean probabilities of the quarter of each group's windows that is most like a noise.
 
-    A creak is short, and pauses: in the mean over all that was recorded with it, it is lost.
+    A creak is short and has pauses, so it would be lost in the mean of all windows.
 
     Parameters
     ----------
     probabilities : ndarray, shape (n_windows, n_labels)
         [-]
     group : ndarray of int, shape (n_windows,)
-        0, 1, 2 ..., none of which is without a window.
+        Group of each window: 0, 1, 2 ..., each with one window at least.
 
     Returns
     -------
@@ -268,19 +266,19 @@ def clearest(probabilities: NDArray[np.float64], group: NDArray[np.intp]) -> NDA
 
 
 def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDArray[np.float64]:
-    """Find when each change between two windows happens.
+    """Return the times of changes of label.
 
     Parameters
     ----------
     frames : ndarray of float32, shape (n_frames, n_columns)
         As `features.windows.table.WindowTable` has them.
     changes : ndarray of int, shape (n_changes,)
-        Window after which each change is; rising.
+        Window before each change; increasing.
 
     Returns
     -------
     ndarray, shape (n_changes,)
-        [s], rising.
+        Times, increasing [s].
 
     Examples
     --------
@@ -289,14 +287,14 @@ def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDA
     >>> change_points(frames, np.array([2])).round(2).tolist()
     [0.91]
     """
-    # Halfway from the middle of one window to that of the next.
+    # Middle between the centres of two windows.
     middles = (changes + 1.5) * HOP
     times = []
     for i, middle in enumerate(middles.tolist()):
         low = 0.5 * (middles[i - 1] + middle) if i else 0.0
         high = 0.5 * (middles[i + 1] + middle) if i + 1 < middles.size else np.inf
         first = _change(frames, middle, float(low), float(high))
-        # Once more with as much on either side of it.
+        # Repeated with the same duration on either side.
         times.append(_change(frames, first, float(low), float(high)))
     return np.array(times)
 
@@ -326,6 +324,6 @@ def _comparable(frames: NDArray[np.float32]) -> NDArray[np.float64]:
     columns = [FRAME_COLUMNS.index(name) for name in _SPREADS]
     others = frames[:, columns] / np.array(list(_SPREADS.values()))
     energy = frames[:, FRAME_COLUMNS.index("energy")]
-    # In digital silence they tell of nothing but what the resampling left there.
+    # In digital silence they describe only artefacts of resampling.
     others[energy < energy.max(initial=-300.0) - _BAND_RANGE] = 0.0
     return np.concatenate([bands / np.sqrt(bands.shape[1] / 4.0), others], axis=1)

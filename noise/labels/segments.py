@@ -1,4 +1,4 @@
-"""Labels in time: windows are classified, and neighbours of one label make a segment."""
+"""Segments of a recording with one label each, from classified windows."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 _MOST_SHOWN = 4
-"""Segments that are named one by one where they are printed."""
+"""Maximum number of segments in the printed form."""
 
 
 @short_repr
@@ -40,29 +40,28 @@ class Segment:
     start, end : float
         [s]
     label : str
-        The most probable of `noise.classifier.LABELS`, but ``unknown`` where that is a noise below
-        the classifier's threshold of it; not of a recording at a stated operating condition, where
-        nothing but a bushing is expected to sound.
+        The most probable of `noise.classifier.LABELS`, or ``unknown`` for a noise below the
+        threshold of the classifier; thresholds are not used at a stated operating condition, where
+        only a bushing is expected to sound.
     probabilities : mapping of str to float
-        Of all labels [-], where the segment sounds most like a noise
+        Probabilities of all labels [-], in the windows most like a noise
         (`noise.labels.segmentation.clearest`).
     frequency : float or None
-        Slip frequency of a creak or squawk, strongest line of others [Hz]; ``None`` where there
-        is none.
+        Slip frequency of a creak or squawk, strongest line of others [Hz]; ``None`` if there is
+        none.
     level : float or None
-        Sound pressure level [dB re 20 uPa]; ``None`` where not calibrated.
+        Sound pressure level [dB re 20 uPa]; ``None`` if not calibrated.
     level_dbfs : float or None
-        Root mean square of the samples relative to full scale 1.0 [dB]; ``None`` for digital zero.
+        Rms level relative to full scale 1.0 [dB]; ``None`` for digital zero.
     level_a, level_af_max : float or None
-        A-weighted level, and the largest with the time weighting F [dB(A) re 20 uPa]; ``None``
-        where not calibrated.
+        A-weighted level, and its maximum with time weighting F [dB(A) re 20 uPa]; ``None`` if not
+        calibrated.
     loudness_n5 : float or None
-        Loudness exceeded in 5 % of its time, ISO 532-1 [sone]; ``None`` where it was not asked
-        for, where not calibrated, and of less than half a second or more than ten minutes.
+        Loudness exceeded in 5 % of the time, ISO 532-1 [sone]; ``None`` if not requested or not
+        calibrated, and for less than half a second or more than ten minutes.
     snr : float or None
-        The A-weighted level over that of the background [dB(A)], which is L_A90 of the recording
-        outside of creaks, squawks and squeals and of digital silence; ``None`` where there is no
-        such part.
+        A-weighted level over the background [dB(A)], which is L_A90 of the recording without
+        creaks, squawks, squeals and digital silence; ``None`` without such a part.
 
     Examples
     --------
@@ -85,7 +84,7 @@ class Segment:
 
 
 class Segments(list[Segment]):
-    """Labelled segments of a recording, in order of time, track by track.
+    """List of the labelled segments of a recording, in order of time, track by track.
 
     Examples
     --------
@@ -109,7 +108,7 @@ class Segments(list[Segment]):
         Raises
         ------
         ParameterError
-            There are none.
+            There are no segments.
         """
         from noise.labels.tracks import draw_tracks
 
@@ -119,7 +118,7 @@ class Segments(list[Segment]):
         return draw_tracks(tracks, ax)
 
     def to_pandas(self) -> DataFrame:
-        """Return one row per segment as a data frame of pandas, in the columns of a label table.
+        """Return a pandas data frame with one row per segment, in the columns of a label table.
 
         Returns
         -------
@@ -149,23 +148,23 @@ def label_recording(
     per_track: bool = False,
     surroundings: str | None = None,
 ) -> Segments:
-    """Label a recording.
+    """Return the labelled segments of a recording.
 
     Parameters
     ----------
     recording : Recording or RecordingBlocks
-        What is too long to be in memory is read in blocks, with the same result.
+        Long recordings are read in blocks, with the same result.
     classifier : Classifier
     per_track : bool
-        Whether each channel is labelled on its own, as the tracks of a plain sound file are.
+        Whether to label each channel separately, like the tracks of a plain sound file.
     surroundings : str, optional
-        What else may be heard, of `noise.base.labels.SURROUNDINGS`; by default ``rig`` where
-        an operating condition is stated, else ``any``.
+        Place of the recording, of `noise.base.labels.SURROUNDINGS`; by default ``rig`` if an
+        operating condition is stated, else ``any``.
 
     Returns
     -------
     Segments
-        A list of `Segment`, in order of time, without gaps; track by track.
+        List of `Segment`, in order of time, without gaps, track by track.
 
     Examples
     --------
@@ -185,12 +184,12 @@ def label_recording(
 
 
 def file_label(segments: list[Segment]) -> Segment:
-    """Return the segment that names a file: the longest that is not ``none``.
+    """Return the segment whose label names the file: the longest that is not ``none``.
 
     Parameters
     ----------
     segments : list of Segment
-        One or more.
+        One segment at least.
 
     Returns
     -------
@@ -199,7 +198,7 @@ def file_label(segments: list[Segment]) -> Segment:
     Raises
     ------
     ValueError
-        There are none.
+        There are no segments.
 
     Examples
     --------
@@ -220,7 +219,7 @@ def _label(
         return [Segment(channel, 0.0, blocks.n_samples / blocks.rate, "unknown", certain, None)]
     at_rig = surroundings in (None, "rig") and at_a_condition(blocks)
     probabilities, of_frequency, described = classified(blocks, classifier, at_rig=at_rig)
-    # At a condition nothing but the bushing is expected to sound: the likeliest label is said.
+    # At a stated condition only the bushing is expected to sound, so thresholds are not used.
     thresholds = None if at_rig else classifier.thresholds[surroundings or "any"]
     edges, names, clear = labelled_stretches(probabilities, thresholds, described.level)
     cells = np.round(change_points(described.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)

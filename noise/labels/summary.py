@@ -1,4 +1,4 @@
-"""Summary of a recording's rows: the label that names it, all its labels, one line in words."""
+"""Summary of the label rows of a recording: main label, all labels, and a line of text."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from itertools import groupby
 from noise.base.labels import NAMED
 
 ASSUMED = "assuming a fluorocarbon bushing like the shipped one"
-"""What inferred conditions say of themselves where no material was logged."""
+"""Remark on inferred conditions without a logged material."""
 
 
 def assumes_material(row: Mapping[str, object]) -> bool:
-    """Whether a row of the label table has inferred conditions, and no material to rely on.
+    """Whether a row of the label table has inferred conditions but no logged material.
 
     Examples
     --------
@@ -25,9 +25,10 @@ def assumes_material(row: Mapping[str, object]) -> bool:
 
 
 def naming_row(rows: Sequence[Mapping[str, object]]) -> Mapping[str, object] | None:
-    """Return the longest row that is not ``none``, by which a file is named.
+    """Return the row whose label names the file: the longest that is not ``none``.
 
-    Of rows of the same length, as of two tracks, it is the one by a person, else the surest.
+    Among rows of equal duration, as of two tracks, a person's row is preferred, then the most
+    probable.
 
     Examples
     --------
@@ -41,7 +42,7 @@ def naming_row(rows: Sequence[Mapping[str, object]]) -> Mapping[str, object] | N
 
 
 def labels_in(rows: Sequence[Mapping[str, object]]) -> tuple[str, ...]:
-    """Return all labels of a recording: the one that names it, then by their longest row.
+    """Return all labels of a recording, by decreasing duration of their longest row.
 
     ``none`` comes last.
 
@@ -61,18 +62,18 @@ def labels_in(rows: Sequence[Mapping[str, object]]) -> tuple[str, ...]:
 
 
 def result_lines(rows: Iterable[Mapping[str, object]]) -> Iterator[str]:
-    """Yield one line a file: its label, frequency, level, place in time and probability.
+    """Yield one line per file: label, frequency, level, time and probability.
 
     Parameters
     ----------
     rows : iterable of mapping
-        Of the label table, those of one file behind one another.
+        Rows of the label table, grouped by file.
 
     Yields
     ------
     str
-        Of the segment that names the file, and of the longest of each other noise in it, with
-        their track where tracks are labelled apart; or why it was refused.
+        Text of the segment that names the file and of the longest segment of each other noise, with
+        the track if there are several; or the reason of a refusal.
 
     Examples
     --------
@@ -112,7 +113,7 @@ def _result_words(row: Mapping[str, object]) -> Iterator[str]:
     if row.get("label_source") == "human":
         yield "by hand"
     elif isinstance(probability, float):
-        # `unknown` may be the less likely: a noise that is likelier was not likely enough.
+        # `unknown` may be less probable than a noise below its threshold.
         noises = [(p, name) for name in NAMED if isinstance(p := row.get(f"p_{name}"), float)]
         p, name = max(noises, default=(0.0, ""))
         less = label == "unknown" and p > probability

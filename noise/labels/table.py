@@ -1,7 +1,7 @@
-"""The label table: one row per segment, written, shown and read in any of its formats.
+"""Label table: one row per segment, with its columns, formats, reading and writing.
 
-A table of one's own making will do as well, as long as it has the columns ``file`` and ``label``;
-the others of the label table are empty where it has none. Columns of one's own stay in it.
+A table from elsewhere needs only the columns ``file`` and ``label``; missing columns are empty, and
+additional columns are preserved.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ CONDITIONS = {
     "interference_mm": "interference",
     "support_stiffness_Nm_rad": "support_stiffness",
 }
-"""Columns, and the fields of a condition that they hold."""
+"""Fields of a condition by column."""
 
 SEGMENT_COLUMNS = (
     "channel", "start_s", "end_s", "label",
@@ -37,18 +37,18 @@ SEGMENT_COLUMNS = (
     "frequency_hz", "level_db", "level_dba", "l_afmax_dba", "loudness_n5_sone", "snr_dba",
     "level_dbfs",
 )  # fmt: skip
-"""What a segment says by itself."""
+"""Columns of a segment without its condition."""
 
 COLUMNS = (
     "file", *SEGMENT_COLUMNS, "calibrated",
     *(f"{name}{part}" for name in CONDITIONS for part in ("", "_low", "_high", "_source")),
     "material", "material_source", "label_source", "note", "error",
 )  # fmt: skip
-"""Columns of the table, all of them always there."""
+"""Columns of the table; all are always present."""
 
 
 HUMAN, CLASSIFIER = "human", "classifier"
-"""The `label_source` of what somebody has said, and of all else."""
+"""Values of `label_source` for labels by a person and by the program."""
 
 _TEXTS = {
     "file", "channel", "label", "material", "note", "error",
@@ -56,21 +56,21 @@ _TEXTS = {
 }  # fmt: skip
 _NUMBERS = [column for column in COLUMNS if column not in {*_TEXTS, "calibrated"}]
 NEEDED = ("file", "label")
-"""Columns without which a table is none of labels."""
+"""Required columns of a label table."""
 
 _TRUE = {"true", "1", "1.0", "wahr", "vrai", "verdadero", "verdadeiro", "vero", "waar", "prawda"}
 _FALSE = {"false", "0", "0.0", "falsch", "faux", "falso", "onwaar", "fałsz"}
-"""As spreadsheets in the languages of Europe write them, in capitals."""
+"""Truth values of spreadsheets in European languages, in lower case."""
 
 _LARGEST = 1e12  # number in a cell, of any unit
 _SUPPORT = "support_stiffness_Nm_rad"
 
 
 class LabelTable(list[dict[str, object]]):
-    """The label table of recordings: one row per segment, by `COLUMNS`.
+    """Label table of recordings: a list of one dict per segment, by `COLUMNS`.
 
-    A table of polars is made of it as of any list of dictionaries; one of pandas as well, or with
-    the columns' order kept by `to_pandas`.
+    pandas and polars make a data frame of it as of any list of dictionaries; `to_pandas` preserves
+    the order of the columns.
 
     Examples
     --------
@@ -83,11 +83,11 @@ class LabelTable(list[dict[str, object]]):
 
     @property
     def refused(self) -> dict[str, str]:
-        """Why files could not be read, by file."""
+        """Reasons why files could not be read, by file."""
         return {str(row["file"]): str(row["error"]) for row in self if row.get("error")}
 
     def write(self, path: str | Path) -> None:
-        """Write the table, whole or not at all.
+        """Write the table atomically.
 
         Parameters
         ----------
@@ -97,7 +97,7 @@ class LabelTable(list[dict[str, object]]):
         Raises
         ------
         ParameterError
-            No table can be written there.
+            The table cannot be written.
         """
         check_table_path(path)
         write_table(path, (*COLUMNS, *own_columns(self)), self)
@@ -130,7 +130,7 @@ class LabelTable(list[dict[str, object]]):
         return draw_tracks(tracks, ax)
 
     def to_pandas(self) -> DataFrame:
-        """Return the table as a data frame of pandas, by `COLUMNS`.
+        """Return the table as a pandas data frame, by `COLUMNS`.
 
         Returns
         -------
@@ -154,7 +154,7 @@ class LabelTable(list[dict[str, object]]):
 
 
 def own_columns(rows: Iterable[Mapping[str, object]]) -> tuple[str, ...]:
-    """Return the columns of rows that are not of a label table, such as a remark of one's own.
+    """Return the additional columns of rows, such as remarks.
 
     Examples
     --------
@@ -170,23 +170,23 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     Parameters
     ----------
     path : Path
-        CSV, Excel, JSON Lines or Parquet, by its ending.
+        CSV, Excel, JSON Lines or Parquet file.
     refusals : list of str, optional
-        Takes one line for each row that cannot be used, which is left out; without it, such a row
-        is an error.
+        List to which a line is appended for each invalid row, which is skipped; by default an
+        invalid row is an error.
 
     Returns
     -------
     list of dict
-        By `noise.labels.table.COLUMNS` and by the table's own columns, such as a remark; the
-        bolted clamp's support stiffness is ``inf``.
+        Rows by `noise.labels.table.COLUMNS` and additional columns; the support stiffness of the
+        bolted clamp is ``inf``.
 
     Raises
     ------
     RecordingError
-        It cannot be read, or is no label table.
+        The file cannot be read, or is no label table.
     ParameterError
-        There is no such file, or the library that reads the format is not installed.
+        The file does not exist, or the library for its format is not installed.
 
     Examples
     --------
@@ -221,7 +221,7 @@ def _checked(row: object, where: str) -> dict[str, object]:
         raise RecordingError(f"{where} lacks {' or '.join(NEEDED)}, so this is no label table")
     checked = {name: value for name, value in row.items() if name not in COLUMNS}
     checked = {column: _value(row, column, where) for column in COLUMNS} | checked
-    for column in ("file", "channel"):  # of which files are written, and lines in them
+    for column in ("file", "channel"):  # used for names of files and for lines of text
         check_name(checked[column], column, where)
     if checked["label"] not in (*LABELS, None):
         known = ", ".join(LABELS)
@@ -231,7 +231,7 @@ def _checked(row: object, where: str) -> dict[str, object]:
     stiff += [f"{_SUPPORT}_low", f"{_SUPPORT}_high"] if source == "inferred" else []
     for column in stiff:
         if checked[column] is None:
-            checked[column] = math.inf  # which JSON cannot write
+            checked[column] = math.inf  # JSON has no infinity
     return checked
 
 
@@ -241,10 +241,10 @@ def _value(row: Mapping[str, object], column: str, where: str) -> object:
         return None
     if column == "file":
         return str(value)
-    if isinstance(value, float) and value.is_integer():  # a track, as some spreadsheets have it
+    if isinstance(value, float) and value.is_integer():  # spreadsheets store the track as a number
         value = int(value)
     text = str(value).strip()
-    if column == "label_source":  # whoever signs with a name is somebody
+    if column == "label_source":  # any other source is a person
         return text.lower() if text.lower() == CLASSIFIER else HUMAN
     if column == "label":
         return text.lower() or None
@@ -258,7 +258,7 @@ def _value(row: Mapping[str, object], column: str, where: str) -> object:
 
 
 def cell_truth(row: Mapping[str, object], column: str, where: str) -> bool:
-    """Read true or false from a cell, as spreadsheets in the languages of Europe write them.
+    """Return the truth value of a cell, as spreadsheets in European languages write it.
 
     Examples
     --------
@@ -272,12 +272,12 @@ def cell_truth(row: Mapping[str, object], column: str, where: str) -> bool:
 
 
 def check_name(value: object, column: str, where: str) -> None:
-    r"""Refuse the name of a file in a table that no file can have.
+    r"""Refuse a file name in a table that no file can have.
 
     Raises
     ------
     RecordingError
-        No system has such a name; the message names where it stands.
+        The name is impossible; the message contains its place.
 
     Examples
     --------
@@ -295,12 +295,12 @@ def check_name(value: object, column: str, where: str) -> None:
 
 
 def cell_number(row: Mapping[str, object], column: str, where: str) -> float | None:
-    """Read the number of a cell of a table, in the unit of its column [-]; None for an empty one.
+    """Return the number in a cell, in the unit of its column [-]; None for an empty cell.
 
     Raises
     ------
     RecordingError
-        It is no number; the message names where it stands.
+        The cell is no number; the message contains its place.
 
     Examples
     --------

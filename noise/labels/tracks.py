@@ -1,8 +1,7 @@
-"""Label tracks: labels over time as a picture, and as Audacity has them, one file a recording.
+"""Label tracks: drawing of labels over time, and files for Audacity.
 
-The format is that of Audacity's manual, "Importing and Exporting Labels": seconds with a point, tab
-between the fields; a line that begins with a backslash is the range of frequencies of the one
-before.
+The format is that of Audacity's manual, "Importing and Exporting Labels": times in seconds with a
+decimal point, fields separated by tabs; a line that begins with a backslash is a frequency range.
 """
 
 from __future__ import annotations
@@ -24,11 +23,11 @@ if TYPE_CHECKING:
 
 
 MOST_TRACKS = 40
-"""Rows that a picture has room for."""
+"""Maximum number of rows in a picture."""
 
 _HEIGHT = 0.7
 _NAMED = 0.08
-"""A bar as long as this share of the axis has room for its label."""
+"""Minimum share of the axis of a bar with its label in it."""
 
 
 def draw_tracks(
@@ -39,8 +38,8 @@ def draw_tracks(
     Parameters
     ----------
     tracks : mapping of str to sequence of (float, float, str)
-        Start [s], end [s] and label of each stretch, by the name of its row; the first of them is
-        on top, and no more than `MOST_TRACKS` are drawn.
+        Start [s], end [s] and label of each stretch, by the name of its row; the first row is on
+        top, and at most `MOST_TRACKS` are drawn.
     ax : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -101,12 +100,12 @@ def draw_tracks(
 
 
 def label_track(rows: Iterable[Mapping[str, object]]) -> str:
-    r"""Return the label track of a recording.
+    r"""Return the text of the label track of a recording.
 
     Parameters
     ----------
     rows : iterable of mapping
-        Its rows of the label table; those without a label are passed over.
+        Its rows of the label table; those without a label are ignored.
 
     Examples
     --------
@@ -125,7 +124,7 @@ def label_track(rows: Iterable[Mapping[str, object]]) -> str:
 
 
 def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
-    r"""Read a label track.
+    r"""Read a label track of Audacity.
 
     Parameters
     ----------
@@ -139,7 +138,7 @@ def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
     Raises
     ------
     RecordingError
-        It cannot be read, or is no label track.
+        The file cannot be read, or is no label track.
 
     Examples
     --------
@@ -174,7 +173,7 @@ def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
 
 
 def write_label_tracks(target: Path, rows: Sequence[Mapping[str, object]]) -> list[Path]:
-    """Write the label track of each recording of a table, each whole or not at all.
+    """Write the label track of each recording of a table, each file atomically.
 
     Parameters
     ----------
@@ -186,7 +185,7 @@ def write_label_tracks(target: Path, rows: Sequence[Mapping[str, object]]) -> li
     Returns
     -------
     list of Path
-        The files; a recording that was refused has none.
+        The written files; refused recordings have none.
     """
     grouped: dict[str, list[Mapping[str, object]]] = {}
     for row in rows:

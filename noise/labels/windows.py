@@ -1,8 +1,7 @@
-"""Features of a recording, window by window, reading each of its samples once.
+"""Features of all windows of a recording, computed page by page.
 
-Blocks lie on a grid that begins with the recording, and pages hold three of them; so the same
-numbers come out whether the recording is in memory or read from its file, and whoever takes a page
-at a time needs no more memory for a longer one.
+Blocks lie on a grid from the start of the recording, and a page has three blocks. So features are
+the same from memory and from a file, and memory does not grow with the duration.
 """
 
 from __future__ import annotations
@@ -35,29 +34,29 @@ FEATURE_NAMES = (
     *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in WINDOW_NAMES),
     *(f"torque_{name}" for name in feature_names("torque")),
 )
-"""Of a window of a recording; NaN for the kinds of channel that it does not have."""
+"""Names of the features of a window; features of missing kinds of channel are NaN."""
 
 _KINDS = (*ACOUSTIC_KINDS, "torque")
 
 _LEAST_RATE = 1000.0
-"""A recording sampled more slowly shows nothing of a noise [Hz]."""
+"""Minimum sampling rate of a recording to be described [Hz]."""
 
 _FADE = 0.01
-"""The ends of a recording are faded in and out [s]: cut hum would click."""
+"""Duration of the fades at the ends of a recording, against clicks of a cut hum [s]."""
 
 _BLOCKS_A_PAGE = 3
 
 FRAMES_A_HOP = round(HOP * FRAME_RATE)
-"""From the first frame of a window to that of the next."""
+"""Frames per hop of windows."""
 
 
 def columns_of(classifier: Classifier) -> list[int]:
-    """Return the places of a classifier's features among `FEATURE_NAMES`.
+    """Return the columns of the features of a classifier in `FEATURE_NAMES`.
 
     Raises
     ------
     ParameterError
-        It asks for features that do not exist.
+        The classifier has features that do not exist.
 
     Examples
     --------
@@ -74,16 +73,16 @@ def columns_of(classifier: Classifier) -> list[int]:
 
 @dataclass(frozen=True, eq=False)
 class WindowFeatures:
-    """Features of all windows of a recording, and its frames.
+    """Features of the windows of a recording, and its frames.
 
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        By `FEATURE_NAMES` [unit of each feature], or what is wanted of them.
+        By `FEATURE_NAMES` [unit of each feature], or results computed from them.
     level : ndarray, shape (n_windows,)
-        A-weighted power of the channel listened to, from 160 Hz to 7 kHz [dB re its unit].
+        A-weighted level of the main channel, from 160 Hz to 7 kHz [dB re its unit].
     frames : ndarray of float32, shape (n_frames, n)
-        Of that channel, as `features.windows.table.WindowTable` has them.
+        Frames of the main channel, as in `features.windows.table.WindowTable`.
     """
 
     features: NDArray[Any]
@@ -92,18 +91,18 @@ class WindowFeatures:
 
 
 def has_window_channel(blocks: RecordingBlocks) -> bool:
-    """Whether a recording has a channel that noises show in, sampled fast enough."""
+    """Whether a recording has a channel with window features, at a sufficient sampling rate."""
     return blocks.rate >= _LEAST_RATE and any(blocks.first(kind) is not None for kind in _KINDS)
 
 
 def tracks(blocks: RecordingBlocks, *, per_track: bool) -> Iterator[tuple[str, RecordingBlocks]]:
-    """Yield what is described on its own, with its name in the column ``channel``.
+    """Yield the tracks to be described separately, with their names in the column ``channel``.
 
     Parameters
     ----------
     blocks : RecordingBlocks
     per_track : bool
-        Whether each channel stands for itself, as the tracks of a plain sound file do.
+        Whether each channel is a track, as in a plain sound file.
     """
     if per_track and len(blocks.channels) > 1:
         for row in range(len(blocks.channels)):
@@ -116,14 +115,15 @@ def window_features(
     blocks: RecordingBlocks,
     reduced: Callable[[NDArray[np.float32]], NDArray[Any]] = lambda features: features,
 ) -> WindowFeatures:
-    """Compute the features of all windows of a recording.
+    """Return the features of all windows of a recording.
 
     Parameters
     ----------
     blocks : RecordingBlocks
-        With a channel of pressure, acceleration or torque, of which the first is listened to.
+        With a channel of pressure, acceleration or torque; the first of these is the main one.
     reduced : callable
-        From the features of some windows, shape (n, n_features), to what is wanted of each.
+        Function from the features of some windows, shape (n, n_features), to a row of results for
+        each.
 
     Returns
     -------
@@ -139,7 +139,7 @@ def window_features(
     (True, 97)
     """
     pages = [page._replace(features=reduced(page.features)) for page in WindowPages(blocks)]
-    # Where two pages have the same frame, the later one's is taken.
+    # Frames in two pages are taken from the later page.
     starts = [page.first * FRAMES_A_HOP for page in pages]
     ends = [*starts[1:], starts[-1] + len(pages[-1].frames)]
     frames = [
@@ -153,15 +153,14 @@ def window_features(
 
 
 class Page(NamedTuple):
-    """Some windows of a recording.
+    """Page of windows of a recording.
 
     Parameters
     ----------
     first : int
-        Window that it begins with.
+        First window.
     features, level, frames : ndarray
-        As `WindowFeatures` has them; the frames from those of its first window on, as far as its
-        last one reaches.
+        As in `WindowFeatures`; frames from the start of the first to the end of the last window.
     """
 
     first: int
@@ -171,12 +170,12 @@ class Page(NamedTuple):
 
 
 class WindowPages:
-    """Windows of a recording page by page, each sample of which is read once.
+    """Iterator of the windows of a recording, page by page.
 
     Parameters
     ----------
     blocks : RecordingBlocks
-        As for `window_features`.
+        As in `window_features`.
 
     Examples
     --------
@@ -222,7 +221,7 @@ class WindowPages:
             yield Page(first, features, own.level, own.frames)
 
     def _table(self, row: int, first: int, windows: int) -> WindowTable:
-        """Features of a page of a channel."""
+        """Return the features of one page of a channel."""
         number = round(first * HOP) // self._useful
         start = number * self._useful * RATE
         size = min(self._n - start, round(((windows - 1) * HOP + LENGTH) * RATE))
@@ -247,7 +246,7 @@ class WindowPages:
         )
 
     def _block(self, number: int) -> dict[int, Block]:
-        """Return one block of all channels; the last few are kept."""
+        """Return one block of all channels, from a cache of the last few."""
         if number not in self._resampled:
             for old in [old for old in self._resampled if old < number - _BLOCKS_A_PAGE]:
                 del self._resampled[old]
@@ -262,7 +261,7 @@ class WindowPages:
         return self._resampled[number]
 
     def _framed(self, samples: NDArray[np.float64], start: int, length: int) -> NDArray[np.float64]:
-        """Put what there is of a block into zeros, faded where the recording begins and ends."""
+        """Return a block padded with zeros, with fades at the ends of the recording."""
         if samples.size == length and start > 0 and start + length < self._blocks.n_samples:
             return samples
         whole = np.zeros(length)
@@ -281,7 +280,7 @@ class WindowPages:
 def _torque(
     blocks: RecordingBlocks, row: int | None, first: int, windows: int
 ) -> NDArray[np.float32]:
-    """Features of the torque in the windows of a page."""
+    """Return the features of the torque in the windows of a page."""
     features = features_of("torque")
     out = np.full((windows, len(features)), np.nan, dtype=np.float32)
     if row is None:
