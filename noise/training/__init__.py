@@ -1,1 +1,1 @@
-"""Recipes and fits of the shipped models; nothing that labels or diagnoses imports them."""
+"""Training of the shipped models; only the command `train` imports it."""

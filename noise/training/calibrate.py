@@ -1,20 +1,20 @@
 """Calibration of the shipped fluorocarbon: ``python -m noise.training.calibrate``.
 
-The thesis's numbers are targets, and what no source gives of contact and damping is searched; both
-stand in ``calibrate.toml``. A target's misfit is mostly log(simulated / measured), times its
-weight; groups of them, each by its root mean square, add up to the cost. Critical speeds are where
-the sudden share, or the oscillation, crosses its limit (`sim.analysis.regime`) for the last time on
-a grid of speeds, interpolated between its points, so that a small change of a parameter shows.
+The targets are numbers of the thesis, and the unknowns are parameters of contact and damping
+without a source; both are in ``calibrate.toml``. The misfit of a target is mostly log(simulated /
+measured), times its weight; the cost is the sum of the root mean squares of groups of misfits.
+Critical speeds are the last crossings of the limits of the sudden share or of the oscillation
+(`sim.analysis.regime`), interpolated on a grid of speeds.
 
-Without options the shipped material is judged; ``--rounds N`` searches. A point that is tried takes
-134 runs, about a second on one core, and a round 36 to 90 of them.
+Without options the shipped material is evaluated; ``--rounds N`` searches. An evaluation takes 134
+runs, about a second on one core, and a round takes 36 to 90 evaluations.
 
 The contact has memory (`sim.friction.contact_with_memory`). Its torque at 0.279 mm and 5 rad/s is
-held at the 8 Nm of Appendix F, so the level is no unknown. Torques at 0.178 mm are half those at
-0.279 mm, as the mean torques are (5.2.1); those at 0.381 mm are unknown, where the drop follows
-from one figure. Stiffness, damping and renewal of the contact go with its torques. Damping of the
-bushing is unknown too: with that printed for 0.279 mm there is no squawk at 2214 Nm/rad and
-7.5 rad/s, nor does the thesis's own simulation stick there.
+fixed at the 8 Nm of Appendix F. Torques at 0.178 mm are half those at 0.279 mm, like the mean
+torques (5.2.1); those at 0.381 mm are unknown, and the drop there follows from one figure.
+Stiffness, damping and renewal of the contact are proportional to its torques. The damping of the
+bushing is unknown too: with the value printed for 0.279 mm there is no squawk at 2214 Nm/rad and
+7.5 rad/s, and no stick in the simulation of the thesis.
 """
 
 from __future__ import annotations
@@ -50,65 +50,65 @@ _SUPPORTS = {"long": LONG, "short": SHORT, "fixed": FIXED}
 _COARSE = np.geomspace(1.6, 14.4, 12)
 _THIN_GRID = np.geomspace(1.0, 9.0, 10)
 _FINE = {"v_crit1": 0.25, "v_crit2": 0.5}
-"""Spacing of speeds about a measured critical one [rad/s]."""
+"""Spacing of speeds near a measured critical speed [rad/s]."""
 
 _WINDOW = 0.8, 1.35
-"""Over what was measured: where the speeds are fine."""
+"""Range of the fine speeds, relative to the measured critical speed."""
 
 MEAN_TORQUE = 8.0
-"""At 0.279 mm and 5 rad/s [Nm], Appendix F."""
+"""Mean torque at 0.279 mm and 5 rad/s [Nm], Appendix F."""
 
 _THIN = 0.5
-"""Torques at 0.178 mm over those at 0.279 mm."""
+"""Ratio of torques at 0.178 mm to those at 0.279 mm."""
 
 _SPEED = 5.0
 _EXPONENT = 2.0
-"""Of the weakening. With 1 the best searches left V_crit2 at 3745 Nm/rad 15 % low."""
+"""Exponent of the weakening. With 1, V_crit2 at 3745 Nm/rad was 15 % low at best."""
 
 _STEP = 0.05
-"""First step of the logarithms."""
+"""Initial step of the logarithms."""
 
 _SECONDS = 0.8
 _HIGHEST_LINE = 2500.0
-"""Up to which the strongest line is sought [Hz]; assumed."""
+"""Maximum frequency of the strongest line [Hz]; assumed."""
 
 _UNUSABLE = 100.0
-"""Cost of numbers that make no rig."""
+"""Cost of values that give no rig."""
 
 _MOST = 3.0
-"""No misfit of a single run counts more; assumed."""
+"""Maximum misfit of a single run; assumed."""
 
 _LINE_SHARE = 10.0 ** (-18.0 / 20.0)
-"""Amplitude of a line that counts, over the strongest: `noise.noise_definition`."""
+"""Minimum amplitude of a line, relative to the strongest: `noise.noise_definition`."""
 
 _RISES = 3.0 / 7.0
-"""Half the spread of the slip rate's rises over their middle, "10 to 25 Hz" for a step (5.2.1)."""
+"""Relative half-range of the rise of the slip rate, "10 to 25 Hz" per step (5.2.1)."""
 
 _SLIP_BAND, _MIDDLE_BAND, _ELASTOMER_BAND = (120.0, 420.0), (420.0, 760.0), (850.0, 1150.0)
 
 
 @dataclass(frozen=True)
 class Target:
-    """A measured number that the calibration aims at.
+    """Measured target of the calibration.
 
     Parameters
     ----------
     item : str
-        As ``calibrate.toml`` names it. A ``sudden_share`` is a lower limit, a
-        ``mean_torque_spread`` (highest over lowest mean) an upper one; ``squawk``, ``squeal`` and
-        ``none`` are what is heard there.
+        Name in ``calibrate.toml``. A ``sudden_share`` is a lower limit, a ``mean_torque_spread``
+        (ratio of highest to lowest mean) an upper one; ``squawk``, ``squeal`` and ``none`` are
+        noises.
     value : float
-        As measured [the item's unit].
+        Measured value [unit of the item].
     interference : float
         [m]
     support_stiffness : float
         [Nm/rad]
     speeds : tuple of float
-        At which the rig is run for it [rad/s].
+        Simulated speeds [rad/s].
     weight : float
-        Of its misfit [-].
+        Weight of the misfit [-].
     group : str
-        Targets of a group count by the root mean square of their misfits, one without by itself.
+        Targets of a group count by the root mean square of their misfits.
     """
 
     item: str
@@ -125,7 +125,7 @@ class Target:
         return [(speed, self.interference, self.support_stiffness) for speed in self.speeds]
 
     def misfit(self, simulated: float) -> float:
-        """Distance of what a rig gives from what was measured, both in the item's unit [-]."""
+        """Return the misfit of a simulated value, in the unit of the item [-]."""
         if self.item in _NOISES:
             return simulated
         if self.item == "sudden_share":
@@ -134,7 +134,7 @@ class Target:
             return max(0.0, simulated - self.value)
         if math.isnan(simulated):
             return _MOST
-        if self.item == "slip_rate_rise":  # nil within the spread of those that were measured
+        if self.item == "slip_rate_rise":  # zero within the measured range
             return min(_MOST, max(0.0, abs(simulated / self.value - 1.0) / _RISES - 1.0))
         return math.log(simulated / self.value) if simulated > 0.0 else -math.inf
 
@@ -161,7 +161,7 @@ def _targets(table: str) -> tuple[Target, ...]:
 
 
 def _grid(interference_mm: float, support: str) -> list[float]:
-    """Speeds to try, coarse but about what was measured at 0.279 mm."""
+    """Return the speeds to simulate, fine near the critical speeds measured at 0.279 mm."""
     if interference_mm == 0.178:
         return list(_THIN_GRID.tolist())
     fine = [
@@ -174,27 +174,27 @@ def _grid(interference_mm: float, support: str) -> list[float]:
 
 _CRITICAL_SPEEDS = _targets("critical_speeds")
 CELLS = tuple(one for one in _CRITICAL_SPEEDS if one.group != "thin")
-"""At 0.279 mm: what is fitted."""
+"""Critical speeds at 0.279 mm, which are fitted."""
 
 _OTHERS = _targets("numbers")
 SPEEDS_ALONE = CELLS + tuple(one for one in _OTHERS if one.item == "mean_torque_spread")
-"""Without the other interferences and the noises."""
+"""Targets without the other interferences and the noises."""
 
 THESIS_TABLE = _CRITICAL_SPEEDS + _OTHERS
 
 
 def start() -> NDArray[np.float64]:
-    """Logarithms of where a search begins, shape (n_unknowns,)."""
+    """Return the logarithms of the start values of the search, shape (n_unknowns,)."""
     return np.log([unknown["start"] for unknown in UNKNOWNS.values()])
 
 
 def values_at(point: ArrayLike) -> dict[str, float]:
-    """Values of the unknowns at a point of the search.
+    """Return the values of the unknowns at a point of the search.
 
     Parameters
     ----------
     point : array_like, shape (n_unknowns,)
-        Logarithms; beyond the limits the nearest limit counts.
+        Logarithms; they are limited to the ranges of the unknowns.
 
     Examples
     --------
@@ -209,7 +209,7 @@ def values_at(point: ArrayLike) -> dict[str, float]:
 
 
 def rig_of(values: Mapping[str, float]) -> Rig | None:
-    """Return the rig that the values make; None where they leave no kinetic torque.
+    """Return the rig with given values; None if the kinetic torque vanishes.
 
     Examples
     --------
@@ -256,13 +256,13 @@ def rig_of(values: Mapping[str, float]) -> Rig | None:
 
 
 class SettledRun:
-    """The last half of a run from rest, as a torque record shows it.
+    """Settled half of a run from rest: torque, slips and spectrum.
 
     Parameters
     ----------
     rig : Rig
     speed : float
-        Of the shaft [rad/s].
+        Speed of the shaft [rad/s].
     interference : float
         [m]
     support_stiffness : float
@@ -286,7 +286,7 @@ class SettledRun:
         self._strongest = max(float(low.max()), 1e-12)
 
     def line_in(self, low: float, high: float) -> float:
-        """Highest amplitude between two frequencies [Hz] over that of the strongest line [-]."""
+        """Return the highest amplitude in a band [Hz], relative to the strongest line [-]."""
         inside = (self._frequency >= low) & (self._frequency < high)
         return float(self._amplitude[inside].max()) / self._strongest
 
@@ -300,7 +300,7 @@ def _below(value: float, limit: float) -> float:
 
 
 def _squawk(run: SettledRun) -> float:
-    """How far a run is from slips that ring at the first torsional mode."""
+    """Return the misfit of a run from a squawk [-]."""
     return (
         _above(run.oscillation, LEAST_OSCILLATION)
         + 0.5 * _above(run.line_in(*_SLIP_BAND), _LINE_SHARE)
@@ -323,11 +323,11 @@ _NOISES: Mapping[str, Callable[[SettledRun], float]] = {
     "squeal": _squeal,
     "none": lambda run: _below(run.oscillation, LEAST_OSCILLATION),
 }
-"""How far a run is from each noise."""
+"""Misfits from the noises by name."""
 
 
 def _simulated(target: Target, runs: Sequence[SettledRun]) -> float:
-    """Return what runs at a target's speeds give of it, in its unit."""
+    """Return the simulated value of a target, in its unit."""
     first, last, means = runs[0], runs[-1], [run.mean_torque for run in runs]
     if target.item in _NOISES:
         return _NOISES[target.item](first)
@@ -361,19 +361,19 @@ def _last_crossing(speed: Sequence[float], values: list[float], limit: float) ->
 
 @dataclass(frozen=True)
 class Score:
-    """What a rig comes to: the cost [-], and what it gives of each target [the item's unit]."""
+    """Score of a rig: cost [-] and simulated values of the targets [unit of each item]."""
 
     cost: float
     simulated: Mapping[Target, float]
 
 
 def score(rig: Rig | None, targets: Sequence[Target]) -> Score:
-    """Judge a rig by targets.
+    """Return the score of a rig by targets.
 
     Parameters
     ----------
     rig : Rig or None
-        None is no rig at all, as bad as can be.
+        None has the highest cost.
     targets : sequence of Target
 
     Returns
@@ -403,7 +403,7 @@ def score(rig: Rig | None, targets: Sequence[Target]) -> Score:
 def fit(
     targets: Sequence[Target], begin: NDArray[np.float64], *, rounds: int, step: float = _STEP
 ) -> NDArray[np.float64]:
-    """Search for the unknowns by a pattern search: a regime changes at a stroke, without slope.
+    """Return the unknowns that minimise the cost, by a pattern search, which needs no gradient.
 
     Parameters
     ----------
@@ -411,9 +411,9 @@ def fit(
     begin : ndarray, shape (n_unknowns,)
         Logarithms [-].
     rounds : int
-        Of the search, each with half the steps of the one before.
+        Number of rounds, each with half the steps of the one before.
     step : float
-        Of the first round [-].
+        Step of the first round [-].
 
     Returns
     -------
@@ -435,13 +435,13 @@ def fit(
 
 
 def _rms(simulated: Mapping[Target, float]) -> float:
-    """Root mean square of the misfits of the critical speeds that are fitted [-]."""
+    """Return the root mean square of the misfits of the fitted critical speeds [-]."""
     misfits = [one.misfit(value) for one, value in simulated.items() if one in CELLS]
     return float(np.sqrt(np.mean(np.square(misfits)))) if misfits else math.nan
 
 
 def _print(rig: Rig) -> None:
-    """Print each target beside what a rig gives."""
+    """Print the targets and the simulated values of a rig."""
     judged = score(rig, THESIS_TABLE)
     print(f"cost {judged.cost:.3f}; log-rms error at 0.279 mm {_rms(judged.simulated):.3f}")
     for one, simulated in judged.simulated.items():
@@ -453,7 +453,7 @@ def _print(rig: Rig) -> None:
 
 
 def main() -> int:
-    """Run the command; exit codes as those of ``bushing-noise``."""
+    """Run the command; return an exit code as of ``bushing-noise``."""
     parser = argparse.ArgumentParser(prog="python -m noise.training.calibrate", description=__doc__)
     about = "of the search, with ever finer steps"
     parser.add_argument("--rounds", type=int, default=0, metavar="N", help=about)

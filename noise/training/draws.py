@@ -1,4 +1,4 @@
-"""Random numbers, noise and slow changes that made-up sounds and rigs are drawn from."""
+"""Random draws for synthetic sounds and rigs: noise, smooth trajectories, choices, a low-pass."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from noise.base import log_uniform as log_uniform
 
 
 def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Noise of unit standard deviation whose spectral density falls as ``f ** -slope``.
+    """Return noise of unit standard deviation with a spectral density of ``f ** -slope``.
 
     Parameters
     ----------
     n : int
         Number of samples.
     slope : float
-        [-]; 0 is white, 1 pink.
+        Exponent [-]; 0 is white noise, 1 pink noise.
     rng : numpy.random.Generator
 
     Returns
@@ -46,14 +46,14 @@ def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np
 def wandering(
     n: int, rate: float, frequency: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Return a smooth random course, mostly within -1 to 1, that turns `frequency` times a second.
+    """Return a smooth random trajectory, mostly within -1 to 1.
 
     Parameters
     ----------
     n : int
         Number of samples.
     rate, frequency : float
-        Of the samples, and of the turns [Hz].
+        Sampling rate, and highest frequency of the trajectory [Hz].
     rng : numpy.random.Generator
 
     Returns
@@ -72,21 +72,21 @@ def wandering(
     place = np.arange(n) / step + 1.0 + rng.random()
     left = place.astype(int)
     x = place - left
-    # Catmull-Rom through the knots.
+    # Catmull-Rom spline through the knots.
     a, b, c, d = (knots[np.minimum(left + shift, knots.size - 1)] for shift in (-1, 0, 1, 2))
     course = b + 0.5 * x * (c - a + x * (2 * a - 5 * b + 4 * c - d + x * (3 * (b - c) + d - a)))
     return np.asarray(course)
 
 
 def low_pass(x: NDArray[np.float64], corner: float, rate: float) -> NDArray[np.float64]:
-    """Filter by a low-pass of first order.
+    """Return a signal after a first-order low-pass filter.
 
     Parameters
     ----------
     x : ndarray, shape (n,)
         Signal [any unit].
     corner, rate : float
-        Where it begins to fall, and sampling rate [Hz].
+        Corner frequency and sampling rate [Hz].
 
     Returns
     -------
@@ -103,12 +103,12 @@ def low_pass(x: NDArray[np.float64], corner: float, rate: float) -> NDArray[np.f
 
 
 def picked(shares: Mapping[str, float], rng: np.random.Generator) -> str:
-    """Draw a name by the share of each.
+    """Draw a name with given probabilities.
 
     Parameters
     ----------
     shares : mapping of str to float
-        By name; they need not sum to one [-].
+        Relative probability of each name; they need not sum to one [-].
     rng : numpy.random.Generator
 
     Returns

@@ -1,4 +1,4 @@
-"""Growing of trees by scikit-learn, and what it keeps of them as plain arrays."""
+"""Training of decision trees by scikit-learn, and their conversion to plain arrays."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from noise.base.trees import LEAF, BoostedTrees, QuantileForest
 
 PER_LEAF = 8
-"""Values that a leaf of a quantile forest keeps: the middles of as many equal shares."""
+"""Values per leaf of a quantile forest, at evenly spaced quantiles."""
 
 _FEATURES_A_SPLIT = 0.8
-"""Share of the features that a split is sought among; many of them are missing at any one."""
+"""Share of the features considered for a split; many features are missing in a sample."""
 
 
 def grow_boosted_trees(
@@ -25,7 +25,7 @@ def grow_boosted_trees(
     n_rounds: int,
     seed: int,
 ) -> BoostedTrees:
-    """Grow boosted trees.
+    """Train boosted trees.
 
     Parameters
     ----------
@@ -34,9 +34,9 @@ def grow_boosted_trees(
     y : ndarray of int, shape (n,)
         Classes 0, 1, 2 ..., three or more.
     weight : ndarray, shape (n,)
-        How much each sample counts [-].
+        Weights of the samples [-].
     n_rounds, seed : int
-        Trees a class, seed of the draws.
+        Number of trees per class, and random seed.
 
     Returns
     -------
@@ -51,8 +51,7 @@ def grow_boosted_trees(
     >>> trees.probabilities(np.array([[0.0, 0.0], [8.0, np.nan]])).argmax(axis=1).tolist()
     [0, 2]
     """
-    # Shallow trees that see a third of the features each: what is learned from made-up sound has to
-    # hold for other sound.
+    # Shallow trees with a third of the features per split generalise from synthetic to other sound.
     rounds, base = boosted_nodes(
         x, y, weight=weight, max_iter=n_rounds, learning_rate=0.1, max_leaf_nodes=16,
         min_samples_leaf=10, max_features=0.3, random_state=seed,
@@ -67,41 +66,41 @@ def boosted_nodes(
     weight: NDArray[np.float64] | None = None,
     **settings: Any,
 ) -> tuple[list[list[NDArray[Any]]], NDArray[np.float64]]:
-    """Boost trees by scikit-learn, which keeps them where only its estimator looks.
+    """Train boosted trees and return their nodes, from private attributes of scikit-learn.
 
     Parameters
     ----------
     x, y, weight
-        As of `grow_boosted_trees`; two classes may be enough, and weights even.
+        As in `grow_boosted_trees`, but two classes suffice, and weights are optional.
     **settings
-        Of `sklearn.ensemble.HistGradientBoostingClassifier`.
+        Parameters of `sklearn.ensemble.HistGradientBoostingClassifier`.
 
     Returns
     -------
     rounds : list of list of structured ndarray, shape (n_nodes,)
-        Nodes of the trees of each round: one a class, one in all for two classes.
+        Nodes of the trees of each round: one tree per class, a single one for two classes.
     base : ndarray, shape (n_trees_a_round,)
-        Scores before any tree [-].
+        Initial scores [-].
     """
     from sklearn.ensemble import HistGradientBoostingClassifier
     from threadpoolctl import threadpool_limits
 
     model = HistGradientBoostingClassifier(l2_regularization=1.0, early_stopping=False, **settings)
-    with threadpool_limits(1):  # sums are the same on every machine
+    with threadpool_limits(1):  # reproducible sums on every machine
         model.fit(x, y, sample_weight=weight)
     rounds = [[tree.nodes for tree in trees] for trees in model._predictors]
     return rounds, np.asarray(model._baseline_prediction).reshape(-1)
 
 
 def as_arrays(grown: Sequence[tuple[int, NDArray[Any]]], base: NDArray[np.float64]) -> BoostedTrees:
-    """Return trees as scikit-learn keeps their nodes as arrays.
+    """Convert nodes of scikit-learn's trees to arrays.
 
     Parameters
     ----------
     grown : sequence of (int, structured ndarray, shape (n_nodes,))
         Class and nodes of each tree.
     base : ndarray, shape (n_classes,)
-        Scores before any tree [-].
+        Initial scores [-].
 
     Returns
     -------
@@ -133,18 +132,18 @@ def grow_quantile_forest(
     share: float,
     seed: int,
 ) -> QuantileForest:
-    """Grow a quantile forest.
+    """Train a quantile forest.
 
     Parameters
     ----------
     x : ndarray, shape (n, n_features)
         [unit of each feature]; NaN where it is missing.
     y : ndarray, shape (n,)
-        What is asked for [in its own unit].
+        Target values [any unit].
     n_trees, least_leaf : int
-        Number of trees, samples in the smallest leaf.
+        Number of trees, minimum number of samples in a leaf.
     share : float
-        Share of the samples that a tree is grown on; its leaves then take in all of them.
+        Share of the samples for growing a tree; the values of its leaves are from all samples.
     seed : int
 
     Returns
@@ -187,7 +186,7 @@ def grow_quantile_forest(
 
 
 def _single(tree: Any, arrivals: NDArray[np.int64], y: NDArray[np.float64]) -> QuantileForest:
-    """Return one tree, whose nodes scikit-learn keeps in depth-first order, the left one first."""
+    """Return one tree with the quantiles of its leaves; nodes are in depth-first order."""
     leaf = tree.children_left < 0
     rows = np.cumsum(leaf) - 1
     quantiles = (np.arange(PER_LEAF) + 0.5) / PER_LEAF
@@ -207,6 +206,6 @@ def _single(tree: Any, arrivals: NDArray[np.int64], y: NDArray[np.float64]) -> Q
 
 
 def _at_most(threshold: NDArray[np.float64]) -> NDArray[np.float32]:
-    """Round down to single precision, so that no single-precision feature changes sides."""
+    """Round down to single precision, so that single-precision features pass the same branches."""
     rounded = threshold.astype(np.float32)
     return np.where(rounded > threshold, np.nextafter(rounded, np.float32(-np.inf)), rounded)

@@ -1,10 +1,9 @@
-"""Simulated bushings of the classifier's samples, called by their physics.
+"""Random simulated bushings with labels by physics, for the classifier.
 
-A run is called by `noise.noise_definition.label_by_physics` alone. That is defined at constant
-speed, so a run whose speed varies, or that has not settled, is looked at in pieces of a quarter of
-a second, and only the longest stretch with one noise is kept; a run without half a second of one
-noise is drawn again. Runs that would be much of one noise are thinned by a short preview, and half
-of the squawks that it did not foresee are let go.
+Labels are by `noise.noise_definition.label_by_physics`, which is defined at constant speed. So a
+run of varying speed, or that has not settled, is labelled in pieces of a quarter of a second, and
+the longest stretch with one label is used; a run without half a second of one label is drawn again.
+A short preview of the motion balances the labels, and half of the unexpected squawks are discarded.
 """
 
 from __future__ import annotations
@@ -31,29 +30,29 @@ from sim.run import Run, pulse_force, simulate
 from sim.shaft import ConstantSpeed, Oscillation, ShaftMotion, SpeedRamp
 
 _SHARES = {"creak": 0.34, "squawk": 0.17, "squeal": 0.32, "none": 0.17}
-"""Of the labels that are looked for."""
+"""Shares of the wanted labels."""
 
 _MOST_TRIES = 20
-"""After so many previews, whatever comes is taken."""
+"""Maximum number of previews."""
 
 _SPARE_SQUAWKS = 0.5
-"""How often a squawk is drawn again where another noise was looked for."""
+"""Probability of drawing again after a squawk instead of the wanted label."""
 
 _WHERE_LIKELY = 0.85
-"""How often a design is drawn again that lies where the noise looked for is rare."""
+"""Probability of drawing a design again if the wanted label is rare there."""
 
 _PIECE = 0.25
-"""Length of the pieces that a run of varying speed is judged by [s]."""
+"""Duration of the labelled pieces of a run of varying speed [s]."""
 
 _SHORTEST = 0.5
-"""Of a stretch with one noise [s]."""
+"""Minimum duration of a stretch with one label [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class LabelledRun:
-    """A run, or the part of one, with the noise that it makes throughout.
+    """Run, or part of a run, with one label.
 
-    It is ambiguous where `noise.noise_definition.is_ambiguous` says so, of pieces for most of them.
+    It is ambiguous by `noise.noise_definition.is_ambiguous`, of pieces if most of them are.
     """
 
     run: Run
@@ -62,7 +61,7 @@ class LabelledRun:
 
 
 def random_run(rng: np.random.Generator) -> LabelledRun:
-    """Draw a design and how its shaft turns, simulate it, and say what noise it makes.
+    """Return a simulated run of a random design and motion, with its label.
 
     Examples
     --------
@@ -85,18 +84,18 @@ def random_run(rng: np.random.Generator) -> LabelledRun:
             if attempt < _MOST_TRIES and _guessed(design) != wanted:
                 continue
             labelled = _labelled(design, rng)
-        except ParameterError:  # a drawn design that cannot be built
+        except ParameterError:  # an impossible design
             continue
         if labelled is None:
             continue
         spare = labelled.label == "squawk" != wanted
         if not (spare and rng.random() < _SPARE_SQUAWKS):
             return labelled
-    raise AssertionError  # the loop has no end
+    raise AssertionError  # unreachable: the loop is infinite
 
 
 def _likely(design: Design, wanted: str) -> bool:
-    """Whether a noise is common where the design runs, so that the rare ones are found soon."""
+    """Whether a label is common at the condition of a design."""
     fluorocarbon = design.rig.material == "fluorocarbon"
     tight = design.interference > 0.31e-3
     if wanted == "squeal":
@@ -108,7 +107,7 @@ def _likely(design: Design, wanted: str) -> bool:
 
 
 def _guessed(design: Design) -> str:
-    """Return the noise that a short motion lets expect, without its sound."""
+    """Return the label that is expected from a short motion."""
     rig = design.rig
     effects = activated(rig.effects, EFFECTS)
     motion = simulate_motion(
@@ -163,7 +162,7 @@ def _labelled(design: Design, rng: np.random.Generator) -> LabelledRun | None:
 
 
 def _random_shaft(speed: float, seconds: float, rng: np.random.Generator) -> ShaftMotion:
-    """Constant, drifting by up to a third, or swinging as a stabilizer bar does."""
+    """Return a constant speed, a ramp by up to a third, or an oscillation."""
     chance = rng.random()
     if chance < 0.65:
         return ConstantSpeed(speed)
@@ -198,7 +197,7 @@ def stretch(run: Run, start: float, end: float) -> Run:
 
 
 def _uniform_part(run: Run) -> LabelledRun | None:
-    """Return the longest stretch with one noise; ``None`` where it is short."""
+    """Return the longest stretch with one label; ``None`` if it is short."""
     n = int(run.pressure.size / run.motion.rate / _PIECE)
     criteria = [run_criteria(stretch(run, i * _PIECE, (i + 1) * _PIECE)) for i in range(n)]
     labels = [one.label for one in criteria]
@@ -214,5 +213,5 @@ def _uniform_part(run: Run) -> LabelledRun | None:
 
 
 def _drowned(run: Run) -> bool:
-    """Whether what the sensors add is more than the sound itself."""
+    """Whether the sensor noise exceeds the sound."""
     return float(run.recording["pressure"].std()) > 1.5 * float(run.pressure.std())

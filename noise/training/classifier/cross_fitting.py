@@ -1,13 +1,12 @@
-"""Cross-fitting: probabilities of sounds by trees that were grown without their source.
+"""Cross-fitting of the classifier: trees, calibration, thresholds and scores by left-out sources.
 
-How probable a name is, and from where on it is said, is not asked of what the trees have seen: the
-kinds of body and of background, and the sources of real sounds, are parted into five, and trees
-that were grown without one part vote on it. Those votes calibrate, and those votes are scored:
-each part by the calibration of the other four.
+Kinds of bodies and backgrounds and sources of real sounds are divided into five parts, and trees
+grown without a part give votes for it. These votes calibrate the classifier and are scored, each
+part with the calibration of the other four.
 
-The classifier has to work with whatever channels there are, so each recording of three channels is
-learned several times, with some of them masked. A few dozen real sounds of friction are lost among
-thousands of simulated ones, so trees are grown of the real sounds alone as well, and a share of
+The classifier has to work with any subset of channels, so each recording of three channels is
+learned several times, with some channels masked. A few dozen real sounds of friction have no effect
+among thousands of simulated ones, so trees are also grown on the real sounds alone, and a share of
 their log odds is added.
 """
 
@@ -40,25 +39,25 @@ from noise.training.classifier.samples import Sample
 from noise.training.trees import grow_boosted_trees
 
 N_FOLDS = 5
-"""Parts, each of which is left out once."""
+"""Number of parts of the cross-fitting."""
 
 _N_ROUNDS, _REAL_ROUNDS = 220, 50
-"""Trees a class: of all sounds, and of the real ones alone."""
+"""Trees per class, for all sounds and for the real sounds alone."""
 
 _REAL_SHARE = 0.3
-"""Of the log odds of the real sounds' trees that is added [-]; by sources left out."""
+"""Share of the log odds of the real sounds' trees [-]; chosen on left-out sources."""
 
 _CHOSEN_BY = {
     "any": ("any", "any", "any"),
     "car": ("any", "any", "any"),
     "rig": ("any", "rig", "any"),
 }
-"""Backgrounds by which the thresholds of creak, squawk and squeal are chosen for some surroundings.
-Few sounds choose badly: of sounds of unseen sources that may be heard there, thresholds chosen by
-these alone name 11 of 219 in a car, and 11 of 175 at a rig; those chosen so name 3 and 4."""
+"""Backgrounds that determine the thresholds of creak, squawk and squeal, by surroundings.
+Backgrounds of the surroundings alone are too few: their thresholds give false names for 11 of 219
+sounds of left-out sources in a car, and for 11 of 175 at a rig; these give 3 and 4."""
 
 _SENSITIVITIES = (0.5, 1.0, 2.0, 4.0)
-"""For which false names are counted [ratio of odds]."""
+"""Sensitivities for which false names are counted [-]."""
 
 _KINDS = ("pressure", "acceleration", "torque")
 _SUBSETS = (
@@ -70,15 +69,15 @@ _SUBSETS = (
     ("acceleration",),
     ("torque",),
 )
-"""Which channels are left of three; what is most often measured comes first."""
+"""Subsets of channels that are learned; the most frequent ones come first."""
 
 _SELDOM = 0.4
-"""How much all but the first two subsets count."""
+"""Weight of all but the first two subsets."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Windows of sounds under several masks of their channels, which trees are grown of.
+    """Training rows: windows of sounds under several masks of their channels.
 
     Parameters
     ----------
@@ -87,11 +86,11 @@ class Rows:
     y : ndarray of int, shape (n_rows,)
         Columns of `LABELS`.
     weight : ndarray, shape (n_rows,)
-        How much each counts [-].
+        Weights [-].
     real : ndarray of bool, shape (n_rows,)
-        Whether each is of a real sound.
+        Whether each row is of a real sound.
     owner : ndarray of int, shape (n_rows,)
-        Which of the sounds each is of.
+        Index of the sound of each row.
     """
 
     x: NDArray[np.float32]
@@ -120,7 +119,7 @@ class Rows:
         )
 
     def part(self, rows: NDArray[np.bool_], columns: NDArray[np.bool_] | Sequence[int]) -> Rows:
-        """Return some of the rows and columns."""
+        """Return a selection of rows and columns."""
         return Rows(
             self.x[rows][:, columns], self.y[rows], self.weight[rows], self.real[rows],
             self.owner[rows],
@@ -128,20 +127,20 @@ class Rows:
 
 
 def masked(features: NDArray[np.float32], kinds: Sequence[str] = _KINDS) -> NDArray[np.float32]:
-    """Return features of windows with those of other kinds of channel than `kinds` missing."""
+    """Return features in which those of channels outside `kinds` are NaN."""
     retained = [name.partition("_")[0] in kinds for name in FEATURE_NAMES]
     return np.where(retained, features, np.float32(np.nan))
 
 
 def columns_of_labels(sounds: Sequence[Sample]) -> NDArray[np.int64]:
-    """Return the columns of `LABELS` that sounds belong to."""
+    """Return the labels of sounds as columns of `LABELS`."""
     return np.array([LABELS.index(sound.label) for sound in sounds], dtype=np.int64)
 
 
 def parts(sounds: Sequence[Sample], seed: int) -> NDArray[np.int64]:
-    """Part sounds into `N_FOLDS`, those of one source together, each label spread over all parts.
+    """Return the part of each sound: sources are whole, and labels are spread over all parts.
 
-    A bushing, and a quiet place, is a source by itself.
+    Each bushing and each quiet place is a source.
 
     Returns
     -------
@@ -161,16 +160,16 @@ def parts(sounds: Sequence[Sample], seed: int) -> NDArray[np.int64]:
 
 @dataclass(frozen=True, eq=False)
 class LeftOut:
-    """Probabilities of each sound by trees and a calibration that knew none of its part.
+    """Probabilities of each sound by trees and a calibration without its part.
 
     Parameters
     ----------
     alone : list of ndarray, shape (n_windows, 5)
-        By the sound alone [-].
+        Probabilities by the sound alone [-].
     together : list of ndarray, shape (n_windows, 5)
-        The same with its other channels [-]; None where it has none.
+        Probabilities by all channels [-]; None without other channels.
     part : ndarray of int, shape (n_sounds,)
-        What was left out together.
+        Part of each sound.
     """
 
     alone: list[NDArray[np.float64]]
@@ -181,27 +180,27 @@ class LeftOut:
 def cross_fitted(
     sounds: Sequence[Sample], seed: int, fits: Iterator[object]
 ) -> tuple[Classifier, LeftOut]:
-    """Grow trees, calibrate them by trees that knew other kinds alone, and find the thresholds.
+    """Train a classifier: trees, calibrations and thresholds.
 
     Parameters
     ----------
     sounds : sequence of Sample
     seed : int
     fits : iterator
-        Gone on with as each fit begins, of which there are `N_FOLDS` and one: a progress bar.
+        Iterator for a progress bar, advanced at each of the `N_FOLDS` + 1 fits.
 
     Returns
     -------
     classifier : Classifier
     left_out : LeftOut
-        Of the same sounds.
+        Left-out probabilities of the sounds.
     """
     part, rows = parts(sounds, seed), Rows.of(sounds)
     known: NDArray[np.bool_] = np.asarray(np.isfinite(rows.x).any(axis=0))
     grow = ending_with_parent(_summed_trees)
     growing = Parallel(n_jobs=-1, return_as="generator")(
         delayed(grow)(rows.part(part[rows.owner] != k, known), seed, _N_ROUNDS)
-        for k in range(N_FOLDS + 1)  # the last has all
+        for k in range(N_FOLDS + 1)  # the last fit has all rows
     )
     alone: list[NDArray[np.float64]] = [np.empty(0)] * len(sounds)
     together: list[NDArray[np.float64] | None] = [None] * len(sounds)
@@ -238,21 +237,21 @@ def cross_fitted(
 
 
 def with_trees_of(classifier: Classifier, sounds: Sequence[Sample], seed: int) -> Classifier:
-    """Return a classifier with trees that were grown of other sounds, all else as it is."""
+    """Return a classifier with trees grown on other sounds."""
     rows = Rows.of(sounds)
     rows = rows.part(np.ones(len(rows.y), dtype=bool), columns_of(classifier))
     return replace(classifier, trees=_summed_trees(rows, seed, _N_ROUNDS), card={})
 
 
 def _summed_trees(rows: Rows, seed: int, n_rounds: int) -> BoostedTrees:
-    """Grow trees of all rows, and add a share of the log odds by trees of the real ones."""
+    """Return trees of all rows with a share of the trees of real sounds added."""
     trees = _trees(rows, seed, n_rounds)
     unknown = LABELS.index("unknown")
     known = np.unique(rows.y[rows.real])
     if known.min(initial=unknown) >= NOISES or unknown not in known:
         return trees
     own = _trees(rows.part(rows.real, slice(None)), seed, _REAL_ROUNDS)
-    # A label of which there is no real sound is as likely as `unknown`.
+    # A label without real sounds has the trees of `unknown`.
     columns = np.arange(len(LABELS))
     alike = np.where(np.isin(columns, known), columns, unknown)
     chosen = [np.flatnonzero(own.classes == k) for k in alike]
@@ -272,9 +271,9 @@ def _summed_trees(rows: Rows, seed: int, n_rounds: int) -> BoostedTrees:
 
 
 def _trees(rows: Rows, seed: int, n_rounds: int) -> BoostedTrees:
-    """Grow trees of rows whose labels are balanced."""
+    """Return trees grown on rows with balanced labels."""
     x, y = rows.x.copy(), rows.y
-    # Bins need one value at least of what none of these has, and trees one row of each label.
+    # scikit-learn needs one value of each feature and one row of each label.
     x[0, ~np.isfinite(x).any(axis=0)] = 0.0
     absent = np.setdiff1d(np.arange(len(LABELS)), y)
     weight = rows.weight / np.bincount(y, rows.weight, len(LABELS))[y]
@@ -296,12 +295,12 @@ def _calibration(
 
 
 def may_sound(kind: str, surroundings: str) -> bool:
-    """Whether a kind of sound may be heard in a place.
+    """Whether a kind of sound may occur in some surroundings.
 
     Parameters
     ----------
     kind : str
-        Of a made-up sound, or a file's name with a kind in it.
+        Name of a synthetic background sound, or a file name that contains a kind.
     surroundings : str
         One of `noise.base.labels.SURROUNDINGS`.
 
@@ -325,7 +324,7 @@ def may_sound(kind: str, surroundings: str) -> bool:
 
 
 def real_backgrounds(sounds: Sequence[Sample], left_out: LeftOut) -> dict[str, list[Background]]:
-    """Return the real sounds that are no noise, by the surroundings in which they may be heard."""
+    """Return the real background sounds by the surroundings in which they may occur."""
     strangers = [
         (sound.kind, Background(p, int(part)))
         for sound, p, part in zip(sounds, left_out.alone, left_out.part, strict=True)
@@ -340,7 +339,7 @@ def real_backgrounds(sounds: Sequence[Sample], left_out: LeftOut) -> dict[str, l
 def _thresholds(
     backgrounds: Mapping[str, Sequence[Background]], surroundings: str, without: int = -1
 ) -> Thresholds:
-    """Find the thresholds for some surroundings by backgrounds that are not of one part."""
+    """Return the thresholds for some surroundings by backgrounds of all parts but one."""
     fitted = {
         name: fit_thresholds([b.probabilities for b in backgrounds[name] if b.part != without])
         for name in set(_CHOSEN_BY[surroundings])
@@ -352,15 +351,15 @@ def _thresholds(
 def left_out_scores(
     sounds: Sequence[Sample], left_out: LeftOut, thresholds: Mapping[str, Thresholds]
 ) -> dict[str, object]:
-    """Score sounds of kinds and sources that the trees and the calibration had not known.
+    """Return scores of the left-out sounds for the card of the classifier.
 
     Parameters
     ----------
     sounds : sequence of Sample
     left_out : LeftOut
-        Of these sounds.
+        Left-out probabilities of the sounds.
     thresholds : mapping of str to tuple of 3 floats
-        By surroundings: probability [-] from which each noise is named.
+        Minimum probability of each noise by surroundings [-].
 
     Returns
     -------
@@ -397,7 +396,7 @@ def left_out_scores(
 
 
 def unlearned_scores(classifier: Classifier, samples: Sequence[Sample]) -> dict[str, object]:
-    """Score samples that were not learned, by their sound alone and by three channels.
+    """Return scores of test samples for the card, by the sound alone and by three channels.
 
     Parameters
     ----------
@@ -424,20 +423,20 @@ def unlearned_scores(classifier: Classifier, samples: Sequence[Sample]) -> dict[
 
 
 def _scores(voted: Sequence[tuple[Sample, NDArray[np.float64]]]) -> dict[str, object]:
-    """Score samples, each with the probabilities of its windows."""
+    """Return scores of samples, each with the probabilities of its windows."""
     p = np.concatenate([_clearest(of_windows) for _, of_windows in voted])
     return scores(p, columns_of_labels([sample for sample, _ in voted]), LABELS.index("unknown"))
 
 
 def named_as(p: NDArray[np.float64], thresholds: Sequence[float]) -> int:
-    """Return the column of `LABELS` that a recording's windows are called together.
+    """Return the label of a recording as a column of `LABELS`.
 
     Parameters
     ----------
     p : ndarray, shape (n_windows, 5)
-        Probabilities [-].
+        Probabilities of its windows [-].
     thresholds : sequence of 3 floats
-        Probability [-] from which each noise is named.
+        Minimum probability of each noise [-].
     """
     return int(named(_clearest(p), thresholds)[0])
 

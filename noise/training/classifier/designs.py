@@ -1,4 +1,4 @@
-"""Rigs and conditions that differ as designs do, for the classifier to learn from."""
+"""Random designs: rigs and operating conditions, for the classifier."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ _MATERIALS = {
     "natural-rubber-film": 0.08,
     "natural-rubber-film-removed": 0.08,
 }
-"""Share of the designs that start from each."""
+"""Shares of the materials of the designs."""
 
 SHAPES = {"weakening_exponent"}
-"""Parameters that make the law what it is, and so do not differ from design to design."""
+"""Parameters of laws that do not vary between designs."""
 
 _NEAR = 0.35
-"""Share of the designs that are the shipped rigs, but for a scatter of some per cent."""
+"""Share of the designs close to the shipped rigs, with a scatter of some per cent."""
 
 _INTERFERENCES = (0.178e-3, 0.279e-3, 0.381e-3)
-"""Of the thesis [m]."""
+"""Interferences of the thesis [m]."""
 
 _SUPPORTS = (2214.0, 3745.0, math.inf)
-"""Of the thesis's rig [Nm/rad]."""
+"""Support stiffnesses of the thesis [Nm/rad]."""
 
 
 _EXTRAS = packaged_toml("noise.training.classifier", "extras.toml")
@@ -49,7 +49,7 @@ _SHARE_OF_DEAR = 0.02
 
 @dataclass(frozen=True)
 class Design:
-    """A rig with the condition that it runs at; units as in `sim.run.simulate`."""
+    """Rig with an operating condition; units as in `sim.run.simulate`."""
 
     rig: Rig
     speed: float
@@ -58,12 +58,12 @@ class Design:
 
 
 def random_design(rng: np.random.Generator) -> Design:
-    """Draw a design and a condition.
+    """Return a random design.
 
-    Stiffness, inertia and torque scatter by a third or so about the shipped bushing's, the
-    elastomer's inertia by a factor of ten, which moves its mode, hence the squeal, up to 3 kHz;
-    plate, microphone and slip pulse vary as from one car to the next. A third are the shipped rigs
-    near the thesis's own interferences, with a sixth of that scatter.
+    Stiffness, inertia and torque scatter by about a third around those of the shipped bushing. The
+    inertia of the elastomer varies by a factor of ten, which moves its mode, hence the squeal, up
+    to 3 kHz. Plate, microphone and slip pulse vary as between cars. A third of the designs are
+    close to the shipped rigs and the interferences of the thesis, with a sixth of that scatter.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def random_design(rng: np.random.Generator) -> Design:
     'fluorocarbon'
     """
     rig = _material_rig(picked(_MATERIALS, rng))
-    # Half of them tight, where creak is, the others looser and fast enough to squeal.
+    # Half of them are tight, to creak, the others looser and fast enough to squeal.
     tight = bool(rng.random() < 0.5)
     interference = float(rng.uniform(0.32e-3, 0.42e-3) if tight else rng.uniform(0.15e-3, 0.34e-3))
     near = bool(rng.random() < _NEAR)
@@ -117,7 +117,7 @@ def _material_rig(material: str) -> Rig:
 
 
 def scaled(fit: Fit, stiffness: float, torque: float, damping: float = 1.0) -> Fit:
-    """Return a fit whose properties are multiplied.
+    """Return a fit with scaled properties.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def scaled(fit: Fit, stiffness: float, torque: float, damping: float = 1.0) -> F
 def _jittered(
     spec: LawSpec, declared: Mapping[str, Parameter], scatter: float, rng: np.random.Generator
 ) -> LawSpec:
-    """Scatter a law's or an effect's parameters within their admitted ranges."""
+    """Return a law or effect with random parameters within their ranges."""
     return LawSpec(
         spec.name,
         {
@@ -184,9 +184,9 @@ def _random_plate(plate: Plate, rng: np.random.Generator) -> Plate:
 
 
 def random_extras(present: tuple[LawSpec, ...], rng: np.random.Generator) -> tuple[LawSpec, ...]:
-    """Return none, on a third of the calls one or two effects that are not `present`.
+    """Return one or two random effects that are not `present`, in a third of the calls.
 
-    The strengths go from hardly there to well beyond what repeats differ by.
+    Their strengths range from negligible to much more than the scatter of repeats.
 
     Examples
     --------

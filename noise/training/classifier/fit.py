@@ -1,17 +1,12 @@
-"""Training of the classifier: on simulation, made-up background sounds and some real ones.
+"""Training of the classifier on simulation, synthetic background sounds and some real sounds.
 
-What a simulated sample is called follows from its physics (`.samples`),
-never from its features; samples whose name hangs on a bound of the definition are not used. What
-calibrates, and what is scored, was left out of what the trees were grown of
-(`noise.training.classifier.cross_fitting`). Another set of samples, of kinds that are known, is
-scored by the classifier itself.
+Labels of simulated samples follow from physics (`noise.training.classifier.samples`); samples with
+ambiguous labels are not used. Calibration and scores are by left-out sources
+(`noise.training.classifier.cross_fitting`); test samples of known kinds are scored as well.
 
-Real sounds are learned beside simulated ones: they say what it takes for a noise.
-
-Stored are the features of their windows, not the sounds (``data/real_sounds.npz``), and their
-sources and licences, none of which forbids it: CC0, CC BY and MIT. After a change of the features
-they are taken again from the sounds themselves, a folder of them with a table ``sources.csv`` of
-the columns ``file, class, source, licence``::
+Of real sounds, the features of their windows are stored (``data/real_sounds.npz``), with sources
+and licences: CC0, CC BY and MIT. After a change of the features they are computed again from a
+folder of sounds with a table ``sources.csv`` with the columns ``file, class, source, licence``::
 
     python -m noise.training.classifier.fit FOLDER
 """
@@ -61,13 +56,13 @@ from noise.training.classifier.samples import (
 from noise.training.draws import log_uniform, low_pass
 
 N_TRAINING = 4300
-"""Samples that are learned from."""
+"""Number of training samples."""
 
 _MADE_UP = 0.6
-"""So many sounds that are no bushing's are learned beside each sample: they cost little."""
+"""Number of additional samples without bushings, per training sample."""
 
 N_TEST = 480
-"""Samples that are scored."""
+"""Number of test samples."""
 
 _KIND = ModelKind(
     "set of real sounds",
@@ -84,32 +79,32 @@ _LABELS = {
     "background": "unknown",
     "background: vehicle": "unknown",
 }
-"""By class; others hang on a bound of the definition."""
+"""Labels by class; other classes are ambiguous."""
 
 _FRICTION = ("hacksaw", "hand_saw")
-"""Files called so are friction, whatever their class: neither a noise nor a stranger."""
+"""Names of files with friction of saws, which is neither a noise nor a background."""
 
 _CLEAN = re.compile(r"(skid\.ogg )?(CC0|CC BY [34]|CC-BY |MIT)")
-"""How a licence begins that lets anyone learn from a sound and pass on what was learned."""
+"""Start of a licence that permits training and distribution of the result."""
 
 _WEIGHT_OF_NOISE, _WEIGHT_OF_OTHERS = 15.0, 4.0
-"""Simulated samples that a sound counts as [-], by how sources left out are named."""
+"""Weights of real sounds, relative to a simulated sample [-]; chosen on left-out sources."""
 
 _QUIET_DB = 30.0
-"""Windows that lie so far below a sound's loudest are pauses."""
+"""Level below the loudest window from which a window is a pause [dB]."""
 
 _VARIATIONS = 20
-"""Of each sound that is a noise: parts of it at other speeds, in other places and recorders."""
+"""Number of variations of each noise: parts at other speeds, in other places and recorders."""
 
 _SPEEDS = (0.78, 1.28)
 _LENGTHS = (0.15, 2.5)
-"""Of a variation, over the sound's own [-] and as a part of it [s]."""
+"""Relative speed [-] and duration [s] of a variation."""
 
 _RATE = 48_000.0
 """Sampling rate of variations [Hz]."""
 
 _COLUMNS = [i for i, name in enumerate(FEATURE_NAMES) if name.startswith("pressure_")]
-"""Features that real sounds have."""
+"""Columns of the features of real sounds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,9 +114,9 @@ class RealSounds:
     Parameters
     ----------
     samples : tuple of Sample
-        Each a whole sound, or a variation of one.
+        Whole sounds and variations.
     licences : mapping of str to str
-        By source.
+        Licences by source.
     """
 
     samples: tuple[Sample, ...]
@@ -129,7 +124,7 @@ class RealSounds:
 
 
 def load_real_sounds() -> RealSounds:
-    """Load the real sounds that are stored with the program.
+    """Load the shipped real sounds.
 
     Examples
     --------
@@ -140,7 +135,7 @@ def load_real_sounds() -> RealSounds:
 
 
 def describe_folder(folder: Path) -> RealSounds:
-    """Describe the sounds of a folder that have a clean licence."""
+    """Return the features of the sounds of a folder with a suitable licence."""
     samples, licences = [], {}
     with (folder / "sources.csv").open(encoding="utf-8", newline="") as table:
         rows = [row for row in csv.DictReader(table) if _CLEAN.match(row["licence"])]
@@ -163,13 +158,13 @@ def describe_folder(folder: Path) -> RealSounds:
 
 
 def _varied(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -> Drawn:
-    """Record a loud part of a sound anew, at another speed, in another place."""
+    """Return a random variation of a loud part of a sound."""
     n = min(sound.size, round(log_uniform(*_LENGTHS, rng) * rate))
     loudest = np.abs(sound).max()
     parts = [sound[first : first + n] for first in rng.integers(0, sound.size - n + 1, 10)]
     part = next((one for one in parts if np.abs(one).max() > 0.5 * loudest), parts[-1])
     step = log_uniform(*_SPEEDS, rng) * rate / _RATE
-    if step > 1.0:  # what is above half the new rate would fold back
+    if step > 1.0:  # against aliasing
         part = low_pass(part, 0.45 * _RATE, rate)
     part = np.interp(np.arange(0.0, part.size - 1.0, step), np.arange(part.size), part)
     fade = min(round(0.005 * _RATE), part.size // 4)
@@ -183,7 +178,7 @@ def _varied(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -
 
 
 def _source(name: str, licence: str) -> str:
-    """Return who recorded a sound, as far as it is known: the same name, the same source."""
+    """Return the name of the source of a sound: its author, as far as known."""
     repository, _, file = name.partition(":")
     stem = Path(file).stem
     if "ESC-10" in repository:  # 5-198411-F: fold, recording, cut
@@ -249,19 +244,18 @@ def train(
     ----------
     seed : int
     n_training, n_test : int
-        Samples to learn from and to score.
+        Numbers of training and test samples.
     added : sequence of Sample
-        Of the user's own recordings, to learn from as well
-        (`noise.training.classifier.own_samples`).
+        Samples of the user's recordings (`noise.training.classifier.own_recordings`).
     progress : callable, optional
-        ``progress(samples, total)`` passes the samples on and shows how far it is.
+        ``progress(samples, total)`` yields the samples and shows the progress.
     growing : callable, optional
-        The same of the fits of trees, which take some minutes.
+        Likewise for the fits of trees, which take some minutes.
 
     Returns
     -------
     Classifier
-        Its card tells the scores on kinds and sources left out, and on kinds that are known.
+        Its card has scores on left-out kinds and sources, and on test samples.
 
     Raises
     ------
@@ -308,7 +302,7 @@ def learn(
     added: Sequence[Sample] = (),
     growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
-    """Learn from the first samples and all recorded sounds, and score the other samples.
+    """Train on the first samples and all recorded sounds, and score the other samples.
 
     Raises
     ------
@@ -342,7 +336,7 @@ def learn(
         ]
         after = [named_as(p, thresholds) for p in left_out.alone[-len(added) :]]
         card["own"] = own_card(added, np.array(before), np.array(after))
-    next(fits, None)  # the bar is at its end
+    next(fits, None)  # completes the progress bar
     return replace(classifier, card=card | unlearned_scores(classifier, test))
 
 

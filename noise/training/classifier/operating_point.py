@@ -1,10 +1,8 @@
-"""Calibration of the votes, and from which probability on a noise is named.
+"""Calibration, thresholds and scores of the classifier, from left-out votes.
 
-Six numbers are fitted on what trees said that had seen nothing of the kind or the source: the log
-loss of each sample where it sounds most like a noise is the smallest. A noise is named where it is
-more probable than a threshold of its own, so high that real backgrounds that may be heard in the
-same surroundings are seldom called so: one that everyday sounds are seldom taken for need not be as
-sure as another. How many false names that leaves is counted on sources that chose no threshold.
+The six numbers of a calibration minimise the log loss of the clearest windows of each sample. The
+threshold of each noise limits its false names on real backgrounds of the same surroundings. False
+names are counted on sources that did not determine the thresholds.
 """
 
 from __future__ import annotations
@@ -22,14 +20,14 @@ from noise.classifier.model import Calibration, Thresholds, at_sensitivity
 from noise.labels.segmentation import NOISES, clearest, labelled_stretches
 
 FALSE_NAMES_AN_HOUR = np.array([15.0, 8.0, 20.0])
-"""So many segments of real backgrounds are called creak, squawk and squeal, at most: of an hour of
-short sounds that follow each other; at these real creaks and squeals of other sources are named."""
+"""Maximum number of false creaks, squawks and squeals in real backgrounds per hour [1/h], chosen so
+that real creaks and squeals of other sources are named."""
 
 _LEAST, _MOST = 0.25, 0.97
-"""Between them thresholds are sought [-]."""
+"""Range of the thresholds [-]."""
 
 _PRIOR = 20.0
-"""So many recordings weigh as much as the wish that the six numbers change nothing."""
+"""Strength of the prior of no change, in recordings."""
 
 
 def fit_calibration(
@@ -38,18 +36,18 @@ def fit_calibration(
     y: NDArray[np.int64],
     weight: NDArray[np.float64] | None = None,
 ) -> Calibration:
-    """Fit a calibration.
+    """Return the calibration with the lowest log loss.
 
     Parameters
     ----------
     votes : ndarray, shape (n_windows, n_labels)
-        [-]; each row sums to 1.
+        Votes [-]; each row sums to 1.
     group : ndarray of int, shape (n_windows,)
         Recording of each window: 0, 1, 2 ...
     y : ndarray of int, shape (n_recordings,)
         Label of each recording.
     weight : ndarray, shape (n_recordings,), optional
-        How much each counts [-]; by default all the same.
+        Weights [-]; equal by default.
 
     Returns
     -------
@@ -80,17 +78,17 @@ def fit_calibration(
 def fit_thresholds(
     backgrounds: Sequence[NDArray[np.float64]],
 ) -> tuple[float, float, float]:
-    """Find the lowest threshold of each noise that names no more than `FALSE_NAMES_AN_HOUR`.
+    """Return the lowest thresholds with at most `FALSE_NAMES_AN_HOUR`.
 
     Parameters
     ----------
     backgrounds : sequence of ndarray, shape (n_windows, n_labels)
-        Probabilities [-] of the windows of each sound that is no noise.
+        Probabilities of the windows of each background sound [-].
 
     Returns
     -------
     tuple of 3 floats
-        Probability [-].
+        Minimum probabilities of creak, squawk and squeal [-].
 
     Examples
     --------
@@ -100,11 +98,11 @@ def fit_thresholds(
     [0.7, 0.25, 0.25]
     """
     hours = HOP * max(1, sum(map(len, backgrounds))) / 3600.0
-    # One name in little time is no evidence.
+    # One false name in a short time is not significant.
     most = np.maximum(FALSE_NAMES_AN_HOUR, 1.0 / hours)
     limits = np.append(np.arange(_LEAST, _MOST, 0.01), _MOST)
     low, high = np.zeros(NOISES, dtype=int), np.full(NOISES, limits.size - 1)
-    while (low < high).any():  # the higher, the fewer
+    while (low < high).any():  # bisection: higher thresholds give fewer names
         middle = (low + high) // 2
         few = false_names(backgrounds, limits[middle]) <= most
         low, high = np.where(few, low, np.minimum(middle + 1, high)), np.where(few, middle, high)
@@ -115,19 +113,19 @@ def fit_thresholds(
 def false_names(
     backgrounds: Sequence[NDArray[np.float64]], thresholds: Sequence[float]
 ) -> NDArray[np.float64]:
-    """Count segments that are called a noise.
+    """Return the rate of false names in background sounds.
 
     Parameters
     ----------
     backgrounds : sequence of ndarray, shape (n_windows, n_labels)
-        Probabilities [-] of the windows of each sound that is no noise.
+        Probabilities of the windows of each background sound [-].
     thresholds : sequence of 3 floats
-        Probability [-] from which each noise is named.
+        Minimum probability of each noise [-].
 
     Returns
     -------
     ndarray, shape (3,)
-        Of creak, squawk and squeal [1/h].
+        Rates of creak, squawk and squeal [1/h].
 
     Examples
     --------
@@ -142,14 +140,14 @@ def false_names(
 
 @dataclass(frozen=True, eq=False)
 class Background:
-    """A real sound that is no noise, as trees saw it that knew none of its source.
+    """Left-out probabilities of a real background sound.
 
     Parameters
     ----------
     probabilities : ndarray, shape (n_windows, n_labels)
-        [-]
+        Probabilities [-].
     part : int
-        Sources of one part are left out together.
+        Part of the cross-fitting.
     """
 
     probabilities: NDArray[np.float64]
@@ -161,21 +159,21 @@ def false_name_rates(
     thresholds: Mapping[int, Thresholds],
     sensitivities: Sequence[float],
 ) -> dict[str, dict[str, float]]:
-    """Count false names on sources that chose no threshold.
+    """Return rates of false names on sources that did not determine the thresholds.
 
     Parameters
     ----------
     backgrounds : sequence of Background
     thresholds : mapping of int to tuple of 3 floats
-        By part: chosen by other parts [-].
+        Thresholds by part, determined by the other parts [-].
     sensitivities : sequence of float
-        [ratio of odds]
+        Factors on the odds of a noise [-].
 
     Returns
     -------
     dict
-        By sensitivity: ``names`` in so many ``hours``, that is ``an_hour`` [1/h], with the 95 %
-        interval of a Poisson count from ``low`` to ``high`` [1/h].
+        By sensitivity: number of ``names`` in ``hours``, their rate ``an_hour`` [1/h], and the
+        95 % interval of a Poisson count from ``low`` to ``high`` [1/h].
 
     Examples
     --------
@@ -205,7 +203,7 @@ def false_name_rates(
 
 
 def scores(p: NDArray[np.float64], y: NDArray[np.int64], unknown: int) -> dict[str, object]:
-    """Score the probabilities of recordings.
+    """Return scores of the probabilities of recordings.
 
     Parameters
     ----------
@@ -213,7 +211,7 @@ def scores(p: NDArray[np.float64], y: NDArray[np.int64], unknown: int) -> dict[s
         [-]
     y : ndarray of int, shape (n,)
     unknown : int
-        The label of background sounds, which follows those of all noises and ``none``.
+        Label of background sounds, which comes after the noises and ``none``.
 
     Returns
     -------

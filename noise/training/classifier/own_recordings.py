@@ -1,12 +1,10 @@
-r"""Own labelled recordings of the user, as windows to learn from.
+r"""Labelled recordings of the user, as training samples.
 
-A label is said in one of three ways, the finest of which counts where there are several: by a label
-track as Audacity exports it (``run07.txt`` or ``run07.wav.txt`` beside ``run07.wav``), by a row of
-a label table as ``bushing-noise label`` writes it, or by the name of a folder that the recording
-lies in, at any depth (``creak/run07.wav``). Of a table in which somebody has corrected something
-(`label_source` is ``human``), what they said counts alone: of its own labels a classifier learns
-nothing. What cannot be used is named in one line and passed
-over: one bad file is no reason to lose the others.
+Labels come from a label track of Audacity (``run07.txt`` or ``run07.wav.txt`` beside
+``run07.wav``), else from a row of a label table of ``bushing-noise label``, else from the name of a
+folder above the recording (``creak/run07.wav``). Of a table with corrections (`label_source` is
+``human``), only the corrections are used. Unusable files and labels are skipped, each with one line
+of explanation.
 """
 
 from __future__ import annotations
@@ -34,24 +32,24 @@ from noise.recordings.folders import files_below, is_file
 from noise.training.classifier.samples import Sample
 
 LONGEST_WINDOW = 1.0
-"""What is labelled is cut into equal windows no longer than this [s], so of 0.5 s and more."""
+"""Maximum duration of the equal windows of a stretch [s]."""
 
 SHORTEST_WINDOW = 0.1
-"""A labelled stretch shorter than this shows nothing of a noise [s]."""
+"""Minimum duration of a labelled stretch [s]."""
 
 MOST_WINDOWS = 60
-"""Of one stretch, spread evenly over it: an hour of one noise is not an hour of news."""
+"""Maximum number of windows of a stretch, spread evenly over it."""
 
 OWN_WEIGHT = 5.0
-"""Simulated samples that an own window counts as: it is rare, and what the classifier is for."""
+"""Weight of a window of the user, relative to a simulated sample."""
 
 TOO_FEW = 5
-"""Fewer files of a label tell nothing of how well it is known."""
+"""Minimum number of files of a label for a meaningful score."""
 
 
 @dataclass(frozen=True, eq=False)
 class OwnWindow:
-    """A window of a labelled recording.
+    """Window of a labelled recording.
 
     Parameters
     ----------
@@ -59,7 +57,7 @@ class OwnWindow:
     label : str
         One of `noise.classifier.LABELS`.
     name : str
-        File that it is cut from.
+        Path of the file.
     """
 
     recording: Recording
@@ -76,28 +74,27 @@ class _Stretch:
 
 
 def read_labelled(source: Path) -> tuple[list[OwnWindow], list[str]]:
-    """Read the labelled recordings of a folder, or of a label table.
+    """Return the labelled windows of a folder or of a label table.
 
     Parameters
     ----------
     source : Path
-        Folder, searched at any depth for recordings, label tables and label tracks; or a label
-        table, whose files are relative to it.
+        Folder, searched recursively for recordings, label tables and label tracks; or a label
+        table, with files relative to it.
 
     Returns
     -------
     windows : list of OwnWindow
-        Of at most 1 s, sorted by file.
+        Windows of at most 1 s, sorted by file.
     refusals : list of str
-        One line for each file that cannot be read or has no label, and for each label that there
-        is not.
+        One line for each file that cannot be read or has no label, and for each invalid label.
 
     Raises
     ------
     ParameterError
-        It does not exist.
+        The source does not exist.
     RecordingError
-        A file that is named is no label table.
+        The file is no label table.
 
     Examples
     --------
@@ -133,14 +130,14 @@ def read_labelled(source: Path) -> tuple[list[OwnWindow], list[str]]:
                     f"{path}: has no label; put it into a folder called {known}, or beside a "
                     "label table or a label track"
                 )
-            windows += _windows(path, stretches, refusals)  # none of what nobody has corrected
+            windows += _windows(path, stretches, refusals)  # empty without corrections
         except (BushingNoiseError, OSError) as error:
             refusals.append(_naming(path, str(error)))
     return windows, refusals
 
 
 def own_samples(windows: Iterable[OwnWindow]) -> tuple[list[Sample], list[str]]:
-    """Describe windows, as samples to learn from.
+    """Return labelled windows as training samples.
 
     Parameters
     ----------
@@ -149,9 +146,9 @@ def own_samples(windows: Iterable[OwnWindow]) -> tuple[list[Sample], list[str]]:
     Returns
     -------
     samples : list of Sample
-        The source of each is its file.
+        Samples, whose sources are the files.
     refusals : list of str
-        One line for each file with a window that has nothing to learn from.
+        One line for each file with a window without features.
     """
     samples: list[Sample] = []
     refusals: dict[str, str] = {}
@@ -169,14 +166,14 @@ def own_samples(windows: Iterable[OwnWindow]) -> tuple[list[Sample], list[str]]:
 def own_card(
     samples: Sequence[Sample], before: NDArray[np.intp], after: NDArray[np.intp]
 ) -> dict[str, object]:
-    """Return the scores of the user's recordings for the classifier's card.
+    """Return scores of the user's recordings for the card of the classifier.
 
     Parameters
     ----------
     samples : sequence of Sample
     before, after : ndarray of int, shape (n_samples,)
-        Columns of `LABELS` that each is called by trees without any of them, and by trees that
-        were grown without its file.
+        Predicted columns of `LABELS`, by trees grown without the user's recordings, and by trees
+        grown without the file of the sample.
     """
     y = np.array([LABELS.index(sample.label) for sample in samples])
     labels = {}
@@ -205,14 +202,14 @@ def _share(right: NDArray[np.bool_]) -> float | None:
 
 
 def _from_folders(path: Path, folder: Path) -> list[_Stretch]:
-    """Return what the nearest folder that is named as a label says; nothing where none is."""
+    """Return the stretch with the label of the nearest folder named as a label, if any."""
     above = (*reversed(path.relative_to(folder).parts[:-1]), folder.resolve().name)
     label = next((name.lower() for name in above if name.lower() in LABELS), None)
     return [] if label is None else [_Stretch(label)]
 
 
 def _from_track(path: Path, refusals: list[str]) -> list[_Stretch]:
-    """Return what a label track beside a recording says."""
+    """Return the stretches of the label track beside a recording."""
     of_recording = []
     for track in (path.with_suffix(".txt"), path.with_name(f"{path.name}.txt")):
         if not track.is_file():
@@ -232,7 +229,7 @@ def _from_track(path: Path, refusals: list[str]) -> list[_Stretch]:
 def _from_tables(
     folder: Path, recordings: set[Path], refusals: list[str]
 ) -> dict[Path, list[_Stretch]]:
-    """Return what the label tables say, by file; files are relative to their table."""
+    """Return the stretches of all label tables in a folder, by file."""
     by_file: dict[Path, list[_Stretch]] = {}
     tables = (path for path, _ in files_below(folder) if path.suffix.lower() in TABLE_ENDINGS)
     for table in sorted(tables):
@@ -249,9 +246,9 @@ def _from_tables(
 def _from_table(
     table: Path, folder: Path, recordings: set[Path] | None, refusals: list[str]
 ) -> dict[Path, list[_Stretch]]:
-    """Return what a label table says of recordings, by default of all that are there.
+    """Return the stretches of a label table by file, by default of all existing files.
 
-    Of those that nobody has corrected, where somebody has corrected others, it says nothing.
+    If the table has corrections, files without corrections have no stretches.
     """
     by_file: dict[Path, list[_Stretch]] = {}
     unknown = set()

@@ -1,10 +1,9 @@
-"""Samples that the classifier learns from: recordings drawn at random, each with its label.
+"""Training samples of the classifier: random synthetic recordings with labels, and their features.
 
-Nothing is measured: bushings are simulated and called by their physics
-(`noise.noise_definition`), other bodies creak, squawk and squeal by the same mechanisms
-(`noise.training.classifier.friction_sources`), background sounds and quiet are recipes. All go
-through rooms, microphones, recorders and codecs (`noise.training.classifier.augmentation`). A
-sample is described where its label holds and something sounds.
+Bushings are simulated and labelled by physics (`noise.noise_definition`), other bodies creak,
+squawk and squeal by the same mechanisms (`noise.training.classifier.friction_sources`), and
+background sounds and quiet are synthesised. All pass through random rooms, microphones, recorders
+and codecs (`noise.training.classifier.augmentation`).
 """
 
 from __future__ import annotations
@@ -32,24 +31,24 @@ from sim.acquisition import Acquisition
 _CHANNELS = ("torque", "acceleration", "pressure")
 
 _PRESSURE_ALONE = 0.45
-"""Share of the bushings of which the sound alone is left; the others have all three channels."""
+"""Share of the bushings with the sound alone; the others have three channels."""
 
 _AS_COMPUTED = 0.3
-"""Share of those with three channels that are what the simulation gives, in a quiet room."""
+"""Share of the recordings with three channels that are as simulated, in a quiet room."""
 
 _QUIET_ROOM = Acquisition().noise
 
 _AUDIBLE = 6e-4
-"""Standard deviation of what a sensor adds by itself, 30 dB re 20 uPa [Pa]."""
+"""Standard deviation of audible sensor noise, 30 dB re 20 uPa [Pa]."""
 
 _RATE = 48_000.0
 """Sampling rate of friction sources and background sounds [Hz]."""
 
 SHARES = {"bushing": 0.31, "friction": 0.26, "background": 0.30, "quiet": 0.13}
-"""Of the samples [-]."""
+"""Shares of the samples [-]."""
 
 _LABEL_SHARES = {"creak": 0.41, "squeal": 0.41, "squawk": 0.18}
-"""Of the friction sources [-]."""
+"""Shares of the labels among friction sources [-]."""
 
 SOURCES = (
     "bushing",
@@ -57,41 +56,41 @@ SOURCES = (
     *(f"background:{name}" for name in WEIGHTS),
     "quiet",
 )
-"""All that is drawn from."""
+"""Names of all sources."""
 
 _EVEN = 0.35
-"""Share of the samples whose level has no course of its own."""
+"""Share of the samples without a modulation of the level."""
 
 _FADES_OUT, _FADES_IN = 0.5, 0.35
 _LOWEST = -80.0
-"""Where a fade ends [dB]."""
+"""Level at the end of a fade [dB]."""
 
 _QUIET_DB = 30.0
-"""Windows that lie so far below a sample's loudest are pauses, of which nothing is learned."""
+"""Level below the loudest window from which a window is a pause and not learned [dB]."""
 
 _OUTSIDE = 0.2
-"""How far a window may reach beyond the time for which the label holds [s]."""
+"""Maximum part of a window outside of the span of the label [s]."""
 
 _OF_EVENT = 0.9
-"""Share of a short event that lies in a window of it [-]."""
+"""Minimum share of a short event in a window [-]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A labelled recording.
+    """Synthetic recording with a label.
 
     Parameters
     ----------
     recording : Recording
-        Pressure alone, or all three channels, as somebody would have recorded it.
+        Pressure alone, or torque, acceleration and pressure.
     label : str
         creak, squawk, squeal, none or unknown.
     source : str
         One of `SOURCES`.
     span : tuple of float
-        From when to when the label holds within the recording [s].
+        Start and end of the label in the recording [s].
     ambiguous : bool
-        Whether the label hangs on a bound of its definition.
+        Whether the label is close to a bound of its definition.
     """
 
     recording: Recording
@@ -103,7 +102,7 @@ class Drawn:
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """Windows of one sound with one label.
+    """Features of the windows of a sound with one label.
 
     Parameters
     ----------
@@ -111,17 +110,17 @@ class Sample:
         By `noise.labels.windows.FEATURE_NAMES` [unit of each feature].
     label : str
     source : str
-        Where it is from, as `Drawn` has it, or who recorded it; samples of one source are left out
-        together.
+        One of `SOURCES`, or the source of a real sound; samples of one source are in the same
+        part of the cross-validation.
     weight : float
-        Simulated samples that it counts as [-].
+        Weight relative to a simulated sample [-].
     kind : str
-        Of a real sound, what sounds, in words.
+        Kind of a real sound, in words.
     real, varied : bool
-        Whether it was recorded in the world, and whether it is a variation of such a sound: then it
-        is learned from and neither calibrates nor is scored.
+        Whether it is a real sound, and whether it is a variation of one, which is used to grow
+        trees, but not to calibrate or score them.
     ambiguous : bool
-        Whether the label hangs on a bound of its definition.
+        Whether the label is close to a bound of its definition.
     """
 
     features: NDArray[np.float32]
@@ -135,13 +134,13 @@ class Sample:
 
 
 def draw_sample(seed: np.random.SeedSequence, *, bushings: bool = True) -> Sample:
-    """Draw one sample, and describe it.
+    """Return the features of a random sample.
 
     Parameters
     ----------
     seed : numpy.random.SeedSequence
     bushings : bool
-        As of `draw`.
+        As in `draw`.
     """
     (other,) = seed.spawn(1)
     drawn = draw(np.random.default_rng(seed), bushings=bushings)
@@ -149,12 +148,12 @@ def draw_sample(seed: np.random.SeedSequence, *, bushings: bool = True) -> Sampl
 
 
 def described(drawn: Drawn) -> Sample:
-    """Describe the windows of a recording in which its label holds and something sounds."""
+    """Return the features of the windows in the span of the label, without pauses."""
     windows = window_features(RecordingBlocks.of(drawn.recording))
     start = np.arange(len(windows.features)) * HOP
     end = np.minimum(start + LENGTH, drawn.recording.duration)
     inside = np.minimum(end, drawn.span[1]) - np.maximum(start, drawn.span[0])
-    # Of a window that holds a short event all but that is left aside as it is described.
+    # Window features of a short event describe the event alone (`features.windows.events`).
     enough = np.minimum(end - start - _OUTSIDE, _OF_EVENT * (drawn.span[1] - drawn.span[0]))
     chosen = (inside >= enough) & (windows.level > windows.level.max() - _QUIET_DB)
     chosen[np.argmax(inside + 1e-6 * windows.level)] |= not chosen.any()
@@ -162,13 +161,13 @@ def described(drawn: Drawn) -> Sample:
 
 
 def draw(rng: np.random.Generator, *, bushings: bool = True) -> Drawn:
-    """Draw a labelled recording.
+    """Return a random labelled recording.
 
     Parameters
     ----------
     rng : numpy.random.Generator
     bushings : bool
-        Whether it may be a simulated bushing, which takes ten times as long as any other.
+        Whether to include simulated bushings, which take ten times as long as others.
 
     Returns
     -------
@@ -191,7 +190,7 @@ def draw(rng: np.random.Generator, *, bushings: bool = True) -> Drawn:
 
 
 def draw_from(source: str, rng: np.random.Generator) -> Drawn:
-    """Draw a labelled recording from one of `SOURCES`.
+    """Return a random labelled recording of one of `SOURCES`.
 
     Examples
     --------
@@ -202,7 +201,6 @@ def draw_from(source: str, rng: np.random.Generator) -> Drawn:
         run = random_run(rng)
         recording, span = bushing_recording(run, rng)
         return Drawn(recording, run.label, source, span, run.ambiguous)
-    # Some are just long enough to be looked at.
     seconds = rng.uniform(0.6, 3.0) if rng.random() < 0.6 else rng.uniform(0.6, 1.2)
     n = int(seconds * _RATE)
     group, _, name = source.partition(":")
@@ -212,7 +210,7 @@ def draw_from(source: str, rng: np.random.Generator) -> Drawn:
         return Drawn(clip, made.label, source, span, made.ambiguous)
     sound = quiet(n, _RATE, rng) if group == "quiet" else background_sound(n, _RATE, rng, name)
     label = "none" if group == "quiet" else "unknown"
-    if not sound.any():  # digital silence stays so
+    if not sound.any():  # digital silence is not augmented
         return Drawn(_of_sound(sound, _RATE), label, source, (0.0, n / _RATE))
     clip, span = sound_recording(sound, _RATE, rng)
     return Drawn(clip, label, source, span)
@@ -221,7 +219,7 @@ def draw_from(source: str, rng: np.random.Generator) -> Drawn:
 def bushing_recording(
     drawn: LabelledRun, rng: np.random.Generator
 ) -> tuple[Recording, tuple[float, float]]:
-    """Record a run by anybody's microphone, or by the rig's computer on three channels.
+    """Return a random recording of a run: the sound alone, or three channels.
 
     Parameters
     ----------
@@ -233,7 +231,7 @@ def bushing_recording(
     recording : Recording
         Uncalibrated; its condition is the run's.
     span : tuple of float
-        From when to when the run lasts [s].
+        Start and end of the run [s].
 
     Examples
     --------
@@ -244,7 +242,7 @@ def bushing_recording(
     """
     run = drawn.run.recording
     torque, acceleration, pressure = (run[kind] for kind in _CHANNELS)
-    # What is below hearing shall not be lifted above the noise again.
+    # Inaudible sound must not be amplified above the noise.
     if drawn.label == "none" and pressure.std() <= _AUDIBLE:
         pressure = np.zeros_like(pressure)
     if rng.random() < _PRESSURE_ALONE:
@@ -272,14 +270,14 @@ def sound_recording(
     *,
     span: tuple[float, float] | None = None,
 ) -> tuple[Recording, tuple[float, float]]:
-    """Record a sound as anybody might; arguments as of `augmented`.
+    """Return a random recording of a sound; arguments as in `augmented`.
 
     Returns
     -------
     recording : Recording
         One uncalibrated channel of pressure.
     span : tuple of float
-        From when to when the sound lasts in it [s].
+        Start and end of the sound [s].
     """
     clip = augmented(sound, rate, rng, span=span)
     return _of_sound(clip.samples, float(clip.rate)), clip.span
@@ -290,7 +288,7 @@ def _of_sound(samples: NDArray[np.float64], rate: float) -> Recording:
 
 
 def swelling(drawn: Drawn, rng: np.random.Generator) -> Drawn:
-    """Return a recording with a course of level; one of several channels stays as it is.
+    """Return a recording with a random modulation of its level, if it has one channel.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""The recipe and the fit of the shipped model that infers conditions from a segment."""
+"""Training of the shipped model that infers operating conditions from a segment."""

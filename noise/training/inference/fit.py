@@ -1,17 +1,15 @@
 """Training of the inference of conditions, on simulation alone.
 
-Three sets of runs that share no draw: one grows the forests, one calibrates the intervals, and one
-is counted for the card. The features of a run's channels do not depend on
-one another, so one run stands for all subsets of its channels and of what is logged; the forests
-see some of them, drawn at random, and the intervals are calibrated for each.
+Three independent sets of runs grow the forests, calibrate the intervals and test them. The features
+of the channels of a run do not depend on one another, so one run represents all subsets of its
+channels and logged conditions; the forests learn random subsets, and the intervals are calibrated
+for each subset.
 
-Conformal calibration of the intervals, and how often they then hold.
-
-For each set of channels, of calibration and of other conditions that are logged, 5 % of the
-recordings that no tree has seen are to lie below the interval and 5 % above it; counting one more
-than those that do makes it 90 % or more of the next ones (V. Vovk, A. Gammerman, G. Shafer,
-*Algorithmic Learning in a Random World*, 2005). Whether there is an interval at all is decided
-first, by other counts, so that it is those with one that the final counts hold for.
+Calibration is conformal: for each set of channels, calibration and other logged conditions, 5 % of
+the recordings of the second set lie below the interval and 5 % above it, and counting one more
+gives a coverage of at least 90 % (V. Vovk, A. Gammerman, G. Shafer, *Algorithmic Learning in a
+Random World*, 2005). Whether an interval is reported is decided first, by separate counts, so that
+the final counts hold for recordings with an interval.
 """
 
 from __future__ import annotations
@@ -32,22 +30,22 @@ from noise.training.inference.population import RunSample, draw_run_sample
 from noise.training.trees import PER_LEAF, grow_quantile_forest
 
 _LEAST = 50
-"""With fewer recordings than this no interval can be calibrated."""
+"""Minimum number of recordings for the calibration of an interval."""
 
 _BEYOND = 0.05
-"""Share of the recordings that lies beyond each end [-]."""
+"""Share of the recordings beyond each end of the interval [-]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """Samples as arrays.
+    """Features and conditions of runs as arrays.
 
     Parameters
     ----------
     tables : ndarray, shape (2, n_runs, n_names)
         Features in the field, and on the rig [unit of each feature].
     scaled : ndarray, shape (n_runs, 3)
-        Conditions as `noise.inference.inputs.scaled` gives them.
+        Conditions as from `noise.inference.inputs.scaled`.
     """
 
     tables: NDArray[np.float64]
@@ -58,14 +56,14 @@ class Runs:
 
 
 def calibrate_intervals(model: Inference, runs: Runs) -> Inference:
-    """Calibrate the intervals of all cases, by those channels that give the narrowest.
+    """Return a model with calibrated intervals, using the channels with the narrowest intervals.
 
     Parameters
     ----------
     model : Inference
-        Whose forests are grown.
+        Model with trained forests.
     runs : Runs
-        None of those that they were grown on.
+        Runs that were not used to grow the forests.
 
     Returns
     -------
@@ -105,19 +103,19 @@ def _counts_outside(
 def _mean_width(
     model: Inference, index: int, values: NDArray[np.float32], outside: NDArray[np.int16]
 ) -> float:
-    """Mean width of the intervals; where there is none it is that of the population."""
+    """Return the mean width of the intervals, with that of the population for those missing."""
     low, high = np.quantile(model.prior[index], [0.05, 0.95])
     width = values[:, -1 - outside[3]] - values[:, outside[2]]
     return float(np.mean(np.where(model.is_narrow(index, values, outside), width, high - low)))
 
 
 def _beyond(values: NDArray[np.float32], y: NDArray[np.float32]) -> tuple[int, int] | None:
-    """How many of the lowest and of the highest values to leave out, for 5 % beyond each."""
+    """Return the numbers of lowest and highest values outside of the interval, for 5 % each."""
     n = len(y)
     if n < _LEAST:
         return None
-    beyond = int(_BEYOND * (n + 1)) - 1  # one more being counted as such
-    # With i values left out below, those are beyond that have no more than i at or below them.
+    beyond = int(_BEYOND * (n + 1)) - 1  # conformal: one more counts as beyond
+    # With i values left out below, recordings with at most i values at or below them are beyond.
     at_or_below = np.sort((values <= y[:, None]).sum(axis=1))
     at_or_above = np.sort((values >= y[:, None]).sum(axis=1))
     low, high = (max(0, int(counts[beyond]) - 1) for counts in (at_or_below, at_or_above))
@@ -138,7 +136,7 @@ def _distribution(
 
 
 def rounded(y: NDArray[np.float64]) -> NDArray[np.float32]:
-    """Round as the leaves' values are, so that what is equal stays equal.
+    """Round to the precision of the values of the leaves.
 
     Parameters
     ----------
@@ -159,7 +157,7 @@ def rounded(y: NDArray[np.float64]) -> NDArray[np.float32]:
 
 
 def _case_name(index: int, calibrated: int, subset: int, others: int) -> str:
-    """Return what a case is called in the card."""
+    """Return the name of a case in the card."""
     left = [name for name in QUANTITIES if name != QUANTITIES[index]]
     logged = "+".join(name for bit, name in enumerate(left) if others >> bit & 1) or "none"
     kinds = "+".join(kind for bit, kind in enumerate(KINDS) if subset >> bit & 1)
@@ -167,30 +165,30 @@ def _case_name(index: int, calibrated: int, subset: int, others: int) -> str:
 
 
 def _cases() -> Iterator[tuple[int, int, int, int]]:
-    """Yield quantity, calibrated or not, subset of channels, and others that are logged."""
+    """Yield quantity, calibration, subset of channels, and set of other logged conditions."""
     return itertools.product(range(len(QUANTITIES)), (0, 1), range(1, 1 << len(KINDS)), range(4))
 
 
 N_TRAINING = 1800
-"""Runs that grow the forests."""
+"""Number of runs to grow the forests."""
 
 N_CALIBRATION = 1600
-"""Runs that calibrate the intervals."""
+"""Number of runs to calibrate the intervals."""
 
 N_TEST = 200
-"""Runs that are counted."""
+"""Number of runs to test the intervals."""
 
 N_TREES = 50
 LEAST_LEAF = 5
 
 _TIMES = 4
-"""Subsets of channels and of logged conditions that a recording is learned with."""
+"""Random subsets of channels and logged conditions per recording."""
 
 _SHARE = 0.4
-"""Of the samples that a tree is grown on."""
+"""Share of the samples per tree."""
 
 _PRESSURE_ALONE = 0.35
-"""Share of those with the sound alone; the others keep any subset of the channels."""
+"""Share of subsets with the sound alone; others are any subset of the channels."""
 
 
 def train_inference(
@@ -207,14 +205,14 @@ def train_inference(
     ----------
     seed : int
     n_training, n_calibration, n_test : int
-        Runs to learn from, to calibrate on and to count.
+        Numbers of runs to train, to calibrate and to test.
     progress : callable, optional
-        ``progress(samples, total)`` passes the samples on and shows how far it is.
+        ``progress(samples, total)`` yields the samples and shows the progress.
 
     Returns
     -------
     Inference
-        Its card tells how often the intervals held on the last of the three sets.
+        Its card has the coverage of the intervals on the test runs.
 
     Examples
     --------
@@ -246,19 +244,19 @@ def train_inference(
 
 
 def coverage(model: Inference, samples: Iterable[RunSample]) -> dict[str, dict[str, float | int]]:
-    """Count how often intervals hold, and how often there is one.
+    """Return the coverage of the intervals, and how often there is one.
 
     Parameters
     ----------
     model : Inference
     samples : iterable of RunSample
-        Not those that it was trained on.
+        Samples that were not used in training.
 
     Returns
     -------
     dict of str to dict
         By quantity, recording, channels and what is logged, such as ``speed/rig/pressure/none``:
-        ``n`` samples, share ``told`` of them with an interval, share ``covered`` of those told.
+        number ``n`` of samples, share ``told`` with an interval, and share ``covered`` of these.
     """
     runs = _as_arrays(list(samples), model.names)
     counts: dict[str, dict[str, float | int]] = {}

@@ -1,22 +1,17 @@
-"""Population of rigs, conditions and recordings that the inferred intervals hold for.
+"""Population of rigs, conditions and recordings for which the inferred intervals hold.
 
-An interval of 90 % is a statement about a population, so the population is written down in one
-place: fluorocarbon bushings whose stiffness, torques, inertia and friction differ from the shipped
-rig's by 3 %, as one specimen from the next; interference of 0.15-0.42 mm; supports of 1000-10000
-Nm/rad, or the clamp bolted down; 0.1-15 rad/s; heard as creak, squawk or squeal. Wider scatter, as
-`noise.training.classifier.designs` has it for the classifier, would make the same interval tell
-less: what a creak's rate says of the speed depends on the torque that the contact bears.
+An interval of 90 % is a statement about a population. Here it consists of fluorocarbon bushings
+whose stiffness, torques, inertia and friction scatter by 3 % about the shipped rig's, like
+specimens; an interference of 0.15-0.42 mm; supports of 1000-10000 Nm/rad, or the bolted clamp;
+0.1-15 rad/s; and runs with a creak, squawk or squeal. The wider scatter of
+`noise.training.classifier.designs` would widen the intervals, because the rate of a creak depends
+on speed and torque.
 
-Each run is recorded twice. On the *rig* the samples are calibrated, the microphone stands where it
-does in the thesis, and levels tell of the torque. In the *field* nothing is calibrated, and there
-are a room, another microphone, noise and other rates.
-
-Recording chain between a bushing and the recordings that the inferred intervals hold for.
-
-Room and noise are simpler here than the classifier's, and the microphone is its free one
-(`noise.training.classifier.augmentation`): to be called by its name a sound has to be known through
-a telephone too, but an interval of 90 % is a statement about one population, and stays what it was
-when the classifier learns to know more.
+Each run is recorded twice. On the *rig*, samples are calibrated, the microphone is at its place in
+the thesis, and levels depend on the torque. In the *field*, nothing is calibrated, and there are a
+room, another microphone, noise and other sampling rates. Room and noise are simpler than those of
+the classifier, and the microphone is its free one (`noise.training.classifier.augmentation`), so
+that the population does not change with the classifier.
 """
 
 from __future__ import annotations
@@ -58,7 +53,7 @@ from sim.run import Run, simulate
 def recorded(
     sound: NDArray[np.float64], rate: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Record a sound in some room through some microphone, with some noise.
+    """Return a sound as recorded in a random room by a random microphone, with noise.
 
     Parameters
     ----------
@@ -71,7 +66,7 @@ def recorded(
     Returns
     -------
     ndarray, shape (n,)
-        Of unit standard deviation [-] or, where the sound is zero, noise alone.
+        Recorded sound of unit standard deviation [-]; only noise if the sound is zero.
     """
     signal = _in_a_room(sound, rate, rng) if rng.random() < 0.7 else sound
     signal = through_a_microphone(signal, rate, rng)
@@ -86,7 +81,7 @@ def recorded(
 def _in_a_room(
     sound: NDArray[np.float64], rate: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Add a diffuse tail that decays exponentially, higher frequencies faster."""
+    """Return a sound with a diffuse tail that decays exponentially."""
     t60 = rng.uniform(0.1, 0.8)
     n = int(min(t60, 0.6) * rate)
     time = np.arange(n) / rate
@@ -100,19 +95,19 @@ def _in_a_room(
 _FIXED_SHARE = 0.25
 _SCATTER = 0.03
 _GAIN_SCATTER = 0.03
-"""Of calibrations [1]."""
+"""Scatter of the gains of calibrations [-]."""
 
 
 @dataclass(frozen=True, eq=False)
 class RunSample:
-    """Features of one audible run, and what made it.
+    """Features of one audible run, with its label and condition.
 
     Parameters
     ----------
     label : str
-        Its noise, by physics (`noise.noise_definition`).
+        Noise by physics (`noise.noise_definition`).
     scaled : ndarray, shape (3,)
-        Its condition, as `noise.inference.inputs.scaled` gives it.
+        Condition, as from `noise.inference.inputs.scaled`.
     features : tuple of (mapping of str to float)
         In the field, and on the rig [unit of each feature].
     """
@@ -123,7 +118,7 @@ class RunSample:
 
 
 def draw_run_sample(seed: np.random.SeedSequence) -> RunSample:
-    """Draw runs until one is audible, record it twice, and take its features.
+    """Return the features of both recordings of a random audible run.
 
     Examples
     --------
@@ -145,7 +140,7 @@ def draw_run_sample(seed: np.random.SeedSequence) -> RunSample:
 
 def _draw_run(rng: np.random.Generator) -> Run:
     low, high = SPEED_RANGE
-    # Evenly by logarithm, for the slow creaks, and evenly, where squawk and squeal part.
+    # Log-uniform for slow creaks, and uniform for the boundary of squawk and squeal.
     even = rng.random() < 0.5
     speed = rng.uniform(low, high) if even else log_uniform(low, high, rng)
     softest, stiffest = SUPPORT_RANGE
@@ -190,7 +185,7 @@ def _specimen(rng: np.random.Generator) -> Rig:
 
 
 def _on_the_rig(run: Run, rng: np.random.Generator) -> Recording:
-    """Return the recording as sampled there, or at another rate as loggers have."""
+    """Return the recording at its own sampling rate or at another one of loggers."""
     recording = run.recording
     rate = recording.rate if rng.random() < 0.5 else float(rng.choice(RATES[1:]))
     kinds = ("torque", "acceleration", "pressure")
