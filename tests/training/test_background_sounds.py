@@ -33,7 +33,7 @@ def test_every_row_makes_a_sound_that_can_be_made_again(name, rate):
         assert sound.shape == (rate // 2,)
         assert np.isfinite(sound).all()
         assert sound.tobytes() == again.tobytes()
-    assert {*BACKGROUND_SOUNDS[name]["heard"]} <= {*SURROUNDINGS}
+    assert {*BACKGROUND_SOUNDS[name]["surroundings"]} <= {*SURROUNDINGS}
 
 
 def cricket(seed, carrier, pulses, on, period):

@@ -313,11 +313,11 @@ def may_sound(kind: str, surroundings: str) -> bool:
     if surroundings == "any":
         return True
     if kind in BACKGROUND_SOUNDS:
-        return surroundings in BACKGROUND_SOUNDS[kind]["heard"]
+        return surroundings in BACKGROUND_SOUNDS[kind]["surroundings"]
     elsewhere = tuple(
         word
         for name, row in BACKGROUND_SOUNDS.items()
-        if surroundings not in row["heard"]
+        if surroundings not in row["surroundings"]
         for word in (name.partition("_")[0], *row.get("also", ()))
     )
     return not any(word.startswith(elsewhere) for word in (kind, *re.split(r"[^a-z]+", kind)))

@@ -1,1 +1,1 @@
-"""Augmentation: the room, noise, microphone, recorder, codec and cut of a recording."""
+"""Augmentation of sounds: room, noise, microphone, recorder, codec and cut."""

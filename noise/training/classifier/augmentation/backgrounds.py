@@ -1,4 +1,4 @@
-"""Background noise, of a room, a cabin, a road, of wind; and quiet, which is no noise at all."""
+"""Background noise of rooms, cabins, roads and wind, and recordings of quiet."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _QUIETS = {
 
 
 def background(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Steady noise of unit standard deviation, of a room, a cabin, a road or wind.
+    """Return steady noise of a room, a cabin, a road or wind, of unit standard deviation.
 
-    A cabin's noise falls by 6 to 10 dB an octave and carries weak engine orders; a tyre's has its
-    hump at 150-1000 Hz; wind is low and comes in gusts.
+    The noise of a cabin falls by 6 to 10 dB per octave, with weak engine orders; that of tyres has
+    a hump at 150-1000 Hz; wind has low frequencies and gusts.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def _engine_orders(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.
 
 
 def _hump(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Noise about one frequency, an octave or two wide."""
+    """Return noise in a band of one or two octaves."""
     m = next_fast_len(n, real=True)
     spectrum = rfft(rng.standard_normal(m))
     frequency = np.maximum(np.arange(spectrum.size) * rate / m, 1.0)
@@ -80,11 +80,11 @@ def _hump(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
 
 
 def quiet(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Return `n` samples of what a microphone records where nothing sounds.
+    """Return a random recording of quiet: a place, hiss, hum, background, sliding, silence.
 
-    More than half of it are cabins and halls with nobody in them. Hum is the mains' or a
-    transformer's, 50 to 120 Hz, with up to 20 harmonics, odd ones stronger; steady sliding hisses
-    without a line, as strongly as it may.
+    More than half are cabins and halls without people. Hum is of the mains or a transformer, 50 to
+    120 Hz, with up to 20 harmonics, of which odd ones may be stronger. Steady sliding hisses
+    without lines.
 
     Parameters
     ----------

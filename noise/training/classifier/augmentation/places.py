@@ -1,18 +1,15 @@
-"""Places where engineers record, and how a sound is put into one by its level in dB(A).
+"""Noise of the places where engineers record, and mixing of a sound into a place.
 
-Some families are never learned from, so that a score on them is one of places left out.
+Some families of places are not learned, so that they give scores for unknown places.
 
-What is heard in halls where benches stand: hydraulics, ventilation, compressors, work.
+Halls of test benches: a hydraulic pump has the rate of its pistons with many harmonics, modulated
+by its shaft, and its valves hiss; fans have the rate of their blades; workshops have blows and
+grinders.
 
-A hydraulic pump whines at its pistons' rate and many harmonics, modulated by its shaft, and its
-valves hiss; fans hum at their blades' rate; somebody hammers or grinds at the other end.
-
-What is heard in a vehicle's cabin: road, wind, engine or motor, and the fan.
-
-Tyres shake the body below some 500 Hz, where most of the power lies; their air-borne hum has its
-hump near 800 Hz, and the cavity of the tyre rings near 220 Hz. Wind falls more gently and comes in
-gusts. An engine fires once every two turns and cylinder, with half orders; an electric motor
-whines at high orders of its shaft, its inverter near 8 to 10 kHz.
+Cabins of vehicles: road noise has most of its power below 500 Hz, a hump of tyres near 800 Hz and
+the cavity of the tyre near 220 Hz. Wind falls more gently and has gusts. An engine fires once per
+two turns and cylinder, with half orders; an electric motor has high orders of its shaft, and its
+inverter a tone near 8 to 10 kHz.
 """
 
 from __future__ import annotations
@@ -33,7 +30,7 @@ from noise.training.classifier.background_sounds.building import blow, placed, w
 from noise.training.draws import log_uniform, wandering
 
 _SHAPE_SPREAD = 4.0
-"""Standard deviation of a drawn spectrum about its shape at each point [dB]."""
+"""Standard deviation of a random spectrum around its shape at each point [dB]."""
 
 _ROAD = (
     (20, 0), (32, 0), (63, -6), (125, -17), (250, -28), (500, -36), (900, -41), (1600, -50),
@@ -48,18 +45,18 @@ _FAN = ((20, -8), (100, -3), (400, 0), (1000, -4), (2500, -14), (6000, -28), (12
 
 
 class Cabin(NamedTuple):
-    """A family of cabins; ranges of what its members are.
+    """Ranges of the parameters of a family of cabins.
 
     Parameters
     ----------
     road, wind, fan, drive : pair of float
-        Levels of the four [dB].
+        Levels of the four components [dB].
     turns : pair of float
-        Of the crankshaft or motor [1/s].
+        Speed of the crankshaft or motor [1/s].
     cylinders : tuple of int
-        ``0`` is an electric motor.
+        Numbers of cylinders; ``0`` is an electric motor.
     roll_off : pair of float
-        How fast the amplitudes of the orders fall with their frequency [-].
+        Exponent of the decrease of the orders with frequency [-].
     """
 
     road: tuple[float, float]
@@ -80,11 +77,11 @@ CABINS = {
     "lorry": Cabin((-8, 4), (-10, 4), (-34, -10), (0, 8), (9, 30), (6,), (1.0, 2.2)),
     "convertible": Cabin((-8, 2), (4, 14), (-45, -25), (-10, 2), (15, 70), (4, 6), (1.2, 2.5)),
 }
-"""By name."""
+"""Families of cabins by name."""
 
 
 def cabin(kind: str, n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Return `n` samples of a cabin's noise.
+    """Return random noise of a family of cabins.
 
     Parameters
     ----------
@@ -98,7 +95,7 @@ def cabin(kind: str, n: int, rate: float, rng: np.random.Generator) -> NDArray[n
     Returns
     -------
     ndarray, shape (n,)
-        Of unit standard deviation [-].
+        Noise of unit standard deviation [-].
 
     Examples
     --------
@@ -129,7 +126,7 @@ def cabin(kind: str, n: int, rate: float, rng: np.random.Generator) -> NDArray[n
 def shaped_noise(
     n: int, rate: float, shape: Sequence[tuple[float, float]], rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Noise whose spectrum follows a shape, but for a random deviation at each point and a tilt.
+    """Return noise with a spectrum of a given shape, with random deviations and a random tilt.
 
     Parameters
     ----------
@@ -138,7 +135,7 @@ def shaped_noise(
     rate : float
         [Hz]
     shape : sequence of pair of float
-        Frequencies [Hz], rising, and spectral density there [dB].
+        Increasing frequencies [Hz], and spectral density [dB].
     rng : numpy.random.Generator
 
     Returns
@@ -171,18 +168,18 @@ def orders(
     roll_off: float,
     rng: np.random.Generator,
 ) -> NDArray[np.float64]:
-    """Return the orders of a turning shaft; those that the main one divides are the strongest.
+    """Return random orders of a turning shaft; multiples of the main order are the strongest.
 
     Parameters
     ----------
     turns : ndarray, shape (n,)
-        Of the shaft [1/s].
+        Speed of the shaft [1/s].
     rate : float
         [Hz]
     spacing, main : float
-        Distance of the orders, and the order of firing, teeth or pistons [-].
+        Spacing of the orders, and order of firing, teeth or pistons [-].
     roll_off : float
-        Their amplitudes fall with the order to this power [-].
+        Exponent of the decrease of the amplitudes with the order [-].
     rng : numpy.random.Generator
 
     Returns
@@ -211,14 +208,14 @@ def orders(
 
 
 def _road(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw the noise of rolling over a rough surface, at times over joints."""
+    """Return noise of rolling on a rough surface, sometimes with joints."""
     sound = shaped_noise(n, rate, _ROAD, rng)
     cavity = rng.uniform(190.0, 250.0)
     narrow = ((20, -60), (cavity / 1.2, -25), (cavity, 0), (1.2 * cavity, -25), (8000, -60))
     sound += rng.uniform(0.0, 0.5) * shaped_noise(n, rate, narrow, rng)
     rough = rng.uniform(0.0, 0.6) * wandering(n, rate, log_uniform(0.3, 10.0, rng), rng)
     sound *= np.exp(rough)
-    if rng.random() < 0.25:  # a joint under the front axle and then under the rear
+    if rng.random() < 0.25:  # joints pass the front axle, then the rear axle
         gap = rng.uniform(0.08, 0.25)
         times = np.arange(rng.random(), n / rate, rng.uniform(0.4, 1.5))
         joints = placed(n, np.r_[times, times + gap], np.ones(2 * times.size), rate)
@@ -231,7 +228,7 @@ def _road(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
 def _inverter(
     turns: NDArray[np.float64], rate: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Switching tone with side lines at multiples of the motor's electrical frequency."""
+    """Return a switching tone with sidebands at multiples of the electrical frequency."""
     carrier = rng.uniform(7e3, 10e3)
     phase = 2.0 * np.pi * np.cumsum(turns) / rate * float(rng.choice((3.0, 4.0)))
     time = np.arange(turns.size) / rate
@@ -252,7 +249,7 @@ _PISTONS = (7.0, 9.0, 11.0)
 
 
 def hydraulic_hall(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw pumps of axial pistons at mains speed, valves, and a fan."""
+    """Return noise of axial piston pumps at mains speed, valves, and a fan."""
     sound = _air(n, rate, rng)
     for _ in range(int(rng.integers(1, 3))):
         turns = _mains_turns(rng) * wavering(n, rate, 0.3, 0.004, rng)
@@ -263,7 +260,7 @@ def hydraulic_hall(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.
 
 
 def workshop(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw ventilation, blows at random, and a grinder or a drill far away."""
+    """Return noise of ventilation, random blows, and a distant grinder or drill."""
     sound = _air(n, rate, rng)
     count = rng.poisson(rng.uniform(0.0, 3.0) * n / rate)
     if count:
@@ -281,7 +278,7 @@ def workshop(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float6
 
 
 def engine_cell(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw an engine on a dynamometer behind glass, and strong ventilation."""
+    """Return noise of an engine on a dynamometer behind glass, and strong ventilation."""
     turns = rng.uniform(13.0, 100.0) * wavering(n, rate, 0.3, 0.02, rng)
     firing = 0.5 * float(rng.choice((3, 4, 6, 8)))
     engine = orders(turns, rate, 0.5, firing, rng.uniform(0.3, 1.5), rng)
@@ -289,7 +286,7 @@ def engine_cell(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.flo
 
 
 def laboratory(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw computers' fans, a power supply's hum and soft ventilation."""
+    """Return noise of computer fans and soft ventilation."""
     sound = _air(n, rate, rng)
     for _ in range(int(rng.integers(1, 4))):
         turns = rng.uniform(12.0, 80.0) * wavering(n, rate, 0.3, 0.01, rng)
@@ -299,7 +296,7 @@ def laboratory(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.floa
 
 
 def bench_with_a_motor(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw the bench's own drive: a motor with a gear, whose teeth mesh, and its inverter."""
+    """Return noise of the drive of a bench: a motor with a gear and an inverter."""
     turns = rng.uniform(2.0, 50.0) * wavering(n, rate, 0.5, 0.02, rng)
     gear = orders(turns, rate, 1.0, float(rng.integers(10, 40)), rng.uniform(0.5, 2.0), rng)
     whine = np.sin(2.0 * np.pi * rng.uniform(2e3, 0.4 * min(rate, 4e4)) * np.arange(n) / rate)
@@ -308,7 +305,7 @@ def bench_with_a_motor(n: int, rate: float, rng: np.random.Generator) -> NDArray
 
 
 def climate_chamber(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw a chamber's blower and its refrigerating compressor."""
+    """Return noise of the blower and compressor of a climate chamber."""
     turns = rng.uniform(15.0, 50.0) * wavering(n, rate, 0.2, 0.003, rng)
     blower = orders(turns, rate, 1.0, float(rng.choice(_BLADES)), rng.uniform(0.6, 1.5), rng)
     cold = orders(np.full(n, _mains_turns(rng)), rate, 1.0, 2.0, rng.uniform(0.3, 1.2), rng)
@@ -317,7 +314,7 @@ def climate_chamber(n: int, rate: float, rng: np.random.Generator) -> NDArray[np
 
 
 def compressor_room(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw a piston compressor: beats of air and metal, a dozen in a second, and a belt."""
+    """Return noise of a piston compressor: pulses of air and metal."""
     time = np.arange(n) / rate
     beat = np.cos(2.0 * np.pi * log_uniform(6.0, 25.0, rng) * time + rng.uniform(0.0, 6.3))
     pulses = np.exp(rng.uniform(1.0, 8.0) * (beat - 1.0))
@@ -332,7 +329,7 @@ def _air(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
 
 
 def _mains_turns(rng: np.random.Generator) -> float:
-    """Return turns of an asynchronous motor of two or four poles at 50 or 60 Hz [1/s]."""
+    """Return the speed of an asynchronous motor of two or four poles at 50 or 60 Hz [1/s]."""
     return float(rng.choice((25.0, 30.0, 50.0, 60.0))) * rng.uniform(0.95, 0.995)
 
 
@@ -343,38 +340,38 @@ HALLS: Mapping[str, Callable[[int, float, np.random.Generator], NDArray[np.float
         compressor_room,
     )
 }  # fmt: skip
-"""By name; each takes the number of samples, the rate [Hz] and a generator."""
+"""Halls by name: functions of the number of samples, the rate [Hz] and a generator."""
 
 
 PLACES = (*CABINS, *HALLS)
 """Families of cabins and halls."""
 
 LEFT_OUT = ("lorry", "convertible", "climate_chamber", "compressor_room")
-"""Families that the shipped classifier has not learned from."""
+"""Families that the shipped classifier did not learn."""
 
 LEARNED = tuple(name for name in PLACES if name not in LEFT_OUT)
-"""All others."""
+"""Families that the shipped classifier learned."""
 
 _AUDIBLE_DB = 3.0
-"""What is heard stands so far above the place in some half octave for some time [dB]."""
+"""Minimum level of an audible sound above the place, in its best half octave [dB]."""
 
 _AUDIBLE_SHARE = 0.95
-"""Quantile of its frames that must stand out for it to be heard [-]."""
+"""Quantile of the frames that must be audible [-]."""
 
 _FRAME = 0.032
-"""Within it a sound's level is taken [s]."""
+"""Duration of a frame [s]."""
 
 _PAUSE_DB = 18.0
-"""A sound so far below its loudest is a pause [dB]."""
+"""Level below the loudest frame from which a frame is a pause [dB]."""
 
 _LIFTS = (0.0, 10.0, 20.0, 40.0)
-"""A sound is lifted by one of these until it is heard for long enough [dB]."""
+"""Gains by which a sound is raised until it is audible for long enough [dB]."""
 
 _SHORTEST = 0.5
-"""Long enough [s]."""
+"""Minimum duration of the audible part [s]."""
 
 _LONGEST_PAUSE = 0.3
-"""Of a pause that belongs to the sound [s]: blows of a creak lie closer."""
+"""Maximum duration of a pause within a sound [s]; blows of a creak are closer."""
 
 _BANDS = 160.0 * 2.0 ** (0.5 * np.arange(12))
 """Edges of half octaves [Hz]."""
@@ -388,7 +385,7 @@ def place(
     among: Sequence[str] = LEARNED,
     peopled: bool = True,
 ) -> NDArray[np.float64]:
-    """Return `n` samples of what is heard in a place where nothing creaks.
+    """Return random noise of a place.
 
     Parameters
     ----------
@@ -397,10 +394,10 @@ def place(
         [Hz]
     rng : numpy.random.Generator
     among : sequence of str
-        Of `PLACES`.
+        Families, of `PLACES`.
     peopled : bool
-        Whether somebody may speak, play the radio, slam a door or signal a turn, each in one of
-        ten; where not, all this is rare and faint.
+        Whether speech, music, a slamming door and an indicator are possible, each with a
+        probability of 0.1; otherwise they are rare and faint.
 
     Returns
     -------
@@ -427,7 +424,7 @@ def place(
 def in_a_place(
     sound: NDArray[np.float64], surroundings: NDArray[np.float64], rate: float, snr: float
 ) -> tuple[NDArray[np.float64], tuple[float, float]]:
-    """Put a sound into a place; it is lifted where it would not be heard at all.
+    """Return a sound mixed with the noise of a place, raised if it would be inaudible.
 
     Parameters
     ----------
@@ -436,14 +433,14 @@ def in_a_place(
     rate : float
         [Hz]
     snr : float
-        Level of the sound over that of the place, both A-weighted [dB].
+        A-weighted level of the sound over that of the place [dB].
 
     Returns
     -------
     mixed : ndarray, shape (n,)
         [unit of `sound`]
     span : tuple of float
-        The longest time in which the sound is heard without a pause [s].
+        Start and end of the longest audible part [s].
 
     Examples
     --------
@@ -464,13 +461,13 @@ def in_a_place(
         span = _longest(stands + lift + more > 0.0, sound.size / rate)
         if span[1] - span[0] >= _SHORTEST:
             break
-    else:  # it makes pauses of its own
+    else:  # the sound itself has pauses
         span = (0.0, sound.size / rate)
     return sound + share * 10.0 ** (-(lift + more) / 20.0) * surroundings, span
 
 
 def a_weighted(sound: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-    """A-weight a sound.
+    """Return an A-weighted sound.
 
     Parameters
     ----------
@@ -498,9 +495,9 @@ def a_weighted(sound: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
 def _stands_out(
     sound: NDArray[np.float64], surroundings: NDArray[np.float64], rate: float
 ) -> NDArray[np.float64]:
-    """Return by how much a sound stands above a place in its best half octave, frame by frame.
+    """Return the level of a sound above a place in its best half octave, by frame [dB].
 
-    So far below its loudest that it makes a pause, it does not; [dB].
+    Pauses of the sound have -300 dB.
     """
     frame = round(_FRAME * rate)
     of_sound, around = (
@@ -516,7 +513,7 @@ def _stands_out(
 
 
 def _longest(sounds: NDArray[np.bool_], duration: float) -> tuple[float, float]:
-    """Return from when to when frames sound longest, but for short pauses [s]."""
+    """Return start and end of the longest run of frames, with short pauses closed [s]."""
     reach = 2 * round(0.5 * _LONGEST_PAUSE / _FRAME) + 1
     closed = minimum_filter1d(maximum_filter1d(sounds.astype(int), reach), reach)
     edges = np.flatnonzero(np.diff(np.r_[0, closed, 0]))

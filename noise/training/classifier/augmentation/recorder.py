@@ -1,11 +1,7 @@
-"""Recording chain of the augmentation: room, noise, microphone, rate, gain, codec and cut.
+"""Recording chain of the augmentation: microphone, noise, rate, gain, codec and cut.
 
-Losses of storage: lossy codecs and few bits.
-
-Vorbis and MP3 are the real ones, through memory, where libsndfile has them; elsewhere their steep
-low-pass stands in.
-
-Microphones and what recorders do behind them: a band, a gain that follows, a limit.
+Vorbis and MP3 are coded and decoded by libsndfile, if available, and otherwise replaced by their
+steep low-pass.
 """
 
 from __future__ import annotations
@@ -31,17 +27,17 @@ _BANDS = {
     "pocket": ((80.0, 250.0), (700.0, 3e3), 3, 8.0),
     "stethoscope": ((30.0, 150.0), (800.0, 3e3), 4, 12.0),
 }
-"""Between which frequencies the ends of the band lie [Hz], order, and most of the ripple [dB]."""
+"""Ranges of the lower and upper band limits [Hz], order, and maximum ripple [dB]."""
 
 
 def through_a_microphone(
     sound: NDArray[np.float64], rate: float, rng: np.random.Generator, *, kind: str = "free"
 ) -> NDArray[np.float64]:
-    """Colour by slopes at both ends of the band and a gentle ripple between.
+    """Return a sound through the frequency response of a random microphone.
 
-    A phone's band is narrower, 100 Hz to 8 kHz or so, and steeper, of second order; its ripple
-    larger. In a pocket it hears little above 2 kHz, and cloth that rubs; a stethoscope's membrane
-    and tube end about there too, and resound.
+    The response has slopes at both ends of the band and a gentle ripple. A phone has a narrower
+    band, about 100 Hz to 8 kHz, steeper slopes and more ripple. In a pocket, the band ends near 2
+    kHz and cloth rubs; a stethoscope has a similar band with resonances.
 
     Parameters
     ----------
@@ -79,7 +75,7 @@ def through_a_microphone(
 def _rubbing(
     sound: NDArray[np.float64], rate: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Return what cloth adds that moves against the microphone: soft noise that comes and goes."""
+    """Return the noise of cloth that rubs against the microphone."""
     n = sound.size
     noise = low_pass(coloured_noise(n, rng.uniform(0.5, 1.5), rng), rng.uniform(500, 4000), rate)
     strokes = np.maximum(wandering(n, rate, log_uniform(0.5, 6.0, rng), rng), 0.0) ** 2
@@ -89,18 +85,18 @@ def _rubbing(
 def with_sensor_noise(
     torque: NDArray[np.float64], acceleration: NDArray[np.float64], rng: np.random.Generator
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Add to the torque noise of 0.03 to 3 % of its mean size, and some to the acceleration.
+    """Return torque and acceleration with random sensor noise.
 
     Parameters
     ----------
     torque, acceleration : ndarray, shape (n,)
-        [Nm], [m/s^2]
+        Without noise [Nm], [m/s^2].
     rng : numpy.random.Generator
 
     Returns
     -------
     torque, acceleration : ndarray, shape (n,)
-        [Nm], [m/s^2]
+        With noise, of 0.03 to 3 % of the mean magnitude of the torque [Nm], [m/s^2].
     """
     size = 10.0 ** rng.uniform(-3.5, -1.5) * np.abs(torque).mean()
     torque = torque + size * rng.standard_normal(torque.size)
@@ -111,9 +107,9 @@ def with_sensor_noise(
 def levelled(
     sound: NDArray[np.float64], rate: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Compress as an automatic gain does: the gain falls as the smoothed level rises.
+    """Return a sound after automatic gain control with a random compression ratio.
 
-    The level of the output rises by 1 dB where that of the input rises by 1.3 to 4 dB.
+    The output level rises by 1 dB for 1.3 to 4 dB of the smoothed input level.
 
     Parameters
     ----------
@@ -144,7 +140,7 @@ def levelled(
 
 
 def clipped(sound: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
-    """Limit to 30-90 % of the peak, hard or softly.
+    """Return a sound clipped at 30-90 % of its peak, hard or soft.
 
     Parameters
     ----------
@@ -172,18 +168,18 @@ def clipped(sound: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.
 
 
 _AT_ONCE = 4096
-"""Frames given to an encoder together; libsndfile's Vorbis encoder overflows its stack on many."""
+"""Frames per call of an encoder; the Vorbis encoder of libsndfile overflows its stack on many."""
 
 _MP3_RATES = (16_000, 22_050, 24_000, 32_000, 44_100, 48_000)
 
 
 def coded(sound: NDArray[np.float64], rate: int, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Pass through a lossy codec at a random quality; the length stays.
+    """Return a sound of the same length after a random lossy codec.
 
     Parameters
     ----------
     sound : ndarray, shape (n,)
-        Within -1 to 1 [full scale].
+        Sound within -1 to 1 [full scale].
     rate : int
         [Hz]
     rng : numpy.random.Generator
@@ -211,7 +207,7 @@ def coded(sound: NDArray[np.float64], rate: int, rng: np.random.Generator) -> ND
 def quantised(
     sound: NDArray[np.float64], bits: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Round to so many bits of full scale 1, with or without dither; clip at full scale.
+    """Return a sound quantised to a number of bits, with or without dither, and clipped.
 
     Parameters
     ----------
@@ -238,7 +234,7 @@ def quantised(
 def _round_trip(
     sound: NDArray[np.float64], rate: int, container: str, subtype: str, quality: float
 ) -> NDArray[np.float64] | None:
-    """Encode and decode in memory; ``None`` where libsndfile cannot."""
+    """Return a sound after encoding and decoding; ``None`` if libsndfile cannot."""
     if container not in soundfile.available_formats():
         return None
     memory = io.BytesIO()
@@ -250,7 +246,7 @@ def _round_trip(
                 file.write(sound[first : first + _AT_ONCE])
         memory.seek(0)
         decoded, _ = soundfile.read(memory)
-    except (soundfile.LibsndfileError, TypeError):  # an older soundfile has no quality to set
+    except (soundfile.LibsndfileError, TypeError):  # an older soundfile without quality settings
         return None
     if decoded.size < sound.size:
         decoded = np.pad(decoded, (0, sound.size - decoded.size))
@@ -258,42 +254,42 @@ def _round_trip(
 
 
 RATES = (16_000, 22_050, 30_000, 32_000, 44_100, 48_000, 96_000)
-"""Sampling rates that recordings come in [Hz]."""
+"""Sampling rates of recordings [Hz]."""
 
 _LOW_RATES = (8_000, 11_025, 12_000)
-"""Those of telephones and of files made small [Hz]."""
+"""Sampling rates of telephones and small files [Hz]."""
 
 _LOW = 0.12
-"""Share of the clips that come in one of them, where enough of the sound is left [-]."""
+"""Share of the clips with a low rate, if enough of the sound remains [-]."""
 
 _LEFT = 0.5
-"""Share of the A-weighted power that is enough [-]."""
+"""Minimum share of the A-weighted power that remains at a low rate [-]."""
 
 _IN_A_PLACE = 0.5
-"""Share of the clips that are recorded where an engineer would [-]."""
+"""Share of the clips recorded in a place of engineers [-]."""
 
 _SNR = (-15.0, 30.0)
-"""How far a sound lies above the place that it is heard in [dB(A)]."""
+"""Range of the level of a sound above its place [dB(A)]."""
 
 _KINDS = {"free": 0.62, "phone": 0.28, "pocket": 0.05, "stethoscope": 0.05}
 """Shares of the microphones [-]."""
 
 _LONGEST = 5.0
-"""Of a clip with what is before and after the sound [s]."""
+"""Maximum duration of a padded clip [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class RecordedSound:
-    """A sound as it was recorded.
+    """Recorded sound.
 
     Parameters
     ----------
     samples : ndarray, shape (n,)
-        In fractions of full scale [-].
+        Samples relative to full scale [-].
     rate : int
         Sampling rate [Hz].
     span : tuple of float
-        From when to when the sound lasts within the clip [s]; the rest is silence or background.
+        Start and end of the sound in the clip [s]; the rest is silence or background.
     """
 
     samples: NDArray[np.float64]
@@ -302,14 +298,14 @@ class RecordedSound:
 
 
 def resampled(signal: NDArray[np.float64], rate: float, wanted: float) -> NDArray[np.float64]:
-    """Resample to another rate, band-limited; rates are taken to the nearest hertz.
+    """Return a signal at another sampling rate; rates are rounded to whole hertz.
 
     Parameters
     ----------
     signal : ndarray, shape (n,)
         [any unit]
     rate, wanted : float
-        Its rate, and the other [Hz].
+        Present and new sampling rate [Hz].
 
     Returns
     -------
@@ -336,7 +332,7 @@ def recorded(
     kind: str = "free",
     span: tuple[float, float] | None = None,
 ) -> tuple[NDArray[np.float64], tuple[float, float]]:
-    """Record a sound in some room, car or hall through some microphone.
+    """Return a sound recorded in a random room or place by a random microphone.
 
     Parameters
     ----------
@@ -346,16 +342,16 @@ def recorded(
         Sampling rate [Hz].
     rng : numpy.random.Generator
     kind : str
-        Of the microphone, as `noise.training.classifier.augmentation.recorder` has them.
+        Kind of microphone, as in `through_a_microphone`.
     span : tuple of float, optional
-        From when to when the sound lasts; by default all the time [s].
+        Start and end of the sound; by default all of it [s].
 
     Returns
     -------
     samples : ndarray, shape (n,)
-        Of unit standard deviation [-] or, where the sound is zero, noise alone.
+        Samples of unit standard deviation [-]; only noise if the sound is zero.
     span : tuple of float
-        From when to when the sound is to be heard [s].
+        Start and end of the audible part [s].
     """
     lasts = span or (0.0, sound.size / rate)
     span = lasts
@@ -380,7 +376,7 @@ def augmented(
     *,
     span: tuple[float, float] | None = None,
 ) -> RecordedSound:
-    """Record a sound as anybody might: any microphone, rate, gain, codec and cut.
+    """Return a sound recorded with a random microphone, rate, gain, codec and cut.
 
     Parameters
     ----------
@@ -390,7 +386,7 @@ def augmented(
         Sampling rate [Hz].
     rng : numpy.random.Generator
     span : tuple of float, optional
-        From when to when the sound lasts; by default all the time [s].
+        Start and end of the sound; by default all of it [s].
 
     Examples
     --------
@@ -407,14 +403,14 @@ def augmented(
     signal = resampled(signal, rate, wanted)
     if low < wanted and rng.random() < 0.5:
         signal, wanted = resampled(signal, wanted, low), low
-    elif low < wanted or rng.random() < 0.15:  # it was stored at a lower rate before
+    elif low < wanted or rng.random() < 0.15:  # it was stored at a lower rate in between
         lower = min(wanted, low, int(rng.choice((16_000, 22_050, 32_000))))
         signal = resampled(resampled(signal, wanted, lower), lower, wanted)
     if rng.random() < (0.6 if kind in ("phone", "pocket") else 0.1):
         signal = levelled(signal, wanted, rng)
     if rng.random() < 0.08:
         signal = clipped(signal, rng)
-    # To the peak, as editors do, or to any level.
+    # Normalised to the peak, like by editors, or to a random level.
     peak = 10.0 ** (rng.uniform(-50.0, -1.0) / 20.0) if rng.random() < 0.7 else 0.98
     signal = signal * (peak / float(np.abs(signal).max()))
     samples, before = _cut(signal, wanted, rng)
@@ -429,12 +425,9 @@ def augmented(
 def _cut(
     sound: NDArray[np.float64], rate: int, rng: np.random.Generator
 ) -> tuple[NDArray[np.float64], float]:
-    """Put digital silence before or after some of the sounds, as clips of one length have it.
-
-    How long it is before the sound comes second [s].
-    """
+    """Return a sound with random digital silence before and after, and the silence before [s]."""
     duration = sound.size / rate
-    if rng.random() < 0.3:  # just so much that windows begin elsewhere
+    if rng.random() < 0.3:  # a shift of the windows
         before = int(rng.uniform(0.0, 0.25) * rate)
         return np.pad(sound, (before, 0)), before / rate
     if rng.random() < 0.65:
@@ -446,6 +439,6 @@ def _cut(
 
 
 def _left(sound: NDArray[np.float64], rate: float, low: float) -> bool:
-    """Whether enough of a sound is left at a low rate."""
+    """Whether enough of a sound remains at a low rate."""
     audible = float(a_weighted(sound, rate).std()) ** 2
     return float(a_weighted(resampled(sound, rate, low), low).std()) ** 2 >= _LEFT * audible

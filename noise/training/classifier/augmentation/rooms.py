@@ -1,8 +1,8 @@
-"""A room about a source: a few early reflections and a diffuse tail.
+"""Random room responses: early reflections and a diffuse tail.
 
-Reflections come at random within the first 40 ms, weaker the later; the tail decays exponentially,
-its high frequencies first, as air and furniture have it. Nothing of it is any room's geometry: the
-classifier should know all rooms, not know one.
+Reflections arrive at random within the first 40 ms, the later the weaker. The tail decays
+exponentially with a low-pass. It is no model of a particular room, so that the classifier learns
+all rooms.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from noise.training.draws import log_uniform, low_pass
 def in_a_room(
     sound: NDArray[np.float64], rate: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Add reflections and a tail; the length stays, the direct sound is the first.
+    """Return a sound of the same length with random reflections and a tail.
 
     Examples
     --------

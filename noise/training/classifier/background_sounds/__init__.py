@@ -1,8 +1,8 @@
-"""Sounds that no friction makes, a row of ``background_sounds.toml`` each: the label ``unknown``.
+"""Synthetic sounds without friction, labelled ``unknown``: rows of ``background_sounds.toml``.
 
-Not a likeness of any recording: each row follows how a sound of its kind comes about, with wide
-ranges. The hardest are dearest: what is as tonal as a squeal (calls, whistles, beeps), as pulsed as
-a creak (crackle, typing, croaks), as harmonic as a squawk (hum, engines, horns).
+Each row follows the physical origin of a kind of sound, with wide ranges. The most frequent ones
+are most similar to noises: as tonal as a squeal (calls, whistles, beeps), as pulsed as a creak
+(crackle, typing, croaks), as harmonic as a squawk (hum, engines, horns).
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ __all__ = ["BACKGROUND_SOUNDS", "WEIGHTS", "background_sound"]
 BACKGROUND_SOUNDS: Mapping[str, Mapping[str, Any]] = packaged_toml(
     __name__, "background_sounds.toml"
 )
-"""Rows by name; ``heard`` says whether in a car, at a rig."""
+"""Rows by name; ``surroundings`` lists where a sound may occur, of car and rig."""
 
 WEIGHTS = {name: float(row["weight"]) for name, row in BACKGROUND_SOUNDS.items()}
-"""How often a sound is drawn, relative to the others."""
+"""Relative frequencies of the sounds."""
 
 
 def background_sound(
     n: int, rate: float, rng: np.random.Generator, name: str | None = None, *, alone: bool = False
 ) -> NDArray[np.float64]:
-    """Return `n` samples of a sound of unit peak; now and then a second one sounds besides.
+    """Return a random background sound of unit peak, sometimes with a second one.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def background_sound(
     name : str, optional
         One of `BACKGROUND_SOUNDS`; by default one is drawn.
     alone : bool
-        Whether it is close by, and nothing sounds besides.
+        Whether the sound is close and has no second one.
 
     Returns
     -------
@@ -57,12 +57,12 @@ def background_sound(
     """
     sound = _alone(n, rate, rng, name)
     chance = 1.0 if alone else rng.random()
-    if chance < 0.12:  # over it
+    if chance < 0.12:  # simultaneous
         sound = sound + 10.0 ** (rng.uniform(-25.0, -3.0) / 20.0) * _alone(n, rate, rng)
-    elif chance < 0.2:  # after it
+    elif chance < 0.2:  # subsequent
         cut = int(rng.uniform(0.4, 0.8) * n)
         sound[cut:] = rng.uniform(0.2, 1.0) * _alone(n - cut, rate, rng)
-    if not alone and rng.random() < 0.2:  # far away, or behind a wall
+    if not alone and rng.random() < 0.2:  # distant, or behind a wall
         corner = log_uniform(300.0, 4000.0, rng)
         sound = low_pass(low_pass(sound, corner, rate), corner, rate)
     return np.asarray(sound / np.abs(sound).max())
@@ -72,7 +72,7 @@ def _alone(
     n: int, rate: float, rng: np.random.Generator, name: str | None = None
 ) -> NDArray[np.float64]:
     drawn = name or picked(WEIGHTS, rng)
-    for _ in range(5):  # a rest between two blows may be longer than this
+    for _ in range(5):  # a pause between blows may be longer than the sound
         sound = synthesised(BACKGROUND_SOUNDS[drawn], n, rate, rng)
         if sound.std() > 1e-3:
             break

@@ -1,4 +1,4 @@
-"""Building blocks of background sounds: tones, voices, resonances, blows, envelopes."""
+"""Components of background sounds: tones, voices, resonances, blows, envelopes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from noise.training.draws import coloured_noise, log_uniform, wandering
 def harmonics(
     pitch: NDArray[np.float64], rate: float, roll_off: float, n_most: int = 30
 ) -> NDArray[np.float64]:
-    """Sum of the harmonics of a pitch [Hz], whose amplitudes fall as ``k ** -roll_off``.
+    """Return the sum of harmonics of a pitch with amplitudes ``k ** -roll_off``.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def harmonics(
     roll_off : float
         [-]
     n_most : int
-        No more of them.
+        Maximum number of harmonics.
 
     Returns
     -------
@@ -53,7 +53,7 @@ def harmonics(
 def resonance(
     x: NDArray[np.float64], centre: float, bandwidth: float, rate: float
 ) -> NDArray[np.float64]:
-    """Filter by one resonance [Hz].
+    """Return a signal filtered by a resonance.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def resonance(
 def through_formants(
     source: NDArray[np.float64], formants: tuple[float, ...], rate: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Put a source through the resonances of a throat, in parallel, besides itself.
+    """Return a source with parallel resonances of a throat added.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def envelope(
     rate: float,
     draw: Callable[[Any], float],
 ) -> NDArray[np.float64]:
-    """Give an event its envelope.
+    """Return an event with an envelope.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def envelope(
     rate : float
         [Hz]
     draw : callable
-        Number of a range.
+        Function that draws a number from a range.
 
     Returns
     -------
@@ -170,7 +170,7 @@ def voiced(
     roughness: float = 0.0,
     breath: float = 0.1,
 ) -> NDArray[np.float64]:
-    """Draw a throat's call: a pitch with jitter, subharmonics where rough, formants and breath.
+    """Return a random call: pitch with jitter, subharmonics if rough, formants and breath.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def voiced(
 def placed(
     n: int, times: NDArray[np.float64], strength: NDArray[np.float64], rate: float
 ) -> NDArray[np.float64]:
-    """Impulses at times [s].
+    """Return impulses at given times.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def blow(
     noise: float = 0.5,
     ratios: Sequence[float] = (),
 ) -> NDArray[np.float64]:
-    """One blow: modes in a band [Hz] that die within decay times (to 1/e) [s], and a noisy knock.
+    """Return the sound of a blow: decaying modes in a band, and a noisy knock.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ def blow(
     rng : numpy.random.Generator
     n_modes : int
     noise : float
-        Most of the knock, over the modes [-].
+        Maximum level of the knock relative to the modes [-].
     ratios : sequence of float
         Of a bell: frequencies of its modes, over one in the band; the higher ones die sooner.
 
@@ -295,7 +295,7 @@ def blow(
 def wavering(
     n: int, rate: float, frequency: float, depth: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Factor about one that wanders by a share `depth`, `frequency` times a second.
+    """Return a random factor near 1 that varies by `depth` with a given frequency.
 
     Examples
     --------

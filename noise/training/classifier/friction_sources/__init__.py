@@ -1,7 +1,7 @@
-"""Friction that creaks, squawks and squeals in other bodies than the bushing.
+"""Synthetic creaks, squawks and squeals of other bodies than the bushing.
 
-The classifier that knows one rig's sound alone takes a door for any other sound. What makes a creak
-or a squeal is not the rig but friction: slips that strike a body, a force that is heard as it is,
-or a mode that friction feeds. Here are these mechanisms, on bodies and drives drawn at random, in
-SI units but for the level, which is arbitrary; the bodies are rows of ``friction_sounds.toml``.
+A classifier trained on one rig would label a door as unknown. Creaks and squeals arise from
+friction in any body: slips that strike it, a friction force that is radiated, or a mode excited by
+friction. These mechanisms act on random bodies with random drives, in SI units but for the
+arbitrary level. The bodies are rows of ``friction_sounds.toml``.
 """

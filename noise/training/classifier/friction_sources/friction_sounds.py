@@ -1,16 +1,16 @@
-"""Creaks, squawks and squeals of other bodies, drawn from rows of ``friction_sounds.toml``.
+"""Synthesis of creaks, squawks and squeals of the bodies in ``friction_sounds.toml``.
 
-- slips: each slip of `noise.training.classifier.friction_sources.slider` lets go of a force in
-  proportion to its size, as a pulse of half a sine with the rattle of its asperities; the body
-  (`noise.training.classifier.friction_sources.modal_body`) rings from it. A heavier load bears
-  longer sticks: fewer slips, and larger ones.
-- sawtooth: a steady drive sticks and slips so often that its force, whose harmonics lie close below
-  the first, is heard through a body that is damped too well to knock; a bowed string likewise.
-- modes: friction feeds modes (`noise.training.classifier.friction_sources.limit_cycle`). Where they
-  share their losses one predominates, and another may take its place; else several sound at once.
+- slips: each slip of `noise.training.classifier.friction_sources.slider` releases a force in
+  proportion to its size, a half-sine pulse with the rattle of asperities, and the body
+  (`noise.training.classifier.friction_sources.modal_body`) rings. A heavier load gives fewer and
+  larger slips.
+- sawtooth: steady stick-slip whose force, with close harmonics, is radiated by a strongly damped
+  body; likewise a bowed string.
+- modes: friction excites modes (`noise.training.classifier.friction_sources.limit_cycle`). If they
+  share their losses, one dominates and another may replace it; otherwise several sound at once.
 
-By the definition (`noise.noise_definition`) slips so regular and fast that discrete frequencies
-stand out are a squawk, others a creak; those between are ambiguous.
+By definition (`noise.noise_definition`), slips so regular and fast that discrete frequencies stand
+out are a squawk, others a creak; cases in between are ambiguous.
 """
 
 from __future__ import annotations
@@ -41,35 +41,35 @@ from noise.training.draws import coloured_noise, log_uniform, low_pass, wanderin
 FRICTION_SOUNDS: Mapping[str, Mapping[str, Any]] = packaged_toml(
     "noise.training.classifier.friction_sources", "friction_sounds.toml"
 )
-"""Rows by name."""
+"""Rows of the table by name."""
 
 _CONTACT = 0.05
-"""Load of a contact, of one when it is pressed [-]."""
+"""Minimum load of a contact [-]."""
 
 _PITCHED = 150.0
-"""Slips so frequent may be heard as a pitch [Hz]."""
+"""Slip rate from which a pitch is audible [Hz]."""
 
 _REGULAR = 0.06
-"""Median change from one stick to the next, in logarithms, below which harmonics stand out [-]."""
+"""Median logarithmic change between sticks below which harmonics stand out [-]."""
 
 _CHIRP_S = (0.1, 0.5)
-"""Length of a short squeal [s]."""
+"""Range of the duration of a short squeal [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class FrictionSound:
-    """A sound of friction.
+    """Synthetic friction sound.
 
     Parameters
     ----------
     samples : ndarray, shape (n,)
-        Of unit peak [-].
+        Samples of unit peak [-].
     label : str
         creak, squawk or squeal.
     span : tuple of float
-        From when to when something rubs [s].
+        Start and end of the friction [s].
     ambiguous : bool
-        Whether the label hangs on a bound of its definition.
+        Whether the label is close to a bound of its definition.
     """
 
     samples: NDArray[np.float64]
@@ -79,7 +79,7 @@ class FrictionSound:
 
 
 def friction_sound(name: str, n: int, rate: float, rng: np.random.Generator) -> FrictionSound:
-    """Draw `n` samples of a sound.
+    """Return a random sound of a body.
 
     Parameters
     ----------
@@ -116,12 +116,12 @@ def friction_sound(name: str, n: int, rate: float, rng: np.random.Generator) -> 
 
 
 def contact_load(row: Mapping[str, Any], m: int, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw the load of a contact at `ENVELOPE_RATE`: bouts about one, gaps of nought between.
+    """Return a random load of a contact at `ENVELOPE_RATE`: bouts near 1 with gaps of 0.
 
     Parameters
     ----------
     row : mapping
-        Of `FRICTION_SOUNDS`; without ``bout_s`` the contact lasts.
+        Row of `FRICTION_SOUNDS`; without ``bout_s`` the contact is permanent.
     m : int
     rng : numpy.random.Generator
 
@@ -167,7 +167,7 @@ def _slips_under(
     rate: float,
     rng: np.random.Generator,
 ) -> tuple[Slips, NDArray[np.float64]]:
-    """Draw drives until one slips often enough, and loads, for one may be too short for that."""
+    """Return random slips at a suitable rate, and the load."""
     while True:
         fastest = _log_between(row["fastest_hz"], rng)
         slowest = max(4.0, fastest * math.exp(-rng.uniform(*row.get("glide", (0.7, 4.0)))))
@@ -190,7 +190,7 @@ def _slips_under(
 
 
 def _is_ambiguous(slips: Slips, label: str) -> bool:
-    """Whether slips are nearly as regular, or irregular, as those of the other label."""
+    """Whether the regularity of slips is close to that of the other label."""
     sticks = np.diff(slips.time)
     changes = np.median(np.abs(np.diff(np.log(sticks[sticks < 0.1]))))
     if label == "creak":
@@ -206,7 +206,7 @@ def _struck(
     rate: float,
     rng: np.random.Generator,
 ) -> NDArray[np.float64]:
-    """Let slips strike a body; a second contact may creak besides."""
+    """Return the sound of slips that strike a body, with a second contact in a fifth of cases."""
     sound = np.zeros(n)
     for i in range(2 if rng.random() < 0.2 else 1):
         if i:
@@ -217,7 +217,7 @@ def _struck(
         force = pulses(swollen, n, rate, rng, lasting=row.get("pulse_s", (3e-5, 5e-4)))
         parts = [_unit(random_body(row["body_hz"], row["damping"], rng).impulse_response(rate))]
         parts.append(10.0 ** (rng.uniform(-25.0, 20.0) / 20.0) * overlapping_modes(rate, rng))
-        if rng.random() < 0.4:  # what it is fixed to sounds as well
+        if rng.random() < 0.4:  # sound of a neighbouring body
             other = FRICTION_SOUNDS[str(rng.choice(_STRUCK))]
             fixed_to = random_body(other["body_hz"], other["damping"], rng)
             parts.append(rng.uniform(0.1, 1.0) * _unit(fixed_to.impulse_response(rate)))
@@ -225,7 +225,7 @@ def _struck(
         for part in parts:
             body[: part.size] += part
         struck = fftconvolve(force, body)[:n]
-        # The contact itself is heard as well, as a click without a body's voice.
+        # Direct sound of the contact, a click.
         if "radiates_above_hz" in row:
             corner = _log_between(row["radiates_above_hz"], rng)
             for _ in range(2):
@@ -263,7 +263,7 @@ def pulses(
     *,
     lasting: Sequence[float] = (3e-5, 5e-4),
 ) -> NDArray[np.float64]:
-    """Force of the slips: pulses of random strength about their size, with a rattle.
+    """Return the force of slips: pulses of random strength, with a rattle.
 
     Parameters
     ----------
@@ -274,7 +274,7 @@ def pulses(
         [Hz]
     rng : numpy.random.Generator
     lasting : pair of float
-        Range of the pulse's length [s].
+        Range of the duration of a pulse [s].
 
     Returns
     -------
@@ -322,7 +322,7 @@ def _sawtooth(
         scatter=rng.uniform(*row["scatter"]),
         rng=rng,
     )
-    # The spring's force: it rises with the drive and falls at each slip, in a millisecond or so.
+    # The force of the spring rises with the drive and falls at each slip, within about 1 ms.
     force = np.cumsum(drive) / rate
     fallen = np.zeros(n)
     np.add.at(fallen, np.minimum((slips.time * rate).astype(int), n - 1), slips.size)
@@ -332,7 +332,7 @@ def _sawtooth(
         np.arange(n) / rate * ENVELOPE_RATE, range(load.size), load
     )
     n_modes = int(rng.integers(3, 9))
-    # Broad resonances over the force itself: no blow rings on until the next.
+    # Broad resonances, which do not ring until the next slip.
     response = ModalBody(
         _logs_between(row["body_hz"], n_modes, rng),
         np.full(n_modes, rng.uniform(*row["damping"])),
@@ -365,7 +365,7 @@ def _modes(
     omega = 2.0 * np.pi * frequency
     turns = np.full(n_modes, omega[0]) if competing else omega
     pace = max(abs(size), 0.002) * turns
-    # Without contact the mode is damped; each mode has its own optimum of load.
+    # Without contact the modes are damped; each mode has a load of its own.
     growth = np.empty((n_modes, m))
     detuning = np.empty((n_modes, m))
     for i in range(n_modes):
@@ -378,7 +378,7 @@ def _modes(
     roughness = rng.uniform(*row["roughness"]) * np.sqrt(pace)
     rubbed = np.where(load > _CONTACT, np.sqrt(np.minimum(load, 1.0)), 0.0)
     solved = amplitudes(growth, detuning, coupling, roughness[:, None] * rubbed, rng)
-    # The loads of the other modes may make them win; else they are heard well below.
+    # Other modes may dominate at their loads; otherwise they are much weaker.
     sound = np.zeros(n)
     fall = rng.uniform(*row["fall_db"])
     for i in range(n_modes):

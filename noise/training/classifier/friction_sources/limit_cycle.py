@@ -1,4 +1,4 @@
-r"""Modes that friction feeds: their slow amplitudes, growing, saturating, competing.
+r"""Amplitudes of modes excited by friction: growth, saturation and competition.
 
 Averaged over a period (Krylov and Bogoliubov), an oscillator with negative damping, cubic losses
 and a rough contact becomes an equation for its complex amplitude,
@@ -20,7 +20,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 ENVELOPE_RATE = 6000.0
-"""At which amplitudes are solved [Hz]."""
+"""Sampling rate of the amplitudes [Hz]."""
 
 
 def amplitudes(
@@ -30,7 +30,7 @@ def amplitudes(
     noise: NDArray[np.float64],
     rng: np.random.Generator,
 ) -> NDArray[np.complex128]:
-    """Solve for the amplitudes.
+    """Return the complex amplitudes of the modes.
 
     Parameters
     ----------
@@ -93,16 +93,16 @@ def carried(
     n: int,
     rate: float,
 ) -> NDArray[np.float64]:
-    """Put an amplitude at `ENVELOPE_RATE` on its carrier and harmonics, which grow as its powers.
+    """Return the sound of an amplitude: carrier, and harmonics that grow with its powers.
 
     Parameters
     ----------
     amplitude : ndarray of complex128, shape (m,)
         [-]
     frequency : float
-        Of the carrier [Hz].
+        Frequency of the carrier [Hz].
     harmonics : ndarray, shape (n_harmonics,)
-        Strength of each at an amplitude of one, the first being the carrier's.
+        Strengths at an amplitude of 1; the first is that of the carrier.
     n : int
     rate : float
         [Hz]

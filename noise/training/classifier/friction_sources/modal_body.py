@@ -1,4 +1,4 @@
-r"""A body as its modes, which a blow lets ring.
+r"""Bodies as sums of modes, and their impulse responses.
 
 .. math::
     h(t) = \sum_i w_i \, e^{-\zeta_i \omega_i t} \sin(\omega_i \sqrt{1 - \zeta_i^2} \, t)
@@ -39,7 +39,7 @@ class ModalBody:
     weight: NDArray[np.float64]
 
     def impulse_response(self, rate: float, longest: float = 0.4) -> NDArray[np.float64]:
-        """Sound of a blow at `rate` [Hz], until it has died away but no longer than `longest` [s].
+        """Return the impulse response until it has decayed, limited to a duration.
 
         Parameters
         ----------
@@ -64,7 +64,7 @@ class ModalBody:
         time = np.arange(n) / rate
         damped = 2.0 * np.pi * self.frequency * np.sqrt(1.0 - self.damping_ratio**2)
         pole = np.exp((1j * damped - decay)[:, None] * (time[None, : int(0.01 * rate)]))
-        # Blocks of 10 ms: each is the first one times a complex number.
+        # Blocks of 10 ms: each is the first block times a complex factor.
         step = np.exp((1j * damped - decay) * pole.shape[1] / rate)
         sound = np.zeros(n)
         factor = self.weight.astype(complex)
@@ -78,14 +78,14 @@ class ModalBody:
 def random_body(
     modes: tuple[float, float], damping_ratio: tuple[float, float], rng: np.random.Generator
 ) -> ModalBody:
-    """Draw a body of 10 to 60 modes.
+    """Return a random body of 10 to 60 modes.
 
     Parameters
     ----------
     modes : pair of float
         Lowest and highest natural frequency of its kind [Hz].
     damping_ratio : pair of float
-        Least and largest [-].
+        Smallest and largest [-].
     rng : numpy.random.Generator
 
     Examples
@@ -106,14 +106,14 @@ def random_body(
     damping = least * (largest / least) ** rng.random() * np.exp(rng.normal(0.0, 0.4, n))
     tilt = rng.uniform(-0.5, 0.7)
     weight = rng.standard_normal(n) * (frequency / lowest) ** tilt
-    # One to three modes may ring well above the others: a voice of the body's own.
+    # Up to three modes may be much stronger than the others.
     loud = rng.integers(0, n, int(rng.integers(0, 4)) if rng.random() < 0.5 else 0)
     weight[loud] *= rng.uniform(1.0, 5.0)
     return ModalBody(frequency, np.clip(damping, 0.002, 0.12), weight)
 
 
 def overlapping_modes(rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Impulse response of unit peak of modes that overlap: coloured noise, dying in 1 to 25 ms.
+    """Return the impulse response of overlapping modes: coloured noise with a decay of 1 to 25 ms.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-r"""A slider that is drawn along by a spring: stick, slip, stick, at a hand's irregular speed.
+r"""Stick-slip of a slider drawn by a spring at an irregular speed.
 
 The spring k is drawn at v(t). The contact bears a friction that grows with the time of stick,
 
@@ -29,7 +29,7 @@ from noise.training.draws import log_uniform, wandering
 
 @dataclass(frozen=True, eq=False)
 class Slips:
-    """When the slider slips [s], and how far, relative to D_0; arrays of shape (n_slips,)."""
+    """Times [s] and sizes of slips, relative to D_0; arrays of shape (n_slips,)."""
 
     time: NDArray[np.float64]
     size: NDArray[np.float64]
@@ -44,10 +44,10 @@ def random_drive(
     *,
     steps: bool = False,
 ) -> NDArray[np.float64]:
-    """Return the drive's speed over D_0 [1/s]: nearly the rate of slips where sticks are long.
+    """Return a random speed of the drive over D_0, which is nearly the slip rate of long sticks.
 
-    A hand or a gust: its logarithm wanders between `slowest` and `fastest`; at times it comes to
-    rest, or begins fast and dies away.
+    Its logarithm varies between `slowest` and `fastest`, like that of a hand or a gust; sometimes
+    it rests, or begins fast and dies away.
 
     Parameters
     ----------
@@ -59,8 +59,8 @@ def random_drive(
         [1/s]
     rng : numpy.random.Generator
     steps : bool
-        Whether half of the drives hold their speed and jump instead of gliding, as where slips
-        lock onto a mode of the body and then onto another.
+        Whether half of the drives jump between steady speeds, like slips that lock onto modes of
+        the body.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def random_drive(
     middle, half = 0.5 * math.log(slowest * fastest), 0.5 * math.log(fastest / slowest)
     course = wandering(n, rate, log_uniform(0.3, 4.0, rng), rng)
     x = np.linspace(0.0, 1.0, n)
-    if rng.random() < 0.5:  # a trend: it dies away, starts up, or both
+    if rng.random() < 0.5:  # a trend: decay, start, or both
         trend = rng.choice((-1.0, 1.0)) * (1.0 - 2.0 * x ** rng.uniform(0.5, 2.0))
         if rng.random() < 0.4:
             trend = 1.0 - 2.0 * np.abs(2.0 * x - 1.0)
@@ -101,14 +101,14 @@ def slide(
     scatter: float,
     rng: np.random.Generator,
 ) -> Slips:
-    """Find the slips of a slider.
+    """Return the slips of a slider.
 
     Parameters
     ----------
     drive : ndarray, shape (n,)
         Speed of the drive over D_0 [1/s].
     rate : float
-        Of its samples [Hz].
+        Sampling rate [Hz].
     ageing_time : float
         tau [s].
     scatter : float
@@ -140,7 +140,7 @@ def _events(
         drawn += step
         stick += 1.0 / rate
         borne = scattered[count % scattered.size] * (1.0 - math.exp(-stick / ageing_time))
-        # No contact is back within a tenth of a millisecond.
+        # A contact needs 0.1 ms to form.
         if drawn >= borne and stick > 1e-4:
             index[count] = i - min(1.0, (drawn - borne) / max(step, 1e-12))
             size[count] = drawn
