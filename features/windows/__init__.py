@@ -1,1 +1,1 @@
-"""Features of many overlapping windows of a sound at once, made for labelling hours of it."""
+"""Features of many overlapping windows of a sound at once, for hours of sound."""

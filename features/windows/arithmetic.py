@@ -1,5 +1,5 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
-"""Sums, medians and prominent maxima of many windows at once, each as if its window were alone."""
+"""Sums, medians and prominent maxima of many windows, independent of the other windows."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from models.compilation import COMPILED
 
 OCTAVES = 1.0 / np.log(2.0)
-"""What makes a natural logarithm one of base two."""
+"""Factor from natural logarithms to octaves."""
 
 _Float = TypeVar("_Float", bound=np.floating)
 
 
 def ordered_sum(terms: NDArray[_Float], axis: int = 0) -> NDArray[_Float]:
-    """Add up one term after the other, in the precision of the terms.
+    """Return the sum of terms in their order and precision.
 
-    `numpy.sum` does so over any axis but the last; over the last, and where that has one column
-    only, it adds in pairs, so that the last digits change with the number of windows at once.
+    `numpy.sum` uses pairwise summation over the last axis, and if that has one column, so the last
+    digits would depend on the number of windows.
 
     Examples
     --------
@@ -35,14 +35,14 @@ def ordered_sum(terms: NDArray[_Float], axis: int = 0) -> NDArray[_Float]:
 
 
 def power_of(spectrum: NDArray[Any], least: float | np.float32 = 0.0) -> NDArray[np.float32]:
-    """Square the magnitudes of spectra, in one pass over them.
+    """Return the squared magnitudes of spectra, in one pass.
 
     Parameters
     ----------
     spectrum : ndarray of complex64, shape (n_rows, n_bins)
         [unit]
     least : float
-        Added to each [unit^2].
+        Constant to be added [unit^2].
 
     Examples
     --------
@@ -65,23 +65,23 @@ def _square(spectrum, least, power) -> None:
 def padded_rows(
     values: NDArray[Any], row: NDArray[np.int64], counts: NDArray[np.int64], fill: float
 ) -> NDArray[Any]:
-    """Put values that lie row by row into a matrix.
+    """Return values of rows of different lengths as a padded matrix.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        In any [unit].
+        Values in order of the rows [any unit].
     row : ndarray of int, shape (n,)
-        Of each value, not falling.
+        Row of each value, non-decreasing.
     counts : ndarray of int, shape (n_rows,)
-        Values in each row.
+        Number of values in each row.
     fill : float
-        What follows them, in the same [unit].
+        Padding [unit of the values].
 
     Returns
     -------
     ndarray, shape (n_rows, max(1, counts.max()))
-        In the same [unit].
+        Padded rows [unit of the values].
 
     Examples
     --------
@@ -96,14 +96,14 @@ def padded_rows(
 
 
 def padded_medians(rows: NDArray[Any], counts: NDArray[np.int64]) -> NDArray[Any]:
-    """Median of each row's first values, in their precision; NaN where there are none.
+    """Return the median of the first values of each row, in their precision; NaN without values.
 
     Parameters
     ----------
     rows : ndarray, shape (n_rows, most)
-        As `padded_rows` gives them, in any [unit], with infinity behind them; some column at least.
+        Rows of `padded_rows`, padded with infinity, with one column at least [any unit].
     counts : ndarray of int, shape (n_rows,)
-        Values in each row.
+        Number of values in each row.
 
     Returns
     -------
@@ -130,24 +130,24 @@ def prominent_maxima(
     *,
     pointed: bool = False,
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Find maxima from which the level falls on either side before it rises higher.
+    """Return the maxima with a given prominence.
 
     Parameters
     ----------
     level : ndarray of float32, shape (n_rows, n)
         [dB]
     first, last : int
-        Where each row begins and ends.
+        Range of columns.
     prominence : float
-        Least fall on either side [dB].
+        Minimum fall on either side before the level rises higher [dB].
     pointed : bool
-        A maximum is first taken for one where it is above what follows, not where the level has
-        risen enough; the two tell apart the ends of flat tops. Needs a value beyond the end.
+        Whether a maximum has to exceed the next value, which decides at the ends of flat tops; it
+        needs a value beyond the end.
 
     Returns
     -------
     row, at : ndarray of int, shape (n_maxima,)
-        Of each, row by row and in rising order.
+        Row and column of each maximum, in order.
 
     Examples
     --------
@@ -170,7 +170,7 @@ def _find(level, first, last, prominence, pointed, maxima) -> int:
         for k in range(first, last):
             v = level[row, k]
             if candidate < 0:
-                # On the way up from the lowest level since the last maximum.
+                # Rising from the lowest level since the last maximum.
                 if v < lowest:
                     lowest = v
                 if v >= lowest + prominence and (
@@ -180,7 +180,7 @@ def _find(level, first, last, prominence, pointed, maxima) -> int:
             elif v > level[row, candidate]:
                 candidate = k
             elif v < level[row, candidate] - prominence:
-                # It has fallen far enough: the candidate was a maximum.
+                # The fall is sufficient: the candidate was a maximum.
                 maxima[0, count] = row
                 maxima[1, count] = candidate
                 count += 1

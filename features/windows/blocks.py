@@ -1,16 +1,15 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
-"""A long signal in blocks at a common rate: what all features of windows are computed from.
+"""Blocks of a long signal at a common sampling rate, from which all window features are computed.
 
-Fourier transforms of its seconds give the part below 7 kHz at 16 kHz, the part of it above 2 kHz
-where blows stand out of tones, and the power in two bands above 7 kHz. Each second has a fifth more
-on either side, of which half is faded, and which is thrown away; so short transforms stay in the
-cache. Blocks lie on a fixed grid; so what is computed does not depend on how much of a recording
-was in memory. All in single precision, relative to the block's peak, which is twice as fast.
+Fourier transforms of single seconds give the part below 7 kHz at 16 kHz, its part above 2 kHz,
+where blows stand out from tones, and the power in two bands above 7 kHz. Each second is extended by
+a fifth on either side, half of it faded, which is discarded; such short transforms fit in the
+cache. Blocks lie on a fixed grid, so results do not depend on the part of a recording in memory.
+Single precision, relative to the peak of the block, is twice as fast.
 
-The part below 7 kHz is A-weighted: in a car or a hall most power lies below 200 Hz, where no noise
-is told from another. A squawk's tone at 250 Hz loses 9 dB by it, but keeps its harmonics. Where a
-recording was stored at a lower rate before, nothing lies above half of that rate: it is described
-as if it had that rate.
+The part below 7 kHz is A-weighted: in a car or hall, most power lies below 200 Hz, where noises do
+not differ. A squawk at 250 Hz loses 9 dB, but not its harmonics. If a recording was stored at a
+lower rate before, it is described as at that rate.
 """
 
 from __future__ import annotations
@@ -31,57 +30,57 @@ from features.windows.arithmetic import power_of
 from models.compilation import COMPILED
 
 RATE = 16_000
-"""Rate at which windows are described [Hz]."""
+"""Common sampling rate [Hz]."""
 
 USEFUL = 7
-"""Length of a block without its margins [s]."""
+"""Duration of a block without margins [s]."""
 
 MARGIN = 0.5
-"""What a block has more on either side [s]."""
+"""Margin of a block on either side [s]."""
 
 FRAME_RATE = 100
-"""Frames in a second."""
+"""Frames per second."""
 
 _ASIDE = 0.2
-"""What is transformed and thrown away on either side of a second [s]."""
+"""Discarded part of a transform on either side of a second [s]."""
 
 _LOW = (110.0, 160.0)
-"""Between these the signal is faded in [Hz]: below lie hum and rumble."""
+"""Flank of the high-pass against hum and rumble [Hz]."""
 
 _HIGH_FROM = (1700.0, 2300.0)
-"""Between these the part is faded in that shows blows [Hz]."""
+"""Flank of the high-pass of the part with blows [Hz]."""
 
 _TOP_BANDS = ((7_000, 13_000), (13_000, 19_000))
-"""Above the common band [Hz]: reached by rates from 29.8 kHz and from 43.5 kHz on."""
+"""Bands above the common band [Hz]; they need rates of 29.8 kHz and 43.5 kHz."""
 
 _STORED_RATES = (8_000, 11_025, 12_000, 16_000, 22_050, 24_000, 32_000, 44_100)
-"""Rates that recordings are stored at on their way [Hz]."""
+"""Possible sampling rates of earlier storage [Hz]."""
 
 _CLIFF = 1e-3
-"""Density above half the rate it was stored at, over that below: 30 dB within half an octave is
-no sound's own."""
+"""Maximum ratio of the density above half the rate of earlier storage to that below: no sound falls
+by 30 dB within half an octave."""
 
 _LANES = 4
-"""Rows that are transformed side by side in the time of one."""
+"""Rows that are transformed together by vector instructions."""
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """A block at the common rate, without its margins.
+    """Block at the common rate, without margins.
 
     Parameters
     ----------
     sound : ndarray of float32, shape (n,)
-        From 160 Hz to 7 kHz, A-weighted [share of `scale`].
+        Signal from 160 Hz to 7 kHz, A-weighted [share of `scale`].
     high : ndarray of float32, shape (n,)
-        Its part above 2 kHz [share of `scale`].
+        Part of it above 2 kHz [share of `scale`].
     top : ndarray of float32, shape (n_frames, 2)
-        Power from 7 to 13 and from 13 to 19 kHz [share of `scale` squared]; NaN where the
-        recording does not reach so far.
+        Power from 7 to 13 and from 13 to 19 kHz [share of `scale` squared]; NaN above the band of
+        the recording.
     scale : float
-        Peak of the block [unit]; 0 where it is constant.
+        Peak of the block [unit]; 0 if constant.
     limit : float
-        Up to which it holds anything [Hz]; 0 where it is constant.
+        Upper limit of the band [Hz]; 0 if constant.
     """
 
     sound: NDArray[np.float32]
@@ -92,7 +91,7 @@ class Block:
 
 
 def block_length(duration: float) -> int:
-    """Return the useful length of a recording's blocks [s]: less where all of it is short.
+    """Return the useful duration of the blocks of a recording [s], less for short recordings.
 
     Examples
     --------
@@ -103,16 +102,16 @@ def block_length(duration: float) -> int:
 
 
 def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> Block:
-    """Bring a block to the common rate.
+    """Return a block of samples at the common rate.
 
     Parameters
     ----------
     samples : ndarray, shape (round((useful + 1) * rate),)
-        In any [unit], with a margin of half a second on either side.
+        Samples with a margin of half a second on either side [any unit].
     rate : float
         [Hz]
     useful : int
-        Length without the margins [s].
+        Duration without margins [s].
 
     Returns
     -------
@@ -133,7 +132,7 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
         top = np.zeros((useful * FRAME_RATE, 2), dtype=np.float32)
         top[:, [high > USABLE_SHARE * rate for _, high in _TOP_BANDS]] = np.nan
         return Block(nothing, nothing, top, 0.0, 0.0)
-    # Where a tenth of a second is no whole number of samples, all is transformed at once.
+    # If a tenth of a second is no whole number of samples, the block is transformed at once.
     second, aside = (useful, MARGIN) if rate % 10.0 else (1, _ASIDE)
     seconds = second + 2.0 * aside
     count, length = (1, samples.size) if rate % 10.0 else (useful, round(seconds * rate))
@@ -163,7 +162,7 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
 
 
 def _rate_held(spectrum: NDArray[np.complex64], seconds: float, rate: float) -> float:
-    """Return the lowest rate that holds all there is: its own, or that of a store on the way."""
+    """Return the lowest rate that contains the spectrum: its own, or that of earlier storage."""
     power = power_of(spectrum)
     below = np.append(0.0, np.cumsum(power.mean(axis=0), dtype=np.float64))
     for stored in _STORED_RATES:
@@ -172,9 +171,9 @@ def _rate_held(spectrum: NDArray[np.complex64], seconds: float, rate: float) -> 
         if stored > 0.9 * rate or power.shape[1] <= 1.15 * bins:
             return rate
         above = (below[-1] - below[end]) / (power.shape[1] - end)
-        # A tone's own flanks fall as steeply: two places below have to stand as high.
+        # Flanks of a tone are as steep, so two ranges below the limit are compared.
         places = [(round(a * bins), round(b * bins)) for a, b in ((0.45, 0.6), (0.75, 0.85))]
-        # A median, which takes long, is at most twice the mean.
+        # The median, which is slow, is at most twice the mean.
         if all(above <= 2.0 * _CLIFF * (below[b] - below[a]) / (b - a) for a, b in places) and all(
             above <= _CLIFF * np.median(power[:, a:b]) for a, b in places
         ):
@@ -183,14 +182,14 @@ def _rate_held(spectrum: NDArray[np.complex64], seconds: float, rate: float) -> 
 
 
 def _mean_and_peak(x: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the mean, and the largest deviation from it."""
+    """Return the mean and the largest deviation from it."""
     mean = float(x.mean())
     return mean, max(float(x.max()) - mean, mean - float(x.min()))
 
 
 @njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
 def _cut(x, starts, mean, gain, ramp, out) -> None:
-    """Cut out a row from each start, about the mean, times a gain, with faded ends."""
+    """Fill rows with faded parts of a signal from each start, without the mean, times a gain."""
     n = out.shape[1]
     for row in range(starts.size):
         part = x[starts[row] : starts[row] + n]
@@ -208,7 +207,7 @@ def _ramp(n: int) -> NDArray[np.float32]:
 
 @lru_cache(maxsize=8)
 def _gains(microhertz: int, seconds: float) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Gains of the whole band, A-weighted, and of its high part, by bin."""
+    """Return the gains of the A-weighted band and of its high part, by bin."""
     limit = min(WORKING_LIMIT, USABLE_SHARE * 1e-6 * microhertz)
     spacing = 1.0 / seconds
     end = 1.07 * limit
@@ -231,7 +230,7 @@ def _band_power(
     aside: float,
     length: int,
 ) -> NDArray[np.float32]:
-    """Power of a band in each frame, from its analytic signal at a rate of the band's width."""
+    """Return the power of a band in each frame, from its decimated analytic signal."""
     low, high = band
     first, last = round(low * seconds), round(high * seconds)
     analytic = fft.ifft(spectrum[:, first:last], axis=1) * np.float32(2.0 * (last - first) / length)

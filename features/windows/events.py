@@ -1,11 +1,11 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
-"""Events in windows: where a sound that fills a part of a window only begins and ends.
+"""Short events in windows: detection, and extension to the length of a window.
 
-A squeal of a fifth of a second has the features of its onset, its end and the quiet about it, if
-all of a window is described, and these speak for a stranger. So what lies inside the event is
-mirrored at its end until it fills the window, and that is described. An event is a stretch that
-stands out of its surroundings in some half octave; what a creak's blows have between them belongs
-to it. One that fills a window, or is as short as a single blow, is left as it is.
+The features of a window with a squeal of 0.2 s would describe its onset, its end and the quiet
+around it, like those of a background sound. So the event is extended by reflection until it fills
+the window. An event is a stretch that stands out from its surroundings in a half octave, including
+the gaps between the blows of a creak. Events that fill a window, or are as short as a blow, are not
+extended.
 """
 
 from __future__ import annotations
@@ -20,56 +20,56 @@ from features.windows.blocks import FRAME_RATE, RATE
 from models.compilation import COMPILED
 
 _SEARCH = 32
-"""Samples in which a peak is sought: a period of 500 Hz."""
+"""Samples in which a peak is searched: a period of 500 Hz."""
 
 _BEFORE, _AFTER = 75, 125
-"""Frames before and after the beginning of a window that are its surroundings."""
+"""Frames of the surroundings before and after the start of a window."""
 
 _FLOOR = 0.2
-"""Share of the surroundings that lie below their floor [-]."""
+"""Quantile of the levels of the surroundings that is their floor [-]."""
 
 _RANGE_DB = 80.0
-"""What lies farther below the loudest frame of a window is no floor of it [dB]: silence."""
+"""Maximum range of the floor below the loudest frame of a window [dB]."""
 
 _RISE_DB = 8.0
-"""Least that an event stands above the floor [dB]."""
+"""Minimum level of an event above the floor [dB]."""
 
 _DROP_DB = 14.0
-"""What lies farther below the loudest frame of an event is outside of it [dB]."""
+"""Range of an event below its loudest frame [dB]."""
 
 _GAP = 18
-"""Most frames from one blow of a creak to the next."""
+"""Maximum number of frames between blows of a creak."""
 
 _OF_WINDOW = 47
-"""Frames that lie in a window as a whole."""
+"""Number of whole frames in a window."""
 
 _LEAST, _MOST = 8, 40
-"""Frames of an event that is described by itself, at least and at most."""
+"""Minimum and maximum number of frames of an extended event."""
 
 _FROM_FIRST, _FROM_LAST = 0.024, 0.008
-"""From the beginning of an event's first frame to that of what is described, and from that of its
-last one to the end [s]: frames of 32 ms stand out as soon as a third of them does."""
+"""Offsets from the starts of the first and last frame of an event to its start and end [s]: a frame
+of 32 ms stands out as soon as a third of it does."""
 
 
 def events_within(
     bands: NDArray[np.float32], start: NDArray[np.floating]
 ) -> tuple[NDArray[np.intp], NDArray[np.int64], NDArray[np.int64]]:
-    """Find the windows that an event fills in part.
+    """Return the windows that are partly filled by an event.
 
     Parameters
     ----------
     bands : ndarray of float32, shape (n_frames, n_bands)
-        Level in half octaves [dB], as `features.windows.frames.describe_frames` gives it; what lies
-        outside of them counts as silence.
+        Levels in half octaves [dB], from `features.windows.frames.describe_frames`; silence is
+        assumed before and after.
     start : ndarray, shape (n_windows,)
-        Beginning of each window [s].
+        Start of each window [s].
 
     Returns
     -------
     which : ndarray of int, shape (n_events,)
-        Windows with such an event; of several, that with most in it.
+        Windows with such an event; the longest one in each.
     begin, end : ndarray of int, shape (n_events,)
-        Samples at `features.windows.blocks.RATE` between which it lies.
+        First sample and end of the event at `features.windows.blocks.RATE`.
 
     Examples
     --------
@@ -104,7 +104,7 @@ def events_within(
 
 @njit(cache=True, **COMPILED)
 def _longest(above, highest, inside, ends) -> None:
-    """Fill in first and last frame of the event that has most in each window, if it is one."""
+    """Fill in first and last frame of the longest event in each window, if there is one."""
     for w in range(above.shape[0]):
         start, stop = _BEFORE, _BEFORE + inside[w] - 1
         if highest[w] < _RISE_DB:
@@ -118,7 +118,7 @@ def _longest(above, highest, inside, ends) -> None:
                 a, b = min(max(first, start), stop), min(max(last, start), stop)
                 if b - a > longest:
                     longest = b - a
-                    # All of it that fills a window, with the part in this one.
+                    # As much of it as fits into a window, including the part in this window.
                     ends[w, 0] = max(first, b - _OF_WINDOW)
                     ends[w, 1] = min(last, ends[w, 0] + _OF_WINDOW)
                 first = -1
@@ -135,16 +135,16 @@ def prolonged(
     end: NDArray[np.int64],
     length: int,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-    """Mirror events at their ends until they are as long as a window.
+    """Return events extended by reflection to the length of a window.
 
     Parameters
     ----------
     parts : sequence of three ndarrays of float32
-        Sound, its high part and its top, as `features.windows.table.describe_windows` takes them.
+        Sound, high part and top, as in `features.windows.table.describe_windows`.
     begin, end : ndarray of int, shape (n_events,)
         Samples of the sound.
     length : int
-        Of each window [samples].
+        Length of a window [samples].
 
     Returns
     -------
@@ -161,7 +161,7 @@ def prolonged(
     (True, (1, 50, 2))
     """
     hop = RATE // FRAME_RATE
-    # A tone that is mirrored at a peak goes on without a jump of its phase.
+    # A tone that is reflected at a peak has no jump of phase.
     peaks = [
         (a + _highest(parts[0][a : a + _SEARCH]), b - _highest(parts[0][b - _SEARCH : b][::-1]))
         for a, b in zip(begin.tolist(), np.minimum(end, len(parts[0])).tolist(), strict=True)
@@ -176,7 +176,7 @@ def prolonged(
 def _mirrored(
     begin: NDArray[np.int64], end: NDArray[np.int64], length: int, n: int
 ) -> NDArray[np.int64]:
-    """Return indices that run to and fro between `begin` and `end` or `n`, a row an event."""
+    """Return indices that run to and fro between `begin` and `end` or `n`, a row per event."""
     period = np.maximum(2 * (np.minimum(end, n) - begin - 1), 1)[:, None]
     step = np.arange(length) % period
     return np.asarray(begin[:, None] + np.minimum(step, period - step))

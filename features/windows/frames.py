@@ -1,12 +1,12 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
-"""Short frames of a sound, and what a window says of its own.
+"""Short frames of a sound, and features of windows from the course of their frames.
 
-Of a frame: strength, tonality, pitch, and likeness to the one before. Of a window: how these
-wander. A friction tone holds its frequency; a dog, a cock or a siren glides, a voice has syllables
-and formants. Frames count by their power, so that pauses say nothing about the pitch.
+A frame has strength, tonality, pitch and similarity to the frame before; a window describes their
+variation. A friction tone has a steady frequency; calls and sirens glide, and a voice has syllables
+and formants. Frames are weighted by power, so that pauses do not affect the pitch.
 
-Windows of as many frames are described together. Each sum runs over the frames in their order, so
-that a window's numbers do not depend on which others are described with it.
+Windows with equal numbers of frames are described together. Sums run over the frames in order, so
+that the features of a window do not depend on the other windows.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from features.windows.blocks import FRAME_RATE, RATE
 from models.compilation import COMPILED, PART
 
 FRAME = 512
-"""Samples of a frame."""
+"""Samples per frame."""
 
 HOP = RATE // FRAME_RATE
 """Samples from one frame to the next."""
@@ -31,39 +31,39 @@ HOP = RATE // FRAME_RATE
 _SPACING = RATE / FRAME
 _FIRST_BIN = 5
 _EDGES = (5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 225)
-"""Of half-octave bands, in bins: 156 Hz to 7 kHz."""
+"""Edges of half-octave bands in bins: 156 Hz to 7 kHz."""
 
 BANDS = len(_EDGES) - 1
 
 _LOBE = 2
-"""Bins on either side that belong to a maximum."""
+"""Bins of a maximum on either side."""
 
 _APART = 5
-"""Bins that a second maximum lies away from the first."""
+"""Minimum distance of a second maximum from the first, in bins."""
 
 _LAGS = (16, 200)
-"""Between them the period of a voice is sought: 80 Hz to 1 kHz."""
+"""Range of the period of a pitch in samples: 80 Hz to 1 kHz."""
 
 _LEAST = np.float32(1e-20)
 
 _AT_ONCE = 255
-"""Frames whose spectra stay in the cache."""
+"""Number of frames whose spectra fit in the cache."""
 
 FRAME_COLUMNS = (
     "energy", "flatness", "centroid", "peak", "peak_share", "second", "flux", "pitch", "voiced",
 )  # fmt: skip
-"""What is known of a frame beside its bands.
+"""Columns of a frame beside its bands.
 
-Energy [dB re the block's scale]; geometric over arithmetic mean of the power [dB]; centroid and
-frequency of the strongest maximum [octave re 1 kHz]; the share of the power in that maximum; the
-next maximum re the first [dB]; one less the cosine between magnitudes of this frame and the one
-before; pitch [octave re 100 Hz] and how periodic the frame is at it (0 to 1).
+Energy [dB re the scale of the block]; ratio of geometric to arithmetic mean of the power [dB];
+centroid and frequency of the strongest maximum [octave re 1 kHz]; share of the power in that
+maximum; level of the second maximum re the first [dB]; one minus the cosine between the magnitudes
+of this frame and the frame before; pitch [octave re 100 Hz] and periodicity at the pitch (0 to 1).
 """
 
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Frames of some seconds of sound.
+    """Features of the frames of a sound.
 
     Parameters
     ----------
@@ -78,19 +78,19 @@ class Frames:
 
 
 def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
-    """Describe the frames of a sound.
+    """Return the features of the frames of a sound.
 
     Parameters
     ----------
     sound : ndarray of float32, shape (n,) or (n_sounds, n)
-        At `RATE`, in any [unit].
+        Samples at `RATE` [any unit].
     limit : float
-        Frequency up to which it is described [Hz].
+        Upper frequency limit [Hz].
 
     Returns
     -------
     Frames
-        Of one sound after the other.
+        Frames of one sound after the other.
 
     Examples
     --------
@@ -108,13 +108,13 @@ def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
     values = np.empty((len(frames), len(FRAME_COLUMNS)), dtype=np.float32)
     bands = np.empty((len(frames), BANDS), dtype=np.float32)
     for first in range(0, len(frames), _AT_ONCE):
-        # With the frame before them, which they are compared with.
+        # Including the frame before, for the comparison.
         lead = min(first, 1)
         part = slice(first, first + _AT_ONCE)
         columns, of_bands = _described(frames[first - lead : first + _AT_ONCE], last)
         values[part], bands[part] = columns[lead:], of_bands[lead:]
     if each > 1:
-        # The first has none before it.
+        # The first frame has none before.
         flux = values[:, FRAME_COLUMNS.index("flux")]
         flux[::each] = flux[1::each]
     np.log10(bands, out=bands)
@@ -125,7 +125,7 @@ def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
 def _described(
     frames: NDArray[np.float32], last: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return `FRAME_COLUMNS` of some frames, and the power in their bands."""
+    """Return `FRAME_COLUMNS` of frames, and the power in their bands."""
     power = power_of(fft.rfft(frames * _WINDOW, axis=1), _LEAST)
     correlation = fft.irfft(power, axis=1)[:, : _LAGS[1] + 2] * _TAPER
     values = np.empty((len(power), len(FRAME_COLUMNS)), dtype=np.float32)
@@ -144,7 +144,7 @@ _OCTAVE = np.log2(np.maximum(np.arange(FRAME // 2 + 1), 1) * (_SPACING / 1000.0)
 
 @njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
 def _describe(power, magnitude, correlation, last, values) -> None:
-    """Fill in the columns; that of the flatness holds the mean logarithm of the power before."""
+    """Fill in the columns; on entry, that of the flatness has the mean logarithm of the power."""
     for i in range(power.shape[0]):
         p = power[i]
         total, moment, highest = _sums(p, last)
@@ -170,7 +170,7 @@ def _describe(power, magnitude, correlation, last, values) -> None:
                 before += magnitude[i - 1, k] * magnitude[i - 1, k]
         r = correlation[i]
         best, period = np.float32(0.0), 0
-        # The shortest lag that is nearly as good as the best: not a multiple of the period.
+        # The shortest lag that is nearly as good as the best is no multiple of the period.
         for lag in range(_LAGS[0], _LAGS[1] + 1):
             if r[lag] > 1.08 * best and r[lag] > r[lag - 1] and r[lag] >= r[lag + 1]:
                 best, period = r[lag], lag
@@ -197,13 +197,13 @@ def _sums(p, last):
 
 
 _MOST_DB = 60.0
-"""Range beyond which levels count as silence [dB]."""
+"""Range of levels below the loudest frame [dB]."""
 
 _QUIETEST_BAND_DB = -70.0
 
 
 class Course:
-    """Course of the frames of windows of one length, which `features.table` describes.
+    """Features from the course of the frames of windows of equal length, for `features.table`.
 
     Parameters
     ----------
@@ -258,7 +258,7 @@ class Course:
         )
         jump = np.abs(np.diff(peak, axis=0)).astype(np.float64)
         self.peak_jump = np.median(jump, axis=0)
-        # Most frames in a row of which each has its maximum where the one before has it.
+        # Longest run of frames with the maximum at the same frequency.
         step = np.arange(n - 1)[:, None]
         steady = (jump < 0.02) & (weight[1:] > 0.003)
         broken = np.maximum.accumulate(np.where(steady, -1, step), axis=0)
@@ -266,7 +266,7 @@ class Course:
         self._describe_bands(bands, level)
 
     def _describe_bands(self, bands: NDArray[np.float32], level: NDArray[np.float32]) -> None:
-        """Find mean power of the bands, and how far they change together."""
+        """Compute the mean power of the bands, and their common variation."""
         m, n, windows = bands.shape
         relative = (bands - level.max(axis=0)).astype(np.float64)
         power = ordered_sum(10.0 ** (0.1 * relative), axis=1)
@@ -278,7 +278,7 @@ class Course:
         self.band_rise, self.band_rising = rises.max(axis=0), rises.argmax(axis=0) + 1
         onsets = ordered_sum(np.maximum(np.diff(height, axis=1), 0.0)) / m
         self.onset, self.onset_mean = onsets.max(axis=0), ordered_sum(onsets) / (n - 1)
-        # One less the mean variance of what is left once the common rise and fall is taken out.
+        # Share of the variance that is common to all bands.
         height -= ordered_sum(height / n, axis=1)[:, None]
         mean = ordered_sum(height / m)
         common = ordered_sum(mean * mean)
@@ -291,7 +291,7 @@ def _wander(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return weighted median, robust deviation and slope [1/s] of a trajectory with gaps.
 
-    A gap has no weight; all three are NaN where nothing has any.
+    A gap has no weight; without any weight, all three are NaN.
     """
     weight = np.where(weight > 0.0, weight, 0.0)
     whole = ordered_sum(weight)

@@ -1,10 +1,10 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
-"""Power spectra of windows and their lines: how many, how strong, and whether harmonics of one.
+"""Power spectra of windows and their lines: number, strength and harmonic relations.
 
-A bin is 3.9 Hz wide, so that a squawk of 100 Hz shows each of its harmonics, and three overlapping
-spectra of a quarter of a second are added up. What stands 10 dB above its surroundings and falls
-to either side before the next rises is a line, as in `features.kernels.lines`. Sums over many bins
-are left to the compiler's order, which is several times as fast.
+A bin has 3.9 Hz, which separates the harmonics of a squawk of 100 Hz, and three overlapping spectra
+of a quarter of a second are added. A line is 10 dB above its surroundings and above the saddles
+beside it, as in `features.kernels.lines`. Sums over many bins are in the order of the compiler,
+which is several times as fast.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from models.compilation import COMPILED, PART
 _SEGMENT = 4000
 _LENGTH = 4096
 SEGMENT_HOP = 2000
-"""Samples from one long spectrum to the next."""
+"""Hop of the long spectra in samples."""
 
 SPACING = 16_000 / _LENGTH
-"""Of the bins [Hz]."""
+"""Spacing of the bins [Hz]."""
 
 FIRST = 38
-"""Bin from which spectra are described: 148 Hz."""
+"""First described bin: 148 Hz."""
 
 LOBE = 3
-"""Bins on either side of a line that are its own."""
+"""Bins of a line on either side."""
 
 BLOCK = 32
-"""Bins whose median is the floor of all of them."""
+"""Bins per block, whose median is the floor."""
 
 _LEAST = np.float32(1e-20)
 
@@ -49,27 +49,27 @@ _KILOHERTZ = (256, 512, 1024, 1 << 20)
 _MOST_LINES = 40
 
 _RANGE_DB = 30.0
-"""Weaker lines than this below the strongest bin are none [dB]."""
+"""Range of lines below the strongest bin [dB]."""
 
 _STRONG_DB = 18.0
-"""Stronger ones than this below it are counted as strong [dB]."""
+"""Range of strong lines below the strongest bin [dB]."""
 
 _STANDS_DB = 10.0
-"""What a line stands above the floor, and above the saddle to the next [dB]."""
+"""Minimum level of a line above the floor and above the saddle to the next line [dB]."""
 
 
 def segments_of(sound: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Cut sounds into quarters of a second that overlap by half.
+    """Return segments of sounds of a quarter of a second that overlap by half.
 
     Parameters
     ----------
     sound : ndarray of float32, shape (n,) or (n_sounds, n)
-        At `features.windows.blocks.RATE` [any unit]; zeros follow its end.
+        Samples at `features.windows.blocks.RATE` [any unit]; they are padded with zeros.
 
     Returns
     -------
     ndarray of float32, shape (n_segments, 4000)
-        Of one sound after the other [unit of the sound].
+        Segments of one sound after the other [unit of the sound].
 
     Examples
     --------
@@ -88,16 +88,16 @@ _WINDOW = np.hanning(_SEGMENT + 2)[1:-1].astype(np.float32)
 
 
 class Lines:
-    """Spectra and lines of windows, which `features.table` describes.
+    """Features of the spectra and lines of windows, for `features.table`.
 
     Parameters
     ----------
     segments : ndarray of float32, shape (n_segments, 4000)
-        As `segments_of` gives them.
+        Segments from `segments_of`.
     at : ndarray of int, shape (n_windows, n)
-        Segments of each window, whose power spectra are added up.
+        Segments of each window, whose power spectra are added.
     limit : float
-        Frequency up to which lines are sought [Hz]; at least to 273 Hz.
+        Upper frequency limit of lines [Hz]; at least 273 Hz.
 
     Examples
     --------
@@ -128,14 +128,14 @@ class Lines:
         self.below_line = _decibel(below / line, 1e-5)
         above = (self.total - (line + below)) / line.astype(np.float64)
         self.above_line = _decibel(above, 1e-5)
-        # Above 1, 2 and 4 kHz.
+        # Levels above 1, 2 and 4 kHz.
         self.octaves_above = [_decibel(sum(octaves[i:]) / self.total, 1e-6) for i in (1, 2, 3)]
         self.top, low, high = bins
         self.width = (high - low) * SPACING
         self._describe_lines()
 
     def _describe_lines(self) -> None:
-        """Find the lines and what they are harmonics of."""
+        """Compute the features of the lines and their harmonics."""
         level, top, end, n = self.level, self.top, self.end, len(self.level)
         windows = np.arange(n)
         left, middle, right = (level[windows, top + i] for i in (-1, 0, 1))
@@ -164,7 +164,7 @@ class Lines:
         strongest = np.sort(
             np.pad(heights, ((0, 0), (2, 0)), constant_values=-200.0).astype(np.float64), axis=1
         )[:, :-4:-1].T
-        # Of the second and third line, re the first.
+        # Levels of the second and third line, re the first.
         self.next_levels = np.where(
             count > 0, np.maximum(strongest[1:] - strongest[0], -_RANGE_DB), -_RANGE_DB
         )
@@ -180,10 +180,10 @@ class Lines:
     def _describe_harmonics(
         self, at: NDArray[np.int64], height: NDArray[np.float32], place: NDArray[np.float64]
     ) -> None:
-        """Find the fundamental whose multiples hold most of the power in lines.
+        """Compute the fundamental whose multiples contain most of the power in lines.
 
-        Lines are given by bin and height [dB re the strongest bin]; `place` is that of the
-        strongest bin's maximum [bins].
+        Lines are given by bin and height [dB re the strongest bin]; `place` is the interpolated
+        bin of the strongest maximum.
         """
         n = len(at)
         base = place[:, None] / _DIVISORS
@@ -244,7 +244,7 @@ def _measure(power, end, level, sums, bins) -> None:
         for i in range(3):
             for k in range(_KILOHERTZ[i], max(_KILOHERTZ[i], min(end, _KILOHERTZ[i + 1]))):
                 sums[6 + i, w] += p[k]
-        # Flatness, and a line through the blocks' mean levels over the octave.
+        # Flatness, and a linear fit of the mean levels of blocks over octaves.
         logarithms = np.float32(0.0)
         sx, sy, sxx, sxy = 0.0, 0.0, 0.0, 0.0
         for b in range(n_blocks):
@@ -261,7 +261,7 @@ def _measure(power, end, level, sums, bins) -> None:
             sy += mean
             sxx += x * x
             sxy += x * mean
-        # The strongest bin's own power reaches as far as a friction tone wanders.
+        # The strongest line is as wide as a friction tone wanders.
         reach = LOBE + int(0.005 * top)
         line = np.float32(0.0)
         for k in range(max(FIRST, top - reach), min(end, top + reach + 1)):
@@ -292,14 +292,14 @@ def _add_lines(power, row, at, end, sums) -> None:
 
 @njit(cache=True, **COMPILED)
 def _find_clearest(level, floor, end, stands, at, count) -> None:
-    """Find the line that stands highest above the floor about it, be it the strongest or not.
+    """Fill in the line that is highest above the floor, which may not be the strongest.
 
-    The floor runs straight from the middle of each block to that of the next.
+    The floor is interpolated between the centres of blocks.
     """
     blocks = floor.shape[1]
     for w in range(level.shape[0]):
         best, where, clear = np.float32(-np.inf), FIRST, 0
-        for b in range(-1, blocks):  # from the middle of a block to that of the next
+        for b in range(-1, blocks):  # between the centres of two blocks
             low, high = floor[w, max(b, 0)], floor[w, min(b + 1, blocks - 1)]
             step = (high - low) / np.float32(BLOCK)
             begin = FIRST + b * BLOCK + BLOCK // 2
@@ -313,10 +313,10 @@ def _find_clearest(level, floor, end, stands, at, count) -> None:
 
 
 def _floor(level: NDArray[np.float32], end: int) -> NDArray[np.float32]:
-    """Return the median level of each block; a short last one takes that before it."""
-    half, rest = BLOCK // 2, (end - FIRST) % BLOCK  # there is a whole one at least
+    """Return the median level of each block; a short last block has that of the block before."""
+    half, rest = BLOCK // 2, (end - FIRST) % BLOCK  # one whole block at least
     blocks = level[:, FIRST : end - rest].reshape(len(level), -1, BLOCK)
-    middle = np.sort(blocks, axis=2)  # of so few, faster than a partition
+    middle = np.sort(blocks, axis=2)  # faster than a partition of so few
     floor = (middle[:, :, half - 1] + middle[:, :, half]) / np.float32(2.0)
     if rest >= half:
         last = np.median(level[:, end - rest : end], axis=1, keepdims=True)
@@ -326,7 +326,7 @@ def _floor(level: NDArray[np.float32], end: int) -> NDArray[np.float32]:
 
 
 def _spacing_spread(at: NDArray[np.int64], count: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return the mean deviation of the distances between at least three lines, over their mean."""
+    """Return the relative mean deviation of the spacings of at least three lines."""
     out, several = np.full(count.size, np.nan), count > 2
     at, n = at[several], count[several, None] - 1
     mean = (np.take_along_axis(at, n, axis=1) - at[:, :1]) / n
@@ -337,19 +337,19 @@ def _spacing_spread(at: NDArray[np.int64], count: NDArray[np.int64]) -> NDArray[
 
 
 _DIVISORS = np.arange(1, 9)
-"""The strongest bin is one of these harmonics."""
+"""Possible harmonic numbers of the strongest line."""
 
 _LOWEST = 40.0
-"""Fundamental [Hz]."""
+"""Minimum fundamental [Hz]."""
 
 _LOWER = 0.93
-"""A lower fundamental has more multiples, so it must explain notably more [ratio]."""
+"""Factor per divisor, because a lower fundamental has more multiples [-]."""
 
 
 def _in_multiples(
     power: NDArray[np.float32], fundamental: NDArray[np.float64], end: int
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return power and number of the bins about the multiples of each fundamental [bins]."""
+    """Return power and number of the bins near the multiples of each fundamental [bins]."""
     most = int(end / fundamental.min(initial=end))
     multiple = np.arange(1, most + 1) * fundamental[:, None]
     centre = np.rint(multiple).astype(np.int64)

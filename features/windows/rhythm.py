@@ -1,9 +1,9 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
-"""The rhythm of blows in a window, which tells a creak from rain, and both from a tone.
+"""Rhythm of blows in a window, which distinguishes a creak from rain and from tones.
 
-The power of the sound above 2 kHz, and of all of it, every quarter of a millisecond.
-A creak is a row of blows whose intervals are alike from one to the next while their rate may glide;
-rain's intervals are random, a clock's and an engine's are all the same.
+It is computed from the power of the sound above 2 kHz, and of all of it, every 0.25 ms. A creak is
+a series of blows with similar consecutive intervals and a gliding rate; intervals of rain are
+random, and those of a clock or an engine are constant.
 """
 
 from __future__ import annotations
@@ -28,42 +28,42 @@ from models.compilation import COMPILED
 
 _STEP = 4
 ENVELOPE_RATE = RATE // _STEP
-"""Rate of the envelope [Hz]."""
+"""Sampling rate of the envelope [Hz]."""
 
 _LENGTH = 4096
 _LAGS = (6, 900)
-"""Between them a period of blows is sought: 4.4 to 667 a second."""
+"""Range of the period of blows in samples: 4.4 to 667 per second."""
 
 _LEAST_SAMPLES = 32
-"""Shorter windows are not described."""
+"""Minimum number of samples of a window."""
 
 _SILENCE = 1e-20
 """Mean power below which a window is silent."""
 
 _PROMINENCE_DB = 6.0
-"""What a blow stands out of what is around it [dB]."""
+"""Prominence of a blow [dB]."""
 
 _PULSE_RANGE_DB = 20.0
-"""Weaker ones than this below the strongest are none [dB]."""
+"""Range of blows below the strongest [dB]."""
 
 _DECAY = 16
-"""Samples after which the fall from a blow is read: 4 ms."""
+"""Delay of the decay after a blow in samples: 4 ms."""
 
 _LEAST_BLOWS = 4
-"""For a description of their intervals."""
+"""Minimum number of blows to describe intervals."""
 
 _NO_BLOWS = -4.0
-"""Rate where there are none [octave re 10 a second]."""
+"""Rate without blows [octave re 10 per second]."""
 
 _BETTER = 1.1
-"""How much stronger a longer period must be than the shorter ones [ratio]."""
+"""Minimum ratio of the strength of a longer period to shorter ones [-]."""
 
 _MODULATION = (4, 12, 31, 82, 205, 410, 820, 1640)
 """Edges of the bands of modulation, in bins of about 1 Hz."""
 
 
 def envelope(signal: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Power of a signal, averaged over a quarter of a millisecond; rows follow one another.
+    """Return the mean power of a signal every 0.25 ms; rows are concatenated.
 
     Examples
     --------
@@ -85,20 +85,20 @@ def _mean_squares(signal, power) -> None:
 
 
 def rhythm_of(power: NDArray[np.float32], size: int) -> dict[str, NDArray[np.floating]]:
-    """Describe the rhythm of windows of one length.
+    """Return rhythm features of windows of equal length.
 
     Parameters
     ----------
     power : ndarray of float32, shape (n_windows, n)
-        As `envelope` gives it; 2000 samples at most, which is changed.
+        Envelopes from `envelope`, of at most 2000 samples; they are changed.
     size : int
-        Samples that the deviation is shared by: those of a whole window, where there is one.
+        Number of samples for the deviation.
 
     Returns
     -------
     dict of str to ndarray, shape (n_windows,)
-        By name, as `features.table` has them, in their units [dB, octave, 1/s or -]; what
-        needs 32 samples and sound in them is NaN without.
+        Features by name, as in `features.table`, in their units [dB, octave, 1/s or -]; most are
+        NaN for less than 32 samples and for silence.
 
     Examples
     --------
@@ -136,7 +136,7 @@ def rhythm_of(power: NDArray[np.float32], size: int) -> dict[str, NDArray[np.flo
 
 @njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
 def _amplitudes(power, size, varying, mean, spread) -> None:
-    """Fill in each window's amplitude about the mean, that mean, and the deviation."""
+    """Fill in the amplitude of each window without its mean, the mean and the deviation."""
     for w in range(power.shape[0]):
         amplitude = varying[w]
         n = power.shape[1]
@@ -154,10 +154,10 @@ def _amplitudes(power, size, varying, mean, spread) -> None:
 
 @njit(cache=True, **COMPILED)
 def _smooth(rows, smooth, average, fourth) -> None:
-    """Fill in the power of the last millisecond, its mean, and the sum of its squares re that."""
+    """Fill in the power of the last millisecond, its mean, and its relative sum of squares."""
     n = rows.shape[1]
     for w in range(rows.shape[0]):
-        power = 0.0  # in double precision, so that rounding does not creep
+        power = 0.0  # double precision, against accumulated rounding
         whole = np.float32(0.0)
         for i in range(n):
             power += rows[w, i]
@@ -174,14 +174,14 @@ def _smooth(rows, smooth, average, fourth) -> None:
 
 
 def _spread(values: NDArray[Any], chosen: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Return values where they are chosen, NaN elsewhere."""
+    """Return an array with values where chosen, NaN elsewhere."""
     out = np.full(chosen.size, np.nan)
     out[chosen] = values
     return out
 
 
 def _level(smooth: NDArray[np.float32], peak: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return levels re the peak, no lower than -80 dB."""
+    """Return levels re the peak, at least -80 dB."""
     share: NDArray[np.float32] = np.maximum(smooth / peak[:, None], np.float32(1e-8))
     np.log(share, out=share)
     share *= np.float32(10.0 / np.log(10.0))
@@ -189,13 +189,13 @@ def _level(smooth: NDArray[np.float32], peak: NDArray[np.float32]) -> NDArray[np
 
 
 def _loudest_tenth(smooth: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the sum over the loudest tenth, from the least of it to the most."""
+    """Return the sum over the loudest tenth, in increasing order."""
     rest = smooth.shape[1] - max(1, smooth.shape[1] // 10)
     return ordered_sum(np.sort(np.partition(smooth, rest, axis=1)[:, rest:], axis=1), axis=1)
 
 
 def _period(correlation: NDArray[np.float32], n: int) -> dict[str, NDArray[np.float64]]:
-    """Find the period of the envelope: the shortest lag nearly as good as any."""
+    """Return the features of the period of the envelope: the shortest of nearly equal lags."""
     strength, second = np.zeros(len(correlation)), np.full(len(correlation), np.nan)
     period = np.zeros(len(correlation), dtype=np.int64)
     _strongest_lags(correlation, n, strength, period, second)
@@ -209,13 +209,13 @@ def _period(correlation: NDArray[np.float32], n: int) -> dict[str, NDArray[np.fl
 
 @njit(cache=True, **COMPILED)
 def _strongest_lags(correlation, n, best, period, second) -> None:
-    """Fill in the best lag of each row, how strong it is, and how strong twice the lag is."""
+    """Fill in the best lag of each row, its strength, and the strength of twice the lag."""
     least, most = _LAGS
     for w in range(correlation.shape[0]):
         c, power = correlation[w], correlation[w, 0]
         if not power > 0.0:
             continue
-        # The first fall below zero or to a tenth ends the peak at no lag.
+        # The peak at lag zero ends at the first value up to a tenth.
         begin = 1
         while begin < most and c[begin] > 0.1 * np.float64(power):
             begin += 1
@@ -235,7 +235,7 @@ def _strongest_lags(correlation, n, best, period, second) -> None:
 
 
 def _blows(level: NDArray[np.float32]) -> dict[str, NDArray[np.floating]]:
-    """Describe times and heights of the maxima that stand out of what surrounds them."""
+    """Return the features of the blows, which are prominent maxima."""
     windows, n = level.shape
     row, at = prominent_maxima(level, 0, n, _PROMINENCE_DB)
     high = level[row, at] >= -_PULSE_RANGE_DB
@@ -259,12 +259,12 @@ def _blows(level: NDArray[np.float32]) -> dict[str, NDArray[np.floating]]:
 
 
 def _intervals(at: NDArray[np.int64], count: NDArray[np.int64]) -> dict[str, NDArray[np.floating]]:
-    """Describe how the intervals between blows change, where there are at least four blows."""
+    """Return the features of the intervals between at least four blows."""
     several = count >= _LEAST_BLOWS
     at, n = at[several], count[several] - 1
     inside = np.arange(at.shape[1] - 1) < n[:, None]
     gap = np.where(inside, np.diff(at, axis=1), 1).astype(np.float32)
-    # The C library's logarithm in single precision; NumPy's own differs in the last digit.
+    # Logarithm of the C library in single precision; that of NumPy differs in the last digit.
     logarithm = special.xlogy(np.float32(1.0), gap).astype(np.float64)
     interval = (OCTAVES * logarithm).astype(np.float32)
     last = np.take_along_axis(at, n[:, None], axis=1)

@@ -1,10 +1,10 @@
-"""All features of the windows that begin in some seconds of signal, side by side.
+"""All features of the windows that begin in a part of a signal.
 
-Windows of half a second begin every quarter of a second. The signal goes on for half a second after
-the last of them begins, so that what is cut into such chunks has windows across the cuts.
+Windows of half a second begin every quarter of a second. The signal continues for half a second
+after the start of the last window, so that parts have windows across their borders.
 
-An event that fills a part of a window only is described as if it went on
-(`features.windows.events`): its edges, and what surrounds it, say nothing of what sounds.
+A short event in a window is extended before it is described (`features.windows.events`), so that
+its edges and surroundings do not affect the features.
 """
 
 from __future__ import annotations
@@ -23,27 +23,27 @@ from features.windows.lines import Lines, segments_of
 from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythm_of
 
 LENGTH = 0.5
-"""Of a window [s]."""
+"""Duration of a window [s]."""
 
 HOP = 0.25
-"""From the beginning of a window to that of the next [s]."""
+"""Hop of windows [s]."""
 
 _LEAST_FRAMES = 3
 
 WINDOW_NAMES = tuple(feature.name for feature in WINDOW_FEATURES)
-"""Of the columns of `WindowTable.features`, by `features.table.WINDOW_FEATURES`."""
+"""Names of the columns of `WindowTable.features`, from `features.table.WINDOW_FEATURES`."""
 
 
 @dataclass(frozen=True, eq=False)
 class WindowTable:
-    """Windows of some seconds of signal, and the frames that they are made of.
+    """Features of the windows in a part of a signal, and its frames.
 
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
         By `WINDOW_NAMES`, each in its declared [unit]; NaN where undefined.
     level : ndarray of float32, shape (n_windows,)
-        Power of each window [dB re the signal's unit].
+        Level of each window [dB re the unit of the signal].
     frames : ndarray of float32, shape (n_frames, n_columns + n_bands)
         By `features.windows.frames.FRAME_COLUMNS`, then the bands, both re the signal's [unit].
     """
@@ -54,7 +54,7 @@ class WindowTable:
 
 
 def window_count(n: int) -> int:
-    """Return how many windows begin in `n` samples at 16 kHz: the last holds half its length.
+    """Return the number of windows in `n` samples at 16 kHz; the last has half its length at least.
 
     Examples
     --------
@@ -73,21 +73,21 @@ def describe_windows(
     windows: int,
     limit: float,
 ) -> WindowTable:
-    """Describe the windows that begin in some seconds of signal.
+    """Return the features of the windows that begin in a part of a signal.
 
     Parameters
     ----------
     sound, high : ndarray of float32, shape (n,)
-        As `features.windows.blocks.Block` has them, with what follows as far as the last window
-        reaches and the recording goes.
+        As in `features.windows.blocks.Block`, up to the end of the last window or of the
+        recording.
     top : ndarray of float32, shape (n_frames, 2)
-        As of `features.windows.blocks.Block` too.
+        As in `features.windows.blocks.Block`.
     scale : float
         Unit of the three [unit of the signal].
     windows : int
-        How many begin in them.
+        Number of windows.
     limit : float
-        Frequency up to which it is described [Hz].
+        Upper frequency limit [Hz].
 
     Returns
     -------
@@ -104,7 +104,7 @@ def describe_windows(
     features = np.empty((windows, len(WINDOW_NAMES)), dtype=np.float32)
     which, *edges = events_within(frames.bands, np.arange(windows) * HOP)
     if which.size:
-        # Neighbouring windows often hold the same event.
+        # Neighbouring windows often contain the same event.
         events, of_event = np.unique(edges, axis=1, return_inverse=True)
         longer = prolonged((sound, high, top), events[0], events[1], 2 * half)
         inside, numbers = describe_frames(longer[0], limit), np.arange(events.shape[1])
@@ -112,7 +112,7 @@ def describe_windows(
         features[which] = _columns(parts, numbers.size)[of_event.reshape(-1)]
     rest = np.setdiff1d(np.arange(windows), which)
     whole = (rest + 2) * half <= sound.size
-    # Only the last window may hold less than the others.
+    # Only the last window may be shorter.
     for numbers in filter(len, (rest[whole], rest[~whole])):
         parts = _parts((sound, high, top), frames, power, numbers, _OVERLAPPING, limit)
         features[numbers] = _columns(parts, numbers.size)
@@ -125,10 +125,10 @@ def describe_windows(
 
 
 _FRAMES, _SEGMENTS, _POWERS, _TOPS = 47, 3, 2000, 50
-"""Frames, long spectra, samples of the envelope and values above 7 kHz in a window."""
+"""Numbers of frames, long spectra, envelope samples and values above 7 kHz per window."""
 
 _OVERLAPPING, _APART = (25, 2, 1000, 25), (_FRAMES, _SEGMENTS, _POWERS, _TOPS)
-"""As many from one window to the next: in a sound, and where each window is a row of its own."""
+"""Their hops between windows, in a sound and for windows in separate rows."""
 
 
 def _parts(
@@ -139,9 +139,9 @@ def _parts(
     hops: tuple[int, int, int, int],
     limit: float,
 ) -> dict[str, Any]:
-    """Return what is computed of windows of one length, by the names in `features.table`.
+    """Return the parts of `features.table` for windows of equal length, by name.
 
-    Frames and power are those of the sound; the windows are counted by `numbers`.
+    Frames and power are those of the sound; `numbers` are the indices of the windows.
     """
     sound, high, top = sounds
     segments, blows = segments_of(sound), envelope(high)
@@ -168,7 +168,7 @@ def _parts(
 
 
 def _columns(parts: dict[str, Any], count: int) -> NDArray[np.float32]:
-    """Return the features of `count` windows side by side."""
+    """Return the features of `count` windows as columns."""
     out = np.empty((count, len(WINDOW_FEATURES)), dtype=np.float32)
     for column, feature in enumerate(WINDOW_FEATURES):
         out[:, column] = feature.of(parts)
@@ -178,7 +178,7 @@ def _columns(parts: dict[str, Any], count: int) -> NDArray[np.float32]:
 def _above(
     top: NDArray[np.float32], power: NDArray[np.float32], blows: NDArray[np.float32]
 ) -> NDArray[np.float32]:
-    """Return power below 7 kHz, above 2 kHz and in the two bands, a hundredth of a second each."""
+    """Return the power below 7 kHz, above 2 kHz and in the two bands every 10 ms."""
     each = ENVELOPE_RATE // FRAME_RATE
     n = min(len(top), power.size // each)
     means = [part[: n * each].reshape(n, each).mean(axis=1) for part in (power, blows)]
@@ -186,7 +186,7 @@ def _above(
 
 
 class Top:
-    """Power above 7 kHz in windows, which `features.table` describes.
+    """Features of the power above 7 kHz in windows, for `features.table`.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ class Top:
 
 
 def _means(power: NDArray[np.float32], windows: int, hop: int) -> NDArray[np.float32]:
-    """Mean power of each window from the sums of its two halves."""
+    """Return the mean power of each window from the sums of its two halves."""
     padded = np.zeros((windows + 1) * hop, dtype=np.float32)
     padded[: min(power.size, padded.size)] = power[: padded.size]
     halves = padded.reshape(windows + 1, hop).sum(axis=1)

@@ -1,11 +1,9 @@
-"""Sounds of a row of ``background_sounds.toml``: layers of tones, noise, voices and blows in time.
+"""Synthesiser of the rows of ``background_sounds.toml``: layers of tones, noise, voices and blows.
 
-The rows say how a sound of its kind comes about. What tells a throat's call from a squeal: a pitch
-that glides by octaves within a call, formants that stay while it does, a call's own envelope. What
-tells a rough one from a squawk or a creak: periods that double and break, and noise in time with
-them. Blows come singly, at a steady beat, or wholly at random; a machine's tones hang together. A
-bubble rings at the frequency that its radius gives and rises as it nears the surface (Minnaert
-1933).
+Calls of a throat differ from a squeal by a pitch that glides by octaves, by constant formants and
+by an envelope, and rough ones differ from a squawk or creak by irregular periods and modulated
+noise. Blows are single, periodic or random. Tones of a machine have a common modulation. A bubble
+has a frequency by its radius and rises as it nears the surface (Minnaert 1933).
 """
 
 from __future__ import annotations
@@ -33,14 +31,14 @@ Row = Mapping[str, Any]
 
 
 class Draws(dict[str, float]):
-    """Numbers drawn by their ranges, some of them under a name for others to refer to."""
+    """Random numbers from ranges, with names for references."""
 
     def __init__(self, rng: np.random.Generator, names: Mapping[str, float] | None = None) -> None:
         super().__init__(names or {})
         self.rng = rng
 
     def __call__(self, spec: Any) -> float:
-        """Draw a number.
+        """Return a random number from a range.
 
         Examples
         --------
@@ -65,26 +63,26 @@ class Draws(dict[str, float]):
         return number * self.get(spec.get("times", ""), 1.0) / self.get(spec.get("over", ""), 1.0)
 
     def with_names(self, specs: Row | None) -> Draws:
-        """Return the same with further numbers under their names."""
+        """Return a copy with further named numbers."""
         more = Draws(self.rng, self)
         for name, spec in (specs or {}).items():
             more[name] = more(spec)
         return more
 
     def whole(self, spec: Any) -> int:
-        """Draw a whole number, both ends included."""
+        """Return a random integer; both ends are included."""
         if isinstance(spec, list):
             return int(self.rng.integers(spec[0], spec[1] + 1))
         return int(self(spec))
 
 
 def synthesised(row: Row, n: int, rate: float, rng: np.random.Generator) -> Sound:
-    """Draw `n` samples of the sound of a row.
+    """Return a random sound of a row.
 
     Parameters
     ----------
     row : mapping
-        As those of ``background_sounds.toml``.
+        Row of ``background_sounds.toml``.
     n : int
     rate : float
         [Hz]
@@ -120,7 +118,7 @@ def synthesised(row: Row, n: int, rate: float, rng: np.random.Generator) -> Soun
 
 
 def _in_time(layer: Row, n: int, rate: float, draws: Draws) -> Sound:
-    """Put the events of a layer where they belong."""
+    """Return the events of a layer in time."""
 
     def event(m: int, turn: int) -> Sound:
         each = draws.with_names(layer.get("each"))
@@ -147,7 +145,7 @@ def _in_time(layer: Row, n: int, rate: float, draws: Draws) -> Sound:
         at = int(time * rate)
         if at < n:
             part = alike[k % len(alike)] if alike else event(int(draws(length) * rate), k)
-            part = part[max(0, -at) : n - at]  # what was struck before still rings
+            part = part[max(0, -at) : n - at]  # ringing of earlier blows
             sound[max(0, at) : max(0, at) + part.size] += factor * part
     return sound
 
@@ -155,7 +153,7 @@ def _in_time(layer: Row, n: int, rate: float, draws: Draws) -> Sound:
 def repeated(
     n: int, rate: float, when: Row, make: Callable[[int, int], Sound], draws: Draws
 ) -> Sound:
-    """Draw events one after the other; the first may have begun.
+    """Return random consecutive events; the first may have begun before.
 
     Parameters
     ----------
@@ -166,7 +164,8 @@ def repeated(
     when : mapping
         ``lengths`` and ``gaps`` [s]; further keys as in the table.
     make : callable
-        Event of so many samples, an ndarray of shape (m,), and its number.
+        Function from the number of samples m and the index of an event to an ndarray of shape
+        (m,).
     draws : Draws
 
     Examples
@@ -199,7 +198,7 @@ def _ends(pair: list[float]) -> tuple[float, float]:
 
 
 def event_times(when: Row, duration: float, draws: Draws) -> Sound:
-    """Draw times [s]: at a beat, at random, after gaps of a gamma distribution, or after a start.
+    """Return random times [s]: periodic, random, with gamma-distributed gaps, or after a start.
 
     Examples
     --------
@@ -234,7 +233,7 @@ def _strengths(when: Row, count: int, draws: Draws) -> Sound:
 
 
 def _made(part: Row, m: int, rate: float, draws: Draws, turn: int) -> Sound:
-    """Make an event of `m` samples; a blow is as long as it rings."""
+    """Return an event of `m` samples; a blow has its own length."""
     rng, source = draws.rng, part["source"]
     if source == "blow":
         ratios = part.get("ratios", ())
@@ -273,7 +272,7 @@ def _toned(part: Row, m: int, rate: float, draws: Draws, turn: int) -> Sound:
 
 
 def _firing(pitch: Sound, rate: float, rng: np.random.Generator) -> Sound:
-    """Return firing pulses of unequal strength through an exhaust, with noise in time."""
+    """Return unequal firing pulses through an exhaust, with modulated noise."""
     phase = 2 * np.pi * np.cumsum(pitch) / rate
     phase += 0.5 * rng.random() ** 3 * coloured_noise(pitch.size, 1.8, rng)
     unequal = 1.0 + rng.uniform(0.0, 0.6) * np.sin(phase / float(rng.choice((2.0, 3.0, 4.0))))
@@ -288,7 +287,7 @@ def _firing(pitch: Sound, rate: float, rng: np.random.Generator) -> Sound:
 
 
 def _bubble(m: int, rate: float, rng: np.random.Generator) -> Sound:
-    """Return a chirp that rises by up to an octave and dies away."""
+    """Return a decaying chirp that rises by up to an octave."""
     time = np.arange(max(m, 16)) / rate
     start = log_uniform(400.0, 5000.0, rng)
     rise = rng.uniform(0.0, 1.0) * time / time[-1]
@@ -299,7 +298,7 @@ def _bubble(m: int, rate: float, rng: np.random.Generator) -> Sound:
 
 
 def pitch_course(spec: Any, m: int, rate: float, draws: Draws, turn: int = 0) -> Sound:
-    """Draw the pitch [Hz] of an event of `m` samples.
+    """Return the random pitch [Hz] of an event of `m` samples.
 
     Examples
     --------
@@ -311,7 +310,7 @@ def pitch_course(spec: Any, m: int, rate: float, draws: Draws, turn: int = 0) ->
     rng, x, time = draws.rng, np.linspace(0.0, 1.0, m), np.arange(m) / rate
     octaves = np.zeros(m)
     if spec.get("glide"):
-        size = 1.0 if rng.random() < 0.6 else 0.2  # some calls hold their pitch
+        size = 1.0 if rng.random() < 0.6 else 0.2  # some calls have a nearly constant pitch
         peak = rng.uniform(0.1, 0.6)
         rising = np.sin(0.5 * np.pi * x / peak)
         arch = np.where(x < peak, rising, np.cos(0.5 * np.pi * (x - peak) / (1.0 - peak)))
@@ -340,7 +339,7 @@ def pitch_course(spec: Any, m: int, rate: float, draws: Draws, turn: int = 0) ->
 
 
 def _through(sound: Sound, part: Row, rate: float, draws: Draws) -> Sound:
-    """Add resonances of a sound, each of its strength, to what goes past them."""
+    """Return a sound with resonances added to its direct part."""
     if "through" not in part:
         return sound
     level = sound.std() + 1e-12
@@ -358,10 +357,10 @@ def _changed(sound: Sound, row: Row, rate: float, draws: Draws) -> Sound:
 
 
 def _course(change: Row, n: int, rate: float, draws: Draws) -> Sound:
-    """Draw a factor over time."""
+    """Return a random factor over time."""
     ((kind, specs),) = change.items()
     rng, time = draws.rng, np.arange(n) / rate
-    if kind == "strokes":  # forth and back of different strength
+    if kind == "strokes":  # to and fro with different strengths
         pace = draws(specs)
         x = time * pace + rng.random() + 0.15 * wandering(n, rate, pace, rng)
         stroke = np.abs(np.sin(np.pi * x)) ** rng.uniform(0.4, 2.0)
