@@ -93,7 +93,7 @@ class Lines:
     Parameters
     ----------
     segments : ndarray of float32, shape (n_segments, 4000)
-        Segments from `segments_of`.
+        Segments from `segments_of` [any unit].
     at : ndarray of int, shape (n_windows, n)
         Segments of each window, whose power spectra are added.
     limit : float

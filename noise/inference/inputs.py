@@ -98,7 +98,7 @@ def unscaled(name: str, point: float) -> float:
     name : str
         One of `QUANTITIES`.
     point : float
-        Scaled value, as from `scaled`.
+        Scaled value, as from `scaled` [-] or [mm].
 
     Returns
     -------
@@ -129,7 +129,7 @@ def segment_features(
     names : sequence of str
         Names of the columns, as from `features.table.recording_feature_names`.
     known : ndarray, shape (n, 3)
-        Conditions as from `scaled`, NaN if not logged.
+        Conditions as from `scaled` [-, mm, -], NaN if not logged.
 
     Returns
     -------
@@ -202,7 +202,7 @@ def others_of(known: NDArray[np.float64], index: int) -> int:
     Parameters
     ----------
     known : ndarray, shape (3,)
-        Condition as from `scaled`.
+        Condition as from `scaled` [-, mm, -].
     index : int
         Index of the inferred quantity.
 

@@ -139,7 +139,7 @@ class Inference:
         Parameters
         ----------
         features : mapping of str to float
-            Features of the segment, from `features.recording_features`.
+            Features of the segment, from `features.recording_features` [unit of each].
         logged : Condition
             Logged conditions.
         kinds : sequence of str

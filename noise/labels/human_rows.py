@@ -39,8 +39,8 @@ def human_rows(
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files without a calibration.
     new : sequence of (str, float, float, str), optional
-        Segments to be measured if the recording is longer than `LONGEST_MEASURED`, the shortest
-        up to that total; by default all segments.
+        Segments [s], as in `segments`, to be measured if the recording is longer than
+        `LONGEST_MEASURED`, the shortest up to that total; by default all segments.
 
     Returns
     -------

@@ -45,7 +45,7 @@ class Runs:
     tables : ndarray, shape (2, n_runs, n_names)
         Features in the field, and on the rig [unit of each feature].
     scaled : ndarray, shape (n_runs, 3)
-        Conditions as from `noise.inference.inputs.scaled`.
+        Conditions as from `noise.inference.inputs.scaled` [-, mm, -].
     """
 
     tables: NDArray[np.float64]

@@ -107,7 +107,7 @@ class RunSample:
     label : str
         Noise by physics (`noise.noise_definition`).
     scaled : ndarray, shape (3,)
-        Condition, as from `noise.inference.inputs.scaled`.
+        Condition, as from `noise.inference.inputs.scaled` [-, mm, -].
     features : tuple of (mapping of str to float)
         In the field, and on the rig [unit of each feature].
     """

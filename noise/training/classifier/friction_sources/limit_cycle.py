@@ -102,7 +102,7 @@ def carried(
     frequency : float
         Frequency of the carrier [Hz].
     harmonics : ndarray, shape (n_harmonics,)
-        Strengths at an amplitude of 1; the first is that of the carrier.
+        Strengths at an amplitude of 1 [-]; the first is that of the carrier.
     n : int
     rate : float
         [Hz]
