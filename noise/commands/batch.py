@@ -22,7 +22,7 @@ from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_nu
 if TYPE_CHECKING:
     from noise.batch.journal import Journal
     from noise.batch.work import BatchRows, Job, JobResult, Work
-    from noise.recordings.meaning import PascalPerFullScale
+    from noise.recordings.interpretation import PascalPerFullScale
 
     Rows = Iterable[dict[str, object]]
 

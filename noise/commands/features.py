@@ -15,7 +15,7 @@ from noise.commands.options import CALIBRATION, Option, full_scale_of
 
 if TYPE_CHECKING:
     from models.blocks import RecordingBlocks
-    from noise.recordings.meaning import PascalPerFullScale
+    from noise.recordings.interpretation import PascalPerFullScale
 
 
 OPTIONS = (

@@ -23,7 +23,7 @@ from noise.base.progress import note, say
 
 if TYPE_CHECKING:
     from models.rig import Rig
-    from noise.recordings.meaning import PascalPerFullScale
+    from noise.recordings.interpretation import PascalPerFullScale
 
 
 def number_or_none(text: str) -> float | None:

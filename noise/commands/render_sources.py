@@ -23,7 +23,7 @@ from noise.commands.condition import CONDITION, run_arguments, stated_options, w
 from noise.commands.options import add_options, full_scale_of
 
 if TYPE_CHECKING:
-    from noise.recordings.meaning import PascalPerFullScale
+    from noise.recordings.interpretation import PascalPerFullScale
 
 _ALTERNATIVES = {"speed": "oscillate", "oscillate": "speed"}
 """Options that replace each other."""

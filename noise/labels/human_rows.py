@@ -14,7 +14,7 @@ from noise.labels.segments import Segment
 from noise.labels.table import HUMAN
 from noise.labels.windows import has_window_channel, tracks, window_features
 from noise.recordings.files import names_channels, open_blocks
-from noise.recordings.meaning import PascalPerFullScale
+from noise.recordings.interpretation import PascalPerFullScale
 
 LONGEST_MEASURED = 120.0
 """Maximum duration to be measured at once [s]; in longer recordings, only new segments are."""

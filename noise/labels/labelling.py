@@ -26,7 +26,7 @@ from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, label_recording
 from noise.labels.table import COLUMNS, LabelTable
 from noise.recordings.files import names_channels, open_blocks
-from noise.recordings.meaning import PascalPerFullScale
+from noise.recordings.interpretation import PascalPerFullScale
 
 
 def label(

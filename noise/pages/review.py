@@ -37,7 +37,7 @@ from noise.pages.page import (
 from noise.pages.review_inputs import Inputs, Refusal, recorded_entries, sort_inputs
 from noise.pages.screen_sounds import ScreenMap, ScreenPoint
 from noise.recordings.folders import is_file
-from noise.recordings.meaning import PascalPerFullScale
+from noise.recordings.interpretation import PascalPerFullScale
 from noise.screening.design import load_design
 from noise.screening.environments import DRY, environment, in_environment
 

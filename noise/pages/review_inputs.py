@@ -33,7 +33,7 @@ from noise.recordings import find_recordings
 from noise.recordings.files import open_blocks
 from noise.recordings.folders import files_below, is_file
 from noise.recordings.formats import formats
-from noise.recordings.meaning import PascalPerFullScale
+from noise.recordings.interpretation import PascalPerFullScale
 
 DIAGNOSIS = "diagnosis.json"
 """File name of a diagnosis."""

@@ -15,7 +15,7 @@ from models.errors import ParameterError, RecordingError
 from models.recording import Channel
 from noise.recordings import read_recording
 from noise.recordings.calibrator import read_calibrator
-from noise.recordings.meaning import stated_full_scale
+from noise.recordings.interpretation import stated_full_scale
 from tests.helpers.files import HALF, RATE, named, sound
 
 METER = "run_FS94.0dB(PK).wav"

@@ -2,7 +2,7 @@
 
 Each module of this package with a `FORMAT` is a format. Sound files are opened by `Format.open`.
 Logger files are opened by `Format.channels` and read in a separate process. Readers return only
-what the file states; `noise.recordings.meaning` interprets the samples of all formats.
+what the file states; `noise.recordings.interpretation` interprets the samples of all formats.
 """
 
 from __future__ import annotations

@@ -369,7 +369,7 @@ def _selected(sidecar: Sidecar, on_time: list[Row]) -> list[Row]:
     alike = [row for row in on_time if any(_alike(row, one) for one in first)]
     count = len(known if sidecar.channels is None else sidecar.channels)
     matches = (rows for rows in (known, on_time, alike) if len(rows) == count)
-    return next(matches, known)  # `noise.recordings.meaning` refuses a wrong number
+    return next(matches, known)  # `noise.recordings.interpretation` refuses a wrong number
 
 
 def _alike(one: Row, other: Row) -> bool:

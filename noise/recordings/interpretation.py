@@ -58,7 +58,7 @@ _ACCELERATION = re.compile(
 
 
 @dataclass(frozen=True)
-class Meaning:
+class Interpretation:
     """Interpretation of the samples of a file.
 
     Parameters
@@ -80,12 +80,12 @@ class Meaning:
     notes: tuple[str, ...] = ()
 
 
-def describe(
+def interpret(
     path: Path,
     raw: RawRecording,
     full_scale: PascalPerFullScale | None = None,
     calibrations: Mapping[str, Calibration] | None = None,
-) -> Meaning:
+) -> Interpretation:
     """Return the channels, condition and calibration of a file.
 
     Parameters
@@ -98,7 +98,7 @@ def describe(
 
     Returns
     -------
-    Meaning
+    Interpretation
 
     Raises
     ------
@@ -112,8 +112,8 @@ def describe(
     >>> from pathlib import Path
     >>> from noise.recordings.formats import RawRecording
     >>> raw = RawRecording(1, 480, 48e3, fractional=True, read=lambda a, b: np.zeros((1, b - a)))
-    >>> meaning = describe(Path("nowhere.wav"), raw, 2.0)
-    >>> meaning.channels[0].name, meaning.channels[0].full_scale, meaning.calibrated
+    >>> result = interpret(Path("nowhere.wav"), raw, 2.0)
+    >>> result.channels[0].name, result.channels[0].full_scale, result.calibrated
     ('pressure', 2.0, True)
     """
     options = _by_track(path, full_scale, raw.n_channels)
@@ -129,11 +129,13 @@ def describe(
             f"are in the channel's unit; remove the scale"
         )
     notes = [*raw.notes, *filter(None, [sidecar.note])]
-    channels, curves = _interpret(path, raw, sidecar, options, calibrations or {}, notes)
+    channels, curves = _channels_and_curves(path, raw, sidecar, options, calibrations or {}, notes)
     # The sidecar takes precedence over the file.
     stated = {key: value for key, value in vars(sidecar.condition).items() if value is not None}
     condition = replace(raw.condition, **stated)
-    return Meaning(channels, condition, bool(curves), curves or (None,) * n_channels, tuple(notes))
+    return Interpretation(
+        channels, condition, bool(curves), curves or (None,) * n_channels, tuple(notes)
+    )
 
 
 def _by_track(
@@ -187,7 +189,7 @@ def check_finite(
             )
 
 
-def _interpret(
+def _channels_and_curves(
     path: Path,
     raw: RawRecording,
     sidecar: Sidecar,
