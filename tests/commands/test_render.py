@@ -11,6 +11,7 @@ import soundfile
 from features.kernels.level_meter import sound_levels
 from models.recording import Channel, Recording
 from noise.audio.gain import loudness, true_peak
+from noise.base.labels import LABELS
 from noise.cli import main
 from noise.recordings import read_recording, write_recording
 from tests.helpers.files import csv_rows, pressure_file
@@ -83,6 +84,9 @@ def test_one_gain_keeps_how_loud_the_sounds_of_a_set_are_and_a_bad_file_is_a_row
     assert "no pressure channel" in rows["torque.wav"]["error"]
     printed, err = capsys.readouterr()
     assert err.count("refused: ") == 3
+    for name in names:  # named by the classifier, with the level that tables have
+        stem = re.escape(name.removesuffix(".wav"))
+        assert re.search(rf"{stem}: ({'|'.join(LABELS)}), .*\d dB\(A\), L_AFmax", err), err
     assert [str(out / name) for name in names] == printed.splitlines()[:-1:2]
     assert printed.splitlines()[-1] == str(out / "levels.csv")
     sounds = {name: soundfile.read(out / name)[0] for name in names}

@@ -1,0 +1,34 @@
+"""Maps and advice of the design view as the page asks for them: coarse first, then finer."""
+
+from __future__ import annotations
+
+import re
+import time
+
+from tests.helpers.opened_app import PATIENCE
+
+DESIGN = {"base": "PDMS", "values": {}}
+
+
+def answered(app, path, body):
+    """Poll as the page does until the answer is known."""
+    end = time.monotonic() + 4 * PATIENCE
+    while not (answer := app.json(f"api/design/{path}", body))["known"]:
+        assert time.monotonic() < end
+        time.sleep(0.2)
+    return answer
+
+
+def test_a_map_and_advice_come_from_processes_beside_the_sound(app):
+    coarse = answered(app, "chart", DESIGN | {"detail": 0})
+    assert (coarse["error"], coarse["found"]["legend"]) == ("", "Quiet everywhere")
+    low, high = re.search(r'data-speed="([\d.]+) ([\d.]+)"', coarse["found"]["html"]).groups()
+    assert float(low) < 2.0 < 10.0 < float(high)
+    advice = answered(app, "helps", DESIGN)
+    assert advice["found"] == {"noise": "none", "speed_rad_s": 5.0, "changes": []}
+
+
+def test_a_detail_that_there_is_not_is_refused(app):
+    status, reason = app.request("api/design/chart", DESIGN | {"detail": 3})
+    assert status == 400
+    assert b"detail" in reason
