@@ -38,54 +38,52 @@ _NICE = 10
 """Niceness of the process that computes impulse responses."""
 
 
-def block_impulse_responses(setting: Setting) -> ImpulseResponses:
+@dataclass(frozen=True)
+class PathsQuestion:
+    """Request of impulse responses: a setting and its `sim.blocks.paths_key`, which is compared."""
+
+    key: tuple[object, ...]
+    setting: Setting = field(compare=False)
+
+
+def block_impulse_responses(question: PathsQuestion) -> ImpulseResponses:
     """Return the impulse responses of a setting at the rate of its blocks."""
-    return paths_of(setting, RATE)
+    return paths_of(question.setting, RATE)
 
 
 class LiveTransferPaths:
-    """Impulse responses of one run, computed in another process except for the first."""
+    """Impulse responses of one run, computed in another process except for the first.
 
-    def __init__(self, beside: WorkerProcess[Setting, ImpulseResponses]) -> None:
+    Parameters
+    ----------
+    beside : WorkerProcess
+        Computes them.
+    """
+
+    refusal = ""
+    """Reason why the impulse responses of the newest setting failed; empty if they did not."""
+
+    def __init__(self, beside: WorkerProcess[PathsQuestion, ImpulseResponses]) -> None:
         self._beside = beside
         self._known: tuple[tuple[object, ...], ImpulseResponses] | None = None
-        self._wanted: tuple[Setting, tuple[object, ...]] | None = None
-        self._requested: dict[int, tuple[Setting, tuple[object, ...]]] = {}
-        self._refused: tuple[tuple[object, ...], str] | None = None
-
-    @property
-    def refusal(self) -> str:
-        """Reason why the impulse responses of the newest setting failed; empty if they did not."""
-        refused, wanted = self._refused, self._wanted
-        return refused[1] if refused and wanted and refused[0] == wanted[1] else ""
+        self._wanted: PathsQuestion | None = None
 
     def __call__(self, setting: Setting) -> ImpulseResponses | None:
         """Return the impulse responses of a setting; None while they are computed."""
+        if self._wanted is None or self._wanted.setting is not setting:
+            self._wanted, self.refusal = PathsQuestion(paths_key(setting), setting), ""
+        key = self._wanted.key
         if self._known is None:
-            self._known = paths_key(setting), paths_of(setting, RATE)
-        if self._wanted is None or self._wanted[0] is not setting:
-            self._wanted = setting, paths_key(setting)
-        key = self._wanted[1]
+            self._known = key, paths_of(setting, RATE)
         if key == self._known[0]:
             return self._known[1]
-        newest = self._beside.newest
-        mine = None if newest is None else self._requested.pop(id(newest[0]), None)
-        if newest is not None and mine is not None:
-            if newest[1] is not None:
-                self._known = mine[1], newest[1]
-                return newest[1]
-            self._refused = mine[1], newest[2]
-        if self.refusal:  # asking again would bring no other answer
+        answer = None if self.refusal else self._beside.answer_to(self._wanted)
+        if answer is None:
             return None
-        if mine is None and not any(requested == key for _, requested in self._requested.values()):
-            self._ask(setting, key)
-        elif not self._beside.busy:  # what another page asked for took its place
-            self._requested.clear()
-        return None
-
-    def _ask(self, setting: Setting, key: tuple[object, ...]) -> None:
-        self._requested[id(setting)] = setting, key
-        self._beside.ask(setting)
+        responses, self.refusal = answer
+        if responses is not None:
+            self._known = key, responses
+        return responses
 
 
 _BEHIND = 0.2
@@ -169,7 +167,7 @@ class Player:
 
     def __init__(self, context: BaseContext | None = None) -> None:
         self._runs: dict[int, _Run] = {}
-        self.beside: WorkerProcess[Setting, ImpulseResponses] = WorkerProcess(
+        self.beside: WorkerProcess[PathsQuestion, ImpulseResponses] = WorkerProcess(
             f"{__name__}:block_impulse_responses", _NICE, context
         )
 
@@ -254,7 +252,7 @@ def warmed(context: BaseContext | None = None) -> Player:
     """Return a player whose code is compiled; `context` as of `Player`."""
     player = Player(context)
     setting = Setting(load_material_rig("fluorocarbon"), ConstantSpeed(5.0), 0.3e-3, 2214.0)
-    player.beside.ask(setting)
+    player.beside.ask(PathsQuestion(paths_key(setting), setting))
     player.start(0, 0, setting)
     player.block(0)
     player.change(0, 1, replace(setting, shaft=ConstantSpeed(6.0), interference=0.31e-3))
