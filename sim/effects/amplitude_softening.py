@@ -44,9 +44,9 @@ EFFECT = Effect(
     stage=Stage.FRICTION,
     forms=("rational", "exponential", "quadratic"),
     parameters={
-        "share": Parameter(0.3, "", 0.0, 0.8, "s: of the stiffness lost at large amplitude"),
-        "twist": Parameter(4e-3, "rad", 1e-5, 1.0, "theta_r: amplitude over which it is lost"),
-        "averaging_time": Parameter(0.05, "s", 1e-3, 10.0, "t_m: of the slow mean"),
+        "share": Parameter(0.3, "", 0.0, 0.8, "s: share of the stiffness lost at large amplitude"),
+        "twist": Parameter(4e-3, "rad", 1e-5, 1.0, "theta_r: amplitude scale of that loss"),
+        "averaging_time": Parameter(0.05, "s", 1e-3, 10.0, "t_m: averaging time of the slow mean"),
     },
     strength="share",
     contact=_contact,

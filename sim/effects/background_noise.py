@@ -86,10 +86,12 @@ EFFECT = Effect(
     forms=("white", "pink", "brown"),
     parameters={
         "amount": Parameter(1.0, "", 0.0, 100.0, "factor on the noise of all channels"),
-        "pressure_level": Parameter(50.0, "dB re 20 uPa", -40.0, 130.0, "20 Hz to 20 kHz"),
-        "acceleration": Parameter(0.2, "m/s2", 0.0, 1e3, "rms, 20 Hz to 20 kHz"),
-        "torque": Parameter(0.05, "Nm", 0.0, 100.0, "rms, 20 Hz to 20 kHz"),
-        "angle": Parameter(1e-3, "rad", 0.0, 1.0, "rms, 20 Hz to 20 kHz"),
+        "pressure_level": Parameter(
+            50.0, "dB re 20 uPa", -40.0, 130.0, "level from 20 Hz to 20 kHz"
+        ),
+        "acceleration": Parameter(0.2, "m/s2", 0.0, 1e3, "rms from 20 Hz to 20 kHz"),
+        "torque": Parameter(0.05, "Nm", 0.0, 100.0, "rms from 20 Hz to 20 kHz"),
+        "angle": Parameter(1e-3, "rad", 0.0, 1.0, "rms from 20 Hz to 20 kHz"),
     },
     strength="amount",
     sensors=_sensors,

@@ -86,8 +86,8 @@ EFFECT = Effect(
     forms=("single", "pair", "ladder"),
     parameters={
         "amount": Parameter(1.0, "", 0.0, 100.0, "factor on the modal constants"),
-        "frequency": Parameter(4500.0, "Hz", 50.0, 20e3, "of the first further mode"),
-        "damping_ratio": Parameter(0.01, "", 1e-3, 0.5, "of each further mode"),
+        "frequency": Parameter(4500.0, "Hz", 50.0, 20e3, "frequency of the first further mode"),
+        "damping_ratio": Parameter(0.01, "", 1e-3, 0.5, "damping ratio of each further mode"),
         "constant": Parameter(
             5.0, "m/s2 per Nm", 0.0, 1e3, "modal constant at the accelerometer for the torque"
         ),

@@ -68,7 +68,7 @@ EFFECT = Effect(
     stage=Stage.MEASUREMENT,
     forms=("constant", "drift", "jitter"),
     parameters={
-        "delay": Parameter(1e-4, "s", 0.0, 0.05, "constant, at the end, or rms; by the form"),
+        "delay": Parameter(1e-4, "s", 0.0, 0.05, "delay: constant, at the end, or rms, by form"),
         "bandwidth": Parameter(30.0, "Hz", 0.1, 500.0, "3 dB corner of the jitter"),
         **channel_shares("delay", acceleration=1.0, pressure=1.0, torque=0.0, angle=0.0),
     },

@@ -96,10 +96,10 @@ EFFECT = Effect(
             0.1, "", 0.0, 1.0, "s: standard deviation of T_crit - T_kin over its mean"
         ),
         "correlation": Parameter(
-            0.7, "", 0.0, 0.999, "rho: of one stick with the next; of correlated alone"
+            0.7, "", 0.0, 0.999, "rho: correlation of successive sticks; correlated only"
         ),
         "patch_angle": Parameter(
-            0.01, "rad", 1e-4, 10.0, "slipped from one draw to the next, for laws with inner state"
+            0.01, "rad", 1e-4, 10.0, "slip angle between draws, for laws with inner state"
         ),
     },
     strength="scatter",

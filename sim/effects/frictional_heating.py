@@ -92,12 +92,18 @@ EFFECT = Effect(
     stage=Stage.FRICTION,
     forms=_FORMS,
     parameters={
-        "softening": Parameter(0.01, "1/K", 0.0, 0.1, "b: share of the torque lost by a kelvin"),
+        "softening": Parameter(0.01, "1/K", 0.0, 0.1, "b: share of the torque lost per kelvin"),
         "area": Parameter(7.7e-4, "m2", 1e-6, 1e-2, "A: real area of contact"),
-        "resistance": Parameter(0.28, "K/W", 1e-3, 100.0, "R: steady rise by power, of lumped"),
-        "time_constant": Parameter(1.0, "s", 1e-3, 1e4, "tau: of lumped"),
-        "paint_thickness": Parameter(50e-6, "m", 5e-6, 1e-3, "d: of two_layer"),
-        "floor": Parameter(0.4, "", 0.0, 1.0, "h0: least share left, of linear_with_floor"),
+        "resistance": Parameter(
+            0.28, "K/W", 1e-3, 100.0, "R: steady temperature rise per power; lumped only"
+        ),
+        "time_constant": Parameter(1.0, "s", 1e-3, 1e4, "tau: time constant; lumped only"),
+        "paint_thickness": Parameter(
+            50e-6, "m", 5e-6, 1e-3, "d: thickness of the paint; two_layer only"
+        ),
+        "floor": Parameter(
+            0.4, "", 0.0, 1.0, "h0: least share of the torque; linear_with_floor only"
+        ),
     },
     strength="softening",
     contact=_contact,

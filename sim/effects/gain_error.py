@@ -55,7 +55,7 @@ EFFECT = Effect(
     forms=("constant", "drift", "shelf"),
     parameters={
         "error": Parameter(0.1, "", -0.9, 2.0, "relative error of the gain"),
-        "corner": Parameter(1e3, "Hz", 10.0, 20e3, "of the shelf"),
+        "corner": Parameter(1e3, "Hz", 10.0, 20e3, "corner frequency of the shelf"),
         **channel_shares("error", acceleration=1.0, pressure=1.0, torque=1.0, angle=0.0),
     },
     strength="error",

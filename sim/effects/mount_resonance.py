@@ -87,8 +87,10 @@ EFFECT = Effect(
     forms=("single", "roll_off", "double"),
     parameters={
         "amount": Parameter(1.0, "", 0.0, 1.0, "participation of the mount in the reading"),
-        "frequency": Parameter(6e3, "Hz", 200.0, 30e3, "of the sensor on its mount"),
-        "damping_ratio": Parameter(0.03, "", 1e-3, 1.0, "of that resonance"),
+        "frequency": Parameter(
+            6e3, "Hz", 200.0, 30e3, "resonance frequency of the sensor on its mount"
+        ),
+        "damping_ratio": Parameter(0.03, "", 1e-3, 1.0, "damping ratio of the resonance"),
         **channel_shares("amount", low=0.0, acceleration=1.0, pressure=0.0, torque=0.0),
     },
     strength="amount",

@@ -71,9 +71,9 @@ EFFECT = Effect(
     forms=("single", "even", "scattered"),
     parameters={
         "amount": Parameter(1.0, "", 0.0, 100.0, "height of each resonance over the direct sound"),
-        "frequency": Parameter(700.0, "Hz", 50.0, 16e3, "of the first resonance"),
-        "damping_ratio": Parameter(0.015, "", 1e-3, 0.5, "of each resonance"),
-        "spacing": Parameter(400.0, "Hz", 50.0, 16e3, "mean distance of the resonances"),
+        "frequency": Parameter(700.0, "Hz", 50.0, 16e3, "frequency of the first resonance"),
+        "damping_ratio": Parameter(0.015, "", 1e-3, 0.5, "damping ratio of each resonance"),
+        "spacing": Parameter(400.0, "Hz", 50.0, 16e3, "mean spacing of the resonances"),
     },
     strength="amount",
     chain=_chain,

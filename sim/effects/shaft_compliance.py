@@ -62,11 +62,13 @@ EFFECT = Effect(
     stage=Stage.DRIVE,
     forms=_FORMS,
     parameters={
-        "compliance": Parameter(1.48e-4, "rad/Nm", 0.0, 0.1, "kappa: of the shaft in torsion"),
-        "inertia": Parameter(6.96e-5, "kg m2", 1e-6, 1e-1, "J: of the shaft's end"),
-        "damping_ratio": Parameter(0.02, "", 0.0, 2.0, "of the shaft's end on its own"),
+        "compliance": Parameter(
+            1.48e-4, "rad/Nm", 0.0, 0.1, "kappa: torsional compliance of the shaft"
+        ),
+        "inertia": Parameter(6.96e-5, "kg m2", 1e-6, 1e-1, "J: inertia of the shaft's end"),
+        "damping_ratio": Parameter(0.02, "", 0.0, 2.0, "damping ratio of the shaft's end alone"),
         "reference_torque": Parameter(
-            20.0, "Nm", 0.1, 1e3, "T_r: at which the forms' non-linear parts count"
+            20.0, "Nm", 0.1, 1e3, "T_r: reference torque of the non-linear forms"
         ),
     },
     strength="compliance",

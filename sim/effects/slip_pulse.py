@@ -111,7 +111,7 @@ EFFECT = Effect(
         "amplitude": Parameter(60.0, "N", 0.0, 1e4, "peak force at a torque drop of 6.94 Nm"),
         "threshold": Parameter(5.2, "Nm", 0.0, 6.9, "torque drop below which there is no pulse"),
         "duration": Parameter(
-            50e-6, "s", 1e-5, 1e-3, "of the pulse; its time constant if exponential"
+            50e-6, "s", 1e-5, 1e-3, "duration of the pulse, or time constant if exponential"
         ),
     },
     strength="amplitude",

@@ -92,12 +92,12 @@ EFFECT = Effect(
     stage=Stage.DRIVE,
     forms=("sine", "harmonics", "random"),
     parameters={
-        "depth": Parameter(0.02, "", 0.0, 0.3, "amplitude of the sine of equal rms, over speed"),
-        "order": Parameter(1.0, "", 0.1, 200.0, "periods in a turn; of sine and harmonics"),
+        "depth": Parameter(0.02, "", 0.0, 0.3, "amplitude of a sine of equal rms, over speed"),
+        "order": Parameter(1.0, "", 0.1, 200.0, "periods per turn; sine and harmonics only"),
         "frequency": Parameter(
-            0.0, "Hz", 0.0, 500.0, "fixed, of sine and harmonics; 0 follows the shaft by the order"
+            0.0, "Hz", 0.0, 500.0, "fixed frequency of sine and harmonics; 0: follow the order"
         ),
-        "bandwidth": Parameter(10.0, "Hz", 0.05, 500.0, "3 dB corner of the random form"),
+        "bandwidth": Parameter(10.0, "Hz", 0.05, 500.0, "3 dB corner; random only"),
     },
     strength="depth",
     drive=_drive,

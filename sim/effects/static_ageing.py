@@ -46,10 +46,10 @@ EFFECT = Effect(
     stage=Stage.FRICTION,
     forms=("exponential", "logarithmic", "power"),
     parameters={
-        "share": Parameter(
-            1.0, "", 0.0, 1.0, "s: of T_crit - T_kin that must be regained in each stick"
+        "share": Parameter(1.0, "", 0.0, 1.0, "s: share of T_crit - T_kin regained in each stick"),
+        "ageing_time": Parameter(
+            1e-3, "s", 1e-6, 10.0, "tau: time of stick in which it is regained"
         ),
-        "ageing_time": Parameter(1e-3, "s", 1e-6, 10.0, "tau: stick in which it is regained"),
         "renewal_angle": Parameter(
             4e-4, "rad", 1e-4, 1.0, "D: sliding that renews the contact, for laws with inner state"
         ),

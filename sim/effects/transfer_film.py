@@ -92,14 +92,16 @@ EFFECT = Effect(
     parameters={
         "coverage": Parameter(1.0, "", 0.0, 1.0, "s: share of the shaft that the film covers"),
         "torque_ratio": Parameter(
-            3.5, "", 1.0, 6.0, "a: kinetic torque on the film to that without"
+            3.5, "", 1.0, 6.0, "a: kinetic torque with film over that without"
         ),
-        "drop_left": Parameter(0.1, "", 0.0, 1.0, "d: share of T_crit - T_kin on the film"),
+        "drop_left": Parameter(0.1, "", 0.0, 1.0, "d: share of T_crit - T_kin left on the film"),
         "roughness": Parameter(
             0.01, "", 0.0, 0.1, "epsilon: random friction on the film, rms over kinetic torque"
         ),
-        "growth_angle": Parameter(1.0, "rad", 1e-3, 1e5, "phi_f: sliding in which the film forms"),
-        "formed": Parameter(0.0, "", 0.0, 1.0, "chi_0: of the film at the start"),
+        "growth_angle": Parameter(
+            1.0, "rad", 1e-3, 1e5, "phi_f: sliding angle in which the film forms"
+        ),
+        "formed": Parameter(0.0, "", 0.0, 1.0, "chi_0: share of the film at the start"),
     },
     strength="coverage",
     contact=_contact,

@@ -39,7 +39,7 @@ EFFECT = Effect(
     stage=Stage.FRICTION,
     forms=("linear", "saturating", "logarithmic"),
     parameters={
-        "gain": Parameter(0.1, "", 0.0, 5.0, "s: share that the kinetic torque gains at `speed`"),
+        "gain": Parameter(0.1, "", 0.0, 5.0, "s: relative gain of the kinetic torque at `speed`"),
         "speed": Parameter(10.0, "rad/s", 1e-2, 1e3, "v_r: speed of that gain"),
     },
     strength="gain",

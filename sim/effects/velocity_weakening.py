@@ -39,7 +39,7 @@ EFFECT = Effect(
     forms=("exponential", "rational", "gaussian"),
     parameters={
         "share": Parameter(0.1, "", 0.0, 0.9, "s: share of the kinetic torque lost at high speed"),
-        "speed": Parameter(10.0, "rad/s", 1e-2, 1e3, "v_w: speed over which it is lost"),
+        "speed": Parameter(10.0, "rad/s", 1e-2, 1e3, "v_w: speed scale of that loss"),
     },
     strength="share",
     contact=_contact,

@@ -52,11 +52,13 @@ EFFECT = Effect(
     forms=tuple(_BRANCHES),
     parameters={
         "stiffening": Parameter(
-            0.3, "", 0.0, 5.0, "s: stiffness gained at high frequency, over the static one"
+            0.3, "", 0.0, 5.0, "s: increase of stiffness at high frequency, over the static one"
         ),
-        "relaxation_time": Parameter(5e-4, "s", 2e-5, 1.0, "tau: mean of the branches"),
+        "relaxation_time": Parameter(
+            5e-4, "s", 2e-5, 1.0, "tau: mean relaxation time of the branches"
+        ),
         "spread": Parameter(4.0, "", 1.0, 10.0, "ratio of successive relaxation times"),
-        "exponent": Parameter(0.3, "", 0.0, 1.0, "alpha: of frequency; fractional only"),
+        "exponent": Parameter(0.3, "", 0.0, 1.0, "alpha: exponent of frequency; fractional only"),
     },
     strength="stiffening",
     contact=_contact,

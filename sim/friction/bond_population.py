@@ -32,7 +32,7 @@ _PARAMETERS = {
     ),
     "bonding_time": Parameter(2e-3, "s", 1e-4, 1.0, "t_r: time in which bonds form"),
     "rupture_stretch": Parameter(
-        2.6e-4, "rad", 1e-4, 2e-3, "u_0: stretch that speeds rupture up e times"
+        2.6e-4, "rad", 1e-4, 2e-3, "u_0: stretch that raises the rupture rate e times"
     ),
     "rubbing_share": Parameter(0.3, "", 0.0, 2.0, "T_r / T_kin: torque of the unbonded part"),
     "viscous_share_per_speed": Parameter(

@@ -42,10 +42,10 @@ _PARAMETERS = {
     ),
     "ageing_time": Parameter(4e-4, "s", 1e-7, 1e3, "tau: time in which strength is regained"),
     "weakening_share": Parameter(
-        0.0, "", 0.0, 10.0, "beta: torque that fades with speed, over T_kin"
+        0.0, "", 0.0, 10.0, "beta: torque that falls with speed, over T_kin"
     ),
-    "weakening_speed": Parameter(20.0, "rad/s", 1e-3, 1e4, "v_w: speed over which it fades"),
-    "weakening_exponent": Parameter(1.0, "", 1.0, 4.0, "n: 1 falls at once, 2 as a Gaussian"),
+    "weakening_speed": Parameter(20.0, "rad/s", 1e-3, 1e4, "v_w: speed scale of that fall"),
+    "weakening_exponent": Parameter(1.0, "", 1.0, 4.0, "n: 1 for an exponential, 2 for a Gaussian"),
     "renewal_angle_per_torque": Parameter(
         0.0, "rad/Nm", 0.0, 1e-2, "D_1: increase of the distance per Nm of T_kin"
     ),

@@ -21,7 +21,7 @@ _PARAMETERS = {
     "contact_damping_per_torque": Parameter(
         9e-5, "s/rad", 0.0, 1e-2, "sigma_1 / T_kin: damping of the bristles"
     ),
-    "stribeck_speed": Parameter(1.0, "rad/s", 1e-4, 1e3, "v_s: speed over which torque falls"),
+    "stribeck_speed": Parameter(1.0, "rad/s", 1e-4, 1e3, "v_s: speed scale of the falling torque"),
     "viscous_share_per_speed": Parameter(
         0.0, "s/rad", 0.0, 10.0, "sigma_2 / T_kin: rise of the torque with speed"
     ),

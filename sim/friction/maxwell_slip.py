@@ -29,8 +29,8 @@ _YIELD = 0.5
 
 _PARAMETERS = {
     **BRISTLE_PARAMETERS,
-    "spread": Parameter(0.5, "", 0.0, 0.8, "of the elements' thresholds about their mean"),
-    "stribeck_speed": Parameter(1.0, "rad/s", 1e-2, 1e4, "v_s: speed over which torque falls"),
+    "spread": Parameter(0.5, "", 0.0, 0.8, "relative spread of the elements' thresholds"),
+    "stribeck_speed": Parameter(1.0, "rad/s", 1e-2, 1e4, "v_s: speed scale of the falling torque"),
 }
 
 

@@ -31,8 +31,10 @@ _PARAMETERS = {
         4e-4, "rad", 1e-5, 1.0, "D: slip distance over which the contact is renewed"
     ),
     "ageing_time": Parameter(4e-4, "s", 1e-5, 1e6, "tau: time in which strength is regained"),
-    "direct_effect": Parameter(0.0, "", 0.0, 1.0, "a: rise with the logarithm of the speed"),
-    "direct_speed": Parameter(1e-2, "rad/s", 1e-4, 1e3, "v_0: speed above which it rises"),
+    "direct_effect": Parameter(
+        0.0, "", 0.0, 1.0, "a: rise of the torque with the logarithm of speed"
+    ),
+    "direct_speed": Parameter(1e-2, "rad/s", 1e-4, 1e3, "v_0: speed above which the torque rises"),
 }
 
 

@@ -51,9 +51,9 @@ shear_speed = njit(cache=True, error_model="numpy")(_shear_speed)
 
 STRIBECK_PARAMETERS = {
     **BRISTLE_PARAMETERS,
-    "first_speed": Parameter(1.0, "rad/s", 1e-2, 1e4, "v_1: speed over which the torque falls"),
-    "second_share": Parameter(0.0, "", 0.0, 1.0, "s: part of T_crit - T_kin that falls over v_2"),
-    "second_speed": Parameter(15.6, "rad/s", 1e-2, 1e4, "v_2: speed over which that part falls"),
+    "first_speed": Parameter(1.0, "rad/s", 1e-2, 1e4, "v_1: speed scale of the falling torque"),
+    "second_share": Parameter(0.0, "", 0.0, 1.0, "s: share of T_crit - T_kin that falls over v_2"),
+    "second_speed": Parameter(15.6, "rad/s", 1e-2, 1e4, "v_2: speed scale of that share"),
 }
 """Parameters of each Stribeck law, in the order in which its compiled function reads them."""
 
