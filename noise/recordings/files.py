@@ -25,12 +25,7 @@ from noise.base.progress import note
 from noise.recordings.folders import why_not_read
 from noise.recordings.formats import RawRecording, check_rate, formats
 from noise.recordings.formats.isolated import open_isolated
-from noise.recordings.interpretation import (
-    Interpretation,
-    PascalPerFullScale,
-    check_finite,
-    interpret,
-)
+from noise.recordings.interpretation import Metadata, PascalPerFullScale, check_finite, interpret
 from noise.recordings.rotation import find_turns
 from noise.recordings.sidecar import sidecar_of
 
@@ -138,12 +133,12 @@ def open_blocks(
     with ExitStack() as stack:
         with refusing(str(path), "recording", RecordingError):
             raw = stack.enter_context(open_raw(path))
-            interpretation = interpret(path, raw, full_scale)
+            metadata = interpret(path, raw, full_scale)
             if 8 * raw.n_channels * raw.n_samples < _LARGE:
-                blocks = RecordingBlocks.of(_whole(path, raw, interpretation))
+                blocks = RecordingBlocks.of(_whole(path, raw, metadata))
                 stack.close()
             else:
-                blocks = _in_chunks(path, raw, interpretation)
+                blocks = _in_chunks(path, raw, metadata)
         yield blocks
 
 
@@ -178,37 +173,31 @@ def open_raw(path: Path) -> Iterator[RawRecording]:
         yield raw
 
 
-def _whole(path: Path, raw: RawRecording, interpretation: Interpretation) -> Recording:
+def _whole(path: Path, raw: RawRecording, metadata: Metadata) -> Recording:
     """Return a recording with all its samples."""
-    samples, channels = raw.whole(), interpretation.channels
-    range_notes = _to_units(path, raw, interpretation, samples)
+    samples, channels = raw.whole(), metadata.channels
+    range_notes = _to_units(path, raw, metadata, samples)
     unwrapping = find_turns(
-        channels, lambda a, b: samples[:, a:b], raw.n_samples, interpretation.calibrated
+        channels, lambda a, b: samples[:, a:b], raw.n_samples, metadata.calibrated
     )
     unwrapping.add(samples, 0)
-    notes = (*interpretation.notes, *range_notes, *unwrapping.notes)
+    notes = (*metadata.notes, *range_notes, *unwrapping.notes)
     _note_once(path, notes)
     return Recording(
-        samples,
-        raw.rate,
-        channels,
-        interpretation.condition,
-        interpretation.calibrated,
-        path.name,
-        notes,
+        samples, raw.rate, channels, metadata.condition, metadata.calibrated, path.name, notes
     )
 
 
-def _in_chunks(path: Path, raw: RawRecording, interpretation: Interpretation) -> RecordingBlocks:
+def _in_chunks(path: Path, raw: RawRecording, metadata: Metadata) -> RecordingBlocks:
     """Return a long recording that is read in chunks, with a cache of the last two."""
-    channels = interpretation.channels
+    channels = metadata.channels
     length = max(1, _CHUNK // (8 * raw.n_channels))
 
     @lru_cache(maxsize=2)
     def chunk(number: int) -> NDArray[np.float64]:
         start = number * length
         samples = raw.read(start, min(start + length, raw.n_samples))
-        _to_units(path, raw, interpretation, samples, start)
+        _to_units(path, raw, metadata, samples, start)
         return samples
 
     def read(first: int, last: int) -> NDArray[np.float64]:
@@ -217,8 +206,8 @@ def _in_chunks(path: Path, raw: RawRecording, interpretation: Interpretation) ->
         parts = [chunk(n)[:, max(0, first - n * length) : last - n * length] for n in numbers]
         return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
 
-    unwrapping = find_turns(channels, read, raw.n_samples, interpretation.calibrated)
-    _note_once(path, (*interpretation.notes, *unwrapping.notes))
+    unwrapping = find_turns(channels, read, raw.n_samples, metadata.calibrated)
+    _note_once(path, (*metadata.notes, *unwrapping.notes))
 
     def read_unwrapped(first: int, last: int) -> NDArray[np.float64]:
         samples = read(first, last)
@@ -228,24 +217,18 @@ def _in_chunks(path: Path, raw: RawRecording, interpretation: Interpretation) ->
         return samples
 
     return RecordingBlocks(
-        raw.rate, channels, interpretation.condition, interpretation.calibrated, path.name,
+        raw.rate, channels, metadata.condition, metadata.calibrated, path.name,
         raw.n_samples, read_unwrapped,
     )  # fmt: skip
 
 
 def _to_units(
-    path: Path,
-    raw: RawRecording,
-    interpretation: Interpretation,
-    samples: NDArray[np.float64],
-    start: int = 0,
+    path: Path, raw: RawRecording, metadata: Metadata, samples: NDArray[np.float64], start: int = 0
 ) -> list[str]:
     """Convert samples from index `start` on to their units in place; return notes."""
     notes = []
     with np.errstate(over="ignore", invalid="ignore"):  # `check_finite` refuses them
-        for channel, curve, row in zip(
-            interpretation.channels, interpretation.curves, samples, strict=True
-        ):
+        for channel, curve, row in zip(metadata.channels, metadata.curves, samples, strict=True):
             if curve is None:
                 if channel.full_scale != 1.0:
                     row *= channel.full_scale
@@ -257,7 +240,7 @@ def _to_units(
                 notes.append(
                     f"{channel.name} was read up to {out:.1%} of its span outside of {curve.source}"
                 )
-    check_finite(path, samples, raw.rate, interpretation.channels, start)
+    check_finite(path, samples, raw.rate, metadata.channels, start)
     return notes
 
 

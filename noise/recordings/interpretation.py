@@ -58,8 +58,8 @@ _ACCELERATION = re.compile(
 
 
 @dataclass(frozen=True)
-class Interpretation:
-    """Interpretation of the samples of a file.
+class Metadata:
+    """Channels, condition and calibration of a file.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def interpret(
     raw: RawRecording,
     full_scale: PascalPerFullScale | None = None,
     calibrations: Mapping[str, Calibration] | None = None,
-) -> Interpretation:
+) -> Metadata:
     """Return the channels, condition and calibration of a file.
 
     Parameters
@@ -98,7 +98,7 @@ def interpret(
 
     Returns
     -------
-    Interpretation
+    Metadata
 
     Raises
     ------
@@ -133,9 +133,7 @@ def interpret(
     # The sidecar takes precedence over the file.
     stated = {key: value for key, value in vars(sidecar.condition).items() if value is not None}
     condition = replace(raw.condition, **stated)
-    return Interpretation(
-        channels, condition, bool(curves), curves or (None,) * n_channels, tuple(notes)
-    )
+    return Metadata(channels, condition, bool(curves), curves or (None,) * n_channels, tuple(notes))
 
 
 def _by_track(
