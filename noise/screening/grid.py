@@ -96,34 +96,6 @@ class Grid:
         )
 
 
-def grid_of(
-    design: Design, given: Use | None = None, *, where: str = DRY, swinging: Swinging | None = None
-) -> Grid:
-    """Return the grid of the map of a single design.
-
-    Parameters
-    ----------
-    design : Design
-    given : Use, optional
-        Conditions that replace those of the design.
-    where : str
-        Environment; any but ``dry`` has a temperature of its own.
-    swinging : Swinging, optional
-        Oscillation of the shaft, instead of constant speed.
-
-    Returns
-    -------
-    Grid
-
-    Examples
-    --------
-    >>> from noise.screening.design import load_design
-    >>> grid_of(load_design("natural-rubber")).shape
-    (1, 3, 1, 103)
-    """
-    return shared_grid([design], given, where=where, swinging=swinging)
-
-
 def shared_grid(
     designs: Sequence[Design],
     given: Use | None = None,
@@ -215,9 +187,13 @@ def _map_speeds(stated: Sequence[tuple[float, ...]]) -> tuple[float, ...]:
     """Return the speeds of a map from the limits or lists of speeds of all uses."""
     if not stated:
         return _spaced(*DEFAULT_SPEEDS)
-    limits = [speeds for speeds in stated if len(speeds) <= 2]
     lists = [speeds for speeds in stated if len(speeds) > 2]
-    return _merged(*lists, *([_speeds(_hull(limits))] if limits else []))
+    limits = [speeds for speeds in stated if len(speeds) <= 2]
+    if limits:
+        low, high = _hull(limits)
+        reach = min(low, DEFAULT_SPEEDS[0]), max(DEFAULT_SPEEDS[1], _BEYOND * high)
+        lists.append(_spaced(*reach))
+    return _merged(*lists)
 
 
 def _hull(spans: Iterable[tuple[float, ...]]) -> tuple[float, float]:
@@ -232,10 +208,6 @@ def _merged(*axes: tuple[float, ...]) -> tuple[float, ...]:
         if not (values and math.isclose(value, values[-1], rel_tol=_ALIKE)):
             values.append(value)
     return tuple(values)
-
-
-def _speeds(limits: Sequence[float]) -> tuple[float, ...]:
-    return _spaced(min(limits[0], DEFAULT_SPEEDS[0]), max(DEFAULT_SPEEDS[1], _BEYOND * limits[-1]))
 
 
 def _spaced(low: float, high: float) -> tuple[float, ...]:

@@ -28,7 +28,7 @@ from models.rig import Rig
 from models.show import short_repr
 from noise.batch.work import one_thread
 from noise.screening.design import Design
-from noise.screening.grid import grid_of
+from noise.screening.grid import shared_grid
 from noise.screening.point import is_noisy
 from noise.screening.tolerances import Tolerance, nominal_values, varied
 from noise.screening.vibration import Condition
@@ -123,7 +123,7 @@ def middle_of_use(design: Design) -> Condition:
     >>> middle_of_use(load_design("fluorocarbon")).support_stiffness
     3745.0
     """
-    grid = grid_of(design)
+    grid = shared_grid([design])
     fit, support, temperature = (
         axis[(len(axis) - 1) // 2]
         for axis in (grid.interference, grid.support_stiffness, grid.temperature)
@@ -174,7 +174,7 @@ def robustness(
     0.0
     """
     at = at or middle_of_use(design)
-    use = grid_of(design).use
+    use = shared_grid([design]).use
     speeds = np.linspace(max(use[0], 0.02 * use[1]), use[1], _SPEEDS)
     nominal = nominal_values(design.rig, at)
     spread = {one.name: one.factor(nominal[one.name]) for one in design.tolerances or ASSUMED}

@@ -29,7 +29,7 @@ from models.radiation.rig_response import impulse_responses
 from models.recording import Recording
 from models.rig import Rig, damping_at
 from noise.base.labels import PERSISTS
-from noise.classifier import Classifier, load_classifier
+from noise.classifier import load_classifier
 from noise.labels.segments import file_label, label_recording
 from noise.noise_definition import LEAST_LEVEL, NoiseCriteria, noise_criteria
 from noise.screening.vibration import (
@@ -251,9 +251,7 @@ def audible_result(
     )
 
 
-@lru_cache(maxsize=1)
-def _classifier() -> Classifier:
-    return load_classifier()
+_classifier = lru_cache(maxsize=1)(load_classifier)
 
 
 def _label(rig: Rig, at: Condition, motion: Motion, sound: Sound, start: int) -> str:

@@ -56,10 +56,10 @@ def point_notes(rig: Rig, grid: Grid) -> tuple[NDArray[np.object_], NDArray[np.b
     Examples
     --------
     >>> from noise.screening.design import Use, load_design
-    >>> from noise.screening.grid import grid_of
+    >>> from noise.screening.grid import shared_grid
     >>> design = load_design("fluorocarbon")
     >>> use = Use(speed=(5.0,), interference=(0.3e-3,), support_stiffness=(2214.0, 3000.0))
-    >>> for note in point_notes(design.rig, grid_of(design, use))[0].flat:
+    >>> for note in point_notes(design.rig, shared_grid([design], use))[0].flat:
     ...     print(note)
     interpolated between fits of 0.279 and 0.381 mm
     interpolated between fits of 0.279 and 0.381 mm; damping interpolated between 2214 Nm/rad and...

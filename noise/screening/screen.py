@@ -444,9 +444,9 @@ def why_never_slipping(rig: Rig, grid: Grid) -> str:
     Examples
     --------
     >>> from noise.screening.design import Use, load_design
-    >>> from noise.screening.grid import grid_of
+    >>> from noise.screening.grid import shared_grid
     >>> design = load_design("fluorocarbon-thesis")
-    >>> grid = grid_of(design, Use(speed=(5.0,), interference=(0.279e-3,)))
+    >>> grid = shared_grid([design], Use(speed=(5.0,), interference=(0.279e-3,)))
     >>> why_never_slipping(design.rig, grid)
     ''
     >>> in_nmm = design.rig.changed(critical_torque="x1000", kinetic_torque="x1000")

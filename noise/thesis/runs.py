@@ -240,7 +240,7 @@ def _torsional_mode(material: str, case: Case, *, stuck: bool) -> float:
 
 
 QUANTITIES: dict[str, Quantity] = {
-    "acceleration": _recorded(lambda run: np.std(run.recording["acceleration"])),
+    "acceleration": _recorded(lambda run: float(np.std(run.recording["acceleration"]))),
     "critical_damping": _critical_damping,
     "cycle_frequency": _of_motion(_cycle_frequency, steady=math.nan),
     "first_peak_speed": _first_peak_speed,

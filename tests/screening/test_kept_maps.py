@@ -7,7 +7,7 @@ import pytest
 from models.rig_file import load_material_rig
 from noise.screening.batches import keeping
 from noise.screening.design import Design, Use
-from noise.screening.grid import grid_of
+from noise.screening.grid import shared_grid
 from noise.screening.mapping import map_design
 from tests.helpers.kept import staying_results
 from tests.helpers.quick_screens import judged_by_speed
@@ -35,7 +35,9 @@ def mapped(judge, folder, change=1.0):
     """The map of a design, which is read anew as each call does."""
     rig = load_material_rig("fluorocarbon").changed(damping=f"x{change:g}")
     with staying_results(folder / "screen") as lines:
-        return map_design(rig, grid_of(Design("a", rig), USE), keeping(judge, lines), design="a")
+        return map_design(
+            rig, shared_grid([Design("a", rig)], USE), keeping(judge, lines), design="a"
+        )
 
 
 @pytest.mark.parametrize("batches", [0, 1, 2])

@@ -11,7 +11,7 @@ from models.rig_file import load_material_rig
 from noise.noise_definition import LEAST_LEVEL
 from noise.screening.batches import batch_evaluator
 from noise.screening.design import Design, Swinging, Use
-from noise.screening.grid import grid_of
+from noise.screening.grid import shared_grid
 from noise.screening.loudness import with_loudness
 from noise.screening.mapping import map_design
 from noise.screening.point import evaluate_point
@@ -29,7 +29,7 @@ FLUOROCARBON = load_material_rig("fluorocarbon")
 def mapped(material, use, **more):
     design = Design(material, load_material_rig(material))
     with batch_evaluator() as judged:
-        return map_design(design.rig, grid_of(design, use), judged, design=material, **more)
+        return map_design(design.rig, shared_grid([design], use), judged, design=material, **more)
 
 
 def test_pdms_is_silent_everywhere():

@@ -12,7 +12,7 @@ from models.errors import ParameterError
 from models.rig import Fit, damping_at
 from models.rig_file import load_material_rig
 from noise.screening.design import Design, Swinging, Use
-from noise.screening.grid import grid_of, shared_grid
+from noise.screening.grid import shared_grid
 from noise.screening.point import evaluate_point
 from noise.screening.provenance import point_notes, rows_of
 from noise.screening.screen import screen
@@ -103,7 +103,7 @@ def test_all_ranked_designs_have_the_same_points(quick, designs, asked, environm
 def test_what_one_was_asked_all_are(designs, asked):
     grid = shared_grid(designs, asked)
     for design in designs:
-        own = grid_of(design, asked)
+        own = shared_grid([design], asked)
         for name in ("interference", "support_stiffness"):
             values = np.array(getattr(grid, name))
             for value in getattr(own, name):
@@ -148,7 +148,7 @@ def test_a_design_of_one_damping_meets_the_supports_of_the_others(quick):
 @example(support=200.0, interference=0.3626e-3)  # damping of 2214 Nm/rad to the last digit
 def test_notes_say_what_the_rule_does(support, interference):
     use = Use(speed=(5.0,), interference=(interference,), support_stiffness=(support,))
-    note = point_notes(THESIS, grid_of(Design("", THESIS), use))[0].item()
+    note = point_notes(THESIS, shared_grid([Design("", THESIS)], use))[0].item()
     fit = THESIS.fit(interference)
     given_fits = {each.interference for each in THESIS.fits}
     near = any(math.isclose(interference, each, rel_tol=0.01) for each in given_fits)
