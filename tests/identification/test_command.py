@@ -41,6 +41,12 @@ def answered(folder, tmp_path_factory):
     """Exit code, folder of answers and what is said, one recording of five being unusable."""
     mixed = tmp_path_factory.mktemp("mixed") / "data"
     shutil.copytree(folder, mixed)
+    for path in mixed.glob("run*.json"):
+        content = json.loads(path.read_text())
+        content["conditions"]["temperature_C"] = 30.0
+        path.write_text(json.dumps(content))
+    with (mixed / "known.toml").open("a") as file:
+        file.write("[temperature]\nreference_C = 23\nglass_transition_C = -20\n")
     shutil.copy(mixed / "run01.wav", mixed / "bad.wav")
     sidecar = json.loads((mixed / "run01.json").read_text())
     del sidecar["conditions"]["interference_mm"]
@@ -69,6 +75,12 @@ def test_speeds_are_written_as_they_were_logged(folder, answered):
     assert load_rig(answered[1] / "rig.toml").fastest_fitted in logged
     found = json.loads((answered[1] / "identification.json").read_text())
     assert {one["speed_rad_s"] for one in found["recordings"]} <= logged
+
+
+def test_the_dependence_on_temperature_starts_at_that_of_the_recordings(answered):
+    dependence = load_rig(answered[1] / "rig.toml").temperature
+    assert dependence.reference == 30.0
+    assert dependence.glass_transition == -20.0
 
 
 def test_numbers_have_intervals_that_hold_them(answered):
