@@ -20,7 +20,7 @@ from scipy import fft
 
 from features.windows.arithmetic import OCTAVES, ordered_sum, power_of
 from features.windows.blocks import FRAME_RATE, RATE
-from models.compilation import COMPILED, PART
+from models.compilation import COMPILED
 
 FRAME = 512
 """Samples per frame."""
@@ -130,7 +130,8 @@ def _described(
     correlation = fft.irfft(power, axis=1)[:, : _LAGS[1] + 2] * _TAPER
     values = np.empty((len(power), len(FRAME_COLUMNS)), dtype=np.float32)
     values[:, 1] = np.log2(power[:, _FIRST_BIN:last]).mean(axis=1)
-    _describe(power, np.sqrt(power[:, _FIRST_BIN:last]), correlation, last, values)
+    tops = _FIRST_BIN + power[:, _FIRST_BIN:last].argmax(axis=1)
+    _describe(power, tops, np.sqrt(power[:, _FIRST_BIN:last]), correlation, last, values)
     return values, np.add.reduceat(power[:, : _EDGES[-1]], _EDGES[:-1], axis=1)
 
 
@@ -143,14 +144,15 @@ _OCTAVE = np.log2(np.maximum(np.arange(FRAME // 2 + 1), 1) * (_SPACING / 1000.0)
 
 
 @njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
-def _describe(power, magnitude, correlation, last, values) -> None:
+def _describe(power, tops, magnitude, correlation, last, values) -> None:
     """Fill in the columns; on entry, that of the flatness has the mean logarithm of the power."""
     for i in range(power.shape[0]):
         p = power[i]
-        total, moment, highest = _sums(p, last)
-        top = _FIRST_BIN
-        while top < last - 1 and p[top] != highest:
-            top += 1
+        top = tops[i]
+        total, moment = np.float32(0.0), np.float32(0.0)
+        for k in range(_FIRST_BIN, last):
+            total += p[k]
+            moment += p[k] * _OCTAVE[k]
         around = np.float32(0.0)
         for k in range(max(_FIRST_BIN, top - _LOBE), min(last, top + _LOBE + 1)):
             around += p[k]
@@ -183,17 +185,6 @@ def _describe(power, magnitude, correlation, last, values) -> None:
         values[i, 6] = 1.0 - dot / np.sqrt(total * before) if before > 0.0 else 0.0
         values[i, 7] = OCTAVES * np.log(RATE / (100.0 * period)) if period > 0 else np.nan
         values[i, 8] = best / r[0]
-
-
-@njit(fastmath={"reassoc", "contract", "nsz", "nnan"}, cache=True, **PART)
-def _sums(p, last):
-    """Return power, power times octave, and the highest power of any bin."""
-    total, moment, highest = np.float32(0.0), np.float32(0.0), np.float32(0.0)
-    for k in range(_FIRST_BIN, last):
-        total += p[k]
-        moment += p[k] * _OCTAVE[k]
-        highest = max(highest, p[k])
-    return total, moment, highest
 
 
 _MOST_DB = 60.0

@@ -1,5 +1,9 @@
 """Windows of a recording: the same numbers at any rate and gain, in memory or from a file."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import soundfile
@@ -139,6 +143,20 @@ def test_from_a_file_in_blocks_comes_the_same_as_from_memory(tmp_path, monkeypat
         parts = window_features(blocks)
     assert parts.features.tobytes() == whole.features.tobytes()
     assert parts.frames.tobytes() == whole.frames.tobytes()
+
+
+@pytest.mark.slow
+def test_features_of_code_just_compiled_are_those_of_code_from_the_cache(tmp_path):
+    code = (
+        "import numpy as np\n"
+        "from features.windows.frames import describe_frames\n"
+        "sound = np.random.default_rng(0).standard_normal(16000).astype(np.float32)\n"
+        "print(describe_frames(sound, 7e3).values.tobytes().hex())"
+    )
+    call = [sys.executable, "-c", code]
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    first, second = (subprocess.check_output(call, env=environment) for _ in range(2))
+    assert first == second
 
 
 def test_channels_that_are_not_there_have_no_features():
