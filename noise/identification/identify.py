@@ -105,7 +105,7 @@ def identify_rig(
     rig = replace(
         model.rig(fit.vector, beforehand.rig, material),
         fastest_fitted=max(one.measured.written_speed for one in recordings),
-        temperature=_dependence(beforehand.rig, recordings, material),
+        temperature=dependence_of(beforehand.rig, recordings, material),
     )
     fitted = fitted_evidence(model)
     rest = [one for one in model.evidence if one not in fitted]
@@ -272,10 +272,19 @@ def _static_notes(tests: Sequence[StaticTest]) -> list[str]:
     ]
 
 
-def _dependence(
+def dependence_of(
     rig: Rig, recordings: Sequence[RecordingFit], material: str
 ) -> TemperatureDependence | None:
-    """Return the known rig's dependence on temperature, relative to that of the recordings."""
+    """Return the known rig's dependence on temperature, relative to that of the recordings.
+
+    Parameters
+    ----------
+    rig : Rig
+        Known rig.
+    recordings : sequence of RecordingFit
+    material : str
+        Of the recordings; another than the rig's depends in an unknown way.
+    """
     stated = [one.measured.condition.temperature for one in recordings]
     known = [value for value in stated if value is not None]
     if rig.temperature is None or rig.material != material:

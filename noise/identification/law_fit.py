@@ -287,13 +287,15 @@ def choose_law(
     for name, sketch in sketches.items():
         fits[name] = fit_law(sketch, hopeless=sketch.away > _NOT_WORTH_IT * least)
         missed = _with_held(fits[name], subjects, trained, held).missed
-        shares = [_mean(missed[some]) for some in (held or trained, trained, slice(None))]
         law, effects = fits[name].model.specs(fits[name].vector)
         values = {
             key: float(value) for spec in (law, *effects) for key, value in spec.parameters.items()
         }
-        scores.append(LawScore(name, *shares, values))
-        progress(f"law {name}: leaves {100.0 * shares[2]:.1f} % of the oscillation unexplained")
+        share = _mean(missed)
+        scores.append(
+            LawScore(name, _mean(missed[held or trained]), _mean(missed[trained]), share, values)
+        )
+        progress(f"law {name}: leaves {100.0 * share:.1f} % of the oscillation unexplained")
     scores.sort(key=lambda score: score.missed)
     fit = fits[_simplest(scores)]
     if held:

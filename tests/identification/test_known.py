@@ -2,8 +2,13 @@
 
 import tomllib
 from dataclasses import replace
+from types import SimpleNamespace
 
+import pytest
+
+from models.condition import KnownCondition
 from models.rig_file import load_material_rig, rig_from, rig_text
+from noise.identification.identify import dependence_of
 from noise.identification.measured import known_beforehand
 
 INERTIAS = "elastomer_inertia_kgm2 = 1.6e-5\nclamp_inertia_kgm2 = 8e-4\n"
@@ -38,3 +43,14 @@ def test_a_change_states_what_it_changes(tmp_path):
     changed = known_beforehand(tmp_path / "bench.toml", {"clamp_inertia": "x2"})
     assert changed.known.clamp_inertia == 1.6e-3
     assert changed.inertias_stated
+
+
+@pytest.mark.parametrize(("heat", "reference"), [((20.0, None, 30.0), 25.0), ((None,), 23.0)])
+def test_a_rig_depends_on_temperature_from_that_of_its_recordings_on(heat, reference):
+    recordings = [
+        SimpleNamespace(measured=SimpleNamespace(condition=condition))
+        for condition in (KnownCondition(1.0, 2.79e-4, 2214.0, None, at) for at in heat)
+    ]
+    rig = load_material_rig("fluorocarbon")
+    assert dependence_of(rig, recordings, "fluorocarbon").reference == reference
+    assert dependence_of(rig, recordings, "PDMS") is None
