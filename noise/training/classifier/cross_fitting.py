@@ -118,7 +118,9 @@ class Rows:
             np.concatenate(x), labels[owners], np.repeat(weight, counts), real[owners], owners
         )
 
-    def part(self, rows: NDArray[np.bool_], columns: NDArray[np.bool_] | Sequence[int]) -> Rows:
+    def part(
+        self, rows: NDArray[np.bool_], columns: NDArray[np.bool_] | Sequence[int] | slice | slice
+    ) -> Rows:
         """Return a selection of rows and columns."""
         return Rows(
             self.x[rows][:, columns], self.y[rows], self.weight[rows], self.real[rows],
