@@ -1,4 +1,4 @@
-"""A case: the recordings of one rig, as a folder holds them, and what in it cannot be used.
+"""Reader of a case: the recordings of one rig in a folder, and their usable channels.
 
 Speed, interference and support that a recording does not state, taken from angle and torque.
 
@@ -35,7 +35,7 @@ from noise.recordings.sidecar import sidecar_text
 def sidecar_request(
     recording: Recording, interferences: Sequence[float], supports: Sequence[float]
 ) -> str:
-    """Return the sidecar that a recording lacks, in one line, and what can stand in it.
+    """Return a one-line request for the missing sidecar, with its possible content.
 
     Parameters
     ----------
@@ -90,8 +90,8 @@ _NEAR, _FAR = (-0.2, 0.3), (-0.35, 0.5)
 assumed."""
 
 
-def with_told_conditions(recording: Recording, rig: Rig) -> Recording:
-    """Fill in what a recording's condition leaves out.
+def with_inferred_conditions(recording: Recording, rig: Rig) -> Recording:
+    """Return a recording whose missing conditions are inferred from its signals.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def with_told_conditions(recording: Recording, rig: Rig) -> Recording:
     >>> at = {"interference": 0.279e-3, "support_stiffness": 3745.0}
     >>> run = simulate(rig, 1.0, **at, seconds=0.4).recording
     >>> stated = Condition(speed=1.0, support_stiffness=3745.0)
-    >>> told = with_told_conditions(replace(run, condition=stated), rig)
+    >>> told = with_inferred_conditions(replace(run, condition=stated), rig)
     >>> told.condition.interference
     0.000279
     >>> told.notes[0]
@@ -163,7 +163,7 @@ def with_told_conditions(recording: Recording, rig: Rig) -> Recording:
 
 
 def supports_of(rig: Rig) -> list[float]:
-    """Return the supports that a rig file knows.
+    """Return the supports in a rig file.
 
     Parameters
     ----------
@@ -279,19 +279,19 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
         names = [name for name, left in pairs if left is not None]
         recordings = [left for _, left in pairs if left is not None]
     misplaced = misplaced_torque(recordings, rig)
-    seen, ready, notes, left_out = prepared(rig, recordings)
+    known, ready, notes, left_out = prepared(rig, recordings)
     refused += [(names[i], reason) for i, reason in left_out.items()]
-    kept = tuple(name for i, name in enumerate(names) if i not in left_out)
+    retained = tuple(name for i, name in enumerate(names) if i not in left_out)
     estimated = tuple(
         kind
-        for kind, sensor in seen.sensors.by_kind.items()
+        for kind, sensor in known.sensors.by_kind.items()
         if rig.sensors.of(kind).noise is None and sensor.noise is not None
     )
-    return Case(seen, kept, ready, tuple(refused), notes, tuple(faults), misplaced, estimated)
+    return Case(known, retained, ready, tuple(refused), notes, tuple(faults), misplaced, estimated)
 
 
 def usable(recording: Recording, rig: Rig) -> Recording:
-    """Return a recording as the diagnosis can use it.
+    """Return the part of a recording that the diagnosis can use.
 
     What its condition does not state is taken from angle and torque, where these tell it, and
     interference and support where the rig has only one.
@@ -304,16 +304,16 @@ def usable(recording: Recording, rig: Rig) -> Recording:
     refuse_unusable(recording, shortest(recording.rate))
     if all(recording.first(kind) is None for kind in KINDS):
         raise ParameterError(f"has no channel of {', '.join(KINDS)}")
-    recording = with_told_conditions(recording, rig)
+    recording = with_inferred_conditions(recording, rig)
     condition = known_condition(recording.condition)
     interference, support = condition.interference, condition.support_stiffness
     low, high = rig.interference_range
     if not low * (1.0 - _SAME) <= interference <= high * (1.0 + _SAME):
         unit = length_unit(interference, low, high)
-        asked = f"; is it in {unit}?" if unit else ""
+        wanted = f"; is it in {unit}?" if unit else ""
         raise ParameterError(
             f"interference_mm = {1e3 * interference:g} lies outside the fits of the rig file, "
-            f"{1e3 * low:g} to {1e3 * high:g}{asked}"
+            f"{1e3 * low:g} to {1e3 * high:g}{wanted}"
         )
     known = [m.support_stiffness for m in rig.measured]
     if known and not any(same_support(support, k) for k in known):

@@ -1,4 +1,4 @@
-"""The diagnosis: from recordings and a rig file to what is missing, and how sure that is.
+"""Diagnosis of a case: verdict, probabilities, fits and notes from recordings and a rig file.
 
 In order: does the rig file describe the recordings to within what repeats differ by; where not;
 which causes are how probable together; how far parameters alone, and the likeliest of these with
@@ -131,9 +131,9 @@ def diagnose_case(
     tell = progress or (lambda _text: None)
     library = library or EFFECTS
     tell("checking that it is this rig")
-    found = bench_findings(case, library)
-    if found:
-        return _unlike(case, found, library, time.perf_counter() - started)
+    faults = bench_findings(case, library)
+    if faults:
+        return _unlike(case, faults, library, time.perf_counter() - started)
     posterior, nulls = posterior or load_posterior(), load_stage_nulls()
     first = first_answer(case, library, posterior, seed, tell)
     if quick:
@@ -157,7 +157,7 @@ def _stated(
     nulls: StageNulls,
     library: Mapping[str, Effect],
 ) -> Diagnosis:
-    """State a verdict: where it lies, what else it could be, what to measure next."""
+    """Return a diagnosis with location, alternatives and next measurement."""
     verdict, probabilities = judged.verdict, judged.probabilities
     findings = stage_findings(first.table, nulls, first.flat)
     faults = _faults(case, first.flat)
@@ -217,7 +217,7 @@ def _stated(
 
 
 def _unasked(case: Case, library: Mapping[str, Effect]) -> tuple[str, ...]:
-    """Say which effects of the user's own a quick answer has no probability of."""
+    """Return notes on user-defined effects without a probability in a quick answer."""
     listed = {spec.name for spec in case.rig.effects}
     own = [name for name in library if name not in EFFECTS and name not in listed]
     if not own:
@@ -229,7 +229,7 @@ def _unasked(case: Case, library: Mapping[str, Effect]) -> tuple[str, ...]:
 
 
 def _faults(case: Case, flat: Sequence[str]) -> tuple[str, ...]:
-    """Say which channels are dead, clip at a range, or have flat peaks: each channel once."""
+    """Return notes on channels that are dead, clip at a range, or have flat peaks."""
     return (
         *case.faults,
         *(
@@ -241,20 +241,20 @@ def _faults(case: Case, flat: Sequence[str]) -> tuple[str, ...]:
 
 
 def _agreement(case: Case, gap: Gap) -> tuple[Agreement, ...]:
-    found = []
+    agreements = []
     for name, recording, whole, each in zip(
         case.names, case.recordings, gap.of_recordings, gap.of_channels, strict=True
     ):
         at = known_condition(recording.condition)
         channels = {k: float(d) for k, d in zip(KINDS, each, strict=True) if math.isfinite(d)}
-        found.append(Agreement(name, at.speed, at.interference, float(whole), channels))
-    return tuple(found)
+        agreements.append(Agreement(name, at.speed, at.interference, float(whole), channels))
+    return tuple(agreements)
 
 
 def _unlike(
-    case: Case, found: tuple[str, ...], library: Mapping[str, Effect], seconds: float
+    case: Case, reasons: tuple[str, ...], library: Mapping[str, Effect], seconds: float
 ) -> Diagnosis:
-    """Say why the recordings cannot be of their rig; nothing that follows would mean anything."""
+    """Return a diagnosis without a cause, of recordings that cannot be of their rig."""
     unknown = math.nan
     return Diagnosis(
         verdict=("unknown",),
@@ -270,8 +270,8 @@ def _unlike(
         floor=1.0,
         p_value=unknown,
         seconds=seconds,
-        notes=(*found, *case.faults, *_notes(case), *case_remarks(case, library)),
-        bench=found,
+        notes=(*reasons, *case.faults, *_notes(case), *case_remarks(case, library)),
+        bench=reasons,
         faults=case.faults,
     )
 
@@ -294,7 +294,7 @@ def _kinds(case: Case) -> frozenset[str]:
 
 
 def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
-    """Say what of a rig, and of the conditions that it was recorded at, the user should know of.
+    """Return remarks on a rig and the conditions of its recordings.
 
     Parameters
     ----------
@@ -311,7 +311,7 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
     heat = sorted({c.temperature for c in at if c.temperature is not None})
     shipped = assumed_fit(case.rig, [c.interference for c in at])
     elsewhere = shipped and any(not _ROOM[0] <= t <= _ROOM[1] for t in heat)
-    found = [
+    remarks = [
         shipped,
         *use_remarks(
             case.rig,
@@ -325,7 +325,7 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
         if case.rig.temperature or len(heat) > 1 or elsewhere
         else "",
     ]
-    return [text for text in dict.fromkeys(found) if text]
+    return [text for text in dict.fromkeys(remarks) if text]
 
 
 def _notes(case: Case) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""The first answer of a diagnosis: is there a gap, and which cause is how probable.
+"""First answer of a diagnosis: the gap and the probability of each cause, without fits.
 
 What the shipped models of causes have not seen or cannot tell, and what that costs.
 
@@ -82,7 +82,7 @@ _FEWEST_VALUES = 40
 def flat_channels(
     recordings: Sequence[Recording], simulated: Callable[[Recording], Recording]
 ) -> tuple[str, ...]:
-    """Name the kinds of channel whose peaks are flat in most recordings, unlike the simulation's.
+    """Return the kinds of channel whose peaks are flat in most recordings but not in simulation.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def flat_channels(
     >>> flat_channels([cut] * 3, lambda _: plain), flat_channels([plain] * 3, lambda _: plain)
     (('pressure',), ())
     """
-    found = []
+    flat_kinds = []
     repeats: list[Recording] = []
     for kind in KINDS:
         having = [r for r in recordings if r.first(kind) is not None]
@@ -113,19 +113,19 @@ def flat_channels(
         repeats = repeats or [simulated(r) for r in recordings]
         made = [r for r in repeats if r.first(kind) is not None]
         if len(made) < _FEWEST or _flatness(made, kind) < _OF_SIMULATION * flat:
-            found.append(kind)
-    return tuple(found)
+            flat_kinds.append(kind)
+    return tuple(flat_kinds)
 
 
 def _flatness(recordings: Sequence[Recording], kind: str) -> float:
-    """How far a channel is beyond the ratios that are an overload's [-]."""
+    """Return the ratio of pile-ups of a channel to that of an overload [-]."""
     each = [pile_ups(r.samples[row]) for r in recordings if (row := r.first(kind)) is not None]
     middle = np.median(each, axis=0)
     return float(max(middle.min(axis=0).max() / _BOTH, middle.max() / _ONE))
 
 
 def pile_ups(signal: Array) -> Array:
-    """How many times as many samples lie at either end of a signal as just below it.
+    """Return the ratio of samples at either end of a signal to those just below it.
 
     Parameters
     ----------
@@ -204,20 +204,20 @@ def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tupl
                 full.append(kind)
         if sensor.antialias is not None and sensor.antialias < USABLE * rows[0][0].rate:
             filtered.setdefault(sensor.antialias, []).append(kind)
-    found = [f"noise and rounding of {', '.join(rough)}"] if rough else []
-    found += [f"a filter at {corner:g} Hz ({', '.join(on)})" for corner, on in filtered.items()]
-    found += [f"a range that is reached ({', '.join(full)})"] if full else []
-    if not found:
+    reasons = [f"noise and rounding of {', '.join(rough)}"] if rough else []
+    reasons += [f"a filter at {corner:g} Hz ({', '.join(on)})" for corner, on in filtered.items()]
+    reasons += [f"a range that is reached ({', '.join(full)})"] if full else []
+    if not reasons:
         return ()
     return (
-        f"the causes were learned with better sensors than these: {'; '.join(found)}; their "
+        f"the causes were learned with better sensors than these: {'; '.join(reasons)}; their "
         "probabilities are less sure here, and none is named within what repeats through the same "
         "sensors differ by",
     )
 
 
 def poor_responses(rig: Rig, recordings: Sequence[Recording]) -> tuple[str, ...]:
-    """Say that measured responses are too poor to name what they may feign; empty where not.
+    """Return a note if measured responses are too poor to name a cause; else nothing.
 
     Parameters
     ----------
@@ -252,14 +252,14 @@ def _is_rough(sensors: Sensors, kind: str) -> bool:
 
 
 def _levels(sensors: Sensors, kind: str) -> tuple[float, float]:
-    """Noise and rounding of a sensor, and the most that was learned with [unit of the channel]."""
+    """Return noise and rounding of a sensor and the largest in training [unit of the channel]."""
     sensor, usual = sensors.of(kind), Acquisition().noise[kind]
     level = _level(usual if sensor.noise is None else sensor.noise, sensor.step)
     return level, _level(NOISIEST * usual, THESIS_CONVERTER.of(kind).step)
 
 
 def _level(noise: float, step: float) -> float:
-    """Add noise and rounding, as standard deviations [unit of the channel]."""
+    """Return the standard deviation of noise and rounding together [unit of the channel]."""
     return math.hypot(noise, step / math.sqrt(12.0))
 
 
@@ -274,7 +274,7 @@ _SUSPECTED = 0.5
 
 @dataclass(frozen=True, eq=False)
 class FirstAnswer:
-    """What is said before anything is fitted.
+    """Answer of a diagnosis before any fit.
 
     Parameters
     ----------
@@ -322,7 +322,7 @@ class FirstAnswer:
 
 
 def known_effects(rig: Rig, library: Mapping[str, Effect]) -> set[str]:
-    """Name the effects of a rig file that are not proposed again.
+    """Return the effects of a rig file that are not proposed again.
 
     Parameters
     ----------
@@ -347,7 +347,7 @@ def first_answer(
     seed: int = 0,
     tell: Callable[[str], None] = lambda _text: None,
 ) -> FirstAnswer:
-    """Compare a case with its rig file.
+    """Return the first answer of a case.
 
     What looks like an effect that the rig file lists is not proposed again: its numbers are off,
     which is a matter of the rig's parameters. Of an irregularity that it lists there can be more.

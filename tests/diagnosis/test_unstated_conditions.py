@@ -12,7 +12,7 @@ from hypothesis import given, settings, strategies as st
 from models.condition import Condition, KnownCondition
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
-from noise.diagnosis.case import usable, with_told_conditions
+from noise.diagnosis.case import usable, with_inferred_conditions
 from noise.recordings.sidecar import parse_sidecar
 from tests.helpers.small_rigs import only, run
 
@@ -47,7 +47,7 @@ def test_what_is_told_is_right(speed, backwards, fit, support, known, seed):
     recorded = _recorded(speed, fit, support, "torque", "angle", seed=seed)
     stated = Condition(support_stiffness=support, interference=fit if known else None)
     try:
-        told = with_told_conditions(replace(recorded, condition=stated), RIG)
+        told = with_inferred_conditions(replace(recorded, condition=stated), RIG)
     except ParameterError:
         return
     assert told.condition.interference == fit
@@ -82,7 +82,7 @@ def test_fits_of_about_the_same_torque_are_not_told_apart():
     several = replace(RIG, fits=(*RIG.fits[:2], near))
     recorded = _recorded(0.8, 0.279e-3, 2214.0, "torque", "angle")
     with pytest.raises(ParameterError, match="fits several fits"):
-        with_told_conditions(
+        with_inferred_conditions(
             replace(recorded, condition=Condition(support_stiffness=2214.0)), several
         )
 

@@ -70,7 +70,7 @@ nothing of the channel's own stage."""
 
 @dataclass(frozen=True, eq=False)
 class StageNulls:
-    """Differences in cases without a cause.
+    """Distribution of differences in cases without a cause.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class StageNulls:
     largest: NDArray[np.float64]
 
     def sizes(self, table: CaseTable) -> NDArray[np.float64]:
-        """Size of the mean difference of each number.
+        """Return the size of the mean difference of each number.
 
         Parameters
         ----------
@@ -108,7 +108,7 @@ class StageNulls:
         return np.asarray(_errors(table, self.names, self.scale) / self.seldom)
 
     def surprises(self, table: CaseTable) -> NDArray[np.float64]:
-        """How surprising the mean difference of each number is.
+        """Return the surprise of the mean difference of each number.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class StageNulls:
         return _surprises(_errors(table, self.names, self.scale), self.usual, self.seldom)
 
     def save(self, path: str | Path) -> None:
-        """Write them into an NPZ file, whole or not at all.
+        """Write the distributions to an NPZ file, whole or not at all.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class StageNulls:
 
 
 def load_stage_nulls(path: str | Path | None = None) -> StageNulls:
-    """Load what stages differ by, by default what is shipped.
+    """Load the distributions of stage differences, by default the shipped ones.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def load_stage_nulls(path: str | Path | None = None) -> StageNulls:
 def learn_stage_nulls(
     tables: Sequence[CaseTable], names: Sequence[str], scale: NDArray[np.float64]
 ) -> StageNulls:
-    """Learn from cases without a cause what they differ by.
+    """Estimate the distributions of stage differences from cases without a cause.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def learn_stage_nulls(
 
 
 def _tails(errors: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Two quantiles of each number."""
+    """Return two quantiles of each number."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # numbers that no table has
         usual, seldom = np.nanquantile(errors, (_USUAL, _SELDOM), axis=0)
@@ -207,7 +207,7 @@ def largest_of(sizes: NDArray[np.float64]) -> float:
 
 
 def stage_of(name: str) -> str:
-    """Stage that a number tells of.
+    """Return the stage that a number belongs to.
 
     Examples
     --------
@@ -227,7 +227,7 @@ def stage_of(name: str) -> str:
 def _errors(
     table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Size of each mean difference in standard errors; NaN where it tells nothing."""
+    """Return each mean difference in standard errors; NaN where it is uninformative."""
     z = deviations(table, names, scale)
     errors = np.where(np.isfinite(z).any(axis=0), np.abs(standard_errors(z)), np.nan)
     if any(name.startswith("contact") for name in table.names):
@@ -267,7 +267,7 @@ _PHASES = {
 def stage_findings(
     table: CaseTable, nulls: StageNulls, flat: Collection[str] = ()
 ) -> dict[str, StageFinding]:
-    """How each stage differs.
+    """Return the gap, share and p-value of each stage.
 
     The gap is that of the number that differs most, over what is usual without a cause; the
     p-value is that of the most surprising one, corrected for the looks within and between stages.
@@ -281,26 +281,26 @@ def stage_findings(
     """
     size, surprise = nulls.sizes(table), nulls.surprises(table)
     stages = np.array([_stage(name, flat) for name in nulls.names])
-    found = {}
+    of_stage = {}
     for i, stage in enumerate(STAGES):
         inside = stages == stage
         gap = min(largest_of(size[inside]) / float(nulls.typical[i]), LARGEST_GAP)
-        found[stage] = (gap, _p_value(largest_of(surprise[inside]), nulls.largest[:, i]))
+        of_stage[stage] = (gap, _p_value(largest_of(surprise[inside]), nulls.largest[:, i]))
     if flat:
-        gap, p_value = found["measurement"]
-        found["measurement"] = (gap, min(p_value, _FLAT))
-    excess = {stage: max(gap - 1.0, 0.0) ** 2 for stage, (gap, _) in found.items()}
+        gap, p_value = of_stage["measurement"]
+        of_stage["measurement"] = (gap, min(p_value, _FLAT))
+    excess = {stage: max(gap - 1.0, 0.0) ** 2 for stage, (gap, _) in of_stage.items()}
     whole = sum(excess.values())
     return {
         stage: StageFinding(gap, excess[stage] / whole if whole > 0.0 else 0.0, p_value)
-        for stage, (gap, p_value) in found.items()
+        for stage, (gap, p_value) in of_stage.items()
     }
 
 
 def locate(
     table: CaseTable, nulls: StageNulls, stage: str | None = None, flat: Collection[str] = ()
 ) -> Location:
-    """Say where the difference is most certain.
+    """Return the place where the difference is most significant.
 
     Parameters
     ----------
@@ -339,7 +339,7 @@ def locate(
 def differences(
     table: CaseTable, nulls: StageNulls, flat: Collection[str] = ()
 ) -> tuple[Location, ...]:
-    """Look at every stage, channel, band and phase of the cycle.
+    """Return the significant differences by stage, channel, band and phase of the cycle.
 
     Parameters
     ----------
@@ -362,7 +362,7 @@ def differences(
         if np.isfinite(size[i]):
             key = (_stage(name, flat), _channel(name), _band(name), _phase(name))
             places.setdefault(key, []).append(i)
-    found = []
+    places_by_p = []
     for (stage, channel, band, phase), numbers in places.items():
         largest = np.array(numbers)[np.argsort(-size[numbers])][:3]
         most = float(size[largest[0]])
@@ -372,8 +372,8 @@ def differences(
             _p_value(most, null),
         )  # fmt: skip
         if place.p_value <= SURE:
-            found.append((place.p_value, -most, place))
-    return tuple(place for _, _, place in sorted(found, key=lambda entry: entry[:2]))
+            places_by_p.append((place.p_value, -most, place))
+    return tuple(place for _, _, place in sorted(places_by_p, key=lambda entry: entry[:2]))
 
 
 def _stage(name: str, flat: Collection[str]) -> str:

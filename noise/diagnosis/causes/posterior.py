@@ -94,7 +94,7 @@ def _null(
     repeats: Mapping[tuple[float, ...], NDArray[np.float64]],
     rng: np.random.Generator,
 ) -> CaseTable:
-    """Put repeats in the places of the recordings, and of what is predicted of them."""
+    """Return a table with repeats in place of recordings and of their predictions."""
     recorded, predicted = {}, {}
     for key, rows in repeats.items():
         mixed = rows[rng.permutation(len(rows))]
@@ -106,7 +106,7 @@ def _null(
 
 
 def as_seldom(value: float, nulls: NDArray[np.float64], n_recordings: int) -> float:
-    """Return how seldom cases without a cause have so low a value [-].
+    """Return the share of cases without a cause that have so low a value [-].
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ _LARGEST = 12.0
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """Cause posterior.
+    """Posterior probability of each cause given the evidence of a case.
 
     Parameters
     ----------
@@ -176,17 +176,17 @@ class Posterior:
     card: Mapping[str, object]
 
     def probabilities(self, table: CaseTable) -> dict[str, float]:
-        """Probability of each of `CAUSES` being at work."""
+        """Return the probability that each of `CAUSES` is present."""
         p = calibrated(self.log_odds(table)[None], self.weights)[0]
         return dict(zip(CAUSES, p.tolist(), strict=True))
 
     def log_odds(self, table: CaseTable) -> NDArray[np.float64]:
-        """Return what the trees say of each of `CAUSES`, not calibrated, shape (n_causes,) [-]."""
+        """Return the uncalibrated log odds of each of `CAUSES`, shape (n_causes,) [-]."""
         row = evidence(table, self.names, self.scale).astype(np.float64)
         return np.asarray(self.trees.scores(row[None, self.columns])[0])
 
     def save(self, path: str | Path) -> None:
-        """Write it into an NPZ file, whole or not at all.
+        """Write the posterior to an NPZ file, whole or not at all.
 
         Raises
         ------
@@ -201,7 +201,7 @@ class Posterior:
 
 
 def odds_features(odds: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return what the calibration looks at.
+    """Return the features of the calibration.
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ def odds_features(odds: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def calibrated(odds: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Probabilities of logarithmic odds.
+    """Return the calibrated probabilities of log odds.
 
     Parameters
     ----------

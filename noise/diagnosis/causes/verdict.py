@@ -31,7 +31,7 @@ _LEAST = 1e-4
 
 
 def joint_probabilities(probabilities: Mapping[str, float]) -> dict[Hypothesis, float]:
-    """Probability of each hypothesis, the causes taken for independent.
+    """Return the probability of each hypothesis if causes are independent.
 
     Parameters
     ----------
@@ -50,10 +50,10 @@ def joint_probabilities(probabilities: Mapping[str, float]) -> dict[Hypothesis, 
     ['clipping', 'mains_hum']
     """
     odds = {
-        cause: kept / (1.0 - kept)
+        cause: bounded / (1.0 - bounded)
         for cause, p in probabilities.items()
         if p > 0.0
-        for kept in [min(max(p, _LEAST), 1.0 - _LEAST)]
+        for bounded in [min(max(p, _LEAST), 1.0 - _LEAST)]
     }
     effects = [cause for cause in odds if cause not in _EXCLUSIVE]
     weights = {frozenset(set() if c == "none" else {c}): odds.get(c, 0.0) for c in _EXCLUSIVE}
@@ -71,7 +71,7 @@ def normalised(weights: Mapping[Hypothesis, float]) -> dict[Hypothesis, float]:
 
 
 def with_none(joint: Mapping[Hypothesis, float], least: float) -> dict[Hypothesis, float]:
-    """Give nothing being the matter a probability, at the expense of all others alike.
+    """Raise the probability of no cause to a minimum and rescale the others.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def with_none(joint: Mapping[Hypothesis, float], least: float) -> dict[Hypothesi
 
 
 def marginals(joint: Mapping[Hypothesis, float]) -> dict[str, float]:
-    """Probability of each cause being at work.
+    """Return the probability that each cause is present.
 
     Parameters
     ----------
@@ -112,11 +112,11 @@ def marginals(joint: Mapping[Hypothesis, float]) -> dict[str, float]:
     >>> marginals({frozenset(): 0.1, frozenset({"a"}): 0.5, frozenset({"a", "b"}): 0.4})
     {'none': 0.1, 'a': 0.9, 'b': 0.4}
     """
-    found: dict[str, float] = {}
+    single: dict[str, float] = {}
     for hypothesis, p in joint.items():
         for cause in sorted(hypothesis or {"none"}):
-            found[cause] = found.get(cause, 0.0) + p
-    return found
+            single[cause] = single.get(cause, 0.0) + p
+    return single
 
 
 _SHOWN_BY = {
@@ -127,7 +127,7 @@ _SHOWN_BY = {
 
 
 def unseen_causes(kinds: Collection[str]) -> frozenset[str]:
-    """Name the effects that none of the recorded channels can show.
+    """Return the effects that none of the recorded channels can show.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def unseen_causes(kinds: Collection[str]) -> frozenset[str]:
 
 
 def channel_costs(kinds: Collection[str]) -> list[str]:
-    """Say what the channels that were not recorded cost, one line each.
+    """Return one line for each consequence of channels that were not recorded.
 
     Parameters
     ----------
@@ -166,28 +166,28 @@ def channel_costs(kinds: Collection[str]) -> list[str]:
     ['no acceleration: structure and radiation cannot be told apart']
     """
     missing = {"torque", "acceleration", "pressure", "angle"} - set(kinds)
-    found = []
+    lines = []
     if "torque" in missing:
-        heard = " and ".join(
+        recorded = " and ".join(
             word for kind, word in (("acceleration", "acceleration"), ("pressure", "sound"))
             if kind not in missing
         )  # fmt: skip
-        found.append(
-            f"no torque: drive, contact and structure cannot be told apart by {heard} alone"
+        lines.append(
+            f"no torque: drive, contact and structure cannot be told apart by {recorded} alone"
         )
     unseen = ", ".join(sorted(name.replace("_", " ") for name in unseen_causes(kinds)))
     if {"acceleration", "pressure"} <= missing:
-        found.append(f"no acceleration and no sound: nothing is said of {unseen}")
+        lines.append(f"no acceleration and no sound: nothing is said of {unseen}")
     elif "acceleration" in missing:
-        found.append("no acceleration: structure and radiation cannot be told apart")
+        lines.append("no acceleration: structure and radiation cannot be told apart")
     elif "pressure" in missing:
-        found.append(f"no sound: nothing is said of {unseen}")
+        lines.append(f"no sound: nothing is said of {unseen}")
     if "angle" in missing:
-        found.append(
+        lines.append(
             "no shaft angle: the shaft is taken to turn evenly at the speed that was set, and an "
             "uneven drive is told by what else it changes"
         )
-    return found
+    return lines
 
 
 ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"}))
@@ -207,7 +207,7 @@ such sensors or responses; the customary level, assumed."""
 def needs_explaining(
     none: float, alarm: float, gap: Gap | None = None, chance: float | None = None
 ) -> bool:
-    """Tell whether there is something to explain.
+    """Return whether the gap needs an explanation.
 
     Parameters
     ----------
@@ -326,7 +326,7 @@ _WITHOUT_TORQUE = (
 def equivalent_pairs(
     ranked: Sequence[str], probabilities: Mapping[str, float], kinds: Collection[str]
 ) -> tuple[tuple[str, str], ...]:
-    """Pairs of effects that this case cannot separate.
+    """Return the pairs of effects that this case cannot separate.
 
     Parameters
     ----------
@@ -343,15 +343,15 @@ def equivalent_pairs(
     >>> equivalent_pairs(list(p), p, {"torque"})
     (('frictional_heating', 'velocity_weakening'),)
     """
-    found = []
+    pairs = []
     for i, one in enumerate(ranked[:4]):
         for other in ranked[i + 1 : 4]:
             high, low = probabilities[one], probabilities[other]
             if low >= _ALIKE and high < _FACTOR * low and high + low < 1.3:
-                found.append((min(one, other), max(one, other)))
+                pairs.append((min(one, other), max(one, other)))
     if "torque" not in kinds:
-        found += [pair for pair in _WITHOUT_TORQUE if ranked[0] in pair]
-    return tuple(dict.fromkeys(found))
+        pairs += [pair for pair in _WITHOUT_TORQUE if ranked[0] in pair]
+    return tuple(dict.fromkeys(pairs))
 
 
 _WHERE_UNKNOWN = {
@@ -386,7 +386,7 @@ def next_measurement(
     farthest: str = "",
     own_fit: bool = True,
 ) -> str:
-    """Say what would make the answer surer.
+    """Return the next measurement that would reduce the uncertainty most.
 
     Parameters
     ----------

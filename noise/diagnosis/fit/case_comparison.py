@@ -1,4 +1,4 @@
-"""Recordings of a case, ready to be compared with any model of their rig again and again.
+"""Comparison of the recordings of a case with models of their rig, with cached simulations.
 
 Every model is simulated with the same few seeds, so that two of them differ by what they are and
 not by chance. A fit compares with one run that has no scatter, which is the middle of what the
@@ -66,7 +66,7 @@ _BY_CHANCE = (
 
 @dataclass(eq=False)
 class CaseComparison:
-    """Recordings of a case beside the simulator.
+    """Recordings of a case with the simulations of their rig.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ class CaseComparison:
         }
 
     def gap(self, seed: int = 0) -> Gap:
-        """Gap between the recordings and the rig as its file has it.
+        """Return the gap between the recordings and the rig of the file.
 
         Its distance is 1 on average, and its p-value uniform, where only chance sets them apart.
         """
@@ -156,11 +156,11 @@ class CaseComparison:
         return self.runs.effect_of(spec)
 
     def is_stated(self, spec: LawSpec) -> bool:
-        """Tell whether a rig file can state an effect as it was fitted."""
+        """Return whether a rig file can state an effect as fitted."""
         return (spec.name, str(spec.parameters.get("form"))) not in self.forms
 
     def deviations(self, model: Model, chosen: Sequence[int]) -> list[NDArray[np.float64]]:
-        """How far each chosen recording lies from a model, in units of what repeats differ by.
+        """Return deviations of recordings from a model, in standard deviations of repeats.
 
         Where the model's own repeats differ by more than those of the rig file, as with an effect
         that is chance itself, they tell what repeats of it differ by.
@@ -175,20 +175,20 @@ class CaseComparison:
         list of ndarray, shape (n_values,)
             In standard deviations of repeats [-].
         """
-        found = []
+        deviations = []
         for i in chosen:
             reference = self.references[i]
             if model == self.about:
-                found.append(reference.deviation(self.signatures[i]))
+                deviations.append(reference.deviation(self.signatures[i]))
                 continue
             repeats = self._repeats(model, self.recordings[i], _N_OF_MODEL)
             own = repeats.std(axis=0, ddof=1) * math.sqrt(1.0 + 1.0 / len(repeats))
             scale = np.clip(own, reference.scale, _WIDEST * reference.scale)
-            found.append((self.signatures[i] - repeats.mean(axis=0)) / scale)
-        return found
+            deviations.append((self.signatures[i] - repeats.mean(axis=0)) / scale)
+        return deviations
 
     def squared(self, model: Model, chosen: Sequence[int]) -> NDArray[np.float64]:
-        """Squared distance of each chosen recording from a model; 1 is the floor.
+        """Return the squared distance of recordings from a model; 1 is the floor.
 
         Parameters
         ----------
@@ -212,7 +212,7 @@ class CaseComparison:
     def misfits(
         self, model: Model, chosen: Sequence[int], *, single_run: bool = False
     ) -> NDArray[np.float64]:
-        """Distance of each chosen recording from runs of a model without scatter.
+        """Return the distance of recordings from runs of a model without scatter.
 
         Such runs lie a little off the middle of the scattered ones; by how much the rig file's do
         is known, and taken off.
@@ -240,7 +240,7 @@ class CaseComparison:
             return np.full(len(chosen), np.inf)
 
     def _each(self, make: Callable[[int], T], given: Sequence[int]) -> list[T]:
-        """Make something of each of what is given, several at once."""
+        """Map a function over a sequence with several threads."""
         if self._threads < 2 or len(given) < 2:
             return [make(one) for one in given]
         with ThreadPoolExecutor(self._threads) as pool:
@@ -260,7 +260,7 @@ class CaseComparison:
     def _middle(
         self, model: Model, template: Recording, *, single_run: bool
     ) -> NDArray[np.float64]:
-        """Signature of a model without scatter."""
+        """Return the signature of a model without scatter."""
         by_chance = any(spec.name in _BY_CHANCE for spec in model.effects)
         seeds = _SEEDS if by_chance and not single_run else _SEEDS[:1]
         key = (repr(model), condition_key(template), len(seeds))
@@ -271,7 +271,7 @@ class CaseComparison:
         return self._signed[key]
 
     def residuals(self, model: Model, chosen: Sequence[int]) -> NDArray[np.float64]:
-        """Differences of how each chosen recording follows from its torque from a model's.
+        """Return differences of recordings and a model in their path from torque to outputs.
 
         Returns
         -------
@@ -293,15 +293,15 @@ class CaseComparison:
 
     def _path_numbers(self, model: Model, template: Recording) -> NDArray[np.float64]:
         run = self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0, 0.0))
-        signal, rate, found = signals_of(same_channels(run, template)), run.rate, {}
+        signal, rate, numbers = signals_of(same_channels(run, template)), run.rate, {}
         if "torque" in signal:
             transfer_functions = self.runs.transfer_functions.whole(template)
             spectrum = closed_spectrum(signal["torque"], rate)
-            found = path_numbers(signal, spectrum, rate, transfer_functions, np.empty(0))[0]
-        return np.array([found.get(name, math.nan) for name in self.names])
+            numbers = path_numbers(signal, spectrum, rate, transfer_functions, np.empty(0))[0]
+        return np.array([numbers.get(name, math.nan) for name in self.names])
 
     def _repeats(self, model: Model, template: Recording, n: int) -> NDArray[np.float64]:
-        """Signatures of a model's first scattered repeats, shape (n, n_values)."""
+        """Return signatures of the first scattered repeats of a model, shape (n, n_values)."""
         key = (repr(model), condition_key(template), "repeats")
         known = self._signed.get(key)
         if known is None or len(known) < n:

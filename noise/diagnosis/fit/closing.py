@@ -24,7 +24,7 @@ _DRAWS = 400
 
 
 def rms(squared: NDArray[np.float64]) -> float:
-    """Root mean square distance of recordings.
+    """Return the root mean square distance of recordings.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def rms(squared: NDArray[np.float64]) -> float:
 
 
 def room_of(gap: float) -> float:
-    """How much there is to close, from 0 at the floor to 1 [-].
+    """Return the closable share of a gap, from 0 at the floor to 1 [-].
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def room_of(gap: float) -> float:
 
 
 def closed_of(before: float, after: float) -> float:
-    """Share of a gap that is closed, of small gaps less, between -1 and 1 [-].
+    """Return the closed share of a gap, smaller for small gaps, between -1 and 1 [-].
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def closed_of(before: float, after: float) -> float:
 
 
 def closed_share(before: NDArray[np.float64], after: NDArray[np.float64]) -> float | None:
-    """Share of the closable gap; None where there is less than `CLOSABLE` to close.
+    """Return the closed share of a gap; None where less than `CLOSABLE` can be closed.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def closed_share(before: NDArray[np.float64], after: NDArray[np.float64]) -> flo
 def closed_interval(
     before: NDArray[np.float64], after: NDArray[np.float64], seed: int = 0
 ) -> tuple[float, float] | None:
-    """90 % interval of the share that a fit closes; None where there is nothing to close.
+    """Return the 90 % interval of the closed share; None where there is nothing to close.
 
     Parameters
     ----------
@@ -121,13 +121,13 @@ def closed_interval(
     share = closed_share(before, after)
     if share is None:
         return None
-    rng, n, found = np.random.default_rng(seed), len(before), []
+    rng, n, shares = np.random.default_rng(seed), len(before), []
     for _ in range(_DRAWS):
         place = rng.integers(n, size=n)
         gap = rms(before[place])
         if gap - 1.0 < CLOSABLE:
             gap = rms(before)
         left = rms(after[place]) + _FLOOR_SPREAD / np.sqrt(n) * rng.standard_normal()
-        found.append(closed_fraction(gap, max(left, 1.0)))
-    low, high = np.percentile(found, _LEVEL).tolist()
+        shares.append(closed_fraction(gap, max(left, 1.0)))
+    low, high = np.percentile(shares, _LEVEL).tolist()
     return min(low, share), max(high, share)

@@ -1,4 +1,4 @@
-"""Fits that decide: the likeliest hypotheses are fitted, and what each closes changes its odds.
+"""Fits of the likeliest hypotheses, and update of their probabilities by the closed gap.
 
 A right name closes more of what refitted parameters leave than a wrong one does. How much more was
 counted once on 71 fits of 50 cases whose cause was known: closing all of a large gap was worth a
@@ -67,7 +67,7 @@ _NO_FIT: tuple[Hypothesis, ...] = (frozenset(), *ALONE)
 
 @dataclass(frozen=True, eq=False)
 class HypothesisFit:
-    """A set of effects as fitted together.
+    """Joint fit of a set of effects.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class CaseFits:
     impossible: Mapping[Hypothesis, str] = field(default_factory=dict)
 
     def held_out(self, squared: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return what belongs to recordings that no fit has seen.
+        """Return the values of the held-out recordings.
 
         Parameters
         ----------
@@ -130,18 +130,18 @@ class CaseFits:
         return squared[list(self.held)]
 
     def gap(self, squared: NDArray[np.float64]) -> float:
-        """Return a gap in floors [-], to which recordings held out and fitted to count alike.
+        """Return the gap in floors [-], weighing held-out and fitted recordings alike.
 
         Parameters
         ----------
         squared : ndarray, shape (n_recordings,)
             [-]
         """
-        seen = squared[list(self.fitted_to)]
-        return math.hypot(rms(self.held_out(squared)), rms(seen)) / math.sqrt(2.0)
+        fitted = squared[list(self.fitted_to)]
+        return math.hypot(rms(self.held_out(squared)), rms(fitted)) / math.sqrt(2.0)
 
     def least(self, hypothesis: Hypothesis) -> NDArray[np.float64]:
-        """Return what a fit leaves of each recording, or that of a part of it where that is less.
+        """Return the residual of a fit, or of a fit of a subset where that is smaller.
 
         More effects leave no more than fewer do, but a search among more of them may stop short.
 
@@ -158,7 +158,7 @@ class CaseFits:
         return min((self.of[hypothesis].squared, *parts), key=self.gap)
 
     def closes(self, hypothesis: Hypothesis) -> bool:
-        """Tell whether a fit closes some of the gap of recordings held out, parameters and all.
+        """Return whether a fit, parameters included, closes some of the held-out gap.
 
         What parameters alone leave is weighed by `updated`: they may only stand for the effect.
         Where there was none to close, the fit must open none.
@@ -166,7 +166,7 @@ class CaseFits:
         return self.closes_held_out(self.held_out(self.least(hypothesis)))
 
     def closes_held_out(self, left: NDArray[np.float64]) -> bool:
-        """Tell as `closes` whether what is left of recordings held out is a gap closed.
+        """Return whether a residual of held-out recordings is a closed gap, as `closes`.
 
         Parameters
         ----------
@@ -179,7 +179,7 @@ class CaseFits:
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """What the fits of a case say.
+    """Result of the fits of a case.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def judge(
     seed: int,
     tell: Callable[[str], None],
 ) -> Judged:
-    """Fit the likeliest hypotheses of a case, and say which is the likeliest then.
+    """Fit the likeliest hypotheses of a case and return the updated verdict.
 
     Where the first answer finds nothing to explain, the user's own effects alone are fitted, of
     which it knows nothing; all probabilities are then of these and of nothing being the matter.
@@ -242,16 +242,16 @@ def judge(
     alone = fit_parameters(comparison, fitted_to)
     recalibrated = comparison.squared(alone.model, whole)
     least = {frozenset({name}): _UNSEEN for name in always}
-    asked = normalised(
+    prior = normalised(
         dict(first.hypotheses) | {h: max(p, first.hypotheses.get(h, 0.0)) for h, p in least.items()}
     )
     if not first.verdict:  # what the posterior knows of is not there
-        asked = normalised({h: p for h, p in asked.items() if not h or h <= set(always)})
+        prior = normalised({h: p for h, p in prior.items() if not h or h <= set(always)})
     fits = CaseFits(comparison, fitted_to, held, alone, before, recalibrated)
-    fits = fit_hypotheses(fits, asked, always, seed, tell)
-    hypotheses = settled(updated(asked, fits), fits)
+    fits = fit_hypotheses(fits, prior, always, seed, tell)
+    hypotheses = settled(updated(prior, fits), fits)
     if not first.verdict:  # what closes nothing then speaks for nothing being the matter
-        hypotheses = normalised({h: p for h, p in hypotheses.items() if h in asked})
+        hypotheses = normalised({h: p for h, p in hypotheses.items() if h in prior})
     verdict, single = likeliest(hypotheses, fits.of), marginals(hypotheses)
     probabilities = {n: single.get(n, 0.0) for n in {**first.probabilities, **single}}
     among = () if first.verdict else tuple(always)
@@ -259,7 +259,7 @@ def judge(
 
 
 def fit_notes(judged: Judged) -> list[str]:
-    """Say what probabilities are given, and what could not be fitted.
+    """Return notes on the probabilities, on partial fits and on effects that were not fitted.
 
     Parameters
     ----------
@@ -270,32 +270,32 @@ def fit_notes(judged: Judged) -> list[str]:
     list of str
         One line each.
     """
-    found = []
+    notes = []
     if judged.among:
-        found.append(
+        notes.append(
             "among the causes that the program brings there is nothing to explain: the "
             f"probabilities are of {joined(judged.among)} and of no gap, as if there were no other"
         )
     if judged.fits is not None:
         fits = judged.fits
         if rms(fits.held_out(fits.before)) < 1.0 + CLOSABLE <= rms(fits.before[[*fits.fitted_to]]):
-            found.append(
+            notes.append(
                 "what was held out hardly deviates, so that no fit could be tried on a deviation "
                 "that it had not seen: record the condition that deviates once more"
             )
         fit = fits.of.get(frozenset(judged.verdict))
         if fit is not None and fit.share < 1.0:
-            found.append(
+            notes.append(
                 f"{joined(fit.names)} as fitted overshoots in the recordings held out: "
                 f"{fit.share:.0%} of it is taken, which these have settled, so what it closes of "
                 "them is no forecast"
             )
-        found += [
+        notes += [
             f"{' and '.join(sorted(names))} was not fitted, since no model of it can be simulated: "
             f"{why}"
             for names, why in fits.impossible.items()
         ]
-    return found
+    return notes
 
 
 def fit_hypotheses(
@@ -305,7 +305,7 @@ def fit_hypotheses(
     seed: int = 0,
     tell: Callable[[str], None] = lambda _text: None,
 ) -> CaseFits:
-    """Fit the likeliest hypotheses, each by the odds that the fits before it have left.
+    """Fit the likeliest hypotheses one by one, by odds updated after each fit.
 
     Parameters
     ----------
@@ -361,7 +361,7 @@ def fit_hypotheses(
 
 
 def weakened(fits: CaseFits, fit: HypothesisFit) -> HypothesisFit:
-    """Take a share of a fit that opens the gap of recordings held out.
+    """Return the part of a fit that closes the held-out gap, if all of it does not.
 
     A form that is not quite the rig's may follow the recordings that were fitted to and overshoot
     beyond them, and a rig near a change of regime may change it by a little more. The strongest of
@@ -389,7 +389,7 @@ def weakened(fits: CaseFits, fit: HypothesisFit) -> HypothesisFit:
 
 
 def _scaled(effect: Effect, spec: LawSpec, share: float) -> LawSpec:
-    """Return an effect of so much of its strength, within what that may be."""
+    """Return an effect with its strength scaled, within its limits."""
     declared = effect.parameters[effect.strength]
     value = share * float(spec.parameters.get(effect.strength, declared.default))
     value = min(max(value, declared.low), declared.high)
@@ -397,7 +397,7 @@ def _scaled(effect: Effect, spec: LawSpec, share: float) -> LawSpec:
 
 
 def settled(hypotheses: Mapping[Hypothesis, float], fits: CaseFits) -> dict[Hypothesis, float]:
-    """Hand what speaks for sets of effects whose fits close nothing to the unknown.
+    """Move the probability of effects whose fits close nothing to the unknown cause.
 
     Parameters
     ----------
@@ -418,7 +418,7 @@ def settled(hypotheses: Mapping[Hypothesis, float], fits: CaseFits) -> dict[Hypo
 
 
 def updated(hypotheses: Mapping[Hypothesis, float], fits: CaseFits) -> dict[Hypothesis, float]:
-    """Probabilities of hypotheses once some of them are fitted.
+    """Return the probabilities of hypotheses updated by their fits.
 
     Parameters
     ----------
@@ -435,7 +435,7 @@ def updated(hypotheses: Mapping[Hypothesis, float], fits: CaseFits) -> dict[Hypo
     gaps = {hypothesis: fits.gap(fits.least(hypothesis)) for hypothesis in fits.of}
 
     def more(before: float, after: float) -> float:
-        """Of one effect more than leave a gap: 0 at most."""
+        """Return the log odds of one further effect, 0 at most."""
         return min(0.0, _CLOSING * closed_of(before, after) - _MORE)
 
     def ratio(hypothesis: Hypothesis) -> float:

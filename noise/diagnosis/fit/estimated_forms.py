@@ -124,7 +124,7 @@ def _beside(
 ) -> Callable[..., ImpulseResponses]:
     kinds = [k for k in ("acceleration", "pressure") if all(k in c.left for c in having)]
     noise = [np.full(1, _NOISE**2)] * len(having)
-    found = {
+    estimates = {
         kind: wiener_estimate(
             [(c.torque, c.left[kind]) for c in having], rate, _FREE, noise=lambda _f: noise
         )
@@ -142,7 +142,7 @@ def _beside(
                 getattr(paths, f"torque_to_{kind}"),
                 values["amount"] * impulse_response(transfer, paths.rate, n),
             ])
-            for kind, transfer in found.items()
+            for kind, transfer in estimates.items()
         }  # fmt: skip
         return replace(paths, **more)
 

@@ -1,4 +1,4 @@
-"""Parameters and effects fitted to recordings, by one search that walks over jumps.
+"""Fit of parameters and effects to recordings by pattern search.
 
 Parameters are recalibrated within what a rig file may be wrong by. What that closes by itself is
 told apart, because it may hide the effect that is missing (Kennedy and O'Hagan 2001;
@@ -105,7 +105,7 @@ def pattern_search(
     steps: NDArray[np.float64],
     shrink: Sequence[float],
 ) -> tuple[NDArray[np.float64], float]:
-    """Search for the least cost about a start.
+    """Return the minimum of a cost by pattern search.
 
     Parameters
     ----------
@@ -138,10 +138,10 @@ def pattern_search(
                 for _ in range(_FARTHEST):
                     candidate = x.copy()
                     candidate[i] += sign * factor * steps[i]
-                    tried = cost(candidate)
-                    if tried >= best:
+                    candidate_cost = cost(candidate)
+                    if candidate_cost >= best:
                         break
-                    x, best, improved = candidate, tried, True
+                    x, best, improved = candidate, candidate_cost, True
                 if improved:
                     break
     return x, best
@@ -149,7 +149,7 @@ def pattern_search(
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A model that was fitted to recordings, and how well its numbers are known.
+    """Model fitted to recordings, with the uncertainty of its numbers.
 
     Parameters
     ----------
@@ -165,24 +165,24 @@ class Fitted:
 
     @cached_property
     def spread(self) -> dict[str, float]:
-        """Standard deviation of the logarithm of each number, by its name.
+        """Standard deviation of the logarithm of each number, by name.
 
         Parameters by their own, numbers of an effect as ``EFFECT.NUMBER``: how far each can be off
         before the cost tells, which is taken to rise as the square. What the fit leaves above the
         floor makes it less sure in proportion (Birge 1932). It is that of one form, the other
         numbers as they are.
         """
-        best, found = cost_of(self.comparison, self.few, self.model), {}
+        best, spreads = cost_of(self.comparison, self.few, self.model), {}
         for number in (*_offsets(), *_numbers(self.comparison, self.model)):
             of_offset = number[0] is None
             look = _LOOK_OF_OFFSET if of_offset else _LOOK_OF_EFFECT
-            tried = [self._cost_at(number, x) for x in (look, -look)]
-            known = [one for one in tried if math.isfinite(one)]
+            costs = [self._cost_at(number, x) for x in (look, -look)]
+            known = [one for one in costs if math.isfinite(one)]
             rise = max(sum(known) / len(known) - best, 1e-9) if known else 1e-9
             most, beside = (PRIOR, _BESIDE) if of_offset else (_LEAST_SURE, 0.0)
             own = math.hypot(look * math.sqrt(_UNSURE * max(best, 1.0) / rise), beside)
-            found[_name(self.model, number)] = min(own, most)
-        return found
+            spreads[_name(self.model, number)] = min(own, most)
+        return spreads
 
     def _cost_at(self, number: _Number, x: float) -> float:
         return cost_of(self.comparison, self.few, _moved(self.model, [number], np.array([x])))
@@ -191,7 +191,7 @@ class Fitted:
 def split(
     conditions: Sequence[Condition], gaps: Sequence[float] = ()
 ) -> tuple[list[int], list[int]]:
-    """Which recordings are fitted to, and which are held out: whole conditions, about two fifths.
+    """Split recordings into fitted and held-out ones, about two fifths of the conditions.
 
     The fastest is among those held out, and the slowest where there are several: what closes there
     is foretold and not only filled in. Where no gap shows there but in several others, the one of
@@ -243,7 +243,7 @@ SHOWS = 1.5
 
 
 def different(comparison: CaseComparison, chosen: Sequence[int]) -> list[int]:
-    """Choose recordings for a fit: one a condition, as repeats tell it nothing new."""
+    """Return one recording of each condition for a fit."""
     first: dict[Condition, int] = {}
     for i in chosen:
         first.setdefault(comparison.recordings[i].condition, i)
@@ -255,7 +255,7 @@ def different(comparison: CaseComparison, chosen: Sequence[int]) -> list[int]:
 def cost_of(
     comparison: CaseComparison, few: Sequence[int], model: Model, *, single_run: bool = False
 ) -> float:
-    """Mean distance of recordings from a model in floors [-], and what its offsets cost."""
+    """Return mean distance of recordings from a model plus the cost of offsets, in floors [-]."""
     held = _HOLD * float(np.sum((np.array(model.offsets) / PRIOR) ** 2)) / len(few)
     try:
         if any(spec.name in _BY_NUMBERS for spec in model.effects):
@@ -274,7 +274,7 @@ def _offsets() -> list[_Number]:
 
 
 def _numbers(comparison: CaseComparison, model: Model, *places: int) -> list[_Number]:
-    """Numbers of the effects of a model that are fitted; of some effects or of all."""
+    """Return the fitted numbers of the effects of a model."""
     return [
         (place, name, declared.low, declared.high)
         for place in places or range(len(model.effects))
@@ -292,7 +292,7 @@ def _name(model: Model, number: _Number) -> str:
 
 
 def _moved(model: Model, numbers: Sequence[_Number], x: NDArray[np.float64]) -> Model:
-    """Move numbers by logarithms, within what they may be."""
+    """Return a model with numbers changed by logarithms, within their limits."""
     offsets, effects = list(model.offsets), list(model.effects)
     for (place, name, low, high), log in zip(numbers, x.tolist(), strict=True):
         if place is None:
@@ -311,7 +311,7 @@ def _searched(
     numbers: Sequence[_Number],
     shrink: Sequence[float],
 ) -> tuple[float, Model]:
-    """Search about some numbers of a model; return the least cost and its model."""
+    """Return the least cost of a search over numbers of a model, and its model."""
     steps = [_STEP_OF_OFFSET if place is None else _STEP_OF_EFFECT for place, *_ in numbers]
     x, cost = pattern_search(
         lambda x: cost_of(comparison, few, _moved(model, numbers, x)), np.zeros(len(steps)),
@@ -321,7 +321,7 @@ def _searched(
 
 
 def fit_parameters(comparison: CaseComparison, chosen: Sequence[int]) -> Fitted:
-    """Recalibrate the rig's parameters.
+    """Fit the parameters of the rig.
 
     Parameters
     ----------
@@ -331,14 +331,14 @@ def fit_parameters(comparison: CaseComparison, chosen: Sequence[int]) -> Fitted:
     """
     few = different(comparison, chosen)
     plain, read = Model(), Model(read_offsets(comparison.table, few))
-    found = [_searched(comparison, few, read, _offsets(), _SHRINK[1:])]
+    fits = [_searched(comparison, few, read, _offsets(), _SHRINK[1:])]
     if cost_of(comparison, few, plain) < cost_of(comparison, few, read):
-        found.append(_searched(comparison, few, plain, _offsets(), _SHRINK))
-    return Fitted(min(found, key=itemgetter(0))[1], comparison, few)
+        fits.append(_searched(comparison, few, plain, _offsets(), _SHRINK))
+    return Fitted(min(fits, key=itemgetter(0))[1], comparison, few)
 
 
 def read_offsets(table: CaseTable | None, chosen: Sequence[int]) -> tuple[float, ...]:
-    """Read off recordings by what torques and stiffness differ from those of simulated repeats.
+    """Estimate offsets of torques and stiffness from the evidence of the recordings.
 
     A law or an effect moves these numbers as well; where none does, they are within 1 to 2 %.
 
@@ -354,7 +354,7 @@ def read_offsets(table: CaseTable | None, chosen: Sequence[int]) -> tuple[float,
     tuple of float
         Logarithms of the factors on `OFFSETS`, 0 of what is not read [-].
     """
-    found = []
+    offsets = []
     for name in (_READ.get(name) for name in OFFSETS):
         ratio = np.empty(0)
         if table is not None and name in table.names:
@@ -362,8 +362,8 @@ def read_offsets(table: CaseTable | None, chosen: Sequence[int]) -> tuple[float,
             measured, nominal = (x[list(chosen), column] for x in (table.measured, table.nominal))
             ratio = np.log(np.maximum(measured, 1e-3) / np.maximum(nominal, 1e-3))
             ratio = np.clip(ratio[np.isfinite(ratio)], -_FARTHEST_READ, _FARTHEST_READ)
-        found.append(float(np.median(ratio)) if ratio.size else 0.0)
-    return tuple(found)
+        offsets.append(float(np.median(ratio)) if ratio.size else 0.0)
+    return tuple(offsets)
 
 
 def fit_effects(
@@ -428,7 +428,7 @@ def fit_effects(
 
 
 def fit_closer(comparison: CaseComparison, chosen: Sequence[int], model: Model) -> Fitted:
-    """Move the numbers of a fitted model once more, by small steps; offsets of 0 stay.
+    """Refine the numbers of a fitted model by small steps; offsets of 0 stay.
 
     Parameters
     ----------
@@ -446,7 +446,7 @@ def fit_closer(comparison: CaseComparison, chosen: Sequence[int], model: Model) 
 
 
 def stated_candidates(effect: Effect, seed: int) -> list[LawSpec]:
-    """Return an effect in the simulator's own forms, as a fit of a seed begins with it.
+    """Return the starting forms of an effect for a fit.
 
     The library's are drawn as its cases are, strengths from weak to strong; of others the strength
     goes over two decades about its default.
@@ -479,7 +479,7 @@ def stated_candidates(effect: Effect, seed: int) -> list[LawSpec]:
 def _looked(
     comparison: CaseComparison, few: Sequence[int], model: Model, candidates: Sequence[LawSpec]
 ) -> list[tuple[float, Model]]:
-    """Look at a model with each candidate of one effect more; cost and model, the least first."""
+    """Return cost and model with each candidate of a further effect, the least cost first."""
     models = [replace(model, effects=(*model.effects, spec)) for spec in candidates]
     looked = [(cost_of(comparison, few[:_LOOKED], m, single_run=True), m) for m in models]
     return sorted(looked, key=lambda pair: pair[0])
@@ -492,7 +492,7 @@ def _added(
     offsets: tuple[float, ...],
     looked: Sequence[tuple[float, Model]],
 ) -> Model:
-    """Search about the best of models with one effect more, as `_looked` sorts them."""
+    """Return the best refined model with one further effect."""
     # The effect may be what the parameters had to stand for, or one beside them.
     starts = []
     for x in dict.fromkeys((model.offsets, offsets)):
@@ -511,11 +511,11 @@ def _added(
 
 
 def _settled(comparison: CaseComparison, few: Sequence[int], model: Model) -> Model:
-    """Settle the last effect's strength with scattered repeats, as scores are made."""
+    """Return a model whose last strength is the best against scattered repeats."""
     place = len(model.effects) - 1
     strength = comparison.effect_of(model.effects[place]).strength
     numbers = [one for one in _numbers(comparison, model, place) if one[1] == strength]
     if not numbers:
         return model
-    tried = [_moved(model, numbers, np.log([factor])) for factor in _SETTLING]
-    return min(tried, key=lambda one: float(np.sum(np.sqrt(comparison.squared(one, few)))))
+    settled = [_moved(model, numbers, np.log([factor])) for factor in _SETTLING]
+    return min(settled, key=lambda one: float(np.sum(np.sqrt(comparison.squared(one, few)))))

@@ -1,4 +1,4 @@
-"""What the fits of a diagnosis say in figures: how far each closes the gap, and what is left.
+"""Findings of the fits of a diagnosis: closed shares, residual gap and illustrations.
 
 What is left once the likeliest hypothesis is fitted: how much, in which channel and band.
 
@@ -46,14 +46,14 @@ _SEED = 7
 
 
 def simulated_by(runs: ModelRuns | CaseComparison, model: Model | None = None) -> Simulated:
-    """Return how a recording is simulated by a model, by default the rig as it is."""
+    """Return a function that simulates a recording by a model, by default the rig file."""
     return lambda recording: runs.simulated(model or Model(), recording, _SEED)
 
 
 def illustrations_of(
     case: Case, held: Sequence[int], before: Simulated, after: Simulated | None = None
 ) -> tuple[Illustration, ...]:
-    """Show held-out recordings beside the nominal model and the fitted one.
+    """Return held-out recordings with their nominal and fitted simulations.
 
     Recordings whose simulation breaks down are left out.
 
@@ -77,8 +77,8 @@ def _illustration(case: Case, i: int, before: Simulated, after: Simulated | None
     shown = {"measured": measured, "before": before(measured)}
     if after is not None:
         shown["after"] = after(measured)
-    found = {name: friction_curves(recording, case.rig) for name, recording in shown.items()}
-    contacts = {name: curves for name, curves in found.items() if curves is not None}
+    curves_of = {name: friction_curves(recording, case.rig) for name, recording in shown.items()}
+    contacts = {name: curves for name, curves in curves_of.items() if curves is not None}
     return Illustration(case.names[i], measured, shown["before"], shown.get("after"), contacts)
 
 
@@ -88,7 +88,7 @@ farther off (`noise.diagnosis.text.verdict_sentences.AGREES`)."""
 
 
 def remainder_of(comparison: CaseComparison, model: Model, held: Sequence[int]) -> Remainder | None:
-    """Tell what a fitted model leaves on recordings that no fit has seen.
+    """Return the residual gap of a fitted model on held-out recordings.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def add_fits(
     seed: int,
     tell: Callable[[str], None],
 ) -> Diagnosis:
-    """Add to an answer what its fits say.
+    """Return an answer with the findings of its fits.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def add_fits(
 
 
 def _findings(judged: Judged, seed: int) -> dict[str, EffectFinding]:
-    """Of each effect that was fitted, as the likeliest hypothesis with it has it."""
+    """Return the finding of each fitted effect in its likeliest hypothesis."""
     if judged.fits is None:
         return {}
     of: dict[str, HypothesisFit] = {}

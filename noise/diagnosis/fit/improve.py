@@ -1,4 +1,4 @@
-"""The improved rig: a fit as a rig file can state it, where it closes the gap.
+"""Improved rig: a fit in the form of a rig file that closes the gap.
 
 What fits best need not predict best: parameters that repeats scatter in are soon fitted to the
 scatter of a few recordings. So what is simpler is taken where it leaves hardly more: parameters
@@ -47,7 +47,7 @@ def improved_rig(
     posterior: Posterior,
     seed: int = 0,
 ) -> Improvement | None:
-    """Offer an improved rig.
+    """Return an improved rig, if one closes the gap.
 
     Parameters
     ----------
@@ -80,8 +80,8 @@ def improved_rig(
             made = _made(case, fitted.model) if after <= CLOSED else None
             if made is None:
                 continue
-            found = first_answer(replace(case, rig=made[1]), comparison.library, posterior, seed)
-            if found.verdict:
+            answer = first_answer(replace(case, rig=made[1]), comparison.library, posterior, seed)
+            if answer.verdict:
                 continue
             factors, rig = made
             spread = fitted.spread
@@ -110,7 +110,7 @@ def _offered(
     effects: Model | None,
     seed: int,
 ) -> Iterator[Model]:
-    """Give models that a file can state, the simpler first."""
+    """Yield models that a rig file can state, the simpler first."""
     if alone is not None:
         yield alone
     if effects is None:

@@ -45,7 +45,7 @@ _CERTAIN = 6.0
 def grow_cause_trees(
     x: NDArray[np.float32], y: NDArray[np.int64], *, n_rounds: int, seed: int
 ) -> BoostedTrees:
-    """Grow trees of each cause against all that is not it.
+    """Grow the trees of each cause against all other cases.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ _STIFFNESS = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """A case whose cause is known: its rig, in what its bench is not quiet, and its seed."""
+    """Training case with its rig, seed and the ways in which its bench is not quiet."""
 
     table: CaseTable
     truth: Truth
@@ -181,7 +181,7 @@ def train_posterior(
 
 
 def null_scale(cases: Sequence[Known], names: Sequence[str]) -> Array:
-    """Scatter of each number in cases without a cause, of quiet benches where there are enough.
+    """Return the scatter of each number in cases without a cause, of quiet benches if possible.
 
     Returns
     -------
@@ -195,7 +195,7 @@ def null_scale(cases: Sequence[Known], names: Sequence[str]) -> Array:
 
 
 def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) -> NDArray[np.int64]:
-    """Columns that a forest of all causes splits by most."""
+    """Return the columns with the most splits in a forest of all causes."""
     from sklearn.ensemble import ExtraTreesClassifier
 
     some = np.random.default_rng(seed).permutation(len(x))[:N_LOOKED_AT]
@@ -207,7 +207,7 @@ def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) ->
 
 
 def _copies(case: Known, rng: np.random.Generator) -> Iterator[Known]:
-    """Give a case first as it is, then as it would be with fewer recordings or channels."""
+    """Yield a case, then the case with fewer recordings or channels."""
     yield case
     for _ in range(N_SUBSETS):
         yield with_fewer(case, rng)
@@ -216,14 +216,14 @@ def _copies(case: Known, rng: np.random.Generator) -> Iterator[Known]:
 
 
 def causes_of(truth: Truth) -> NDArray[np.int64]:
-    """Which of `CAUSES` are at work."""
+    """Return which of `CAUSES` are present."""
     exclusive = truth.kind in ("none", "parameters", "unknown")
     at_work = {truth.kind} if exclusive else set(truth.effects)
     return np.array([int(cause in at_work) for cause in CAUSES])
 
 
 def with_channels(case: Known, channels: Sequence[str]) -> Known:
-    """Return a case as it would be had only some channels been recorded.
+    """Return a case with some of its channels only.
 
     What is derived from a torque goes with it, what compares two channels with either; an effect
     that acts in none of the channels is gone.
@@ -244,7 +244,7 @@ def with_channels(case: Known, channels: Sequence[str]) -> Known:
 
 
 def with_fewer(case: Known, rng: np.random.Generator) -> Known:
-    """Return a case as it would be had only some of its recordings been made."""
+    """Return a case with some of its recordings only."""
     table = case.table
     n = len(table.measured)
     if n <= _FEWEST_RECORDINGS:
@@ -284,7 +284,7 @@ def _is_known(name: str, channels: Sequence[str]) -> bool:
 
 
 def _fitted_weights(odds: Array, y: NDArray[np.int64]) -> Array:
-    """Logistic regression for each cause, drawn to that of all causes together."""
+    """Return a logistic regression for each cause, shrunk to that of all causes."""
     x = odds_features(odds)
     common = _logistic(x.reshape(-1, x.shape[2]), y.reshape(-1), np.zeros(x.shape[2]), 1e-6)
     return np.array(
@@ -293,7 +293,7 @@ def _fitted_weights(odds: Array, y: NDArray[np.int64]) -> Array:
 
 
 def _logistic(x: Array, y: NDArray[np.int64], prior: Array, stiffness: float) -> Array:
-    """Logistic regression whose weights a ridge pulls towards `prior`."""
+    """Return the weights of a logistic regression with a ridge towards `prior`."""
 
     def cost(w: Array) -> tuple[float, Array]:
         odds = np.clip(x @ w, -30.0, 30.0)

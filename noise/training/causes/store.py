@@ -1,4 +1,4 @@
-"""Training cases: drawn, simulated, each summarised as a user's case would be, and kept in files.
+"""Training cases: drawn, simulated, summarised like the cases of users, and stored in files.
 
 A file holds the cases of a range of seeds as joblib keeps Python objects: reading it runs what it
 says, so only files of one's own are read.
@@ -66,7 +66,7 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
 
 
 def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
-    """Summarise a case as a user's would be, with repeats of earlier ones where these serve."""
+    """Return the table of a case, with the repeats of earlier cases where these apply."""
     rig, recordings, _, _ = prepared(case.rig, case.recordings)
     if len(recordings) < _FEWEST:
         return None
@@ -79,17 +79,17 @@ def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
 
 @dataclass(frozen=True, eq=False)
 class _Shared(NominalNumbers):
-    """Repeats that several cases of a rig share, and the speeds that they were simulated at."""
+    """Repeats shared by several cases of a rig, and their speeds."""
 
     speeds: dict[tuple[object, ...], list[float]] = field(default_factory=dict)
 
     def serves(self, rig: Rig) -> bool:
-        """Whether a rig is the same but for estimates that hardly differ."""
+        """Return whether a rig agrees but for small differences of estimates."""
         same = replace(rig, sensors=self.rig.sensors) == self.rig
         return same and _alike(self.rig.sensors, rig.sensors)
 
     def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
-        """Mean and standard deviation of repeats, at a speed that is there if one is near."""
+        """Return mean and standard deviation of repeats, at a stored speed if one is near."""
         c = known_condition(recording.condition)
         known = self.speeds.setdefault((c.interference, c.support_stiffness), [])
         near = min(known, key=lambda v: abs(v - c.speed), default=math.inf)
@@ -100,7 +100,7 @@ class _Shared(NominalNumbers):
 
 
 def _alike(one: Sensors, other: Sensors) -> bool:
-    """Whether sensors are the same but for estimates of noise and steps that hardly differ."""
+    """Return whether sensors agree but for small differences of estimated noise and steps."""
     for kind, usual in Acquisition().noise.items():
         a, b = one.of(kind), other.of(kind)
         if (a.bits, a.antialias) != (b.bits, b.antialias) or not math.isclose(a.step, b.step):
@@ -113,7 +113,7 @@ def _alike(one: Sensors, other: Sensors) -> bool:
 
 
 def _single(x: Array) -> Array:
-    """Round to single precision: cases stored in half the space are still the same ones."""
+    """Round to single precision, which halves the files and leaves the cases equal."""
     return x.astype(np.float32).astype(np.float64)
 
 
