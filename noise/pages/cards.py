@@ -21,7 +21,6 @@ from models.recording import REFERENCE_PRESSURE
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.labels.summary import ASSUMED, assumes_material
 from noise.pages.clips import RATE, Clip, Entry, Row, number_or
-from noise.pictures.recording import level_over_time
 
 Ticks = tuple[tuple[float, str], ...]
 
@@ -125,17 +124,16 @@ class LevelDisplay(NamedTuple):
 
 
 def _level_displays(
-    clips: Mapping[str, Clip], entries: Mapping[str, Entry], reference: float, unit: str
+    clips: Mapping[str, Clip], entries: Mapping[str, Entry], unit: str
 ) -> dict[str, LevelDisplay]:
     """Return the level curves of audible sounds on a common axis."""
     curves = {}
     for key, clip in clips.items():
-        if (measured := entries[key].fast_levels) is not None:
-            time, level = measured
-            inside = (time >= clip.start) & (time <= clip.end)
-            time, level = thinned(time[inside] - clip.start, level[inside], columns=_COLUMNS)
-        else:
-            time, level = level_over_time(clip.samples, RATE, reference, columns=_COLUMNS)
+        if (measured := entries[key].fast_levels) is None:
+            continue
+        time, level = measured
+        inside = (time >= clip.start) & (time <= clip.end)
+        time, level = thinned(time[inside] - clip.start, level[inside], columns=_COLUMNS)
         if level.size:
             curves[key] = time * RATE / clip.samples.size, level
     highest = max((float(level.max()) for _, level in curves.values()), default=0.0)
@@ -255,7 +253,7 @@ def draw_entries(
             for key, clip in of_it.items()
         }
         unit_a = "dB(A)" if calibrated else "dBFS(A)"
-        over_time |= _level_displays(of_it, entries, reference, unit_a)
+        over_time |= _level_displays(of_it, entries, unit_a)
         if levels:
             highest = top(list(levels.values()))
             pictures |= {key: picture(one, highest) for key, one in levels.items()}

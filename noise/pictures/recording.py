@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from features.kernels.level_meter import fast_level_pieces
 from features.kernels.orders import OrderMap, order_map, speed_of_angle
-from models.blocks import Read, RecordingBlocks, reader_of
+from models.blocks import RecordingBlocks, reader_of
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE, Recording
@@ -112,52 +112,21 @@ def plot_recording(
     return figure
 
 
-def level_over_time(
-    sound: NDArray[np.floating], rate: float, reference: float, *, columns: int = 1200
+def recorded_levels(
+    recording: Recording | RecordingBlocks, *, columns: int = 1200
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the A-weighted level of a sound over time, time weighting F.
+    """Return the A-weighted level, time weighting F, of the first pressure channel over time.
 
     Parameters
     ----------
-    sound : ndarray, shape (n,)
-        Sound pressure [Pa], or in fractions of full scale.
-    rate : float
-        Sampling rate [Hz].
-    reference : float
-        In the [unit] of the sound.
+    recording : Recording or RecordingBlocks
     columns : int
-        How many the axis has; each keeps its lowest and its highest level.
+        Columns of the drawing; each keeps its lowest and its highest level.
 
     Returns
     -------
     time, level : ndarray, shape (m,)
         [s] and [dB], thinned for drawing; digital silence is left out.
-
-    Examples
-    --------
-    >>> tone = np.sqrt(2) * np.sin(2 * np.pi * 1000 * np.arange(96000) / 48e3)
-    >>> round(float(level_over_time(tone, 48e3, 1.0)[1].max()), 1)
-    0.0
-    """
-    values = sound.astype(np.float64)
-    return _levels(lambda first, last: values[first:last], sound.size, rate, reference, columns)
-
-
-def _levels(
-    read: Read, n: int, rate: float, reference: float, columns: int = 1200
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    pieces = list(fast_level_pieces(read, n, rate, reference=reference))
-    level = np.concatenate([np.empty(0), *pieces])
-    there = np.isfinite(level)
-    if not there.any():
-        return level[:0], level[:0]
-    return thinned(np.flatnonzero(there) / rate, level[there], columns=columns)
-
-
-def recorded_levels(
-    recording: Recording | RecordingBlocks,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the level over time of the first pressure channel, as `level_over_time`.
 
     Examples
     --------
@@ -168,7 +137,14 @@ def recorded_levels(
     91.0
     """
     read = reader_of(recording, recording.first("pressure") or 0)
-    return _levels(read, recording.n_samples, recording.rate, _reference(recording))
+    pieces = fast_level_pieces(
+        read, recording.n_samples, recording.rate, reference=_reference(recording)
+    )
+    level = np.concatenate([np.empty(0), *pieces])
+    there = np.isfinite(level)
+    if not there.any():
+        return level[:0], level[:0]
+    return thinned(np.flatnonzero(there) / recording.rate, level[there], columns=columns)
 
 
 def recorded_speed(recording: Recording | RecordingBlocks) -> NDArray[np.float64] | None:
