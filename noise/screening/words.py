@@ -342,7 +342,7 @@ def sure_words(one: Standing, mapped: DesignMap) -> list[str]:
             f"{mapped.open} lie between simulated points that differ and are as the nearest, so "
             "boundaries there are coarser than the map"
         )
-    elif steps:
+    elif steps and (mapped.label != "none").any():
         texts.append(f"speeds at which a noise begins or ends are known to {max(steps):.3g} rad/s")
     if any(offer.ends for offer in one.offers):
         texts.append(
