@@ -1,14 +1,13 @@
-"""Channels that are swapped, in another unit, turned, or run backwards.
+"""Detection of channels that are swapped, in a wrong unit, inverted, or reversed in time.
 
-Every threshold lies between what effects do and what a wrong bench does. A torque keeps between a
-sixth and six times its size whatever is missing in the contact, a path's gain between a thirtieth
-and thirty (impacts at slips make it seventeen); a unit is named where the factor is that of a usual
-one, is the same in all recordings, and the channel follows from the torque in all else.
+The angle is compared with the stated speed, the torque with the kinetic torque of the fit,
+acceleration and sound with the prediction of the rig's path from the recorded torque. These ratios
+depend little on the contact: an effect changes them little and a wrong unit changes them much.
 
-Measured are angle against the speed that was set, torque against the kinetic torque of the fit,
-acceleration and sound against what the rig's own path makes of the recorded torque: ratios of
-quantities that hold whatever the contact does, so that an effect moves them little and a wrong unit
-much.
+Every threshold lies between the influence of effects and that of a wrong bench. Effects change the
+torque by a factor of at most 6 and the gain of a path by a factor of at most 30 (impacts at slips
+reach 17). A unit is named if the factor is that of a common unit, is the same in all recordings,
+and the channel otherwise follows from the torque.
 """
 
 from __future__ import annotations
@@ -29,8 +28,8 @@ from noise.diagnosis.evidence.channel_summary import USABLE
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
 
 _EXACT = 0.16
-"""Difference of logarithms up to which a factor is that of a unit [-]; gains err by as much;
-assumed."""
+"""Largest difference of logarithms between a factor and that of a unit [-], which is the error of
+gains; assumed."""
 
 _UNITS = {
     "acceleration": {1.0 / 9.80665: "g", 1e3: "mm/s^2", 1e3 / 9.80665: "mg", 1e-3: "km/s^2"},
@@ -42,20 +41,20 @@ _UNITS = {
     "angle": {180.0 / math.pi: "degrees", 0.5 / math.pi: "turns", 1e3: "mrad"},
     "speed": {30.0 / math.pi: "rpm", 180.0 / math.pi: "degree/s", 0.5 / math.pi: "turns/s"},
 }  # fmt: skip
-"""By channel: how many times too large a value in the unit reads."""
+"""Wrong units by channel and by the factor by which they enlarge a value."""
 
 
 def unit_of(kind: str, factor: float, within: float = _EXACT) -> str:
-    """Return the wrong unit that makes a quantity read so many times too large; empty if none.
+    """Return the wrong unit that explains a factor of a quantity; empty if none does.
 
     Parameters
     ----------
     kind : str
-        Of the channel, or ``speed`` for the one that is stated.
+        Kind of the channel, or ``speed`` for the stated speed.
     factor : float
-        [-]
+        Ratio of the read value to the true one [-].
     within : float
-        Difference of logarithms [-].
+        Largest difference of logarithms [-].
 
     Examples
     --------
@@ -64,23 +63,23 @@ def unit_of(kind: str, factor: float, within: float = _EXACT) -> str:
     """
     if factor <= 0.0:
         return ""
-    found = {abs(math.log(factor / f)): unit for f, unit in _UNITS[kind].items()}
-    nearest = min(found)
-    return found[nearest] if nearest <= within else ""
+    units = {abs(math.log(factor / f)): unit for f, unit in _UNITS[kind].items()}
+    nearest = min(units)
+    return units[nearest] if nearest <= within else ""
 
 
 def length_unit(stated: float, low: float, high: float) -> str:
-    """Return the unit in which a length was stated that is far from all that it can be.
+    """Return the unit in which a length outside its range was stated.
 
     Parameters
     ----------
     stated, low, high : float
-        The length, and between which it can be [m].
+        Stated length and limits of its range [m].
 
     Returns
     -------
     str
-        Empty where no unit makes it one.
+        Unit; empty if no unit brings the length into the range.
 
     Examples
     --------
@@ -94,7 +93,7 @@ def length_unit(stated: float, low: float, high: float) -> str:
 
 
 def factor_words(factor: float) -> str:
-    """Say how far a quantity is off.
+    """Return the words for a quantity that is wrong by a factor [-].
 
     Examples
     --------
@@ -112,37 +111,38 @@ def factor_words(factor: float) -> str:
 KINDS = ("torque", "acceleration", "pressure", "angle")
 
 _BAND = (80.0, 6000.0)
-"""In which a path is compared [Hz]; assumed."""
+"""Frequency range of the comparison of a path [Hz]; assumed."""
 
 _LENGTH = 2048
-"""Of a segment [samples]."""
+"""Length of a segment [samples]."""
 
 _LEAD, _TAIL = 0.08, 0.01
-"""Left out at the ends, where the structure rings from before and nothing follows [s]; as of
-`noise.diagnosis.evidence.path_summary`."""
+"""Time omitted at the start, where the structure still rings from earlier, and at the end [s]; as
+in `noise.diagnosis.evidence.path_summary`."""
 
-_HEARD = 1e-3
-"""Share of the strongest line's power from which a prediction has a frequency [-]; assumed."""
+_AUDIBLE = 1e-3
+"""Least power of a spectral line of the prediction, as a share of the strongest line [-];
+assumed."""
 
 _LONGEST_DELAY = 2.5e-3
-"""Between channels, up to which signals are laid upon each other [s]; assumed."""
+"""Largest delay between channels in their correlation [s]; assumed."""
 
 
 @dataclass(frozen=True)
 class PathFit:
-    """How a signal follows from another.
+    """Comparison of a measured signal with its prediction.
 
     Parameters
     ----------
     gain : float
-        Of its coherent part, over the prediction's [-].
+        Amplitude of the coherent part over that of the prediction [-].
     explained : float
-        Share of its power that is coherent [-].
+        Share of the measured power that is coherent with the prediction [-].
     alike : float
-        Correlation with the prediction as it stands, at the best delay [-].
+        Correlation with the prediction at the best delay [-].
     strength : float
-        Of its amplitude over the prediction's, the middle one of the frequencies that the
-        prediction has; noise adds to it, and delays and cut peaks do not change it [-].
+        Median over the prediction's frequencies of the ratio of the amplitudes [-]; noise increases
+        it, delays and clipped peaks do not change it.
     """
 
     gain: float
@@ -153,24 +153,25 @@ class PathFit:
 
 @dataclass(frozen=True, eq=False)
 class Levels:
-    """What is told of a recording against its rig, before any model is run.
+    """Levels of a recording relative to its rig, without a simulation.
 
     Parameters
     ----------
     speed : float
-        As stated [rad/s].
+        Stated speed [rad/s].
     turned : float, optional
-        Slope of the angle [rad/s]; None without one.
+        Slope of the angle [rad/s]; None without an angle.
     torque : float, optional
-        Mean over the kinetic torque of the fit, negative against the stated rotation [-].
+        Mean torque over the kinetic torque of the fit, negative if it drives the stated
+        rotation [-]; None without a torque.
     swing : float
         Standard deviation of the torque over the kinetic torque [-].
     falls : float
-        Skewness of the torque's rate, negative where it rises slowly and falls fast [-].
+        Skewness of the torque's rate, negative if the torque rises slowly and falls fast [-].
     paths : mapping of (str, str) to PathFit
-        From the torque, by the channel that was recorded and the path that it was compared with.
+        Fits of the prediction from the torque, by recorded channel and by path of the prediction.
     backwards : mapping of str to PathFit
-        The same of a channel and its own path, time turned about.
+        Fits of each channel with its own path, with time reversed.
     """
 
     speed: float
@@ -188,10 +189,10 @@ def levels_of(recording: Recording, rig: Rig, transfer_functions: TransferFuncti
     Parameters
     ----------
     recording : Recording
-        With a known condition.
+        Recording with a known condition.
     rig : Rig
     transfer_functions : TransferFunctionCache
-        Of the rig.
+        Transfer functions of the rig.
 
     Returns
     -------
@@ -225,12 +226,12 @@ def levels_of(recording: Recording, rig: Rig, transfer_functions: TransferFuncti
 
 
 def path_fit(predicted: Array, measured: Array, rate: float) -> PathFit:
-    """Say how a signal follows from its prediction.
+    """Compare a measured signal with its prediction.
 
     Parameters
     ----------
     predicted, measured : ndarray, shape (n,)
-        [unit of the channel]
+        Signals [unit of the channel].
     rate : float
         Sampling rate [Hz].
 
@@ -251,12 +252,13 @@ def path_fit(predicted: Array, measured: Array, rate: float) -> PathFit:
     tiny = 1e-300
     coherent = float((np.abs(pm) ** 2 / (pp + tiny)).sum())
     gain = math.sqrt(coherent / (float(pp.sum()) + tiny))
-    heard = pp > _HEARD * float(pp.max())
-    strength = math.sqrt(float(np.median(mm[heard] / (pp[heard] + tiny)))) if pp.any() else 0.0
+    strong = pp > _AUDIBLE * float(pp.max())
+    strength = math.sqrt(float(np.median(mm[strong] / (pp[strong] + tiny)))) if pp.any() else 0.0
     return PathFit(gain, coherent / (float(mm.sum()) + tiny), _alike(p, m, rate), strength)
 
 
 def _alike(p: Array, m: Array, rate: float) -> float:
+    """Return the correlation of two signals, shape (n,), at the delay of largest magnitude [-]."""
     n = p.size
     size = 2 * n
     frequency = np.fft.rfftfreq(size, 1.0 / rate)
@@ -272,13 +274,14 @@ def _alike(p: Array, m: Array, rate: float) -> float:
 
 
 def _turning(angle: Array, rate: float) -> float:
+    """Return the slope of an angle, shape (n,), by least squares [rad/s]."""
     time = np.arange(angle.size) / rate
     time -= time.mean()
     return float(time @ (angle - angle.mean())) / float(time @ time)
 
 
 def _falling(torque: Array, rate: float) -> float:
-    """Skewness of the torque's rate over a third of a millisecond [-]."""
+    """Return the skewness of the torque's rate over blocks of 0.3 ms [-]."""
     block = max(1, int(3e-4 * rate))
     smooth = torque[: torque.size // block * block].reshape(-1, block).mean(axis=1)
     step = np.diff(smooth)
@@ -288,48 +291,47 @@ def _falling(torque: Array, rate: float) -> float:
 
 
 _RISE = 0.3
-"""From its beginning to its end, over its mean, of what rises all the time [-]: an angle by twice
-as much and more, whatever a torque drifts by; assumed."""
+"""Rise of a channel from its start to its end, over its mean, above which it is a ramp such as an
+angle [-]; an angle rises by at least twice this, and a torque drifts less; assumed."""
 
 OUTPUTS = ("acceleration", "pressure")
 
 _TORQUE = (1.0 / 6.0, 6.0)
-"""Mean torque over the kinetic torque of the fit, whatever is missing [-]; assumed."""
+"""Range of the mean torque over the kinetic torque of the fit, with any effect [-]; assumed."""
 
 _FAR = ("N mm", "kN m")
-"""Units of torque that no rig is taken for, even where only its kind is known."""
+"""Units of torque whose factors exceed the difference between rigs of one kind."""
 
 _GAIN = (1.0 / 30.0, 30.0)
-"""Gain of a path over the rig's, whatever is missing [-]; assumed."""
+"""Range of the gain of a path over the rig's, with any effect [-]; assumed."""
 
 SWINGING = 0.02
-"""Standard deviation of a torque that slips, over the kinetic torque [-]; below, nothing that a
-path could be told from; assumed."""
+"""Least standard deviation of the torque over the kinetic torque for slipping [-]; a smaller one
+excites no path; assumed."""
 
 _ALIKE = 0.7
-"""Correlation from which a channel follows from the torque [-]; assumed."""
+"""Least correlation of a channel that follows from the torque [-]; assumed."""
 
 _STEADY = 0.3, 0.7
-"""Difference of logarithms from the middle of the recordings within which a factor that is a
-unit's lies, in what share of them [-]; clipping and impacts change from one condition to the next;
-assumed."""
+"""Largest difference of logarithms between a unit's factor in a recording and the median, and least
+share of recordings within it [-]; clipping and impacts vary with the condition; assumed."""
 
 _STRENGTH = 0.1, 0.15, 0.8
-"""The same of the strength alone, where a channel follows no prediction: difference from the
-unit's factor, from the middle, and share of the recordings [-]; assumed."""
+"""Limits for the strength of a channel that does not follow its prediction [-]: largest difference
+of logarithms to the unit's factor and to the median, and least share of recordings; assumed."""
 
 _SWINGING_WELL = 0.05
-"""Swing over the kinetic torque from which strength is no noise [-]; assumed."""
+"""Least swing over the kinetic torque at which strength is not dominated by noise [-]; assumed."""
 
 _AGAINST = 0.9
-"""Correlation from which a channel is the torque's with its sign turned [-]; assumed."""
+"""Least magnitude of the negative correlation of an inverted channel [-]; assumed."""
 
 _RISING = 0.5
-"""Skewness of the torque's rate from which it rises fast and falls slowly [-]; assumed."""
+"""Least skewness of the rate of a torque that rises fast and falls slowly [-]; assumed."""
 
 
 def swapped_channels(recordings: Sequence[Recording], rig: Rig, levels: Sequence[Levels]) -> str:
-    """Say which two channels are each other's; empty if none."""
+    """Return a finding if two channels are swapped; otherwise empty."""
     if misplaced := misplaced_torque(recordings, rig):
         return misplaced
     crossed, straight = [], []
@@ -353,27 +355,28 @@ _STRAIGHT = (("acceleration", "acceleration"), ("pressure", "pressure"))
 
 
 def misplaced_torque(recordings: Sequence[Recording], rig: Rig) -> str:
-    """Say which channel holds the torque in its place; empty if none.
+    """Return a finding if another channel contains the torque; otherwise empty.
 
     Parameters
     ----------
     recordings : sequence of Recording
-        With known conditions, whole: a start is looked for in torque and angle, and cut by them.
+        Whole recordings with known conditions; the start is not cut off yet, because torque and
+        angle determine it.
     rig : Rig
     """
-    found = [_stands_for_torque(r, rig) for r in recordings]
-    other = max(set(found), key=found.count) if found else ""
-    if other and found.count(other) >= 0.8 * len(found):
+    kinds = [_stands_for_torque(r, rig) for r in recordings]
+    other = max(set(kinds), key=kinds.count) if kinds else ""
+    if other and kinds.count(other) >= 0.8 * len(kinds):
         return f"channels torque and {other} look swapped"
     return ""
 
 
 def _stands_for_torque(recording: Recording, rig: Rig) -> str:
-    """Return the channel that has the mean and the steadiness of a torque that another lacks."""
+    """Return the channel that looks like the torque if the torque channel does not; else empty."""
     condition = recording.condition
-    assert condition.interference is not None  # `usable` made it so
+    assert condition.interference is not None  # ensured by `usable`
     kinetic = rig.fit(condition.interference).kinetic_torque
-    found = []
+    torque_like = []
     for kind in KINDS:
         row = recording.first(kind)
         if row is not None:
@@ -383,23 +386,24 @@ def _stands_for_torque(recording: Recording, rig: Rig) -> str:
             rise = abs(float(x[-n:].mean() - x[:n].mean()))
             ramp = rise > max(2.5 * spread, _RISE * mean)
             if kinetic / 2.0 < mean < 3.0 * kinetic and spread < 0.5 * mean and not ramp:
-                found.append(kind)
-    return found[0] if found and "torque" not in found else ""
+                torque_like.append(kind)
+    return torque_like[0] if torque_like and "torque" not in torque_like else ""
 
 
 def wrong_units(levels: Sequence[Levels], *, alike: float = 1.0) -> Iterator[str]:
-    """Say which channels read a factor too much or too little.
+    """Yield findings on channels that are wrong by a factor.
 
     Parameters
     ----------
     levels : sequence of Levels
     alike : float
-        How many times the kinetic torque may differ from the rig's, of a unit that is thousands of
-        times another [-]: more where the rig is not known yet.
+        Largest ratio of the kinetic torque to the rig's, for units that differ by a factor of
+        1000 [-]; larger if only the kind of the rig is known.
 
     Yields
     ------
     str
+        Finding on one channel.
     """
     torque = [abs(one.torque) for one in levels if one.torque is not None]
     scale = 1.0
@@ -421,7 +425,7 @@ def wrong_units(levels: Sequence[Levels], *, alike: float = 1.0) -> Iterator[str
 
 
 def _torque_of_paths(levels: Sequence[Levels]) -> str:
-    """Return the unit of a torque from which both other channels follow too weakly or strongly."""
+    """Return the wrong unit of the torque that explains the gains of both paths; else empty."""
     gains = [
         [fit.gain for one in levels if (fit := one.paths.get((kind, kind))) and _clear(fit)]
         for kind in OUTPUTS
@@ -434,13 +438,15 @@ def _torque_of_paths(levels: Sequence[Levels]) -> str:
     return unit_of("torque", math.exp(sum(middle) / 2.0))
 
 
-def is_told(kind: str, levels: Sequence[Levels]) -> bool:
-    """Tell whether recordings say how large a channel should be: one that slips, two that follow.
+def shows_level(kind: str, levels: Sequence[Levels]) -> bool:
+    """Return whether recordings determine the level that a channel should have.
+
+    They do if the contact slips in one recording, or if the channel follows its prediction in two.
 
     Parameters
     ----------
     kind : str
-        Of the channel.
+        Kind of the channel.
     levels : sequence of Levels
     """
     own = [(one, fit) for one in levels if (fit := one.paths.get((kind, kind)))]
@@ -449,11 +455,12 @@ def is_told(kind: str, levels: Sequence[Levels]) -> bool:
 
 
 def _clear(fit: PathFit) -> bool:
+    """Return whether a channel follows its prediction."""
     return min(fit.explained, abs(fit.alike)) > _ALIKE
 
 
 def _unit_of_path(kind: str, levels: Sequence[Levels], scale: float) -> tuple[str, float]:
-    """Return the unit and the factor of a channel that has another at every condition."""
+    """Return the wrong unit of a channel and its factor [-]; empty and 1 if there is none."""
     having = [(one, p) for one in levels if (p := one.paths.get((kind, kind)))]
     least = min(2, len(having))
     clear = {k: {i: f.gain for i, one in enumerate(levels)
@@ -464,7 +471,7 @@ def _unit_of_path(kind: str, levels: Sequence[Levels], scale: float) -> tuple[st
     (beside,) = (clear[k] for k in OUTPUTS if k != kind)
     both = [i for i in own if i in beside]
     if both and abs(math.log(scale * float(np.median([beside[i] for i in both])))) < math.log(3.0):
-        gains.append(np.array([own[i] / beside[i] for i in both]))  # whatever the torque reads
+        gains.append(np.array([own[i] / beside[i] for i in both]))  # independent of the torque
     for each in gains:
         if each.size >= least > 0:
             factor = float(np.median(each))
@@ -482,6 +489,7 @@ def _unit_of_path(kind: str, levels: Sequence[Levels], scale: float) -> tuple[st
 
 
 def _unit_words(kind: str, unit: str, factor: float, against: str) -> str:
+    """Return the finding on a channel in a wrong unit, or wrong by a factor [-] without one."""
     if unit:
         times = factor if factor > 1.0 else 1.0 / factor
         return f"channel {kind} looks like {unit}, not {CHANNEL_UNITS[kind]} (factor {times:.2g})"
@@ -489,7 +497,7 @@ def _unit_words(kind: str, unit: str, factor: float, against: str) -> str:
 
 
 def turned_channels(levels: Sequence[Levels]) -> Iterator[str]:
-    """Say which channels have their sign turned."""
+    """Yield findings on channels with an inverted sign."""
     torque = [one.torque for one in levels if one.torque is not None]
     if torque and np.median(torque) < -_TORQUE[0]:
         yield "channel torque has its sign turned: it drives the rotation that it should brake"
@@ -501,19 +509,23 @@ def turned_channels(levels: Sequence[Levels]) -> Iterator[str]:
 
 
 def backwards(levels: Sequence[Levels]) -> str:
-    """Say whether time runs backwards: a contact loads slowly and lets go at once."""
-    looked = [one for one in _slipping(levels) if one.torque is not None]
-    if not looked:
+    """Return a finding if time is reversed; otherwise empty.
+
+    A contact loads slowly and releases at once, so that the torque falls faster than it rises.
+    """
+    slipping = [one for one in _slipping(levels) if one.torque is not None]
+    if not slipping:
         return ""
-    rises = [one.falls * math.copysign(1.0, one.torque or 1.0) for one in looked]
+    rises = [one.falls * math.copysign(1.0, one.torque or 1.0) for one in slipping]
     if float(np.median(rises)) < _RISING:
         return ""
-    forth = [abs(one.paths[k, k].alike) for one in looked for k in one.backwards]
-    back = [abs(fit.alike) for one in looked for fit in one.backwards.values()]
+    forth = [abs(one.paths[k, k].alike) for one in slipping for k in one.backwards]
+    back = [abs(fit.alike) for one in slipping for fit in one.backwards.values()]
     if forth and float(np.median(back)) < float(np.median(forth)):
         return ""
     return "time runs backwards: the torque rises at once and falls slowly"
 
 
 def _slipping(levels: Sequence[Levels], scale: float = 1.0) -> list[Levels]:
+    """Return the levels of recordings that slip; `scale` is the factor of a wrong unit [-]."""
     return [one for one in levels if one.swing > SWINGING * scale]

@@ -1,18 +1,18 @@
-"""Is it this rig at all? What is wrong with a bench's units, signs, channels or conditions.
+"""Check of a bench: units, signs, channels, conditions and material of its recordings.
 
-Asked before anything else: the posterior of causes has learned with right benches, and names a
-cause for whatever else it is shown. What is found is told, and no cause is named.
+The check comes before the diagnosis, because the posterior of causes was trained on correct benches
+and names a cause for any input. A bench with a finding gets no cause.
 
-The torque of the contact is what a material and its fit make of it; no effect takes half of it away
-at every condition. Another law at the same level is told where a shipped material predicts mean,
-swing and frequency of the torque in every recording, and the rig file does not.
+Material and fit determine the contact's torque, and no effect halves it at every condition. Another
+material is reported if a shipped one predicts mean, swing and frequency of the torque in every
+recording and the rig file does not.
 
-Where the contact slides smoothly the torque makes nothing of acceleration and sound; then it is
-said that their units were not checked.
+If the contact slides smoothly, the torque does not excite acceleration and sound, and the findings
+state that their units were not checked.
 
-A dead channel is left out and the others are looked at. A channel that clips is kept, since what
-clipping does to it is known; its range is told, so that somebody sets it higher. Stated conditions
-are held against what torque and angle say themselves: speed, its sign, order.
+A dead channel is removed and the others are checked. A channel that clips stays in the recording,
+because the effect of clipping is known; its range is reported so that it can be set higher. The
+stated conditions (speed, its sign, order of the recordings) are compared with torque and angle.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ from noise.diagnosis.bench.channels import (
     Levels,
     backwards,
     factor_words,
-    is_told,
     levels_of,
+    shows_level,
     swapped_channels,
     turned_channels,
     unit_of,
@@ -53,30 +53,30 @@ if TYPE_CHECKING:
 
 
 _SPEED = 0.2
-"""Difference of logarithms of the speed that is stated and that of the angle; a speed that is read
-off a dial errs by 3 %, and a fluctuating one evens out [-]; assumed."""
+"""Largest difference of logarithms between the stated speed and the angle's; a dial errs by 3 %,
+and fluctuations average out [-]; assumed."""
 
 _STILL = 0.05
-"""Share of the stated speed below which an angle does not turn [-]; assumed."""
+"""Share of the stated speed below which the angle counts as constant [-]; assumed."""
 
 _CONDITION_ERRORS = {"speed": 0.05, "torque": 0.2}
-"""Differences of logarithms between a recording and its condition that count as one [-];
+"""Standard errors of the logarithms of a recording's speed and torque against its condition [-];
 assumed."""
 
 _SHUFFLED = 3.0
-"""Mean of such differences from which conditions do not belong to their recordings [-];
+"""Mean error, in standard errors, above which conditions do not fit their recordings [-];
 assumed."""
 
 _SORTED = 1.0
-"""Mean of such differences below which another order fits [-]; assumed."""
+"""Mean error, in standard errors, below which another order of conditions fits [-]; assumed."""
 
 
 LEAST_RATE = 8e3
-"""Least sampling rate [Hz]: the cycle's harmonics to 3 kHz are in it; assumed."""
+"""Least sampling rate [Hz], which covers the cycle's harmonics up to 3 kHz; assumed."""
 
 
 def refuse_unusable(recording: Recording, shortest: float) -> None:
-    """Refuse a recording that no rig can be told from.
+    """Refuse a recording that cannot be compared with a rig.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def refuse_unusable(recording: Recording, shortest: float) -> None:
     Raises
     ------
     ParameterError
-        It is not in physical units, sampled too seldom or too short.
+        The recording is not in physical units, its sampling rate is too low or it is too short.
     """
     if not recording.calibrated:
         raise ParameterError(
@@ -101,7 +101,7 @@ def refuse_unusable(recording: Recording, shortest: float) -> None:
 
 
 def wrong_speed(levels: Sequence[Levels]) -> str:
-    """Say whether the angle turns otherwise than stated; empty if it does not."""
+    """Return a finding if the angle's speed differs from the stated one; otherwise empty."""
     ratios = np.array([one.turned / one.speed for one in levels if one.turned is not None])
     if not ratios.size:
         return ""
@@ -115,14 +115,14 @@ def wrong_speed(levels: Sequence[Levels]) -> str:
 
 
 def speed_words(ratio: float, stated: float) -> str:
-    """Say what is wrong with a speed, by that of the angle; empty if nothing is.
+    """Return a finding on the ratio of the angle's speed to the stated one; empty if both agree.
 
     Parameters
     ----------
     ratio : float
-        Speed of the angle over the one that is stated [-].
+        Speed of the angle divided by the stated speed [-].
     stated : float
-        [rad/s]
+        Stated speed [rad/s].
 
     Examples
     --------
@@ -145,8 +145,8 @@ def speed_words(ratio: float, stated: float) -> str:
 
 
 def shuffled_conditions(case: Case, levels: Sequence[Levels]) -> str:
-    """Say whether the conditions are those of each other's recordings; empty if they are not."""
-    seen: list[tuple[float, float]] = []
+    """Return a finding if conditions are swapped between recordings; otherwise empty."""
+    recorded: list[tuple[float, float]] = []
     stated: list[tuple[float, float]] = []
     for one, recording in zip(levels, case.recordings, strict=True):
         if one.turned is None or one.torque is None or not one.turned or not one.torque:
@@ -154,9 +154,9 @@ def shuffled_conditions(case: Case, levels: Sequence[Levels]) -> str:
         interference = known_condition(recording.condition).interference
         kinetic = case.rig.fit(interference).kinetic_torque
         stated.append((np.log(abs(one.speed)), np.log(kinetic)))
-        seen.append((np.log(abs(one.turned)), np.log(abs(one.torque) * kinetic)))
-    x, y = np.array(seen), np.array(stated)
-    x = x - np.median(x - y, axis=0)  # a wrong unit or gain is no wrong order
+        recorded.append((np.log(abs(one.turned)), np.log(abs(one.torque) * kinetic)))
+    x, y = np.array(recorded), np.array(stated)
+    x = x - np.median(x - y, axis=0)  # removes a common factor from a wrong unit or gain
     size = np.array(list(_CONDITION_ERRORS.values()))
     cost = (np.minimum(np.abs(x[:, None, :] - y[None, :, :]) / size, 20.0)).sum(axis=2)
     rows, columns = linear_sum_assignment(cost)
@@ -171,43 +171,44 @@ def shuffled_conditions(case: Case, levels: Sequence[Levels]) -> str:
 
 
 _NEEDED = KINDS[:3]
-"""Without any of which there is nothing to look at."""
+"""Kinds of channels of which a recording needs at least one."""
 
 _LIVELY = 0.1
-"""Swing of the torque over its mean [-] below which a coarse converter may rest at one value;
-assumed."""
+"""Ratio of the torque's standard deviation to its mean [-] above which no working channel stays
+within one step of a coarse converter; assumed."""
 
 _FEWEST = 8
-"""Samples at the very top that are clipped; assumed."""
+"""Least number of samples at the largest value of a clipped channel; assumed."""
 
 _FLAT = 3.0
-"""Times as many samples at the top as just below it: what goes over its top passes through both;
-assumed."""
+"""Least ratio of the number of samples at the largest value to that just below it [-] for clipping;
+a signal that is not clipped passes through both; assumed."""
 
 _NEAR = 0.01
-"""Just below: so much of what a channel varies by [-]; assumed."""
+"""Width of the interval just below the largest value, as a share of the channel's peak-to-peak
+value [-]; assumed."""
 
 _SAME = 1e-3
-"""Relative difference of tops that are those of one range [-]; assumed."""
+"""Largest relative difference of largest values that belong to one range [-]; assumed."""
 
 
 def without_dead_channels(
     names: Sequence[str], recordings: Sequence[Recording]
 ) -> tuple[list[Recording | None], list[str]]:
-    """Leave dead channels out of recordings.
+    """Return recordings without their dead channels, and findings on these channels.
 
     Parameters
     ----------
     names : sequence of str
-        Of the recordings.
+        Names of the recordings.
     recordings : sequence of Recording
 
     Returns
     -------
     recordings : list of Recording or None
-        One each that was given; None where nothing is left that can be looked at.
+        One entry per input recording; None if no usable channel remains.
     findings : list of str
-        Which channels are dead, one line each.
+        One line per dead channel.
 
     Examples
     --------
@@ -221,25 +222,25 @@ def without_dead_channels(
     dead = _dead(recordings)
     left: list[Recording | None] = []
     for i, recording in enumerate(recordings):
-        kept = [row for row in range(len(recording.channels)) if (i, row) not in dead]
-        if len(kept) == len(recording.channels):
+        rows = [row for row in range(len(recording.channels)) if (i, row) not in dead]
+        if len(rows) == len(recording.channels):
             left.append(recording)
-        elif any(recording.channels[row].kind in _NEEDED for row in kept):
-            channels = tuple(recording.channels[row] for row in kept)
-            left.append(replace(recording, samples=recording.samples[kept], channels=channels))
+        elif any(recording.channels[row].kind in _NEEDED for row in rows):
+            channels = tuple(recording.channels[row] for row in rows)
+            left.append(replace(recording, samples=recording.samples[rows], channels=channels))
         else:
             left.append(None)
     return left, dead_channels(names, recordings)
 
 
 def dead_channels(names: Sequence[str], recordings: Sequence[Recording]) -> list[str]:
-    """Say which channels never change, a line each; arguments as of `without_dead_channels`."""
-    found: dict[str, list[tuple[str, float]]] = {}
+    """Return one line per dead channel; arguments as of `without_dead_channels`."""
+    constant: dict[str, list[tuple[str, float]]] = {}
     for i, row in sorted(_dead(recordings)):
         value = float(recordings[i].samples[row, 0])
-        found.setdefault(recordings[i].channel_names[row], []).append((names[i], value))
+        constant.setdefault(recordings[i].channel_names[row], []).append((names[i], value))
     lines = []
-    for channel, where in found.items():
+    for channel, where in constant.items():
         values = {value for _, value in where}
         at = f"at {values.pop() + 0.0:g}" if len(values) == 1 else "at some value"
         having = sum(channel in recording for recording in recordings)
@@ -249,7 +250,7 @@ def dead_channels(names: Sequence[str], recordings: Sequence[Recording]) -> list
 
 
 def _dead(recordings: Sequence[Recording]) -> set[tuple[int, int]]:
-    """Return recording and row of each dead channel."""
+    """Return the indices (recording, row) of the dead channels."""
     constant: dict[str, list[tuple[int, int]]] = {}
     alive: set[str] = set()
     for i, recording in enumerate(recordings):
@@ -269,7 +270,7 @@ def _dead(recordings: Sequence[Recording]) -> set[tuple[int, int]]:
 
 
 def _lively(recording: Recording) -> bool:
-    """Whether the torque swings so that no other channel can rest within a converter's bit."""
+    """Return whether the torque swings too much for a working channel to stay constant."""
     row = recording.first("torque")
     if row is None:
         return False
@@ -278,7 +279,7 @@ def _lively(recording: Recording) -> bool:
 
 
 def clipped_channels(recordings: Sequence[Recording], rig: Rig) -> list[str]:
-    """Say which channels reach a range that the rig file does not state.
+    """Return findings on channels that clip below the full scale in the rig file.
 
     Parameters
     ----------
@@ -288,7 +289,7 @@ def clipped_channels(recordings: Sequence[Recording], rig: Rig) -> list[str]:
     Returns
     -------
     list of str
-        One line a channel.
+        One line per channel that clips.
 
     Examples
     --------
@@ -319,7 +320,7 @@ def clipped_channels(recordings: Sequence[Recording], rig: Rig) -> list[str]:
         for sign, tops in reached.items():
             if not tops or (stated and max(tops) >= stated * (1.0 - _SAME)):
                 continue
-            range_ = max(tops)  # nothing lies beyond a range, and whatever reaches it stops there
+            range_ = max(tops)  # no sample exceeds a range, and all clipped tops lie on it
             alike = sum(abs(top - range_) <= _SAME * abs(range_) for top in tops)
             if alike == len(tops) and max(ends[sign]) <= range_ * (1.0 + _SAME):
                 at.append(sign * range_)
@@ -330,7 +331,7 @@ def clipped_channels(recordings: Sequence[Recording], rig: Rig) -> list[str]:
 
 
 def _flat_top(x: Array) -> bool:
-    """Whether samples stand at the largest value that should have gone beyond it."""
+    """Return whether a signal is clipped at its largest value; `x` has shape (n,)."""
     top, size = float(x.max()), float(np.ptp(x))
     if not size:
         return False
@@ -339,7 +340,7 @@ def _flat_top(x: Array) -> bool:
     if n_top < _FEWEST:
         return False
     below = x[~at_top]
-    step = top - float(below.max())  # of a converter, at the least
+    step = top - float(below.max())  # at least one step of the converter
     if step > 10.0 * _NEAR * size:
         return False
     near = below > top - 1e-6 * size - max(_NEAR * size, 1.5 * step)
@@ -347,35 +348,36 @@ def _flat_top(x: Array) -> bool:
 
 
 def unchecked_units(case: Case, library: Mapping[str, Effect] | None = None) -> tuple[str, ...]:
-    """Say of which channels nothing tells the unit.
+    """Return a note on the channels whose units, signs and order cannot be checked.
 
     Parameters
     ----------
     case : Case
     library : mapping of str to Effect, optional
-        Effects that the rig's can be found among.
+        Effects by name, which include those of the rig.
 
     Returns
     -------
     tuple of str
-        One line, or none.
+        One line; empty if all channels can be checked.
     """
     if any(_swings(recording, case.rig) for recording in case.recordings):
         return ()
     cache = TransferFunctionCache(case.rig, library)
     levels = [levels_of(one, case.rig, cache) for one in case.recordings]
     recorded = [kind for kind in OUTPUTS if any(kind in one for one in case.recordings)]
-    untold = [kind for kind in recorded if not is_told(kind, levels)]
-    if not untold:
+    unchecked = [kind for kind in recorded if not shows_level(kind, levels)]
+    if not unchecked:
         return ()
     why = "nothing slips" if any("torque" in one for one in case.recordings) else "no torque"
     return (
-        f"{why}: units, signs and order of {' and '.join(untold)} were not checked, since nothing "
-        "tells how large they should be",
+        f"{why}: units, signs and order of {' and '.join(unchecked)} were not checked, since "
+        "nothing tells how large they should be",
     )
 
 
 def _swings(recording: Recording, rig: Rig) -> bool:
+    """Return whether the torque of a recording swings as one that slips."""
     row = recording.first("torque")
     interference = known_condition(recording.condition).interference
     return row is not None and float(recording.samples[row].std()) > (
@@ -384,57 +386,62 @@ def _swings(recording: Recording, rig: Rig) -> bool:
 
 
 _LEAST = 0.58
-"""Share of the kinetic torque that is left at some condition, whatever is missing [-]: an effect
-that takes half away does so at some speeds; assumed."""
+"""Least ratio of the largest mean torque of a case to the kinetic torque of the rig file [-]; an
+effect that halves the torque does so only at some speeds; assumed."""
 
 _FOLLOWS = 0.9
-"""Share explained, and correlation, from which a path tells the gain of the torque [-];
+"""Least explained share and correlation of a path that determines the gain of the torque [-];
 assumed."""
 
 _ERRORS = np.array([0.04, 0.08, 0.08])
-"""Differences of logarithms of mean, swing and frequency between repeats, and of a fit that
-another rig of the same material has [-]; assumed."""
+"""Standard errors of the logarithms of the torque's mean, swing and frequency, between repeats and
+between rigs of one material [-]; assumed."""
 
 _LIKE, _UNLIKE = 2.0, 3.0
-"""Root mean square differences, in such errors: at most to the material, and at least so many
-times that to the rig file; assumed."""
+"""Largest root mean square difference to the other material, and least difference to the rig file,
+in standard errors and as a multiple of the former [-]; assumed."""
 
 _SILENT = 1.0
-"""The first of these where nothing slips, neither here nor there: the mean torque alone tells;
-assumed."""
+"""Value of `_LIKE` if nothing slips in recordings and simulation, so that only the mean torque is
+compared [-]; assumed."""
 
 _CYCLES = (15.0, 1500.0)
-"""Between which slips repeat [Hz]; assumed."""
+"""Range of slip rates [Hz]; assumed."""
 
 
 def another_level(levels: Sequence[Levels]) -> str:
-    """Say whether friction is far below the rig file's at every condition; empty if it is not."""
-    found = [abs(one.torque) for one in levels if one.torque is not None]
+    """Return a finding if friction is far below the rig file's at all conditions; else empty."""
+    torques = [abs(one.torque) for one in levels if one.torque is not None]
     fits = [fit for one in levels for (kind, path), fit in one.paths.items() if kind == path]
     gains = [f.gain for f in fits if min(f.explained, abs(f.alike)) > _FOLLOWS]
-    read = max(float(np.median(gains)), 1.0) if gains else 1.0  # of a torque that reads low
-    if not found or max(found) * read >= _LEAST:
+    # Paths with a gain above 1 show that the torque sensor reads too low.
+    read = max(float(np.median(gains)), 1.0) if gains else 1.0
+    if not torques or max(torques) * read >= _LEAST:
         return ""
     return (
-        f"the torque is {np.median(found):.2g} of the rig file's kinetic torque, and at most "
-        f"{max(found):.2g} at any condition: another material, fit or rig"
+        f"the torque is {np.median(torques):.2g} of the rig file's kinetic torque, and at most "
+        f"{max(torques):.2g} at any condition: another material, fit or rig"
     )
 
 
 def another_material(
     case: Case, transfer_functions: TransferFunctionCache, library: Mapping[str, Effect] | None
 ) -> str:
-    """Say whether the friction is that of a shipped material and not of the rig file."""
+    """Return a finding if a shipped material fits the torque and the rig file does not.
+
+    Otherwise the text is empty.
+    """
     torque = [recording.first("torque") for recording in case.recordings]
     if any(row is None for row in torque):
         return ""
-    seen = [_course(recording) for recording in case.recordings]
-    silent = all(_silent(course) for course in seen)
+    courses = [_course(recording) for recording in case.recordings]
+    silent = all(_silent(course) for course in courses)
 
-    def away(rig: Rig, most: float) -> float:
+    def difference(rig: Rig, most: float) -> float:
+        """Return the RMS difference to a rig [-], infinite above `most` [-]."""
         squares: list[Array] = []
-        n = sum(1 if silent else course.size for course in seen)
-        for course, recording in zip(seen, case.recordings, strict=True):
+        n = sum(1 if silent else course.size for course in courses)
+        for course, recording in zip(courses, case.recordings, strict=True):
             at = _within(rig, recording)
             try:
                 (made,) = nominal_repeats(at, rig, transfer_functions, [0], library=library)
@@ -444,10 +451,10 @@ def another_material(
             both = silent and _silent(expected)
             squares.append((((course - expected) / _ERRORS) ** 2)[: 1 if both else None])
             if sum(map(np.sum, squares)) > n * most**2:
-                return np.inf  # however well the others fit
+                return np.inf  # the other recordings cannot lower it
         return float(np.sqrt(np.concatenate(squares).mean()))
 
-    own = away(case.rig, np.inf)
+    own = difference(case.rig, np.inf)
     if own < _UNLIKE:
         return ""
     most = min(_SILENT if silent else _LIKE, own / _UNLIKE)
@@ -455,19 +462,19 @@ def another_material(
         other = load_material_rig(name)
         names = sorted((other.material, case.rig.material), key=len)
         if other.friction.name == case.rig.friction.name and names[1].startswith(names[0]):
-            continue  # other numbers of one law are a matter of parameters
+            continue  # the same law with other parameters is not another material
         whole = replace(other, sensors=case.rig.sensors, measured=case.rig.measured)
-        if away(whole, most) < most:
+        if difference(whole, most) < most:
             return f"the friction is that of {name}, not of the rig file: another material"
     return ""
 
 
 def _course(recording: Recording) -> Array:
-    """Logarithms of mean and swing of the torque, and of the frequency of its cycles."""
+    """Return the logarithms of the torque's mean, standard deviation and frequency, shape (3,)."""
     row = recording.first("torque")
     x = np.asarray(recording.samples[row], dtype=np.float64)
     mean, swing = abs(float(x.mean())), float(x.std())
-    if swing < SWINGING * mean:  # nothing slips, and what is seen is noise
+    if swing < SWINGING * mean:  # nothing slips; the spectrum is noise
         return np.log([max(mean, 1e-12), SWINGING * max(mean, 1e-12), _CYCLES[0]])
     power = np.abs(np.fft.rfft((x - x.mean()) * np.hanning(x.size), 4 * x.size)) ** 2
     frequency = np.fft.rfftfreq(4 * x.size, 1.0 / recording.rate)
@@ -477,35 +484,35 @@ def _course(recording: Recording) -> Array:
 
 
 def _silent(course: Array) -> bool:
-    """Return whether nothing slips."""
+    """Return whether nothing slips in the recording of a `_course`."""
     return bool(course[2] <= np.log(_CYCLES[0]))
 
 
 def _within(rig: Rig, recording: Recording) -> Recording:
-    """Return a recording at the interference of a rig's fits that is nearest to its own."""
+    """Return a recording with its interference clipped to the range of a rig's fits."""
     condition = recording.condition
-    assert condition.interference is not None  # `usable` made it so
+    assert condition.interference is not None  # ensured by `usable`
     nearest = float(np.clip(condition.interference, *rig.interference_range))
     return replace(recording, condition=replace(condition, interference=nearest))
 
 
 _ANY_RIG = 3.0
-"""Times that the torque of a rig may differ from another's of its kind [-]; assumed."""
+"""Largest ratio of the torques of two rigs of one kind [-]; assumed."""
 
 
 def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> tuple[str, ...]:
-    """Say what of a case cannot be of its rig.
+    """Return findings on a case that contradict its rig.
 
     Parameters
     ----------
     case : Case
     library : mapping of str to Effect, optional
-        Effects that the rig's can be found among.
+        Effects by name, which include those of the rig.
 
     Returns
     -------
     tuple of str
-        One line each; empty where nothing is.
+        One line per finding; empty if the case fits its rig.
     """
     if dead := tuple(dead_channels(case.names, case.recordings)):
         return dead
@@ -519,32 +526,32 @@ def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> t
         return (reversed_,)
     if shuffled := shuffled_conditions(case, levels):
         return (shuffled,)
-    found = [*turned_channels(levels), *wrong_units(levels), wrong_speed(levels)]
-    if found := [text for text in found if text]:
-        return tuple(found)
+    findings = [*turned_channels(levels), *wrong_units(levels), wrong_speed(levels)]
+    if findings := [text for text in findings if text]:
+        return tuple(findings)
     level = another_level(levels)
     other = level or another_material(case, cache, library)
     return (other,) if other else ()
 
 
 def unit_findings(recordings: Sequence[Recording], rig: Rig) -> tuple[str, ...]:
-    """Say which channels are in another unit, of a rig of which only the kind is known.
+    """Return findings on channels in a wrong unit, for a rig of which only the kind is known.
 
     Parameters
     ----------
     recordings : sequence of Recording
-        With known conditions.
+        Recordings with known conditions.
     rig : Rig
-        One of its kind, as that which an identification starts from.
+        Rig of the same kind, such as the initial rig of an identification.
 
     Returns
     -------
     tuple of str
-        One line each; empty where none is, and where the rig cannot tell.
+        One line per channel; empty if all units are right or the rig does not cover the conditions.
     """
     cache = TransferFunctionCache(rig)
     try:
         levels = [levels_of(recording, rig, cache) for recording in recordings]
-    except BushingNoiseError:  # a support that this rig has not
+    except BushingNoiseError:  # the rig does not have this support
         return ()
     return tuple(text for text in wrong_units(levels, alike=_ANY_RIG) if " looks like " in text)
