@@ -15,7 +15,7 @@ from noise.diagnosis.preparation.prepare import (
     converter_step,
     estimated_noise,
     prepared,
-    with_seen_sensors,
+    with_estimated_sensors,
 )
 from noise.diagnosis.preparation.settled_part import settled_parts, shortest, start_of
 from sim.acquisition import Acquisition
@@ -192,13 +192,13 @@ def test_a_sensor_is_as_noisy_as_all_recordings_are_unless_the_rig_file_states_l
     one_loud = [
         through(np.zeros(24_000), "pressure", x, seed=i) for i, x in enumerate((loud, quiet, quiet))
     ]
-    seen, _ = with_seen_sensors(RIG, one_loud)
+    seen, _ = with_estimated_sensors(RIG, one_loud)
     assert seen.sensors.of("pressure").noise == pytest.approx(quiet, rel=0.15)
     all_loud = [through(np.zeros(24_000), "pressure", loud, seed=i) for i in range(3)]
-    seen, _ = with_seen_sensors(RIG, all_loud)
+    seen, _ = with_estimated_sensors(RIG, all_loud)
     assert seen.sensors.of("pressure").noise == pytest.approx(loud, rel=0.15)
     stated = replace(RIG, sensors=Sensors({"pressure": Sensor(noise=quiet)}))
-    seen, (note,) = with_seen_sensors(stated, all_loud)
+    seen, (note,) = with_estimated_sensors(stated, all_loud)
     assert seen.sensors.of("pressure").noise == quiet
     assert "more white noise than [sensors] of the rig file states: pressure" in note
 
@@ -206,7 +206,7 @@ def test_a_sensor_is_as_noisy_as_all_recordings_are_unless_the_rig_file_states_l
 def test_what_a_rig_file_states_of_a_sensor_stays():
     stated = Sensor(noise=0.02, full_scale=102.5, bits=12)
     rig = replace(RIG, sensors=Sensors({"torque": stated}))
-    seen, notes = with_seen_sensors(rig, [through(stick_slip(60.0), noise=0.005, step=0.01)])
+    seen, notes = with_estimated_sensors(rig, [through(stick_slip(60.0), noise=0.005, step=0.01)])
     assert seen.sensors.of("torque") == stated
     assert notes == ()
 

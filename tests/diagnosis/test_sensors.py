@@ -18,7 +18,7 @@ from noise.diagnosis.case import read_case
 from noise.diagnosis.causes.verdict import needs_explaining
 from noise.diagnosis.first_answer import poor_responses, unlearned_sensors
 from noise.diagnosis.gap.distance import NAMES, Gap
-from noise.diagnosis.preparation.prepare import estimated_noise, with_seen_sensors
+from noise.diagnosis.preparation.prepare import estimated_noise, with_estimated_sensors
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.repeats import nominal_recordings
 from noise.diagnosis.simulated.scatter import Scatter
@@ -149,7 +149,7 @@ def test_a_sound_without_pause_tells_no_noise():
         load_material_rig("fluorocarbon"), 2.5, interference=0.381e-3, seconds=0.5
     ).recording
     assert estimated_noise([creak], "acceleration") is None
-    seen, notes = with_seen_sensors(RIG, [creak])
+    seen, notes = with_estimated_sensors(RIG, [creak])
     assert seen.sensors.of("acceleration").noise is None
     assert seen.sensors.of("angle").noise == pytest.approx(1e-4, rel=0.1)
     assert any("do not tell it" in note and "acceleration" in note for note in notes)

@@ -1,1 +1,1 @@
-"""Recordings made ready: the settled part, the speed as it was, and the sensors' noise."""
+"""Preparation of recordings: settled part, measured speed and noise of the sensors."""

@@ -1,27 +1,27 @@
-"""Preparation of recordings, and of the rig, before they are compared.
+"""Preparation of recordings and of their rig for a comparison.
 
-In order: the start is left out, the speed is what the angle says, the noise and the resolution of
-sensors are taken from the recordings, where the rig file does not state them, and of recordings
-that are long or finely sampled a part is looked at.
+The steps are: cut off the start, set the speed from the angle, estimate the noise and resolution of
+sensors that the rig file does not state, and shorten and decimate long or finely sampled
+recordings.
 
-Whatever is compared with a recording is simulated as long and as finely, many times over. Two
-seconds hold a hundred slips and more, and nothing above 10 kHz counts, so that more of a recording
-would cost in proportion and tell little.
+A simulation is as long and as finely sampled as the recording that it is compared with, and is
+repeated many times. Two seconds contain at least a hundred slips, and nothing above 10 kHz is
+compared. More of a recording would increase the cost in proportion and add little information.
 
-The step of a converter is that of which all samples are multiples. A sidecar says what was set.
-Recordings of one stated condition are repeats of each other and get one speed, the mean of theirs:
-what they differ by is what repeats differ by.
+All samples are multiples of the step of their converter. A sidecar states the speed that was set.
+Recordings of one stated condition are repeats and get the mean of their speeds, so that their
+differences count as differences between repeats.
 
-A recording has no silence, but high above what the rig sounds at there is little else than noise
-for a few milliseconds between slips: of all short segments the quietest, in the quietest bands, in
-the quietest recordings. What bands and conditions share there is white and the sensor's.
+A recording has no silence, but well above the frequencies of the rig it contains little but noise
+for a few milliseconds between slips. The noise is estimated from the quietest short segments in the
+quietest bands of the quietest recordings. A floor that bands and conditions have in common is white
+and belongs to the sensor. The noise of a sensor varies between recordings; the estimate is a
+quantile of theirs.
 
-A sensor is not equally noisy in all recordings, so that its noise is a middle of theirs.
-
-What is given up: white noise that fills all recordings alike counts as the sensor's, however loud.
-Coloured noise, and such as is louder in some recordings than in others, is no sensor's, and stays
-what the simulation lacks. A noise well below the step of the converter cannot be told, and changes
-little there.
+Limits of the method: white noise of equal level in all recordings counts as sensor noise at any
+level. Coloured noise, and noise that is louder in some recordings, does not, and remains a
+difference to the simulation. Noise far below the step of the converter cannot be estimated and has
+little influence.
 """
 
 from __future__ import annotations
@@ -45,32 +45,33 @@ from noise.diagnosis.preparation.settled_part import settled_parts
 from sim.acquisition import Acquisition, decimate
 
 _LENGTH = 128
-"""Of a segment [samples]; a few milliseconds; assumed."""
+"""Length of a segment, a few milliseconds [samples]; assumed."""
 
 _BANDS, _LOWEST, _LOWEST_SHARE = 4, 500.0, 0.18
-"""From the larger of a frequency [Hz] and of a share of the rate [-], up to `USABLE`; assumed."""
+"""Number of bands, and their lower limit: the larger of a frequency [Hz] and a share of the
+rate [-]; the upper limit is `USABLE`; assumed."""
 
 _QUIETEST = (0.05, 0.2)
-"""Shares of the segments, the quietest, of which either may be free of signals; assumed."""
+"""Quantiles of the segments' power at which the noise floor is read [-]; assumed."""
 
 _OVERLAP = 1.94
-"""Neighbouring lines of a Hann window that count as one independent line; 1 + 2 (4/9 + 1/36), from
-the squares of their correlations."""
+"""Number of lines of a Hann window per independent line [-]: 1 + 2 (4/9 + 1/36), from the squares
+of the correlations of neighbouring lines."""
 
 _FEWEST_STEPS = 20
-"""Segments to tell it from; assumed."""
+"""Least number of segments for an estimate of noise; assumed."""
 
 _ALIKE, _ALIKE_RECORDINGS = 1.5, 2.5
-"""White noise is the floor of two bands, and of two recordings where there are two: so many times
-the power of the lower at most [-]; assumed. From one recording to the next the noise of a sensor
-may be half as large again."""
+"""Largest ratio of the powers of two bands, and of two recordings, with the same white floor [-];
+assumed. The noise amplitude of a sensor varies by up to a half between recordings."""
 
 _MIDDLE = 1.0 / 3.0
-"""Quantile of the recordings' floors that is the noise: in the louder ones signals may reach into
-the floor; assumed."""
+"""Quantile of the recordings' floors that is the noise [-]; signals may raise the louder floors;
+assumed."""
 
 _ABOVE_STEP = 0.4
-"""Of a converter's step, below which white noise cannot be told from its rounding [-]; assumed."""
+"""Least white noise, as a share of the converter's step, that differs from rounding [-];
+assumed."""
 
 
 def estimated_noise(recordings: Sequence[Recording], kind: str, step: float = 0.0) -> float | None:
@@ -79,16 +80,17 @@ def estimated_noise(recordings: Sequence[Recording], kind: str, step: float = 0.
     Parameters
     ----------
     recordings : sequence of Recording
-        In physical units.
+        Recordings in physical units.
     kind : str
+        Kind of the channel.
     step : float
-        Of the converter, whose rounding does not count [unit of the channel].
+        Step of the converter, whose rounding is subtracted [unit of the channel].
 
     Returns
     -------
     float, optional
-        Standard deviation of white noise over the whole band [unit of the channel]; None where the
-        recordings are too short, have no such channel, or share no floor that is white.
+        Standard deviation of white noise over the whole band [unit of the channel]; None if the
+        recordings are too short, do not have the channel, or have no common white floor.
 
     Examples
     --------
@@ -102,9 +104,9 @@ def estimated_noise(recordings: Sequence[Recording], kind: str, step: float = 0.
     floors = []
     for recording in recordings:
         row = recording.first(kind)
-        found = None if row is None else _floors(recording.samples[row], recording.rate)
-        if found is not None:
-            lower, higher = found
+        bands = None if row is None else _floors(recording.samples[row], recording.rate)
+        if bands is not None:
+            lower, higher = bands
             white = higher <= _ALIKE * lower
             floors.append(0.5 * (lower + higher) if white else np.inf)
     quietest = min(floors, default=np.inf)
@@ -118,9 +120,9 @@ def estimated_noise(recordings: Sequence[Recording], kind: str, step: float = 0.
 
 
 def _floors(x: Array, rate: float) -> tuple[float, float] | None:
-    """Power of the two quietest bands of a signal [unit^2]."""
+    """Return the power of the two quietest bands of a signal [unit^2]; None if it is too short."""
     t = np.arange(x.size)
-    x = x - (x[0] + (x[-1] - x[0]) / max(x.size - 1, 1) * t)  # a shaft turns all the time
+    x = x - (x[0] + (x[-1] - x[0]) / max(x.size - 1, 1) * t)  # removes the trend of an angle
     if x.size < _LENGTH * (_FEWEST_STEPS + 1) // 2:
         return None
     first = int(np.ceil(max(_LOWEST / rate, _LOWEST_SHARE) * _LENGTH))
@@ -135,21 +137,21 @@ def _floors(x: Array, rate: float) -> tuple[float, float] | None:
 
 
 FARTHEST = 0.08
-"""Relative difference from which an angle's speed is no correction of the one that is stated but
-says that one of the two is wrong [-]; assumed."""
+"""Largest relative difference between the angle's speed and the stated one for a correction [-];
+above it one of the two is wrong; assumed."""
 
 _OFF = 0.005
-"""Relative difference from which a stated speed is off [-]; runs of one speed differ by as much;
-assumed."""
+"""Least relative error of a stated speed that is corrected [-], which is the difference between
+runs of one speed; assumed."""
 
 
 def measured_speed(angle: Array, rate: float) -> float:
-    """Mean speed of a shaft [rad/s].
+    """Return the mean speed of a shaft [rad/s].
 
     Parameters
     ----------
     angle : ndarray, shape (n,)
-        [rad]
+        Angle of the shaft [rad].
     rate : float
         Sampling rate [Hz].
 
@@ -158,7 +160,7 @@ def measured_speed(angle: Array, rate: float) -> float:
     >>> round(measured_speed(np.linspace(0.0, 2.0, 30_001), 30e3), 6)
     2.0
     """
-    n = max(1, angle.size // 20)  # ends that noise and steps are averaged over
+    n = max(1, angle.size // 20)  # length of the ends, whose means reduce noise and steps
     turned = angle[-n:].mean() - angle[:n].mean()
     return float(turned * rate / max(angle.size - n, 1))
 
@@ -166,20 +168,20 @@ def measured_speed(angle: Array, rate: float) -> float:
 def at_measured_speeds(
     recordings: Sequence[Recording],
 ) -> tuple[tuple[Recording, ...], tuple[str, ...]]:
-    """Return recordings with the speed in their conditions that their angles have.
+    """Return recordings with the speeds of their angles in their conditions.
 
     Parameters
     ----------
     recordings : sequence of Recording
-        With speed, interference and support stiffness in their conditions.
+        Recordings with speed, interference and support stiffness in their conditions.
 
     Returns
     -------
     recordings : tuple of Recording
-        Those without an angle, or whose angle turns as stated or at quite another speed, are
-        themselves.
+        Recordings with corrected speeds. A recording is unchanged if it has no angle, or if its
+        angle agrees with the stated speed or contradicts it.
     notes : tuple of str
-        By how much the stated speeds were off, if that is worth telling.
+        Errors of the stated speeds; empty if no speed was corrected.
 
     Examples
     --------
@@ -199,7 +201,7 @@ def at_measured_speeds(
             speed = measured_speed(recording.samples[row], recording.rate)
             if at.speed and abs(speed / at.speed - 1.0) <= FARTHEST:
                 speeds.setdefault(_stated(recording), []).append(speed)
-    found, off = [], [0.0]
+    corrected, off = [], [0.0]
     for recording, at in zip(recordings, stated, strict=True):
         if _stated(recording) in speeds:
             speed = float(np.mean(speeds[_stated(recording)]))
@@ -207,56 +209,59 @@ def at_measured_speeds(
             if abs(by) > _OFF:
                 off.append(by)
                 recording = replace(recording, condition=replace(at, speed=speed))
-        found.append(recording)
-    return tuple(found), tuple(_told(off))
+        corrected.append(recording)
+    return tuple(corrected), tuple(_speed_note(off))
 
 
 def _stated(recording: Recording) -> tuple[object, ...]:
+    """Return the stated condition of a recording, equal for repeats."""
     at = known_condition(recording.condition)
     return at.speed, at.interference, at.support_stiffness, at.material, at.temperature
 
 
-def _told(off: Sequence[float]) -> list[str]:
+def _speed_note(off: Sequence[float]) -> list[str]:
+    """Return a note on the relative errors of stated speeds [-]; empty if all are small."""
     slower, faster = -min(off), max(off)
-    said = [
+    parts = [
         f"up to {100.0 * by:.2g} % {word}"
         for by, word in ((faster, "faster"), (slower, "slower"))
         if by > _OFF
     ]
-    return [f"the shaft turns {' and '.join(said)} than stated; its angle counts"] if said else []
+    return [f"the shaft turns {' and '.join(parts)} than stated; its angle counts"] if parts else []
 
 
-_LOOKED_AT = 8192
-"""Samples of a recording."""
+_STEP_SAMPLES = 8192
+"""Least number of samples of a longer recording from which a step is estimated."""
 
 _ROUNDED = 2.0**-22
-"""Error of samples that are kept in 32 bits, over the largest [-]."""
+"""Rounding error of samples stored in 32 bits, relative to the largest sample [-]."""
 
 _CLEAR = 20.0
-"""A step is so many times that error at least; assumed."""
+"""Least ratio of a step to the rounding error [-]; assumed."""
 
 _REACHES = (1.0, 4.0, 64.0, np.inf)
-"""Steps that values are apart at most, from which the step is found more and more exactly."""
+"""Largest differences of values, in steps, of the successive refinements of a step [-]."""
 
 _SAME = 1e-4
-"""Relative difference of the steps of recordings through one converter [-]; assumed."""
+"""Largest relative difference of the steps of recordings through one converter [-]; assumed."""
 
 _FEWEST = 3
-"""Different values between which a step can be told."""
+"""Least number of different values for an estimate of the step."""
 
 
 def converter_step(recordings: Sequence[Recording], kind: str) -> float:
-    """Find the step in which a kind of channel was sampled.
+    """Estimate the step of the converter of a kind of channel.
 
     Parameters
     ----------
     recordings : sequence of Recording
     kind : str
+        Kind of the channel.
 
     Returns
     -------
     float
-        [unit of the channel]; 0 where there is none, or not the same in all recordings.
+        Step [unit of the channel]; 0 if there is none or if it differs between recordings.
 
     Examples
     --------
@@ -268,23 +273,26 @@ def converter_step(recordings: Sequence[Recording], kind: str) -> float:
     """
     rows = [(r.samples, row) for r in recordings if (row := r.first(kind)) is not None]
     steps = np.array([_step(samples[row]) for samples, row in rows])
-    told = steps[np.isfinite(steps)]
-    if not told.size:
+    known = steps[np.isfinite(steps)]
+    if not known.size:
         return 0.0
-    middle = float(np.median(told))
-    return middle if np.allclose(told, middle, rtol=_SAME, atol=0.0) else 0.0
+    middle = float(np.median(known))
+    return middle if np.allclose(known, middle, rtol=_SAME, atol=0.0) else 0.0
 
 
 def _step(x: Array) -> float:
-    """Greatest common divisor of what samples differ by; 0 if none, NaN if they say nothing."""
-    values = np.unique(x[:: max(1, x.size // _LOOKED_AT)])
+    """Return the greatest common divisor of the differences of samples [unit of the channel].
+
+    The result is 0 if there is none and NaN if the samples have too few different values.
+    """
+    values = np.unique(x[:: max(1, x.size // _STEP_SAMPLES)])
     if values.size < _FEWEST:
         return np.nan
     error = _ROUNDED * float(np.abs(values).max())
     apart = np.diff(values)
     step = float(apart.min())
     while step > _CLEAR * error:
-        for reach in _REACHES:  # the step's own error counts as often as a difference has steps
+        for reach in _REACHES:  # the error of the step is multiplied by the number of steps
             steps = np.round(apart / step)
             near = steps <= reach
             if not near.any():
@@ -300,16 +308,18 @@ def _step(x: Array) -> float:
 
 
 _EXCEEDED = 1.5
-"""Noise over that which is stated, from which the recordings have more [-]; assumed."""
+"""Least ratio of estimated to stated noise for a note [-]; assumed."""
 
 _BITS = 24
-"""Of the converter that a step is written as; its range is never reached."""
+"""Bits of the converter that represents a step if the range is unknown; signals stay within it."""
 
 
-def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, tuple[str, ...]]:
-    """Return a rig with noise and resolution of its sensors, where these can be told.
+def with_estimated_sensors(
+    rig: Rig, recordings: Sequence[Recording]
+) -> tuple[Rig, tuple[str, ...]]:
+    """Return a rig with noise and resolution of its sensors estimated from recordings.
 
-    What is stated stays. A noise that cannot be told is that of good sensors.
+    Stated values are kept. Noise that cannot be estimated stays that of good sensors.
 
     Parameters
     ----------
@@ -319,8 +329,10 @@ def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, t
     Returns
     -------
     rig : Rig
+        The rig with estimated sensors.
     notes : tuple of str
-        What was found, and what could not be, a line each.
+        One line each on estimated noise and steps, noise that cannot be estimated, and noise above
+        the stated one.
 
     Examples
     --------
@@ -329,13 +341,13 @@ def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, t
     >>> from models.rig_file import load_material_rig
     >>> noise = 0.01 * np.random.default_rng(0).standard_normal((1, 60_000))
     >>> run = Recording(noise, 30e3, (Channel("torque"),))
-    >>> seen, notes = with_seen_sensors(load_material_rig("fluorocarbon-thesis"), [run])
-    >>> round(seen.sensors.of("torque").noise, 3), notes
+    >>> rig, notes = with_estimated_sensors(load_material_rig("fluorocarbon-thesis"), [run])
+    >>> round(rig.sensors.of("torque").noise, 3), notes
     (0.01, ('noise of the sensors (white, RMS), by the recordings: torque 0.01 N m; ...',))
     """
     usual = Acquisition().noise
-    found = dict(rig.sensors.by_kind)
-    told, untold, louder, steps = [], [], [], []
+    sensors = dict(rig.sensors.by_kind)
+    estimated, unknown, louder, steps = [], [], [], []
     recorded = dict.fromkeys(c.kind for r in recordings for c in r.channels if c.kind in usual)
     for kind in recorded:
         sensor, unit = rig.sensors.of(kind), CHANNEL_UNITS[kind]
@@ -349,32 +361,36 @@ def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, t
             ):
                 louder.append(f"{kind} {level:.2g} {unit} (stated {sensor.noise:.2g})")
         elif level is None:
-            untold.append(kind)
+            unknown.append(kind)
         else:
             sensor = replace(sensor, noise=level)
-            told.append(f"{kind} {level:.2g} {unit}")
-        found[kind] = sensor
+            estimated.append(f"{kind} {level:.2g} {unit}")
+        sensors[kind] = sensor
     notes = []
-    if told:
+    if estimated:
         notes.append(
-            f"noise of the sensors (white, RMS), by the recordings: {', '.join(told)}; constant "
-            "room noise is counted as sensor noise, unless [sensors] of the rig file states less"
+            f"noise of the sensors (white, RMS), by the recordings: {', '.join(estimated)}; "
+            "constant room noise is counted as sensor noise, unless [sensors] of the rig file "
+            "states less"
         )
     if steps:
         notes.append(f"steps of the converter, by the recordings: {', '.join(steps)}")
-    if untold:
+    if unknown:
         notes.append(
-            f"noise of the sensors of {', '.join(untold)}: these recordings do not tell it (no "
+            f"noise of the sensors of {', '.join(unknown)}: these recordings do not tell it (no "
             "white floor between the slips); that of good sensors is assumed, which [sensors] of "
             "the rig file can replace"
         )
     if louder:
         notes.append(f"more white noise than [sensors] of the rig file states: {', '.join(louder)}")
-    return replace(rig, sensors=replace(rig.sensors, by_kind=found)), tuple(notes)
+    return replace(rig, sensors=replace(rig.sensors, by_kind=sensors)), tuple(notes)
 
 
 def _in_steps(sensor: Sensor, step: float) -> Sensor:
-    """Return a sensor with a converter of some step, within the range that it may have."""
+    """Return a sensor with a converter of a given step [unit of the channel].
+
+    A sensor with a stated range is unchanged if no number of bits gives the step.
+    """
     if sensor.full_scale is None:
         return replace(sensor, full_scale=math.ldexp(step, _BITS - 1), bits=_BITS)
     bits = 1 + math.log2(sensor.full_scale / step)
@@ -383,17 +399,17 @@ def _in_steps(sensor: Sensor, step: float) -> Sensor:
 
 
 LONGEST = 2.0
-"""Of a recording the last part of this length is looked at, in which it has settled [s]; what a
-diagnosis may cost settles it; assumed."""
+"""Duration of the last, settled part of a recording that a diagnosis uses [s]; limits its cost;
+assumed."""
 
 HIGHEST_RATE = 51.2e3
-"""Recordings at higher rates are filtered and thinned out [Hz]; assumed."""
+"""Sampling rate above which recordings are decimated [Hz]; assumed."""
 
 
 def bounded(
     rig: Rig, recordings: Sequence[Recording]
 ) -> tuple[Rig, tuple[Recording, ...], tuple[str, ...]]:
-    """Keep of recordings what a diagnosis looks at.
+    """Shorten and decimate recordings to the limits of a diagnosis.
 
     Parameters
     ----------
@@ -403,11 +419,11 @@ def bounded(
     Returns
     -------
     rig : Rig
-        Its sensors as they are at the lower rate: with less noise, and without steps.
+        The rig with sensors at the lower rate, which have less noise and no steps.
     recordings : tuple of Recording
-        At most `LONGEST`, at `HIGHEST_RATE` or below.
+        Recordings of at most `LONGEST` [s] and `HIGHEST_RATE` [Hz].
     notes : tuple of str
-        What was left out, a line each.
+        One line each on decimated and on shortened recordings.
 
     Examples
     --------
@@ -422,8 +438,8 @@ def bounded(
     is longer than 2 s, of which the last 2 s were looked at
     """
     factors = [math.ceil(recording.rate / HIGHEST_RATE) for recording in recordings]
-    kept = tuple(_part(r, k) for r, k in zip(recordings, factors, strict=True))
-    n, fine = len(kept), sum(k > 1 for k in factors)
+    parts = tuple(_part(r, k) for r, k in zip(recordings, factors, strict=True))
+    n, fine = len(parts), sum(k > 1 for k in factors)
     long = sum(recording.duration > LONGEST for recording in recordings)
     notes = []
     if fine:
@@ -437,11 +453,11 @@ def bounded(
             f"{long} of {n} recordings {'is' if long == 1 else 'are'} longer than {LONGEST:g} s, "
             f"of which the last {LONGEST:g} s were looked at"
         )
-    return _with_thinned_sensors(rig, min(factors, default=1)), kept, tuple(notes)
+    return _with_decimated_sensors(rig, min(factors, default=1)), parts, tuple(notes)
 
 
 def _part(recording: Recording, factor: int) -> Recording:
-    """Return the last part of a recording, at a rate so many times lower."""
+    """Return the last part of a recording, decimated by a factor."""
     samples, rate = recording.samples, recording.rate / factor
     if factor > 1:
         samples = np.stack([decimate(row, factor) for row in samples])
@@ -451,15 +467,16 @@ def _part(recording: Recording, factor: int) -> Recording:
     return replace(recording, samples=np.ascontiguousarray(last), rate=rate)
 
 
-def _with_thinned_sensors(rig: Rig, factor: int) -> Rig:
+def _with_decimated_sensors(rig: Rig, factor: int) -> Rig:
+    """Return a rig with the sensors of recordings that were decimated by a factor."""
     if factor == 1:
         return rig
-    thinned = {kind: _thinned_sensor(s, factor) for kind, s in rig.sensors.by_kind.items()}
-    return replace(rig, sensors=replace(rig.sensors, by_kind=thinned))
+    sensors = {kind: _decimated_sensor(s, factor) for kind, s in rig.sensors.by_kind.items()}
+    return replace(rig, sensors=replace(rig.sensors, by_kind=sensors))
 
 
-def _thinned_sensor(sensor: Sensor, factor: int) -> Sensor:
-    """Of white noise a filter passes what it passes of the band; steps become such noise."""
+def _decimated_sensor(sensor: Sensor, factor: int) -> Sensor:
+    """Return a sensor after decimation, with less white noise and with steps as white noise."""
     if sensor.noise is None:
         return replace(sensor, bits=None)
     noise = math.sqrt((sensor.noise**2 + sensor.step**2 / 12.0) / factor)
@@ -469,24 +486,24 @@ def _thinned_sensor(sensor: Sensor, factor: int) -> Sensor:
 def prepared(
     rig: Rig, recordings: Sequence[Recording]
 ) -> tuple[Rig, tuple[Recording, ...], tuple[str, ...], dict[int, str]]:
-    """Make recordings ready to be compared with a rig.
+    """Prepare recordings and their rig for a comparison.
 
     Parameters
     ----------
     rig : Rig
     recordings : sequence of Recording
-        Of one rig, with speed, interference and support stiffness in their conditions.
+        Recordings of one rig with speed, interference and support stiffness in their conditions.
 
     Returns
     -------
     rig : Rig
-        Its sensors as the recordings show them, where its file does not state them.
+        The rig, with estimates for sensors that its file does not state.
     recordings : tuple of Recording
-        Their settled part, at the speed that they turn at; those that are left out are missing.
+        Settled parts of the usable recordings, with the measured speeds in their conditions.
     notes : tuple of str
-        What a user should know of it, a line each.
+        Notes for the user, one line each.
     left_out : dict of int to str
-        Why a recording cannot be used, by its place among those given.
+        Reason why a recording is not usable, by its index in `recordings`.
 
     Examples
     --------
@@ -502,6 +519,6 @@ def prepared(
     """
     parts, cut, left_out = settled_parts(recordings)
     timed, turned = at_measured_speeds(parts)
-    seen, sensed = with_seen_sensors(rig, timed)
-    thinned, kept, shortened = bounded(seen, timed)
-    return thinned, kept, (*cut, *turned, *sensed, *shortened), left_out
+    rig, sensed = with_estimated_sensors(rig, timed)
+    rig, used, shortened = bounded(rig, timed)
+    return rig, used, (*cut, *turned, *sensed, *shortened), left_out

@@ -1,16 +1,14 @@
-"""The settled part of recordings: a start from rest, a run-up or a swing of the drive is left out.
+"""Settled part of recordings, without a start from rest, a run-up or a swing of the drive.
 
-What is settled stays to the bit. What is left of the rest has one of a few lengths, so that what is
-simulated for one recording serves for others, and repeats of a condition stay comparable.
+A settled recording is returned unchanged, bit for bit. The settled part of another has one of a few
+lengths, so that recordings can share simulations and repeats of a condition stay comparable.
 
-When the shaft of a recording has come to its speed: after a start from rest, a run-up, a swing.
-
-A start is a deviation of the speed from what it is later that is there at the beginning, ends, and
-is several times larger than whatever the speed does afterwards. A speed that fluctuates all the
-time is none, nor is a short dip in the middle. The shaft's angle tells it, read where it crosses
-the steps of its converter, so that a coarse one tells as much as a fine one. A torque that rises
-from zero tells a start from rest, and where there is no angle, how fast it rises while the contact
-sticks tells the rest: the elastomer is twisted as the shaft turns.
+A start is a deviation from the later speed that exists at the beginning, ends, and is several times
+larger than all later deviations. A speed that fluctuates throughout and a short dip in the middle
+are not starts. The start is detected from the angle, which is read where it crosses the steps of
+its converter, so that a coarse converter is as accurate as a fine one. A torque that rises from
+zero shows a start from rest. Without an angle, the rate at which the torque rises while the contact
+sticks shows the speed, because the rotation of the shaft twists the elastomer.
 """
 
 from __future__ import annotations
@@ -30,40 +28,41 @@ from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.diagnosis.text.words import joined
 
 _BLOCK, _LAG = 5e-3, 2
-"""Of which an angle is averaged [s], and blocks to either side that a speed is the slope of;
-assumed."""
+"""Length of the blocks over which an angle is averaged [s], and number of blocks on either side for
+the slope that is the speed; assumed."""
 
 _LATE = 0.6
-"""Share of a recording after which a start is over [-]; assumed."""
+"""Share of a recording after which every start has ended [-]; assumed."""
 
 _EARLY = 0.08
-"""Within which a start shows [s]; a quarter of the slowest swing of a controller and more;
-assumed."""
+"""Time from the beginning within which a start is visible [s], at least a quarter of the slowest
+swing of a controller; assumed."""
 
 _SMALLEST, _LARGER = 0.04, 4.0
-"""Deviation of the speed that is a start [-], and how many times what comes after it at least;
+"""Least relative deviation of the speed in a start, and its least ratio to later deviations [-];
 assumed."""
 
 _OVER = 0.012
-"""Deviation of the speed that is none any more [-]; assumed."""
+"""Largest relative deviation of a settled speed [-]; assumed."""
 
 _RISE, _STUCK, _STEEP = 5e-4, 0.02, 0.8
-"""Over which a torque rises [s], how long that is looked at [s], and what share is exceeded [-];
-assumed."""
+"""Interval over which the rise of a torque is taken [s], length of the window of such rises [s],
+and quantile of the rises in a window [-]; assumed."""
 
 _SMALLEST_RISE, _LARGER_RISE, _OVER_RISE = 0.12, 2.5, 0.05
-"""As of the speed, which a torque tells less exactly [-]; assumed."""
+"""Values of `_SMALLEST`, `_LARGER` and `_OVER` for the rise of a torque, which is less exact [-];
+assumed."""
 
 _FEWEST_LEVELS = 8
-"""Of an angle that is read between them; assumed."""
+"""Least number of converter levels of an angle for interpolation between them; assumed."""
 
 _FROM_ZERO = 0.25
-"""Share of its lowest torque later at which the torque of a shaft that starts from rest begins;
+"""Largest initial torque of a start from rest, as a share of the lowest later torque [-];
 assumed."""
 
 
 def start_of(recording: Recording) -> float:
-    """Return when the shaft of a recording has come to its speed; 0 where it always has [s].
+    """Return the time at which the shaft of a recording reaches its speed; 0 without a start [s].
 
     Examples
     --------
@@ -84,6 +83,7 @@ def start_of(recording: Recording) -> float:
 
 
 def _start_by_angle(angle: Array, rate: float) -> float:
+    """Return the time at which the speed of an angle settles; 0 without a start [s]."""
     block = max(1, round(_BLOCK * rate))
     n = angle.size // block
     turned = angle * (1.0 if angle[-1] >= angle[0] else -1.0)
@@ -98,9 +98,10 @@ def _start_by_angle(angle: Array, rate: float) -> float:
 
 
 def _start_by_sticking(torque: Array, rate: float) -> float:
-    """When a torque has come to rise as fast as it does later: while it sticks, as the shaft turns.
+    """Return the time at which the rise of the torque in stick phases settles; 0 without one [s].
 
-    What is seldom exceeded is the rate of rise in the stick phase, whatever falls in between.
+    The rise is proportional to the speed of the shaft. A high quantile of it is the rise in the
+    stick phase, independent of the falls in between.
     """
     turned = torque * (1.0 if torque.mean() >= 0.0 else -1.0)
     lag, hop, length = (max(1, round(x * rate)) for x in (_RISE, _BLOCK, _STUCK))
@@ -113,13 +114,13 @@ def _start_by_sticking(torque: Array, rate: float) -> float:
 
 
 def _settled(values: Array, n_early: int, over: float, smallest: float, larger: float) -> int:
-    """Return from where on values are what they are late; 0 where they do not begin otherwise."""
+    """Return the index from which values agree with the late ones; 0 without a start."""
     first_late = round(_LATE * values.size)
     late = values[first_late:].mean()
     if late <= 0.0:
         return 0
     away = np.abs(values / late - 1.0)
-    beyond = np.maximum.accumulate(away[::-1])[::-1]  # the largest from each on
+    beyond = np.maximum.accumulate(away[::-1])[::-1]  # largest deviation from each index on
     settled = int(np.argmax(beyond <= max(over, 1.2 * beyond[first_late])))
     limit = max(smallest, larger * beyond[settled])
     if settled == 0 or away[:settled].max() < limit or away[:n_early].max() < 0.5 * limit:
@@ -128,9 +129,10 @@ def _settled(values: Array, n_early: int, over: float, smallest: float, larger: 
 
 
 def _continuous(angle: Array) -> Array:
-    """Angle between the steps of its converter: straight from where it crosses one to the next.
+    """Return an angle interpolated linearly between the crossings of its converter's levels.
 
-    How many samples lie below a step is when it is crossed, however often noise makes it be.
+    The number of samples below a level is the time of its crossing, even if noise crosses it
+    several times.
     """
     levels, count = np.unique(angle, return_counts=True)
     if levels.size > 0.5 * angle.size or levels.size < _FEWEST_LEVELS:
@@ -139,14 +141,17 @@ def _continuous(angle: Array) -> Array:
     between = 0.5 * (levels[1:] + levels[:-1])
     first, last = np.polyfit(crossed[:3], between[:3], 1), np.polyfit(crossed[-3:], between[-3:], 1)
     at = np.arange(angle.size)
-    found = np.interp(at, crossed, between)
+    smooth = np.interp(at, crossed, between)
     before, after = at < crossed[0], at > crossed[-1]
-    found[before], found[after] = np.polyval(first, at[before]), np.polyval(last, at[after])
-    return np.asarray(found)
+    smooth[before], smooth[after] = np.polyval(first, at[before]), np.polyval(last, at[after])
+    return np.asarray(smooth)
 
 
 def _start_from_zero(torque: Array, rate: float) -> float:
-    """When a torque that begins at zero has come to where it stays."""
+    """Return the time at which a torque that begins at zero reaches its later range [s].
+
+    The result is 0 if the torque does not begin at zero.
+    """
     turned = torque * (1.0 if torque.mean() >= 0.0 else -1.0)
     late = turned[round(_LATE * turned.size) :]
     lowest = float(np.quantile(late, 0.01))
@@ -157,30 +162,29 @@ def _start_from_zero(torque: Array, rate: float) -> float:
 
 
 _SHORTEST = LEAD + TAIL + 0.1
-"""Shorter recordings show too few cycles [s]."""
+"""Least duration with enough cycles [s]."""
 
 _PATH_ENDS = 0.09
-"""Without its ends a recording has at least one segment of the spectra of
-`noise.diagnosis.evidence.path_summary` [s]."""
+"""Duration of the ends that `noise.diagnosis.evidence.path_summary` omits before it takes spectra
+of segments [s]."""
 
 RINGING = 0.06
-"""In which a clamp that rings has come to rest after the speed has [s]: three time constants of the
-thesis's, 2 J_C / c."""
+"""Decay time of a ringing clamp after the speed has settled [s]: three time constants 2 J_C / c of
+the thesis's clamp."""
 
 _LENGTHS = 0.05
-"""Parts have lengths in such steps [s]: what is simulated for one then serves for others;
-assumed."""
+"""Step of the durations of settled parts [s], so that recordings share simulations; assumed."""
 
 _MOST_NAMED = 6
-"""Recordings that a note names; assumed."""
+"""Largest number of recordings that a note names; assumed."""
 
 _SHORTENED = 0.5
-"""Share that a recording keeps at least where it is shortened to the length of its repeat;
+"""Least share of a recording that remains if it is shortened to the length of its repeat [-];
 assumed."""
 
 
 def shortest(rate: float) -> float:
-    """Return how long a recording is at least that can be compared [s].
+    """Return the least duration of a recording for a comparison [s].
 
     Parameters
     ----------
@@ -198,21 +202,21 @@ def shortest(rate: float) -> float:
 def settled_parts(
     recordings: Sequence[Recording],
 ) -> tuple[tuple[Recording, ...], tuple[str, ...], dict[int, str]]:
-    """Leave out the start of recordings.
+    """Return recordings without their starts.
 
     Parameters
     ----------
     recordings : sequence of Recording
-        With speed, interference and support stiffness in their conditions.
+        Recordings with speed, interference and support stiffness in their conditions.
 
     Returns
     -------
     parts : tuple of Recording
-        What is settled is itself; repeats of a condition are of one length.
+        Settled parts; a settled recording is unchanged, and repeats of a condition have one length.
     notes : tuple of str
-        What was left out, a line each.
+        Durations that were cut off, one line per reason.
     refused : dict of int to str
-        Why nothing is left of a recording, by place; empty where that is so of all.
+        Reason why a recording has no settled part, by index; empty if no recording has one.
 
     Examples
     --------
@@ -235,17 +239,17 @@ def settled_parts(
     too_short = len(refused) == len(recordings)
     if too_short:
         refused = {}
-    kept = [i for i in range(len(recordings)) if i not in refused]
-    n_kept = {i: _n_kept(recordings[i], starts[i]) for i in kept}
-    for alike in _repeats(recordings, kept):
-        fewest = min(n_kept[i] for i in alike)
-        if fewest >= _SHORTENED * max(n_kept[i] for i in alike):
-            n_kept |= dict.fromkeys(alike, fewest)
+    usable = [i for i in range(len(recordings)) if i not in refused]
+    n_settled = {i: _n_settled(recordings[i], starts[i]) for i in usable}
+    for repeats in _repeats(recordings, usable):
+        fewest = min(n_settled[i] for i in repeats)
+        if fewest >= _SHORTENED * max(n_settled[i] for i in repeats):
+            n_settled |= dict.fromkeys(repeats, fewest)
     parts = []
     cut: dict[str, list[tuple[str, float]]] = {}
-    for i in kept:
+    for i in usable:
         recording = recordings[i]
-        first = recording.samples.shape[1] - n_kept[i]
+        first = recording.samples.shape[1] - n_settled[i]
         parts.append(_from(recording, first))
         if first:
             why = "as much as of another recording of the same condition"
@@ -259,15 +263,15 @@ def settled_parts(
 
 
 def _cut_note(why: str, cut: Sequence[tuple[str, float]]) -> str:
-    """Say of recordings how much was cut off for one reason [s]."""
+    """Return a note on the durations that were cut off for one reason [s]."""
     names = [name for name, _ in cut]
     which = joined(names) if len(names) <= _MOST_NAMED else f"{len(names)} recordings"
     ends = dict.fromkeys(f"{end(seconds for _, seconds in cut):.2g}" for end in (min, max))
     return f"{which}: the first {' to '.join(ends)} s, {why}, were left out"
 
 
-def _n_kept(recording: Recording, start: float) -> int:
-    """Count the samples that are kept of a recording."""
+def _n_settled(recording: Recording, start: float) -> int:
+    """Return the number of samples of the settled part after a start [s]."""
     n = int(recording.samples.shape[1])
     if start == 0.0:
         return n
@@ -276,18 +280,18 @@ def _n_kept(recording: Recording, start: float) -> int:
     return min(n, math.ceil(max(rounded, shortest(recording.rate)) * recording.rate))
 
 
-def _repeats(recordings: Sequence[Recording], kept: Sequence[int]) -> list[list[int]]:
-    """Places of recordings whose conditions were stated alike."""
-    alike: dict[tuple[object, ...], list[int]] = {}
-    for i in kept:
+def _repeats(recordings: Sequence[Recording], usable: Sequence[int]) -> list[list[int]]:
+    """Return groups of indices of recordings with the same stated condition, rate and length."""
+    groups: dict[tuple[object, ...], list[int]] = {}
+    for i in usable:
         r, c = recordings[i], known_condition(recordings[i].condition)
         stated = (c.speed, c.interference, c.support_stiffness, r.rate, r.samples.shape[1])
-        alike.setdefault(stated, []).append(i)
-    return list(alike.values())
+        groups.setdefault(stated, []).append(i)
+    return list(groups.values())
 
 
 def _from(recording: Recording, first: int) -> Recording:
-    """Return a recording from a sample on, its angle from zero."""
+    """Return the part of a recording from a sample on, with its angle starting at zero."""
     if first == 0:
         return recording
     samples = recording.samples[:, first:].copy()
