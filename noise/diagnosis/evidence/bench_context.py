@@ -52,7 +52,7 @@ def bench_context(rig: Rig, recordings: Sequence[Recording]) -> dict[str, float]
     {'seconds': 0.5, 'coherence': 1.0, 'constant_law': 1.0, 'listed': 0.0, 'torque_noise': 0.0, \
 'torque_step': 0.0}
     """
-    found = {
+    context = {
         "seconds": float(np.median([r.duration for r in recordings])),
         "coherence": lacking_coherence(rig, recordings),
         "constant_law": float(rig.friction.name == "coulomb"),
@@ -62,9 +62,9 @@ def bench_context(rig: Rig, recordings: Sequence[Recording]) -> dict[str, float]
         if any(r.first(kind) is not None for r in recordings):
             sensor = rig.sensors.of(kind)
             level = usual if sensor.noise is None else sensor.noise
-            found[f"{kind}_noise"] = math.log(max(level / usual, 1e-3))
-            found[f"{kind}_step"] = sensor.step / usual
-    return found
+            context[f"{kind}_noise"] = math.log(max(level / usual, 1e-3))
+            context[f"{kind}_step"] = sensor.step / usual
+    return context
 
 
 def lacking_coherence(rig: Rig, recordings: Sequence[Recording]) -> float:

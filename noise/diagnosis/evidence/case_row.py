@@ -123,10 +123,10 @@ def scale_of(tables: Sequence[CaseTable], names: Sequence[str]) -> Array:
         Half of what lies between the 16th and the 84th percentile, less what repeats differ by
         [unit of the number].
     """
-    found = [aligned(table, names) for table in tables]
-    away = np.concatenate([measured - nominal for measured, nominal, _ in found])
-    levels = np.concatenate([measured for measured, _, _ in found])
-    repeats = np.concatenate([_pooled(scatter) for _, _, scatter in found])
+    rows = [aligned(table, names) for table in tables]
+    away = np.concatenate([measured - nominal for measured, nominal, _ in rows])
+    levels = np.concatenate([measured for measured, _, _ in rows])
+    repeats = np.concatenate([_pooled(scatter) for _, _, scatter in rows])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # numbers that no case has
         low, high = np.nanpercentile(away, [16.0, 84.0], axis=0)

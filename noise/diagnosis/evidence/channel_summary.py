@@ -280,8 +280,8 @@ def hum_summary(x: Array, rate: float) -> Numbers:
     Examples
     --------
     >>> hum = 0.01 * np.sin(2 * np.pi * 50 * np.arange(30_000) / 30e3)
-    >>> found = hum_summary(hum + np.random.default_rng(0).normal(size=30_000), 30e3)
-    >>> found["hum_50"] > found["hum_60"]
+    >>> hum = hum_summary(hum + np.random.default_rng(0).normal(size=30_000), 30e3)
+    >>> hum["hum_50"] > hum["hum_60"]
     True
     """
     # Harmonics lie in the lowest bins; of the others no power is asked.

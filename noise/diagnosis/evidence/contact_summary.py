@@ -18,7 +18,7 @@ and how long the bushing rings. What rings while the surface sticks tells the el
 at some hundred hertz, what the torque does over a whole stick that at a few: one changed parameter
 moves both alike, a stiffness that depends on frequency does not.
 
-Of the friction torque the way up and the way down of a slip are kept apart, since a contact with a
+Of the friction torque the way up and the way down of a slip are separate, since a contact with a
 memory has another torque on either. A fitted level, slope and bend use all samples at once and
 scatter less than the classes do.
 
@@ -60,13 +60,13 @@ _SLIP_SUMMARY_FEWEST = 4
 
 
 def cycle_shape(
-    found: Reconstruction, fit: Fit, starts: NDArray[np.int64], ends: NDArray[np.int64]
+    motion: Reconstruction, fit: Fit, starts: NDArray[np.int64], ends: NDArray[np.int64]
 ) -> dict[str, float]:
     """Summarise the mean cycle.
 
     Parameters
     ----------
-    found : Reconstruction
+    motion : Reconstruction
     fit : Fit
         As the rig file has it.
     starts, ends : ndarray of int, shape (n_slips,)
@@ -80,37 +80,37 @@ def cycle_shape(
     """
     if starts.size < _SLIP_SUMMARY_FEWEST:
         return {}
-    rate = found.rate
+    rate = motion.rate
     before, after = (np.array([round(t * rate) for t in times]) for times in (_BEFORE, _AFTER))
     # Where another slip is, a time does not count.
-    earlier, later = np.append(0, ends[:-1]), np.append(starts[1:], found.torque.size)
+    earlier, later = np.append(0, ends[:-1]), np.append(starts[1:], motion.torque.size)
     places = {f"before_{i}": (starts - by)[starts - by > earlier] for i, by in enumerate(before)}
     places |= {f"after_{i}": (ends + by)[ends + by < later] for i, by in enumerate(after)}
     numbers: dict[str, float] = {}
     for name, at in places.items():
         if at.size >= _SLIP_SUMMARY_FEWEST:
-            crept = found.sliding_speed[at] / np.maximum(np.abs(found.shaft_speed[at]), 0.05)
-            numbers[f"{name}_torque"] = float(found.torque[at].mean()) / fit.critical_torque
+            crept = motion.sliding_speed[at] / np.maximum(np.abs(motion.shaft_speed[at]), 0.05)
+            numbers[f"{name}_torque"] = float(motion.torque[at].mean()) / fit.critical_torque
             numbers[f"{name}_creep"] = float(crept.mean())
-    return numbers | _ringing(found, starts, ends)
+    return numbers | _ringing(motion, starts, ends)
 
 
 def _ringing(
-    found: Reconstruction, starts: NDArray[np.int64], ends: NDArray[np.int64]
+    motion: Reconstruction, starts: NDArray[np.int64], ends: NDArray[np.int64]
 ) -> dict[str, float]:
     """Find what explains the creep within sticks, and what their means.
 
     In stick the surface moves with the shaft; what it seems to slide is linear in the errors of
     stiffness, damping and inertia.
     """
-    margin = round(_MARGIN * found.rate)
+    margin = round(_MARGIN * motion.rate)
     first, last = ends[:-1] + margin, starts[1:] - margin
     long = last - first > 3 * margin
     first, last = first[long], last[long]
     if first.size < _SLIP_SUMMARY_FEWEST:
         return {}
     signals = np.stack([
-        found.sliding_speed, found.by_stiffness, found.by_damping, found.by_clamp
+        motion.sliding_speed, motion.by_stiffness, motion.by_damping, motion.by_clamp
     ])  # fmt: skip
     sticks = [signals[:, a:b] for a, b in zip(first.tolist(), last.tolist(), strict=True)]
     sums = np.sum([x.sum(axis=1) for x in sticks], axis=0)
@@ -148,13 +148,13 @@ _ENOUGH = 60
 
 
 def torque_by_speed(
-    found: Reconstruction, fit: Fit, slipping: NDArray[np.bool_]
+    motion: Reconstruction, fit: Fit, slipping: NDArray[np.bool_]
 ) -> dict[str, float]:
     """Summarise the friction torque of a slipping contact.
 
     Parameters
     ----------
-    found : Reconstruction
+    motion : Reconstruction
     fit : Fit
         As the rig file has it.
     slipping : ndarray of bool, shape (n,)
@@ -165,9 +165,9 @@ def torque_by_speed(
     dict of str to float
         Torques over the kinetic one of the rig file [-].
     """
-    sliding = found.sliding_speed
+    sliding = motion.sliding_speed
     faster = (np.append(sliding[1:], sliding[-1]) > np.append(sliding[0], sliding[:-1]))[slipping]
-    speed, torque = sliding[slipping], found.friction_torque[slipping] / fit.kinetic_torque
+    speed, torque = sliding[slipping], motion.friction_torque[slipping] / fit.kinetic_torque
     numbers: dict[str, float] = {}
     for name, way in (("up", faster), ("down", ~faster)):
         for i, here in enumerate(_classed(torque[way], speed[way], _SPEED_EDGES), start=1):
@@ -215,12 +215,14 @@ _NEAR_PEAK = 6e-4
 """In which the torque's peak before and its trough after a slip are looked for [s]; assumed."""
 
 
-def slip_starts(found: Reconstruction, speed: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def slip_starts(
+    motion: Reconstruction, speed: float
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Find the slips of a contact.
 
     Parameters
     ----------
-    found : Reconstruction
+    motion : Reconstruction
     speed : float
         Of the shaft, as set [rad/s].
 
@@ -232,19 +234,19 @@ def slip_starts(found: Reconstruction, speed: float) -> tuple[NDArray[np.int64],
     """
     wanted = abs(speed)
     return slip_intervals(
-        found.sliding_speed,
+        motion.sliding_speed,
         above=max(3.0, 1.3 * wanted + 2.0),
         below=0.5 * wanted + 0.8,
-        apart=int(_APART * found.rate),
+        apart=int(_APART * motion.rate),
     )
 
 
-def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
+def contact_summary(motion: Reconstruction, fit: Fit, speed: float) -> Numbers:
     """Summarise what the contact did.
 
     Parameters
     ----------
-    found : Reconstruction
+    motion : Reconstruction
     fit : Fit
         As the rig file has it.
     speed : float
@@ -257,35 +259,39 @@ def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
         within a slip [rad/s]; times and rates as logarithms of seconds and 1/s. NaN, or missing,
         where a recording does not show it.
     """
-    starts, ends = slip_starts(found, speed)
-    n = found.torque.size
-    near = in_intervals(starts, ends, n, margin=int(_AROUND * found.rate))
+    starts, ends = slip_starts(motion, speed)
+    n = motion.torque.size
+    near = in_intervals(starts, ends, n, margin=int(_AROUND * motion.rate))
     wanted = max(abs(speed), 0.05)
-    calm = found.sliding_speed[~near]
-    stick, of_stick = _stick(found, fit, near, wanted)
+    calm = motion.sliding_speed[~near]
+    stick, of_stick = _stick(motion, fit, near, wanted)
     numbers = {
-        "slip_rate": math.log(max(starts.size * found.rate / n, 0.5)),
+        "slip_rate": math.log(max(starts.size * motion.rate / n, 0.5)),
         "stick_share": stick / n,
         "slip_share": float(near.mean()),
         "calm_speed": _mean(calm) / wanted,
         "calm_spread": float(calm.std()) / wanted if calm.size else math.nan,
     }
     numbers |= of_stick
-    numbers |= torque_by_speed(found, fit, in_intervals(starts, ends, n))
-    numbers |= _cycles(found, fit, starts, ends)
-    numbers |= cycle_shape(found, fit, starts, ends)
-    numbers |= _torque(found, fit)
+    numbers |= torque_by_speed(motion, fit, in_intervals(starts, ends, n))
+    numbers |= _cycles(motion, fit, starts, ends)
+    numbers |= cycle_shape(motion, fit, starts, ends)
+    numbers |= _torque(motion, fit)
     return numbers
 
 
 def _stick(
-    found: Reconstruction, fit: Fit, near: NDArray[np.bool_], speed: float
+    motion: Reconstruction, fit: Fit, near: NDArray[np.bool_], speed: float
 ) -> tuple[int, Numbers]:
     """Count the samples in stick, and summarise them."""
-    stick = ~near & (np.abs(found.sliding_speed) < 0.7 * speed + 1.2)
-    m, b, shaft = int(np.count_nonzero(stick)), found.sliding_speed[stick], found.shaft_speed[stick]
-    ratio = found.friction_torque[stick] / fit.critical_torque
-    rate = found.torque_rate[stick]
+    stick = ~near & (np.abs(motion.sliding_speed) < 0.7 * speed + 1.2)
+    m, b, shaft = (
+        int(np.count_nonzero(stick)),
+        motion.sliding_speed[stick],
+        motion.shaft_speed[stick],
+    )
+    ratio = motion.friction_torque[stick] / fit.critical_torque
+    rate = motion.torque_rate[stick]
     rising = rate > 0.0
     numbers: Numbers = {}
     for name, way in (("up", rising), ("down", ~rising)):
@@ -294,15 +300,15 @@ def _stick(
             numbers[f"creep_{name}_{i}"] = float(here.mean()) / speed if enough else math.nan
     if m < 200:
         return m, numbers
-    by_stiffness, names = found.by_stiffness[stick], _EXPLANATIONS
+    by_stiffness, names = motion.by_stiffness[stick], _EXPLANATIONS
     a = np.stack([
-        shaft, by_stiffness, by_stiffness * (found.torque[stick] / fit.kinetic_torque - 1.0),
-        found.by_damping[stick], found.by_clamp[stick], shaft * np.clip(ratio, 0.0, 1.2) ** 6,
+        shaft, by_stiffness, by_stiffness * (motion.torque[stick] / fit.kinetic_torque - 1.0),
+        motion.by_damping[stick], motion.by_clamp[stick], shaft * np.clip(ratio, 0.0, 1.2) ** 6,
     ], axis=1)  # fmt: skip
-    if not found.by_clamp.any():
+    if not motion.by_clamp.any():
         # All of the shaft's speed winds the elastomer: another speed is another stiffness.
-        kept = [i for i, name in enumerate(names) if name not in ("speed", "clamp")]
-        a, names = a[:, kept], tuple(names[i] for i in kept)
+        columns = [i for i, name in enumerate(names) if name not in ("speed", "clamp")]
+        a, names = a[:, columns], tuple(names[i] for i in columns)
     gram = a.T @ a
     gram += 1e-6 * np.trace(gram) / len(gram) * np.eye(len(gram))
     x = np.linalg.solve(gram, a.T @ b)
@@ -310,7 +316,7 @@ def _stick(
     left = b - a @ x
     numbers["stick_left"] = float(left.std()) / speed
     numbers["stick_explained"] = 1.0 - float(left.var()) / max(float(b.var()), 1e-12)
-    wound = shaft - found.clamp_speed[stick]
+    wound = shaft - motion.clamp_speed[stick]
     late, early = rising & (ratio > 0.85), rising & (ratio < 0.7)
     for name, those in (("all", np.ones(m, bool)), ("late", late), ("early", early)):
         if np.count_nonzero(those) > 60:
@@ -322,19 +328,19 @@ def _stick(
 
 
 def _cycles(
-    found: Reconstruction, fit: Fit, starts: NDArray[np.int64], ends: NDArray[np.int64]
+    motion: Reconstruction, fit: Fit, starts: NDArray[np.int64], ends: NDArray[np.int64]
 ) -> Numbers:
     n_slips = starts.size
     if n_slips < 4:
         return {}
-    rate, near = found.rate, int(_NEAR_PEAK * found.rate)
+    rate, near = motion.rate, int(_NEAR_PEAK * motion.rate)
     critical, kinetic = fit.critical_torque, fit.kinetic_torque
-    friction = found.friction_torque
+    friction = motion.friction_torque
     slips = np.array([
         (
             friction[max(a - near, 0) : a + 2].max() / critical,
-            found.torque[a : b + near].min() / kinetic,
-            found.sliding_speed[a:b].max(),
+            motion.torque[a : b + near].min() / kinetic,
+            motion.sliding_speed[a:b].max(),
             float(quantile(friction[a:b], 0.5)) / kinetic,
         )
         for a, b in zip(starts.tolist(), ends.tolist(), strict=True)
@@ -372,12 +378,12 @@ def _cycles(
     return numbers
 
 
-def _torque(found: Reconstruction, fit: Fit) -> Numbers:
-    torque = found.torque
+def _torque(motion: Reconstruction, fit: Fit) -> Numbers:
+    torque = motion.torque
     kinetic, critical = fit.kinetic_torque, fit.critical_torque
     quarter = torque.size // 4
     q = torque[: 4 * quarter].reshape(4, quarter).mean(axis=1) / kinetic
-    block = int(0.02 * found.rate)
+    block = int(0.02 * motion.rate)
     passed = np.cumsum(torque)
     slow = (passed[block:] - passed[:-block]) / block
     mean, spread = float(torque.mean()), float(torque.std())
@@ -392,7 +398,7 @@ def _torque(found: Reconstruction, fit: Fit) -> Numbers:
         "slow": float(slow.std()) / kinetic,
         "highest": float(torque.max()) / critical,
         "lowest": float(torque.min()) / kinetic,
-        "friction_highest": float(found.friction_torque.max()) / critical,
+        "friction_highest": float(motion.friction_torque.max()) / critical,
         "skewness": third / (spread**3 + 1e-9),
     }
 
@@ -486,8 +492,8 @@ def friction_curves(recording: Recording, rig: Rig) -> FrictionCurves | None:
     >>> from sim.run import simulate
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> run = simulate(rig, 1.0, interference=0.279e-3, support_stiffness=3745.0, seconds=0.4)
-    >>> found = friction_curves(run.recording, rig)
-    >>> bool(np.all(abs(found.time.torque - 10.7) < 0.5))  # the critical torque, at any time
+    >>> curves = friction_curves(run.recording, rig)
+    >>> bool(np.all(abs(curves.time.torque - 10.7) < 0.5))  # the critical torque, at any time
     True
     """
     c = recording.condition
@@ -499,16 +505,16 @@ def friction_curves(recording: Recording, rig: Rig) -> FrictionCurves | None:
     if (angle := recording.first("angle")) is not None:
         speed = shaft_speed(turn * recording.samples[angle], rate)
     bushing = lumped_bushing(rig, c.interference, c.support_stiffness)
-    found = reconstruct(turn * recording.samples[row], speed, rate, bushing)
-    starts, ends = slip_starts(found, abs(c.speed))
+    motion = reconstruct(turn * recording.samples[row], speed, rate, bushing)
+    starts, ends = slip_starts(motion, abs(c.speed))
     if starts.size < _FEWEST_SLIPS + 1:
         return None
     near = round(_NEAR * rate)
-    peaks = np.array([found.friction_torque[max(a - near, 0) : a + 2].max() for a in starts])
-    when = found.start + starts / rate
-    turned = np.cumsum(found.shaft_speed) / rate
+    peaks = np.array([motion.friction_torque[max(a - near, 0) : a + 2].max() for a in starts])
+    when = motion.start + starts / rate
+    turned = np.cumsum(motion.shaft_speed) / rate
     return FrictionCurves(
-        sliding_speed=_over_speed(found.sliding_speed, found.friction_torque, starts, ends),
+        sliding_speed=_over_speed(motion.sliding_speed, motion.friction_torque, starts, ends),
         time_stuck=_binned((starts[1:] - ends[:-1]) / rate, peaks[1:]),
         time=_binned(when, peaks),
         angle=_binned(turned[starts], peaks),

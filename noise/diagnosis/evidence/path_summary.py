@@ -33,7 +33,7 @@ _LEAD, _TAIL = 0.08, 0.01
 
 _LONGEST_DELAY = 2.5e-3
 _COARSE, _FINE = 4, 16
-"""The delay is looked for, and found, to so many parts of a sample."""
+"""Resolution of the delay, in parts of a sample."""
 
 _REFERENCE_BAND = (80.0, 6000.0)
 """In which gain and delay are those of the whole channel [Hz]; assumed."""

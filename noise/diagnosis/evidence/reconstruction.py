@@ -118,9 +118,9 @@ def _slow_derivative(length: int, rate: float) -> NDArray[np.complex128]:
     frequency = np.fft.rfftfreq(length, 1.0 / rate)
     frequency = frequency[frequency < 2.0 * _SPEED_LIMIT]
     x = np.clip((frequency - _SPEED_LIMIT) / _SPEED_LIMIT, 0.0, 1.0)
-    found = 2j * np.pi * frequency * (0.5 + 0.5 * np.cos(np.pi * x))
-    found.setflags(write=False)
-    return np.asarray(found)
+    response = 2j * np.pi * frequency * (0.5 + 0.5 * np.cos(np.pi * x))
+    response.setflags(write=False)
+    return np.asarray(response)
 
 
 def _about_line(angle: Array, rate: float) -> tuple[float, Array]:
@@ -140,7 +140,7 @@ def _centred_time(n: int, rate: float) -> Array:
 
 
 LIMIT = 8000.0
-"""Highest frequency kept [Hz], at most a third of the rate; its flank ends a third above;
+"""Upper edge of the pass band [Hz], at most a third of the rate; its flank ends a third above;
 assumed."""
 
 LEAD = 0.06
@@ -226,8 +226,8 @@ def reconstruct(
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> run = simulate(rig, 1.0, interference=0.279e-3, support_stiffness=3745.0, seconds=0.3)
     >>> torque, speed = run.recording["torque"], np.full(9000, 1.0)
-    >>> found = reconstruct(torque, speed, 30e3, lumped_bushing(rig, 0.279e-3, 3745.0))
-    >>> abs(float(np.median(found.sliding_speed))) < 0.05  # it sticks most of the time
+    >>> motion = reconstruct(torque, speed, 30e3, lumped_bushing(rig, 0.279e-3, 3745.0))
+    >>> abs(float(np.median(motion.sliding_speed))) < 0.05  # it sticks most of the time
     True
     """
     n = torque.size
@@ -238,20 +238,20 @@ def reconstruct(
     # of so many samples one is enough for what the band limit leaves
     every = next(k for k in (4, 2, 1) if k == 1 or (rate >= k * _LEAST_RATE and length % k == 0))
     rate /= every
-    kept = slice(round(LEAD * rate), n // every - round(TAIL * rate))
+    inside = slice(round(LEAD * rate), n // every - round(TAIL * rate))
     filters = _filters(length, rate * every, bushing)
     bins = spectrum[: filters.shape[1]] / every
     bins[0] -= mean * (length // every)
     spectra = np.zeros((len(filters), length // every // 2 + 1), np.complex128)
     np.multiply(filters, bins, out=spectra[:, : bins.size])
-    rows = irfft(spectra, length // every, axis=1, overwrite_x=True)[:, kept]
+    rows = irfft(spectra, length // every, axis=1, overwrite_x=True)[:, inside]
     torques, inertial, torque_rate, creep, by_stiffness, by_damping, *of_clamp = rows
     clamp_speed, by_clamp = of_clamp or np.zeros((2, torques.size))
-    speed = shaft_speed[::every][kept]
+    speed = shaft_speed[::every][inside]
     smooth = torques + mean
     return Reconstruction(
         rate=rate,
-        start=kept.start / rate,
+        start=inside.start / rate,
         torque=smooth,
         friction_torque=smooth + inertial,
         torque_rate=torque_rate,
@@ -288,11 +288,11 @@ def _filters(length: int, rate: float, bushing: LumpedBushing) -> NDArray[np.com
         by_damping = by_damping + bushing.support_damping * s * s * clamp / yields
         of_clamp = [clamp * s, bushing.clamp_inertia * s**3 * clamp / yields]
     inertial = bushing.elastomer_inertia * surface * s * s
-    found = np.stack([
+    transfer = np.stack([
         low_pass, inertial, low_pass * s, surface * s, by_stiffness, by_damping, *of_clamp,
     ])  # fmt: skip
-    found.setflags(write=False)
-    return found
+    transfer.setflags(write=False)
+    return transfer
 
 
 def closed_spectrum(signal: Array, rate: float) -> NDArray[np.complex128]:

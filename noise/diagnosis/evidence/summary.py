@@ -108,10 +108,10 @@ def summary(
     torque = signal["torque"]
     bushing = lumped_bushing(rig, condition.interference, condition.support_stiffness)
     spectrum = closed_spectrum(torque, rate)
-    found = reconstruct(turn * torque, speed, rate, bushing, turn * spectrum)
+    motion = reconstruct(turn * torque, speed, rate, bushing, turn * spectrum)
     fit = rig.fit(condition.interference)
-    numbers |= _named("contact", contact_summary(found, fit, wanted))
-    slips = slip_starts(found, wanted)[0] / found.rate + found.start
+    numbers |= _named("contact", contact_summary(motion, fit, wanted))
+    slips = slip_starts(motion, wanted)[0] / motion.rate + motion.start
     more, residuals = path_numbers(signal, spectrum, rate, transfer_functions, slips)
     numbers |= more
     for kind, residual in residuals.items():
@@ -173,8 +173,8 @@ def path_numbers(
     residuals = {}
     paths = {kind: transfer_functions[kind] for kind in _OUTPUTS if kind in signal}
     for kind, expected in predict_outputs(spectrum, signal["torque"].size, rate, paths).items():
-        found, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
-        numbers |= _named(kind, found)
+        path, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
+        numbers |= _named(kind, path)
     return numbers, residuals
 
 
@@ -186,7 +186,7 @@ class NominalNumbers:
     ----------
     rig : Rig
     library : mapping of str to Effect, optional
-        Effects that the rig's can be found among.
+        Definitions of the effects of the rig, by name.
     seed : int
         Of the repeats.
     """
@@ -194,7 +194,7 @@ class NominalNumbers:
     rig: Rig
     library: Mapping[str, Effect] | None = None
     seed: int = 0
-    _kept: dict[tuple[object, ...], tuple[Numbers, Numbers]] = field(default_factory=dict)
+    _moments: dict[tuple[object, ...], tuple[Numbers, Numbers]] = field(default_factory=dict)
 
     @cached_property
     def transfer_functions(self) -> TransferFunctionCache:
@@ -204,16 +204,20 @@ class NominalNumbers:
     def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
         key = (*condition_key(recording), recording.channel_names)
-        if key not in self._kept:
+        if key not in self._moments:
             # Conditions share no repeat's rig: it would err in all of them alike.
-            seeds = np.random.SeedSequence([self.seed, len(self._kept)]).generate_state(N_REPEATS)
+            seeds = np.random.SeedSequence([self.seed, len(self._moments)]).generate_state(
+                N_REPEATS
+            )
             repeats = nominal_repeats(
                 recording, self.rig, self.transfer_functions, seeds.tolist(), library=self.library
             )
             transfer_functions = self.transfer_functions.whole(recording)
             alike = [same_channels(repeat, recording) for repeat in repeats]
-            self._kept[key] = _moments([summary(x, self.rig, transfer_functions) for x in alike])
-        return self._kept[key]
+            self._moments[key] = _mean_and_deviation(
+                [summary(x, self.rig, transfer_functions) for x in alike]
+            )
+        return self._moments[key]
 
 
 def case_table(
@@ -231,7 +235,7 @@ def case_table(
     recordings : sequence of Recording
     rig : Rig
     library : mapping of str to Effect, optional
-        Effects that the rig's can be found among.
+        Definitions of the effects of the rig, by name.
     seed : int
         Of the repeats.
     nominal : NominalNumbers, optional
@@ -281,7 +285,7 @@ def same_channels(repeat: Recording, recording: Recording) -> Recording:
     )
 
 
-def _moments(repeats: Sequence[Numbers]) -> tuple[Numbers, Numbers]:
+def _mean_and_deviation(repeats: Sequence[Numbers]) -> tuple[Numbers, Numbers]:
     names = list(dict.fromkeys(name for numbers in repeats for name in numbers))
     values = np.array([[numbers.get(name, math.nan) for name in names] for numbers in repeats])
     mean, spread = column_moments(values)

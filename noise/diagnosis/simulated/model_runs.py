@@ -26,7 +26,7 @@ from noise.base.arrays import Array
 from noise.diagnosis.gap.distance import KINDS, channel_signature, joined_signature
 from noise.diagnosis.simulated.repeats import condition_key, plan_repeat, record, repeat_motion
 from noise.diagnosis.simulated.scatter import Scatter, perturb_run
-from noise.diagnosis.simulated.structure import chain_changes, heard_of, n_closed
+from noise.diagnosis.simulated.structure import chain_changes, n_closed, radiated_sound
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, chain_of
 from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import apply_chain_effects
@@ -48,13 +48,13 @@ _COARSE = 2e-5
 """Error of a step of runs without scatter [-]: they are compared with each other; assumed."""
 
 _CACHED = 24
-"""Responses and signals that are kept."""
+"""Responses and signals in the cache."""
 
 _SIGNATURES = 4000
-"""Of channels that are kept."""
+"""Channels in the cache."""
 
 _ROOM = 3e8
-"""Of the motions that are kept; what is heard of one of a second at 90 kHz takes 1.4e6 [byte]."""
+"""Motions in the cache; the outputs of one of a second at 90 kHz take 1.4e6 [byte]."""
 
 
 OFFSETS = (
@@ -121,8 +121,8 @@ def with_effects(rig: Rig, effects: Sequence[LawSpec]) -> Rig:
     ['critical_torque_scatter:scatter=0.6']
     """
     named = {spec.name for spec in effects}
-    kept = tuple(spec for spec in rig.effects if spec.name not in named)
-    return replace(rig, effects=(*kept, *effects))
+    others = tuple(spec for spec in rig.effects if spec.name not in named)
+    return replace(rig, effects=(*others, *effects))
 
 
 @dataclass(eq=False)
@@ -272,7 +272,7 @@ class ModelRuns:
             motion = self._motions.get(of_motion, moved)
             changes, paths = self._changes(plan, on_paths)
             at_condition = self.transfer_functions.at(plan.interference, plan.support_stiffness)
-            sound = heard_of(motion, plan, self.rig, at_condition, changes, paths, on_paths)
+            sound = radiated_sound(motion, plan, self.rig, at_condition, changes, paths, on_paths)
             return sensor_signals(motion, sound, plan.n_settling)
 
         return key, self._signals.get(key, radiated)

@@ -72,7 +72,7 @@ def nominal_recordings(
         One a repeat.
     scatter : Scatter, optional
     library : mapping of str to Effect, optional
-        Effects that the rig's can be found among.
+        Definitions of the effects of the rig, by name.
 
     Returns
     -------
@@ -92,16 +92,16 @@ def nominal_recordings(
         ]
     decimation = DIAGNOSIS.decimation(rate)
     before = round(DIAGNOSIS.settling * rate)
-    kept = slice(before, before + round(seconds * rate))
-    n = (kept.stop + round(_RUNNING_OUT * rate)) * decimation
+    recorded = slice(before, before + round(seconds * rate))
+    n = (recorded.stop + round(_RUNNING_OUT * rate)) * decimation
     at = (condition.interference, condition.support_stiffness)
     bushing = lumped_bushing(rig, *at)
     corners = {name: rig.sensors.of(name).antialias for name in CHANNELS}
     recordings = []
     for seed in seeds:
         rng = np.random.default_rng(seed)
-        once, found = perturb_run(rig, condition, scatter, rng)
-        plan = plan_repeat(once, found, effects, rate=DIAGNOSIS.rate(rate), seconds=seconds)
+        once, own = perturb_run(rig, condition, scatter, rng)
+        plan = plan_repeat(once, own, effects, rate=DIAGNOSIS.rate(rate), seconds=seconds)
         motion = repeat_motion(replace(plan, n_settling=0, n_recorded=n), rng)
         # What a sensor's filter does to a sound, it does to the torque that makes it.
         by_filter = {
@@ -113,16 +113,16 @@ def nominal_recordings(
         outputs: dict[str, Array] = {}
         for corner in {corners[name] for name in OUTPUTS}:
             paths = {n: transfer_functions[n] for n in OUTPUTS if corners[n] == corner}
-            mean = by_filter[corner][kept].mean()
+            mean = by_filter[corner][recorded].mean()
             torque = mean + faded(by_filter[corner] - mean, rate)
             spectrum = with_clamp_shifted(
                 closed_spectrum(torque, rate), torque.size, rate, bushing, lumped
             )
             outputs |= predict_outputs(spectrum, torque.size, rate, paths)
         signals = {
-            "torque": by_filter[corners["torque"]][kept],
-            **{name: outputs[name][kept] for name in OUTPUTS},
-            "angle": angle[kept] - angle[before],
+            "torque": by_filter[corners["torque"]][recorded],
+            **{name: outputs[name][recorded] for name in OUTPUTS},
+            "angle": angle[recorded] - angle[before],
         }
         through = rig.sensors.unfiltered()
         recordings.append(record(signals, rate, condition, rng, scatter, sensors=through))
@@ -188,7 +188,7 @@ def _with_effects(
 ) -> Recording:
     """Simulate a repeat with effects beyond the contact, as models are that a fit compares."""
     rng, fine = np.random.default_rng(seed), DIAGNOSIS.rate(rate)
-    once, found = perturb_run(rig, condition, scatter, rng)
+    once, own = perturb_run(rig, condition, scatter, rng)
     at = (condition.interference, condition.support_stiffness)
     bushing, lumped = lumped_bushing(rig, *at), lumped_bushing(once, *at)
     shifted = {name: shift_clamp_mode(h, bushing, lumped) for name, h in transfer_functions.items()}
@@ -197,7 +197,7 @@ def _with_effects(
     paths = apply_chain_effects(
         paths, effects, np.random.default_rng(0)
     )  # one structure for all runs
-    plan = plan_repeat(once, found, effects, rate=fine, seconds=seconds)
+    plan = plan_repeat(once, own, effects, rate=fine, seconds=seconds)
     motion = repeat_motion(plan, rng)
     signals = sensor_signals(motion, radiate_motion(motion, paths, effects), plan.n_settling)
     signals = apply_sensor_effects(signals, effects, fine, rng)

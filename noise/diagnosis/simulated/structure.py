@@ -71,7 +71,7 @@ def chain_changes(
     return changes
 
 
-def heard_of(
+def radiated_sound(
     motion: Motion,
     plan: Plan,
     rig: Rig,
@@ -102,19 +102,19 @@ def heard_of(
     Sound
         As long as the motion; right while the plan keeps it.
     """
-    kept = slice(plan.n_settling, plan.n_settling + plan.n_recorded)
+    recorded = slice(plan.n_settling, plan.n_settling + plan.n_recorded)
     more = round(_GOING_ON * plan.rate)
-    torque = motion.torque[: kept.stop]
+    torque = motion.torque[: recorded.stop]
     torque = np.concatenate([torque, torque[-2 : -2 - more : -1]])
-    mean = float(torque[kept].mean())
+    mean = float(torque[recorded].mean())
     torque = mean + faded(torque - mean, plan.rate)
     at = (plan.interference, plan.support_stiffness)
     bushing, scattered = lumped_bushing(rig, *at), lumped_bushing(plan.rig, *at)
     spectrum = with_clamp_shifted(
         closed_spectrum(torque, plan.rate), torque.size, plan.rate, bushing, scattered
     )
-    found = predict_outputs(spectrum, torque.size, plan.rate, transfer_functions, changes)
-    acceleration, pressure = (found[name][: kept.stop] for name in OUTPUTS)
+    outputs = predict_outputs(spectrum, torque.size, plan.rate, transfer_functions, changes)
+    acceleration, pressure = (outputs[name][: recorded.stop] for name in OUTPUTS)
     force, pulses = pulse_force(motion, effects), np.zeros_like(pressure)
     if paths is not None and np.any(force):
         struck, pulses = radiate(paths, force, "pulse")

@@ -68,18 +68,18 @@ def torque_transfer_functions(
     --------
     >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> found = torque_transfer_functions(rig, 0.279e-3, 2214.0)
-    >>> sorted(found), bool(abs(found["acceleration"].at(np.array([259.0]))[0]) > 1.0)
+    >>> functions = torque_transfer_functions(rig, 0.279e-3, 2214.0)
+    >>> sorted(functions), bool(abs(functions["acceleration"].at(np.array([259.0]))[0]) > 1.0)
     (['acceleration', 'pressure'], True)
     """
-    found: dict[str, TransferFunction] = {}
+    functions: dict[str, TransferFunction] = {}
     entry = measured_with(rig.measured, support_stiffness)
     if entry is not None:
         if entry.torque_to_acceleration is not None:
-            found["acceleration"] = fill_between_lines(entry.torque_to_acceleration)
+            functions["acceleration"] = fill_between_lines(entry.torque_to_acceleration)
         if entry.torque_to_pressure is not None:
-            found["pressure"] = fill_between_lines(entry.torque_to_pressure)
-    if len(found) < 2:
+            functions["pressure"] = fill_between_lines(entry.torque_to_pressure)
+    if len(functions) < 2:
         modelled = impulse_responses(rig, interference, support_stiffness, _MODEL_RATE)
         for name, unit, impulse in (
             ("acceleration", "m/s^2", modelled.torque_to_acceleration),
@@ -87,10 +87,10 @@ def torque_transfer_functions(
         ):
             n = FINER * impulse.size
             lines = np.asarray(np.fft.rfftfreq(n, 1.0 / _MODEL_RATE), np.float64)
-            found.setdefault(
+            functions.setdefault(
                 name, TransferFunction(lines, rfft(impulse, n), None, "N m", unit, name)
             )
-    return found
+    return functions
 
 
 class TransferFunctionCache:
@@ -100,7 +100,7 @@ class TransferFunctionCache:
     ----------
     rig : Rig
     library : mapping of str to Effect, optional
-        Effects that the rig's can be found among.
+        Definitions of the effects of the rig, by name.
     """
 
     def __init__(self, rig: Rig, library: Mapping[str, Effect] | None = None) -> None:
@@ -206,8 +206,8 @@ def predict_outputs(
     --------
     >>> double = TransferFunction(np.array([0.0, 4e3]), np.array([2.0 + 0j, 2.0 + 0j]))
     >>> tone = np.sin(2 * np.pi * 100.0 * np.arange(800) / 8e3)
-    >>> found = predict_outputs(closed_spectrum(tone, 8e3), 800, 8e3, {"pressure": double})
-    >>> bool(np.allclose(found["pressure"], predict(tone, 8e3, double)))
+    >>> outputs = predict_outputs(closed_spectrum(tone, 8e3), 800, 8e3, {"pressure": double})
+    >>> bool(np.allclose(outputs["pressure"], predict(tone, 8e3, double)))
     True
     """
     length, changes = closed_length(n, rate), changes or {}
