@@ -1,1 +1,1 @@
-"""Drawn cases: rigs, structures, effects and conditions as a posterior learns from them."""
+"""Random draws of effects for fits and for the training of posteriors."""

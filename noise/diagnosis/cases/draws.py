@@ -1,7 +1,7 @@
-"""Numbers, curves and random signals that forms are drawn of, as their tables name them.
+"""Random draws of the numbers, curves and signals in the tables of effect forms.
 
-A monotone curve with random increments stands for the forms that nobody foresees: whoever has
-learnt a hundred such curves has learnt the effect rather than a formula of it.
+Monotone curves with random increments represent unforeseen forms: a model that is trained on a
+hundred such curves learns the effect rather than one formula.
 """
 
 from __future__ import annotations
@@ -22,29 +22,33 @@ from sim.effects import EFFECTS
 Rng = np.random.Generator
 
 SENSED = ("torque", "acceleration", "pressure")
+"""Kinds of channels with a sensor."""
 
 _N_CURVE = 129
+"""Number of points of a tabulated curve."""
 
 
 def log_uniforms(rng: Rng, low: float, high: float, n: int) -> Array:
-    """Draw numbers whose logarithms are uniform."""
+    """Draw `n` numbers from a log-uniform distribution between two bounds, shape (n,)."""
     return np.exp(rng.uniform(np.log(low), np.log(high), n))
 
 
 def draw_numbers(specs: Mapping[str, Any], rng: Rng, strength: float = 1.0) -> dict[str, Any]:
-    """Draw what a row states, in its order; later ones may refer to earlier ones by name.
+    """Draw the parameters of a row of a table in order.
 
     Parameters
     ----------
     specs : mapping of str to object
-        As those tables explain them.
+        Specification of each parameter, in the format that the tables explain. It may refer to
+        earlier parameters by name.
     rng : numpy.random.Generator
     strength : float
-        Of what is stated by it [-].
+        Strength of the effect, for specifications that refer to it [-].
 
     Returns
     -------
     dict of str to object
+        Drawn values by name.
 
     Examples
     --------
@@ -60,6 +64,8 @@ def draw_numbers(specs: Mapping[str, Any], rng: Rng, strength: float = 1.0) -> d
 
 
 def _drawn(spec: Any, rng: Rng, names: Mapping[str, Any]) -> Any:
+    """Draw a value from its specification; `names` are the values of earlier parameters."""
+
     def value(part: Any) -> Any:
         return _drawn(part, rng, names)
 
@@ -112,7 +118,7 @@ def _drawn(spec: Any, rng: Rng, names: Mapping[str, Any]) -> Any:
 
 
 def _shares(rng: Rng, names: tuple[str, ...], *, signed: bool) -> dict[str, float]:
-    """Draw shares of a fault: mostly of one channel alone."""
+    """Draw the shares of a fault in its channels; mostly a single channel has it."""
     chosen = [str(rng.choice(names))]
     if rng.random() > 0.65:
         chosen = [name for name in names if rng.random() < 0.7] or chosen
@@ -122,7 +128,7 @@ def _shares(rng: Rng, names: tuple[str, ...], *, signed: bool) -> dict[str, floa
 
 
 def _levels(rng: Rng, most: list[float]) -> Array:
-    """Draw levels of all channels [Nm], [m/s2], [Pa], or of one or two of them alone."""
+    """Draw levels of the channels, shape (3,) [Nm], [m/s2], [Pa]; one or two are sometimes 0."""
     sizes = np.array(most) * np.exp(rng.uniform(np.log(0.1), 0.0, 3))
     if rng.random() < 0.4:
         sizes[rng.choice(3, int(rng.integers(1, 3)), replace=False)] = 0.0
@@ -130,44 +136,47 @@ def _levels(rng: Rng, most: list[float]) -> Array:
 
 
 def _levels_beside(rng: Rng, most: list[float]) -> Array:
-    """Draw levels of what sounds beside the rig; the torque has some of it in half of them."""
+    """Draw channel levels of a sound source beside the rig, shape (3,) [Nm], [m/s2], [Pa].
+
+    The level of the torque is 0 in half of the draws.
+    """
     levels = np.array([level * log_uniform(0.1, 1.0, rng) for level in most])
     levels[0] *= rng.random() < 0.5
     return levels
 
 
 def _mains(rng: Rng) -> float:
-    """Draw a frequency of the mains, now and then of railways or aircraft [Hz]."""
+    """Draw a mains frequency, sometimes of railways or aircraft [Hz]."""
     usual = rng.random() < 0.9
     nominal = float(rng.choice((50.0, 60.0) if usual else (50.0 / 3.0, 25.0, 400.0)))
     return nominal * (1.0 + 2e-3 * rng.standard_normal())
 
 
 def _partials(rng: Rng, orders_below: int) -> tuple[Any, Any, Any]:
-    """Draw orders, sizes and phases of a wave of few harmonics."""
+    """Draw orders, amplitudes and phases of a wave with few harmonics."""
     orders = np.unique(rng.integers(1, orders_below, int(rng.integers(1, 7))))
     sizes = rng.exponential(1.0, orders.size) / np.sqrt(orders)
     return orders, sizes, rng.random(orders.size)
 
 
 def _doubled(rng: Rng, orders_below: int) -> tuple[Any, Any, Any]:
-    """Draw the same of even harmonics."""
+    """Draw orders, amplitudes and phases of a wave with even harmonics."""
     even = 2 * np.arange(1, int(rng.integers(2, orders_below)))
     return even, even ** -log_uniform(0.3, 3.0, rng), rng.random(even.size)
 
 
 def curve(shape: Callable[[Array], Array]) -> Array:
-    """Tabulate a shape over 0 to 1 as hooks read it."""
+    """Tabulate a shape over 0 to 1 in the format of the solver's hooks, shape (n,)."""
     return np.concatenate([[_N_CURVE], shape(np.linspace(0.0, 1.0, _N_CURVE))])
 
 
 def far_curve(shape: Callable[[Array], Array]) -> Array:
-    """Tabulate a shape over x from 0 to infinity, in equal steps of x / (1 + x)."""
+    """Tabulate a function of x from 0 to infinity, in equal steps of x / (1 + x), shape (n,)."""
     return curve(lambda u: shape(u / np.maximum(1.0 - u, 1e-6)))
 
 
 def drawn_curve(rng: Rng) -> Array:
-    """Draw a monotone shape from 0 to 1, with few steep parts or many even ones."""
+    """Draw a tabulated monotone curve from 0 to 1, with steep steps or even ones, shape (n,)."""
     n, evenness = int(rng.integers(4, 9)), log_uniform(0.6, 4.0, rng)
     steps = np.cumsum(rng.dirichlet(np.full(n, evenness)))
     knots = np.linspace(0.0, 1.0, n + 1)
@@ -175,27 +184,31 @@ def drawn_curve(rng: Rng) -> Array:
 
 
 def exponential(x: Array) -> Array:
-    """Rise from 0 to 1 within a unit."""
+    """Return 1 - exp(-x), with the shape of `x`."""
     return np.asarray(-np.expm1(-np.minimum(x, 99.0)))
 
 
 def _softplus(x: Array, at: float, wide: float) -> Array:
+    """Return a ramp from `at` on, rounded over the width `wide` and 0 at 0."""
     risen = wide * np.logaddexp(0.0, (np.minimum(x, 8.0) - at) / wide)
     return np.asarray(risen - wide * np.log1p(np.exp(-at / wide)))
 
 
 def _flash(x: Array, soft: float) -> Array:
+    """Return a curve that rises from 1 on and saturates at 1, as flash temperature does."""
     over = soft * np.logaddexp(0.0, (np.minimum(x, 99.0) - 1.0) / soft)
     return np.asarray(over / (1.0 + over))
 
 
 def _cubic(x: Array, left: float) -> Array:
+    """Return a cubic that rises to 1 at 1 and then falls to `left`."""
     y = np.minimum(x, 2.0)
     falls = 1.5 * y - 0.5 * y**3
     return np.where(y < 1.0, falls, np.maximum(falls, left))
 
 
 def _patches(u: Array, n: int, edges: Array, soft: float) -> Array:
+    """Return the sum of `n` intervals with soft edges, limited to 1 and 0 at the ends."""
     covered = np.zeros_like(u)
     for start, stop in np.sort(edges, axis=1)[:n]:
         covered += 0.5 * (np.tanh((u - start) / soft) - np.tanh((u - stop) / soft))
@@ -204,17 +217,20 @@ def _patches(u: Array, n: int, edges: Array, soft: float) -> Array:
 
 
 def _zones(r: Array, n: int, soft: float, at: Array, steps: Array) -> Array:
+    """Return a sum of `n` soft steps."""
     pairs = zip(at[:n], steps, strict=True)
     return np.asarray(sum(s / (1.0 + np.exp((p - r) / soft)) for p, s in pairs))
 
 
 def _precursors(r: Array, n: int, wide: float, at: Array, size: Array) -> Array:
+    """Return a sum of `n` Gaussian bumps, limited to 1."""
     pairs = zip(at[:n], size, strict=True)
     bumps = sum(s * np.exp(-0.5 * ((r - p) / wide) ** 2) for p, s in pairs)
     return np.asarray(np.minimum(bumps, 1))
 
 
 def _logarithm(x: Array, k: float, most: float, at: float, height: float = 1.0) -> Array:
+    """Return a logarithm that is 0 at 0, `height` at `at`, and constant above `most`."""
     return np.asarray(np.log1p(k * np.minimum(x, most)) / math.log1p(k * at) * height)
 
 
@@ -231,7 +247,7 @@ _CURVES: dict[str, Callable[..., Any]] = {
     "precursors": _precursors,
     "patches": _patches,
 }
-"""Over 0 to 1."""
+"""Functions over 0 to 1, by their names in the tables."""
 
 _FAR_CURVES: dict[str, Callable[..., Any]] = {
     "exponential": exponential,
@@ -255,10 +271,11 @@ _FAR_CURVES: dict[str, Callable[..., Any]] = {
     "flash": _flash,
     "cubic": _cubic,
 }
-"""Over 0 to infinity."""
+"""Functions over 0 to infinity, by their names in the tables."""
 
 
 def _tabulated(name: str, numbers: dict[str, Any], rng: Rng) -> Array:
+    """Return the tabulated curve of a name with its parameters, shape (n,)."""
     if name == "drawn":
         return drawn_curve(rng)
     if name in _CURVES:
@@ -267,7 +284,7 @@ def _tabulated(name: str, numbers: dict[str, Any], rng: Rng) -> Array:
 
 
 def noise(rng: Rng, n: int, rate: float, low: float, high: float) -> Array:
-    """Draw periodic noise of a band, of unit variance."""
+    """Draw periodic noise of unit variance between `low` and `high` [Hz], shape (n,) [-]."""
     frequency = np.fft.rfftfreq(n, 1.0 / rate)
     inside = (frequency >= low) & (frequency <= high)
     inside[1] |= not inside[1:].any()
@@ -277,7 +294,7 @@ def noise(rng: Rng, n: int, rate: float, low: float, high: float) -> Array:
 
 
 def wander(rng: Rng, n: int, rate: float, corner: float) -> Array:
-    """Draw a slow random time series of about unit variance."""
+    """Draw low-pass noise of about unit variance below `corner` [Hz], shape (n,) [-]."""
     b, a = butter(2, min(2.0 * corner / rate, 0.9))
     settling = round(min(2.0 * rate / corner, 4.0 * n))
     time_series = lfilter(b, a, rng.standard_normal(n + settling))[settling:]
@@ -285,32 +302,32 @@ def wander(rng: Rng, n: int, rate: float, corner: float) -> Array:
 
 
 def slowly(rng: Rng, n: int, rate: float, corner: float) -> Array:
-    """Draw as `wander` does, at the price of few samples where the corner lies far below `rate`."""
+    """Draw low-pass noise as `wander` does, but faster for a low corner frequency, shape (n,)."""
     coarse = max(1, int(rate / (20.0 * corner)))
     slow = wander(rng, n // coarse + 2, rate / coarse, corner)
     return np.interp(np.arange(n), coarse * np.arange(slow.size), slow)
 
 
 def telegraph(rng: Rng, n: int, rate: float, often: float) -> Array:
-    """Draw a time series that switches between -1 and 1, so often a second [Hz]."""
+    """Draw a signal that switches between -1 and 1 at a mean rate `often` [Hz], shape (n,)."""
     return np.where(np.cumsum(rng.random(n) < often / rate) % 2 == int(rng.integers(2)), 1.0, -1.0)
 
 
 _OWN_FORMS = packaged_toml("noise.diagnosis.cases", "own_forms.toml")
 
 _ON_CHANNELS = ("channel_delay", "clipping", "gain_error", "mount_resonance")
-"""Effects that have a share of each channel as well."""
+"""Effects with one share parameter per channel."""
 
 
 def drawn_effect(name: str, strength: float, rng: np.random.Generator) -> LawSpec:
-    """Draw an effect of a strength.
+    """Draw the parameters of an effect of given strength.
 
     Parameters
     ----------
     name : str
-        Of `sim.effects.EFFECTS`.
+        Name of the effect in `sim.effects.EFFECTS`.
     strength : float
-        From 0 to 1 [-].
+        Strength from 0 to 1 [-].
     rng : numpy.random.Generator
 
     Returns
@@ -324,7 +341,7 @@ def drawn_effect(name: str, strength: float, rng: np.random.Generator) -> LawSpe
     0.4
     """
     values: dict[str, float | str] = {"form": str(rng.choice(EFFECTS[name].forms))}
-    # A mount is mostly that of the accelerometer; this is drawn before its resonance.
+    # A mount is mostly the accelerometer's. The order of the draws determines the result.
     alone = name == "mount_resonance" and rng.random() < 0.7
     values |= draw_numbers(_OWN_FORMS[name], rng, strength)
     if name in _ON_CHANNELS:
@@ -336,7 +353,7 @@ def drawn_effect(name: str, strength: float, rng: np.random.Generator) -> LawSpe
 def _own_shares(
     rng: np.random.Generator, names: tuple[str, ...] = SENSED, *, signed: bool = False
 ) -> dict[str, float]:
-    """Shares of a fault: mostly of one channel alone."""
+    """Draw the share of a fault in every channel; mostly a single channel has it."""
     if rng.random() < 0.65:
         chosen = [str(rng.choice(names))]
     else:
