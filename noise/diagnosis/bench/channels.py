@@ -120,7 +120,7 @@ _LEAD, _TAIL = 0.08, 0.01
 """Time omitted at the start, where the structure still rings from earlier, and at the end [s]; as
 in `noise.diagnosis.evidence.path_summary`."""
 
-_AUDIBLE = 1e-3
+_STRONG = 1e-3
 """Least power of a spectral line of the prediction, as a share of the strongest line [-];
 assumed."""
 
@@ -252,7 +252,7 @@ def path_fit(predicted: Array, measured: Array, rate: float) -> PathFit:
     tiny = 1e-300
     coherent = float((np.abs(pm) ** 2 / (pp + tiny)).sum())
     gain = math.sqrt(coherent / (float(pp.sum()) + tiny))
-    strong = pp > _AUDIBLE * float(pp.max())
+    strong = pp > _STRONG * float(pp.max())
     strength = math.sqrt(float(np.median(mm[strong] / (pp[strong] + tiny)))) if pp.any() else 0.0
     return PathFit(gain, coherent / (float(mm.sum()) + tiny), _alike(p, m, rate), strength)
 
