@@ -153,8 +153,8 @@ def test_a_strength_is_said_to_be_of_the_form_that_was_fitted():
         BLOW.effects[0], parameters={"form": "exponential", "amplitude": 104.7}, strength=(68, 161)
     )
     assert strength_sentence(fitted) == (
-        "Slip pulse as fitted: amplitude 68 to 161 N (form exponential), a 90 % interval for this "
-        "form alone. Another form of the effect may need another number."
+        "Slip pulse as fitted: amplitude 68 to 161 N (form exponential), a 90 % interval that "
+        "allows for other forms. The effect's other numbers can shift it further."
     )
 
 

@@ -199,6 +199,7 @@ def test_a_bad_file_is_named_on_the_page_and_the_exit_code_is_1(campaign, capsys
         ("map.csv", "design,speed_rad_s,interference_mm,label\nold,fast,1,creak\n", "a number"),
         ("map.csv", "design,speed_rad_s,interference_mm,label\nold,1,1,bang\n", "expected creak"),
         ("diagnosis.json", "[]", "is no diagnosis"),
+        ("diagnosis.json", '{"verdict": [], "probabilities": {}}', "is of an earlier version"),
         ("diagnosis.json", '{"verdict": 1, "probabilities": {}}', "is damaged"),
     ],
 )

@@ -54,8 +54,8 @@ _LEAST_USUAL = 0.5
 _NARROWEST = 1.4
 """Ratio of the two at least; a tail is no steeper than that; assumed."""
 
-_KEPT = 1000
-"""Quantiles of largest surprises that are kept."""
+_N_SHARES = 1000
+"""Quantiles of the largest surprises in the model file."""
 
 _HEALTH = (
     "top", "bottom", "crest", "asymmetry", "flat", "dwell", "offset", "floor", "hum", "low_floor",
@@ -170,7 +170,7 @@ def learn_stage_nulls(
     )
     usual, seldom = _tails(errors)
     typical = np.median(of_stages(errors / seldom), axis=0)
-    shares = np.linspace(0.0, 1.0, min(len(surprises), _KEPT))
+    shares = np.linspace(0.0, 1.0, min(len(surprises), _N_SHARES))
     return StageNulls(
         tuple(names), scale, usual, seldom, np.maximum(typical, 1e-3),
         np.quantile(surprises, shares, axis=0),

@@ -408,15 +408,15 @@ def strength_sentence(finding: EffectFinding) -> str:
     >>> from noise.diagnosis.outcome import EffectFinding
     >>> strength_sentence(EffectFinding("slip_pulse", "structure", 0.9, {"form": "exponential"},
     ...                                 (68.01, 161.1)))
-    'Slip pulse as fitted: amplitude 68 to 161 N (form exponential), a 90 % interval for this form
-      alone. Another form of the effect may need another number.'
+    "Slip pulse as fitted: amplitude 68 to 161 N (form exponential), a 90 % interval that allows
+      for other forms. The effect's other numbers can shift it further."
     """
     if finding.strength is None:
         return ""
     name = cause_of(finding.name).name
     return (
-        f"{name[0].upper()}{name[1:]} as fitted: {strength_words(finding)}, a 90 % interval for "
-        "this form alone. Another form of the effect may need another number."
+        f"{name[0].upper()}{name[1:]} as fitted: {strength_words(finding)}, a 90 % interval that "
+        "allows for other forms. The effect's other numbers can shift it further."
     )
 
 
