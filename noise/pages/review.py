@@ -197,7 +197,7 @@ def read_diagnosis(path: Path) -> b.Section:
         data = parse_json(path.read_text(encoding="utf-8"))
         if not isinstance(data, dict) or "verdict" not in data or "probabilities" not in data:
             raise RecordingError(f"{path}: has no verdict and probabilities, so is no diagnosis")
-        if "sentences" not in data:
+        if isinstance(data["verdict"], list) and "sentences" not in data:
             raise RecordingError(f"{path}: is of an earlier version of the program; diagnose again")
         head, following = str(data["headline"]), str(data["next_measurement"])
         sentences, notes = ([str(one) for one in data[key]] for key in ("sentences", "notes"))
