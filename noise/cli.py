@@ -121,6 +121,7 @@ def _is_machine_error(error: BaseException | None) -> bool:
 
 def _run(arguments: list[str]) -> int:
     """Parse the arguments and run the command; return the exit code."""
+    arguments = _common_options_last(arguments)
     parser = _parser(arguments)
     if not arguments:
         parser.print_help(sys.stderr)
@@ -206,6 +207,15 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
             command.description, command.epilog = texts.description, texts.epilog or None
             add_options(command, [*load_command(name).OPTIONS, *COMMON], texts.options)
     return parser
+
+
+def _common_options_last(arguments: list[str]) -> list[str]:
+    """Move options of all commands from before the command to behind it."""
+    first = next((i for i, one in enumerate(arguments) if one in COMMANDS), 0)
+    before = arguments[:first]
+    if set(before) <= set(option_names(COMMON)):
+        return [*arguments[first : first + 1], *before, *arguments[first + 1 :]]
+    return arguments
 
 
 def _with_negative_values(arguments: Sequence[str]) -> list[str]:

@@ -148,3 +148,10 @@ def test_an_interrupt_while_a_command_is_loaded_is_one_line(tmp_path, at):
         env={**os.environ, "AT": at, "PYTHONPATH": str(Path(__file__).parents[2])},
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (130, "bushing-noise: interrupted\n")
+
+
+def test_an_option_of_all_commands_may_stand_before_the_command(capsys):
+    assert main(["materials", "--quiet"]) == 0
+    behind = capsys.readouterr()
+    assert main(["--quiet", "materials"]) == 0
+    assert capsys.readouterr() == behind
