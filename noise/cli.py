@@ -122,6 +122,8 @@ def _is_machine_error(error: BaseException | None) -> bool:
 def _run(arguments: list[str]) -> int:
     """Parse the arguments and run the command; return the exit code."""
     arguments = _common_options_last(arguments)
+    if arguments[:1] == ["help"]:  # as many programs have it
+        arguments = [*arguments[1:2], "--help"]
     parser = _parser(arguments)
     if not arguments:
         parser.print_help(sys.stderr)

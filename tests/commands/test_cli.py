@@ -155,3 +155,11 @@ def test_an_option_of_all_commands_may_stand_before_the_command(capsys):
     behind = capsys.readouterr()
     assert main(["--quiet", "materials"]) == 0
     assert capsys.readouterr() == behind
+
+
+@pytest.mark.parametrize("command", [[], ["label"]])
+def test_help_is_a_command_as_well(command, capsys):
+    assert main([*command, "--help"]) == 0
+    option = capsys.readouterr()
+    assert main(["help", *command]) == 0
+    assert capsys.readouterr() == option
