@@ -33,12 +33,16 @@ def run(options: Namespace) -> int:
             write_identification(options.out, identification)
     if identification is None:
         return 1
+    from noise.identification.identify import result_lines
+
     note(*identification.notes)
     if options.out is None:
         print(identification.rig_toml, end="")
     else:
         for name in ("report.html", "rig.toml", "identification.json"):
             report(options.out / name)
+    for line in result_lines(identification):
+        say(line)  # on standard error: standard output may be the rig file
     return 1 if refused else 0
 
 

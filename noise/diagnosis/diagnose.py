@@ -2,7 +2,7 @@
 
 In order: does the rig file describe the recordings to within what repeats differ by; where not;
 which causes are how probable together; how far parameters alone, and the likeliest of these with
-them, close the gap on recordings that no fit has seen, and how probable that leaves them.
+them, close the gap on recordings that the fit did not use, and how probable that leaves them.
 
 Which bushing is compared with where the rig file states none: that shipped for its material.
 """

@@ -136,27 +136,34 @@ def own_effects(improvement: Improvement) -> tuple[str, ...]:
     return tuple(spec.name for spec in improvement.rig.effects if spec.name not in EFFECTS)
 
 
+_OF_THIS_FORM = (
+    " That of an effect is for this fit and form alone; the report's interval of its strength also "
+    "allows for other forms."
+)
+
+
 def _head(improvement: Improvement) -> list[str]:
     own = own_effects(improvement)
     paragraphs = [
         f"Improved by a diagnosis of {len(improvement.fitted_to) + len(improvement.held_out)} "
         "recordings.",
         f"Fitted to {', '.join(improvement.fitted_to)}.",
-        f"On {', '.join(improvement.held_out)}, which no fit has seen, the gap fell from "
+        f"On {', '.join(improvement.held_out)}, which this fit did not use, the gap fell from "
         f"{improvement.gap_before:.2g} to {improvement.gap_after:.2g}; 1 is what repeats of one "
         "run differ by. Of several forms the one was taken that left least there."
         if set(improvement.held_out) - set(improvement.fitted_to)
         else f"The gap fell from {improvement.gap_before:.2g} to {improvement.gap_after:.2g} "
         "on the recording that it was fitted to: nothing was held out.",
         "Under [tolerances] stands how well each number is known: a relative standard deviation, "
-        "1.645 of which to either side make the 90 % interval. It is no scatter of built parts.",
+        "1.645 of which to either side make the 90 % interval. It is no scatter of built parts."
+        + (_OF_THIS_FORM if improvement.effects else ""),
         "Do not trust it at speeds, interferences or supports beyond those recorded, after the "
         "bushing was assembled anew, or for the name of the cause: another effect may do the same "
         "here.",
     ]
     if improvement.undetermined:
         paragraphs.append(
-            "The recordings say next to nothing of " + ", ".join(improvement.undetermined) + "."
+            "These recordings hardly determine " + ", ".join(improvement.undetermined) + "."
         )
     if own:
         paragraphs.append(

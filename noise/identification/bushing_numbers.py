@@ -202,6 +202,8 @@ def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
     error = {group: float(spread[model.n_local + g]) for g, group in enumerate(model.groups)}
     numbers = []
     for one in rig.fits:
+        g = model.groups.index((LOCAL.index("kinetic_torque"), one.interference))
+        n = int(np.sum(model.group_of[:, LOCAL.index("kinetic_torque")] == g))
         kinetic, drop = (
             error[LOCAL.index(name), one.interference] for name in ("kinetic_torque", "drop")
         )
@@ -210,13 +212,14 @@ def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
             ("law_kinetic_torque", one.kinetic_torque, kinetic),
             ("law_critical_torque", one.critical_torque, critical),
         ):
-            numbers.append(_number(name, "Nm", value, min(of, _UNKNOWN), 0, one.interference))
+            numbers.append(_number(name, "Nm", value, min(of, _UNKNOWN), n, one.interference))
     candidate = model.candidate
     own = EFFECTS[candidate.effect].parameters if candidate.effect else None
     units = own or friction_law(candidate.law).parameters
     for i, name in enumerate(candidate.free, start=model.n_common):
         unit, error_of = units[name].unit, min(float(spread[i]), _UNKNOWN)
-        numbers.append(_number(f"friction.{name}", unit, math.exp(fit.vector[i]), error_of, 0))
+        value, n = math.exp(fit.vector[i]), len(model.subjects)
+        numbers.append(_number(f"friction.{name}", unit, value, error_of, n))
     return numbers
 
 

@@ -6,6 +6,7 @@ the shipped bench; `noise.diagnose` shows how far off they are.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -27,7 +28,7 @@ from noise.identification.bushing_numbers import (
 )
 from noise.identification.evidence import static_evidence, with_evidence
 from noise.identification.law_fit import MARGIN, choose_law
-from noise.identification.law_model import Candidate, fitted_evidence, subjects_of
+from noise.identification.law_model import CANDIDATES, Candidate, fitted_evidence, subjects_of
 from noise.identification.measured import (
     Beforehand,
     Measurements,
@@ -168,6 +169,56 @@ def identify(
     return identify_rig(read_measurements(paths, calibrations), beforehand)
 
 
+def result_lines(result: Identification) -> list[str]:
+    """Return the law and the numbers of a rig file with their 90 % intervals, by interference.
+
+    Parameters
+    ----------
+    result : Identification
+
+    Examples
+    --------
+    >>> from noise.identification.outcome import Number
+    >>> numbers = (
+    ...     Number("elastomer_stiffness", "Nm/rad", 764.9, 747.1, 783.1, 6, 0.279e-3),
+    ...     Number("critical_torque", "Nm", 11.73, 11.58, 11.89, 6, 0.279e-3),
+    ...     Number("law_critical_torque", "Nm", 11.77, 11.56, 11.99, 6, 0.279e-3),
+    ... )
+    >>> result_lines(Identification("", numbers, (), "coulomb", ()))
+    ['law = "coulomb"; at 0.279 mm: stiffness 764.9 (747.1 to 783.1) Nm/rad, critical torque 11.77
+      (11.56 to 11.99) Nm; 90 % intervals']
+    """
+    candidate = next((one for one in CANDIDATES if one.name == result.law), None)
+    law = f'law = "{result.law if candidate is None or not result.laws else candidate.law}"'
+    if result.laws and candidate is not None and candidate.effect:
+        law += f" with the effect {candidate.effect}"
+    places = sorted({one.interference for one in result.numbers if one.interference is not None})
+    lines = []
+    for place in places:
+        here = [one for one in result.numbers if one.interference == place]
+        parts = []
+        for name, words in _SUMMARY.items():
+            for one in here:
+                if one.name == name:
+                    support = one.support_stiffness
+                    of = "" if support is None else f" at a support of {support:g} Nm/rad"
+                    of = " with the clamp fixed" if support == math.inf else of
+                    parts.append(
+                        f"{words}{of} {one.value:.4g} ({one.low:.4g} to {one.high:.4g}) {one.unit}"
+                    )
+        lines.append(f"{law}; at {1e3 * place:g} mm: {', '.join(parts)}; 90 % intervals")
+    return lines or [law]
+
+
+_SUMMARY = {
+    "elastomer_stiffness": "stiffness",
+    "damping": "damping",
+    "law_critical_torque": "critical torque",
+    "law_kinetic_torque": "kinetic torque",
+}
+"""Numbers of the summary, in words."""
+
+
 def identification_json(data: Path, rig: Path) -> dict[str, Any]:
     """Return the content of ``identification.json`` for a folder."""
     return as_json(identify(data, rig))
@@ -208,8 +259,9 @@ def _notes(
     candidate: Candidate, scores: Sequence[LawScore], held_out: Sequence[str]
 ) -> tuple[str, ...]:
     notes = [
-        "intervals are of the rig, about which single recordings scatter by 2 to 3 %, and hold if "
-        "its law of friction is much like the one that was chosen",
+        "intervals are of the rig and hold if its law of friction is much like the one that was "
+        "chosen. That single recordings scatter about it by 2 to 3 % is assumed, so the intervals "
+        "are wide where recordings agree better than that",
         "critical_torque and kinetic_torque are levels of these recordings; the rig file has the "
         "torques of the law that fits best, law_critical_torque and law_kinetic_torque",
     ]

@@ -18,6 +18,7 @@ from noise.diagnosis.fit.closing import CLOSABLE
 from noise.diagnosis.gap.distance import KINDS, closed_fraction
 from noise.diagnosis.improved_file import NAME, improved_sentence
 from noise.diagnosis.outcome import (
+    SURE,
     Agreement,
     Diagnosis,
     EffectFinding,
@@ -151,7 +152,10 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
 
 _GAP = (
     "The gap is how far recordings and simulation differ: 1 is what repeats of one run differ by. "
-    "Shares are of what the gaps of all stages have beyond 1, squared."
+    "Shares are of what the gaps of all stages have beyond 1, squared. The gap of a stage is that "
+    "of the figure that differs most in it, relative to what is usual without a cause; p is that "
+    "of its most surprising figure, which may be another. The table of recordings in the details "
+    "compares whole channels, so its gaps are other ones."
 )
 
 
@@ -195,12 +199,13 @@ def stages_chain(diagnosis: Diagnosis) -> list[dict[str, object]]:
             p_value = finding.p_value
             if math.isfinite(finding.gap):
                 gap = f"gap {gap_number(finding.gap, '.2f')}, {percent(finding.share)} of all"
-        known = f"{p_number(p_value)}: {evidence(p_value)}" if math.isfinite(p_value) else ""
+        unsure = ", not certain" if SURE < p_value < 0.2 else ""
+        known = f"{p_number(p_value)}{unsure}: {evidence(p_value)}"
         causes = [cause_of(c).name for c in named if stage_of_effect(diagnosis, c) == name]
         guilty = begins(diagnosis) and place is not None and place.stage == name
         chain.append(
-            {"name": name, "what": what, "gap": gap, "p_value": known, "guilty": guilty,
-             "causes": causes}
+            {"name": name, "what": what, "gap": gap, "guilty": guilty, "causes": causes,
+             "p_value": known if math.isfinite(p_value) else ""}
         )  # fmt: skip
     return chain
 
@@ -300,20 +305,33 @@ def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> list[list[b.
         off = name in differing
         left, width = 50.0 * (1.0 + (low - 1.0) / reach), 50.0 * (high - low) / reach
         bars = [b.Bar(left, width, "opened" if off else ""), b.Bar(50.0, 0.0, "mark")]
-        words = "differs" if off else "agrees with the rig file"
+        agrees = "agrees with the rig file" if low <= 1.0 <= high else "no clear difference"
+        words = "differs" if off else agrees
         rows.append([parameter_name(name), f"{low:.3f} to {high:.3f}", b.Cell(words, bars=bars)])
     return rows
 
 
+_PARAMETERS = "Parameters as fitted, relative to the rig file, 90 % intervals"
+
+_OF_ALL = (
+    "Each interval is of its parameter alone, so one of several may miss 1 by chance. A parameter "
+    "differs if its interval misses 1 when widened so that all of them together hold at 90 %; if "
+    "only the interval shown misses 1, that is no clear difference."
+)
+
+
 def _details(diagnosis: Diagnosis) -> list[b.Block]:
     chances, n = ranked_causes(diagnosis)
+    located = [diagnosis.location] if diagnosis.location is not None else []
+    surest = [one for one in diagnosis.differences if one not in located]
     places = [
         [
             place.stage, ", ".join(place.channels),
             place.phase if place.phase != "all" else f"{place.band[0]:g} to {place.band[1]:g} Hz",
-            place.conditions.replace("speed_rad_s", "speed [rad/s]"), p_number(place.p_value),
+            place.conditions.replace("speed_rad_s", "speed [rad/s]"),
+            p_number(place.p_value) + ", not certain" * (place.p_value > SURE),
         ]
-        for place in diagnosis.differences[:_MOST_PLACES]
+        for place in [*surest[:_MOST_PLACES], *located]
     ]  # fmt: skip
     held_out = ", ".join(diagnosis.held_out) or "none, since nothing was fitted"
     facts = [
@@ -332,7 +350,7 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
             ("Stage", "Channel", "Band or phase", "Conditions", "p-value, corrected for all looks"),
             places,
         ),
-        "Parameters as fitted, relative to the rig file, 90 % intervals": (
+        _PARAMETERS: (
             ("Parameter", "Interval", "About 1.0"), parameter_rows(diagnosis.parameters),
         ),
         "Less probable causes": (
@@ -342,12 +360,19 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
     missing = {
         "Where it differs most surely": "Nowhere surely: no single channel, band or phase differs "
         "at p = 0.05 or below, all looks counted.",
-        "Parameters, relative to the rig file, 90 % intervals": NOT_DETERMINED.capitalize() + ".",
+        _PARAMETERS: NOT_DETERMINED.capitalize() + ".",
     }
+    notes = {_PARAMETERS: _OF_ALL} if diagnosis.parameters else {}
     return [
         b.Items(facts),
         *(
-            b.Group(title, [b.Table(columns, rows) if rows else b.Text(missing.get(title, ""))])
+            b.Group(
+                title,
+                [
+                    b.Table(columns, rows) if rows else b.Text(missing.get(title, "")),
+                    b.Text(notes.get(title, ""), "soft small"),
+                ],
+            )
             for title, (columns, rows) in tables.items()
         ),
     ]
@@ -403,7 +428,8 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
     rows, gap = [("nominal model", cell(0.0, before, "", f"{before:.2f}"))], before
     for label, after in steps.items():
         kind, way = ("cause", "less") if after <= gap else ("opened", "more")
-        change = f"{after:.2f} ({abs(after - gap):.2f} {way})"
+        shown = abs(round(after, 2) - round(gap, 2))  # of the figures beside it
+        change = f"{after:.2f} ({shown:.2f} {way})"
         rows.append((label, cell(min(gap, after), max(gap, after), kind, change)))
         gap = after
     if steps:
@@ -416,7 +442,7 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
     elif before - floor < CLOSABLE:
         words = words or "On these recordings the gap is hardly larger than that of repeats."
     held_out = diagnosis.held_out
-    of, unseen = "all recordings", "recordings that no fit has seen"
+    of, unseen = "all recordings", "recordings that this fit did not use"
     if held_out:
         listed = f"{unseen}: {', '.join(held_out)}"
         of = listed if len(held_out) <= 6 else f"{len(held_out)} {unseen}"

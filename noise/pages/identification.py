@@ -191,8 +191,8 @@ def _html(result: Identification) -> str:
     choice = (
         f"Held out: {', '.join(result.held_out) or 'none'}. Missed is the share of the oscillation "
         "that a law, begun where a recording shows a slip, does not predict over the next cycle. "
-        f"The simplest law is taken that misses at most {100.0 * (result.margin - 1.0):.0f} % more "
-        "than the best for each number that it has less."
+        "Of the laws the simplest is chosen that misses little more than the best: up to "
+        f"{100.0 * (result.margin - 1.0):.0f} % more for each parameter that it saves."
     )
     numbers = list(map(_row, result.numbers))
     lists = {
@@ -255,8 +255,9 @@ def _html(result: Identification) -> str:
 
 
 _RISE = (
-    "While the contact sticks, the torque swings about the dashed line: it rises by the stiffness "
-    "of elastomer and support in series, times the angle. The line begins at the lowest torque."
+    "While the contact sticks, the torque rises, on average, as steeply as the dashed line, whose "
+    "slope is the stiffness of elastomer and support in series. The line begins at the lowest "
+    "torque of the picture, so compare its slope, not its height."
 )
 
 
@@ -287,7 +288,7 @@ def _answer(result: Identification) -> list[str]:
         f"Law of friction: {result.law.replace('_', ' ')} ({_CANDIDATES[result.law].words}; "
         f"{_in_rig_file(result.law)} in the rig file). Within a cycle it leaves "
         f"{100.0 * chosen.missed:.1f} % of the oscillation unexplained, and "
-        f"{100.0 * chosen.held_out:.1f} % of that of recordings that its fit has not seen.",
+        f"{100.0 * chosen.held_out:.1f} % of that of recordings that its fit did not use.",
         *stiffness,
     ]
 
@@ -302,7 +303,7 @@ def _row(one: Number) -> list[b.Cell | str]:
     return [
         b.Cell(one.name.replace("_", " "), _MEANINGS.get(one.name, "")), ", ".join(at),
         f"{one.value:.4g} {one.unit}".rstrip(),
-        f"{one.low:.4g} to {one.high:.4g}", str(one.n_recordings or "all"),
+        f"{one.low:.4g} to {one.high:.4g}", str(one.n_recordings),
     ]  # fmt: skip
 
 

@@ -93,7 +93,7 @@ def test_a_place_where_repeats_differ_as_much_is_no_beginning():
     slight = replace(slight, stages=dict.fromkeys(slight.stages, SLIGHT))
     sentence = location_sentence(slight)
     assert sentence.startswith("The gap shows most in the friction")
-    assert sentence.endswith("; though there alone repeats often differ as much.")
+    assert sentence.endswith("; though repeats often differ as much there.")
 
 
 def test_a_gap_does_not_begin_where_the_named_effect_does_not_act():
@@ -120,8 +120,17 @@ def test_the_stage_that_surely_differs_comes_first_with_its_own_channel_and_figu
     assert location_sentence(BLOW) == (
         "The gap shows in the radiation (78 % of the gap, p = 0.020): in the pressure, 2.8 kHz to "
         "4 kHz. The fit explains that as well. Slip pulse acts in the structure (3 % of the gap, "
-        "p = 0.060): in the acceleration, 2.8 kHz to 10 kHz; there alone repeats differ as much "
-        "now and then."
+        "p = 0.060): in the acceleration, 2.8 kHz to 10 kHz; about 1 in 17 sets of repeats "
+        "differs as much there."
+    )
+
+
+def test_the_second_largest_stage_is_named_beside_a_smaller_one():
+    stages = BLOW.stages | {"measurement": StageFinding(7.04, 0.19, 0.055)}
+    sentence = location_sentence(replace(BLOW, stages=stages))
+    assert "Slip pulse acts in the structure (3 % of the gap, p = 0.060)" in sentence
+    assert sentence.endswith(
+        "What shows in the measurement (19 % of the gap, p = 0.055) is uncertain."
     )
 
 

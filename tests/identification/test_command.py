@@ -63,6 +63,15 @@ def test_a_bad_recording_is_refused_by_name(answered):
     assert "bad.wav: states no interference_mm" in err
 
 
+def test_it_prints_the_law_and_the_numbers_of_the_rig_file(answered):
+    fit, last = load_rig(answered[1] / "rig.toml").fits[0], answered[2].splitlines()[-1]
+    assert last.startswith('law = "')
+    for words, value in (("stiffness", fit.elastomer_stiffness),
+                         ("critical torque", fit.critical_torque),
+                         ("kinetic torque", fit.kinetic_torque)):  # fmt: skip
+        assert f"{words} {value:.4g} (" in last
+
+
 def test_it_writes_a_rig_file_that_loads(answered):
     rig = load_rig(answered[1] / "rig.toml")
     assert len(rig.fits) == 1
@@ -87,6 +96,7 @@ def test_numbers_have_intervals_that_hold_them(answered):
     found = json.loads((answered[1] / "identification.json").read_text())
     assert found["numbers"]
     assert all(n["low"] <= n["value"] <= n["high"] for n in found["numbers"])
+    assert all(n["recordings"] > 0 for n in found["numbers"])
 
 
 def test_numbers_are_near_the_truth(answered):

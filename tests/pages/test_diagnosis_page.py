@@ -120,6 +120,33 @@ def test_a_parameter_is_off_only_where_its_interval_excludes_one():
         assert 0.0 <= cell.bars[0].left <= 100.0 - cell.bars[0].width
 
 
+def test_an_interval_that_just_misses_one_is_not_said_to_agree():
+    agreeing = {f"agreeing_{i}": (0.94, 1.06) for i in range(4)}
+    *same, last = parameter_rows(agreeing | {"elastomer_inertia": (0.871, 0.998)})
+    assert {cell.text for _, _, cell in same} == {"agrees with the rig file"}
+    assert last[2].text == "no clear difference"
+
+
+def test_the_changes_of_a_gap_are_those_of_the_figures_shown():
+    found = replace(
+        one_effect().effects[0], gap_before=4.906, gap_recalibrated=4.814, gap_after=1.118
+    )
+    table, *_ = waterfall(replace(one_effect(), effects=(found,)))
+    assert [cell.text for _, cell in table.rows][:3] == [
+        "4.91", "4.81 (0.10 less)", "1.12 (3.69 less)",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("p_value", [0.0004, 0.06])
+def test_the_place_of_the_sentences_has_a_row_in_the_details(p_value, tmp_path):
+    place = replace(one_effect().location, stage="structure", p_value=p_value)
+    write_diagnosis(tmp_path, replace(one_effect(), location=place))
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    details = page.partition("Where it differs most surely")[2].partition("</table>")[0]
+    assert "structure" in details
+    assert ("not certain" in details) == (p_value > 0.05)
+
+
 def test_a_sixth_octave_holds_the_power_of_a_tone_in_it():
     middle, level = sixth_octaves(tone(2.0, 1.0, 1059.0)["pressure"], RATE, 1.0)
     assert level.max() == pytest.approx(20.0 * math.log10(2.0**0.5), abs=0.05)

@@ -11,7 +11,12 @@ import re
 from collections.abc import Iterable, Sequence
 
 from noise.diagnosis.outcome import SHOWN_IN, SURE, Agreement, Diagnosis, EffectFinding, Location
-from noise.diagnosis.text.verdict_sentences import AGREES, far_ones, verdict_sentence
+from noise.diagnosis.text.verdict_sentences import (
+    AGREES,
+    NOT_AT_ALL,
+    far_ones,
+    verdict_sentence,
+)
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
     PHASES,
@@ -186,7 +191,8 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     Returns
     -------
     str
-        First the stage that differs significantly, then the one that a named effect acts in.
+        First the stage that differs significantly, then the one that a named effect acts in, then
+        others with more of the gap than one of these.
     """
     place, acting = diagnosis.location, stages_acting(diagnosis)
     if place is None:
@@ -195,19 +201,40 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     where = _place_words(diagnosis, place)
     other = _other_stage(diagnosis, place)
     beside = _other_words(diagnosis, place, other) if other else []
+    further = _further_words(diagnosis, [place.stage, *filter(None, [other])])
     if place.p_value <= SURE:
         start = "The gap begins in the"
         if not begins(diagnosis):
             start = f"As what acts in the {joined(acting)} can, the gap shows in the"
         first = f"{start} {place.stage} ({row}): {where}; {likeness}."
-        return " ".join([first, *beside])
+        return " ".join([first, *beside, *further])
     if other and place.stage in acting:
         names = joined([cause_of(name).name for name in diagnosis.verdict])
         acts = f"{names} acts" if len(diagnosis.verdict) == 1 else f"of {names} one acts"
-        last = f"{acts} in the {place.stage} ({row}): {where}; there alone {likeness}."
-        return " ".join([*beside, f"{last[0].upper()}{last[1:]}"])
-    most = f"The gap shows most in the {place.stage} ({row})"
-    return f"{most}: {where}; though there alone {likeness}."
+        last = f"{acts} in the {place.stage} ({row}): {where}; {likeness} there."
+        return " ".join([*beside, f"{last[0].upper()}{last[1:]}", *further])
+    most = "If anywhere, the gap shows" if further else "The gap shows most"
+    most = "It may show" if beside else most
+    last = f"{most} in the {place.stage} ({row}): {where}; though {likeness} there."
+    return " ".join([*beside, last, *further])
+
+
+def _further_words(diagnosis: Diagnosis, named: Sequence[str]) -> list[str]:
+    """Return sentences on stages with more of the gap than one that other sentences name."""
+    least = min(diagnosis.stages[n].share if n in diagnosis.stages else math.inf for n in named)
+    larger = {
+        name: stage
+        for name, stage in diagnosis.stages.items()
+        if name not in named and stage.share > least and stage.p_value < NOT_AT_ALL
+    }
+    order = sorted(larger, key=lambda name: -larger[name].share)
+    sentences = []
+    for is_sure, words in ((True, "It shows {} as well."), (False, "What shows {} is uncertain.")):
+        among = [name for name in order if (larger[name].p_value <= SURE) == is_sure]
+        if among:
+            rows = [f"in the {name} ({_row_words(diagnosis, name)})" for name in among]
+            sentences.append(words.format(joined(rows)))
+    return sentences
 
 
 def _other_stage(diagnosis: Diagnosis, place: Location) -> str:

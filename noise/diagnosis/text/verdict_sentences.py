@@ -46,7 +46,7 @@ _LIKELY = 0.5
 _MOSTLY = 0.5
 """Closed share of the gap above which no second cause is suspected [-]; assumed."""
 
-_NOT_AT_ALL = 0.5
+NOT_AT_ALL = 0.5
 """p-value above which a stage does not differ at all [-]; assumed."""
 
 
@@ -113,7 +113,7 @@ def _contradicted(diagnosis: Diagnosis) -> tuple[str, ...]:
         stage = stage_of_effect(diagnosis, name)
         shown = [diagnosis.stages.get(among) for among in SHOWN_IN.get(stage, ())]
         p_values = [one.p_value for one in shown if one is not None and one.gap > 0.0]
-        if p_values and min(p_values) >= _NOT_AT_ALL:
+        if p_values and min(p_values) >= NOT_AT_ALL:
             stages.append(stage)
     return tuple(dict.fromkeys(stages))
 

@@ -112,7 +112,7 @@ _EVIDENCE = (
     (0.001, "repeats would hardly ever differ as much"),
     (0.01, "repeats would very seldom differ as much"),
     (0.05, "repeats would seldom differ as much"),
-    (0.2, "repeats differ as much now and then"),
+    (0.2, "about 1 in {n} sets of repeats differs as much"),
     (math.inf, "repeats often differ as much"),
 )
 
@@ -153,12 +153,13 @@ def evidence(p_value: float) -> str:
     Examples
     --------
     >>> evidence(0.0004), evidence(0.07), evidence(0.4)
-    ('repeats would hardly ever differ as much', 'repeats differ as much now and then', 'repeats
-      often differ as much')
+    ('repeats would hardly ever differ as much', 'about 1 in 14 sets of repeats differs as much',
+      'repeats often differ as much')
     """
     if not math.isfinite(p_value):
         return NOT_DETERMINED
-    return next(words for below, words in _EVIDENCE if p_value < below)
+    words = next(words for below, words in _EVIDENCE if p_value < below)
+    return words.format(n=round(1.0 / max(p_value, 1e-9)))
 
 
 def p_number(p_value: float) -> str:
