@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
+from matplotlib.patches import Patch, Rectangle
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
@@ -42,6 +42,7 @@ _FITS = "Interference [mm]"
 _STAR = "*"
 
 _FITTED: dict[str, Any] = {"color": "#222222", "linewidth": 1.2, "linestyle": ":"}
+_HATCHED: dict[str, Any] = {"fill": False, "linewidth": 0.0, "hatch": "///"}
 _DARK: dict[str, Any] = {"color": "#222222", "linewidth": 1.6}
 _WHITE: dict[str, Any] = {
     "color": "white",
@@ -212,10 +213,11 @@ def _draw_labels(axes: Axes, mapped: DesignMap, temperature: int, support: int) 
     codes = np.select([label == name for name in _SIMULATED], range(len(_SIMULATED)))
     colours = ListedColormap([LABEL_LOOKS[name].colour for name in _SIMULATED])
     axes.pcolormesh(_edges(speed), _edges(rows), codes, cmap=colours, vmin=-0.5, vmax=4.5)
-    persists = np.pad(np.where(label == PERSISTS, 1.0, -1.0), 1, mode="edge")
-    if persists.max() > 0.0:  # up to the edges of the map, not to the middle of its last cells
-        x, y = (np.r_[_edges(at)[0], at, _edges(at)[-1]] for at in (speed, rows))
-        axes.contourf(x, y, persists, levels=[0.0, 2.0], colors="none", hatches=["///"])
+    # By rectangles of the cells: a contour would cut off the corners of a field.
+    x, y = _edges(speed), _edges(rows)
+    for row, column in np.argwhere(label == PERSISTS).tolist():
+        size = float(x[column + 1] - x[column]), float(y[row + 1] - y[row])
+        axes.add_patch(Rectangle((x[column], y[row]), *size, **_HATCHED))
     axes.grid(visible=False)
     _say_quiet(axes, mapped, temperature, support)
     beyond = _beyond(mapped)

@@ -1,10 +1,13 @@
 """Pictures of screened designs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
 from models.rig_file import load_material_rig
+from noise.base.labels import PERSISTS
 from noise.pictures.maps import LINES, boundary_lines, plot_screen
 from noise.screening.design import Use
 from sim.analysis.regime import Regime, friction_regime
@@ -38,6 +41,20 @@ def test_lines_look_in_the_key_as_they_do_in_the_map(found):
     for name, line in key.items():
         assert to_hex(line.get_color()) == to_hex(drawn[name].get_color())
         assert line.is_dashed() == drawn[name].is_dashed() == (name in RISING)
+
+
+def test_the_whole_of_each_cell_that_persists_is_hatched(found):
+    """Also of a lone cell, and amid others."""
+    one = found.maps[0]
+    label = np.full_like(one.label, "squawk", dtype=object)
+    label[0, 0, 0, [0, 3, 4]] = PERSISTS
+    panel = plot_screen(replace(one, label=label)).axes[0]
+    hatched = [box for box in panel.patches if box.get_hatch()]
+    centres = [box.get_x() + 0.5 * box.get_width() for box in hatched]
+    step = one.grid.speed[1] - one.grid.speed[0]
+    assert centres == pytest.approx([one.grid.speed[i] for i in (0, 3, 4)])
+    assert [box.get_width() for box in hatched] == pytest.approx([step] * 3)
+    assert [(box.get_y(), box.get_height()) for box in hatched] == [(-0.5, 1.0)] * 3
 
 
 def sticks(rig, speed, interference):
