@@ -21,6 +21,7 @@ from noise.screening.words import (
     MARGIN_RULE,
     conditions_lines,
     detail_lines,
+    margin_is_bound,
     percent,
     ranking_words,
     standing_place,
@@ -28,6 +29,7 @@ from noise.screening.words import (
 )
 
 if TYPE_CHECKING:
+    from noise.screening.grid import Grid
     from noise.screening.screen import Screening
 
 
@@ -62,24 +64,27 @@ def _row(one: Standing, screening: Screening) -> list[b.Cell | str]:
         b.Bar(100.0 * begin, 100.0 * share, f"filled {name} {LABEL_LOOKS[name].pattern}")
         for begin, (name, share) in zip(ends, shares.items(), strict=False)
     ]
-    details = () if one.never_slips else detail_lines(one, screening.map_of(one))
+    details = () if one.never_slips else detail_lines(one, screening)
     return [
         "\N{EN DASH}" if one.rank is None else str(one.rank),
         b.Cell(one.design, standing_place(one)),
         b.Cell(bars=bars, labels=tuple((name, percent(share)) for name, share in shares.items())),
         "" if one.rank is None else f"{one.mean_loudness:.3g} sone",
         loudest,
-        _margin(one),
+        _margin(one, screening.map_of(one).grid),
         b.Cell(use_head(one), items=tuple(details)),
     ]
 
 
-def _margin(one: Standing) -> str:
+def _margin(one: Standing, grid: Grid) -> str:
     if math.isnan(one.margin_v_crit2) or one.never_slips:
         return ""
     if math.isinf(one.margin_v_crit2):
         return "nothing vibrates"
-    return f"{one.margin_v_crit2:+.3g} rad/s".replace("-", "\N{MINUS SIGN}")
+    text = f"{one.margin_v_crit2:+.3g} rad/s".replace("-", "\N{MINUS SIGN}")
+    if margin_is_bound(one.margin_v_crit2, grid):
+        return f"at least {text}: vibration does not end within the map"
+    return text
 
 
 def write_screening(

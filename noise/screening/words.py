@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from noise.base.labels import PERSISTS
+from noise.base.progress import counted
 from noise.screening.advice import Offer
 from noise.screening.axis_values import axis_words
 from noise.screening.grid import Grid
@@ -26,7 +27,7 @@ from noise.screening.vibration import Condition
 
 if TYPE_CHECKING:
     from noise.screening.screen import Screening
-    from noise.screening.standing import Standing
+    from noise.screening.standing import CriticalPoint, Standing
 
 K = TypeVar("K", bound=Hashable)
 
@@ -50,6 +51,9 @@ _NOISES = {
 
 _MOST_RANGES = 2
 """Largest number of ranges of a noise in a sentence."""
+
+_MOST_CRITICAL = 4
+"""Largest number of lines on critical speeds, of the smallest margins."""
 
 _HOW = {
     SIMULATED: "simulated from rest and from running vibration",
@@ -111,20 +115,33 @@ def _ranges_words(happens: NDArray[np.bool_], grid: Grid) -> str:
         for t, k, i in np.ndindex(happens.shape[:3])
         for run in _runs(happens[t, k, i])
     )
-    of_fits = _grouped(rows)
-    of_supports = _grouped(((run, t, fits), k) for (run, t, k), fits in of_fits.items())
-    ranges = _grouped(((run, k, fits), t) for (run, t, fits), k in of_supports.items())
-    largest = sorted(
-        ((*key, temperatures) for key, temperatures in ranges.items()),
-        key=lambda one: -(one[0][1] - one[0][0]) * math.prod(map(len, one[1:])),
-    )
+    sizes = {
+        one: (one[0][1] - one[0][0]) * math.prod(map(len, one[1:])) for one in _places_of(rows)
+    }
+    largest = sorted(sizes, key=lambda one: -sizes[one])
     texts = [
         " ".join([_between(speed[slice(*run)]), *_where(fits, supports, temperatures, grid)])
         for run, supports, fits, temperatures in largest[:_MOST_RANGES]
     ]
-    more = len(largest) - len(texts)
-    texts += [f"in {more} smaller range{'s' if more > 1 else ''}"] if more else []
+    more = [sizes[one] for one in largest[_MOST_RANGES:]]
+    if more:
+        ranges = counted(len(more), "further point" if max(more) == 1 else "further range")
+        texts.append(f"{'at' if max(more) == 1 else 'in'} {ranges}")
     return " and ".join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)
+
+
+def _places_of(
+    rows: Iterable[tuple[tuple[K, int, int], int]],
+) -> list[tuple[K, tuple[int, ...], tuple[int, ...], tuple[int, ...]]]:
+    """Group what is alike at several fits, supports and temperatures.
+
+    Rows are a key, a temperature and a support, and a fit; groups are a key with its supports, fits
+    and temperatures.
+    """
+    of_fits = _grouped(rows)
+    of_supports = _grouped(((key, t, fits), k) for (key, t, k), fits in of_fits.items())
+    groups = _grouped(((key, k, fits), t) for (key, t, fits), k in of_supports.items())
+    return [(*group, temperatures) for group, temperatures in groups.items()]
 
 
 def _runs(happens: NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -200,41 +217,104 @@ def condition_words(at: Condition) -> str:
     return f"{at.speed:.5g} rad/s, {1e3 * at.interference:.3g} mm, {support}"
 
 
-def margin_words(one: Standing, use: tuple[float, float]) -> str:
+def margin_words(one: Standing, grid: Grid) -> str:
     """Return a sentence on the last vibration and the margin of the use; empty for a swing.
 
     Parameters
     ----------
     one : Standing
-    use : (float, float)
-        Slowest and fastest speed of use [rad/s].
+    grid : Grid
+        Of its map.
 
     Examples
     --------
     >>> from noise.screening.design import Use
     >>> from noise.screening.screen import screen
     >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,)))
-    >>> margin_words(found.standings[0], (1.0, 5.0))
+    >>> margin_words(found.standings[0], found.maps[0].grid)
     'nothing vibrates at any speed of the map'
     """
-    margin, last = one.margin_v_crit2, one.v_crit2
+    margin, last, use = one.margin_v_crit2, one.v_crit2, grid.use
     if math.isnan(margin):
         return ""
     if margin == math.inf:
         return "nothing vibrates at any speed of the map"
     text = f"the last vibration ends between {last:.3g} and {one.v_crit2_high:.3g} rad/s (V_crit2)"
     if math.isinf(last):
-        text = "vibration reaches the fastest speed of the map (V_crit2)"
+        text = f"vibration does not end within the map, up to {grid.speed[-1]:.3g} rad/s (V_crit2)"
+    if margin_is_bound(margin, grid):
+        text += f"; the margin is at least {margin:.3g} rad/s"
     if margin > 0.0:
         return f"{text}; every speed of use is at least {margin:.3g} rad/s from what vibrates"
     if margin == 0.0:
         return f"{text}, where the use begins"
-    if -margin >= use[1] - use[0]:
+    if -margin > use[1] - use[0]:  # where they are equal, an end of the use is quiet
         return f"{text}; at the worst fit and support all speeds of use vibrate"
     return (
         f"{text}; at the worst fit and support the speeds of use would have to move by "
         f"{-margin:.3g} rad/s to be quiet"
     )
+
+
+def margin_is_bound(margin: float, grid: Grid) -> bool:
+    """Return whether a margin is a lower bound, as the vibration does not end within the map.
+
+    A use that would leave a vibration by a shorter way, to slower speeds, has its exact margin.
+
+    Parameters
+    ----------
+    margin : float
+        To what vibrates [rad/s].
+    grid : Grid
+    """
+    return margin < grid.use[0] - grid.speed[-1]
+
+
+def critical_words(points: Sequence[CriticalPoint], grid: Grid) -> list[str]:
+    """Return phrases on where stick and vibration end, those of the smallest margins first.
+
+    Parameters
+    ----------
+    points : sequence of CriticalPoint
+        Of one map, in its order; none for a swing.
+    grid : Grid
+        Of the map.
+
+    Returns
+    -------
+    list of str
+        None where nothing vibrates at any fit, support and temperature.
+    """
+    if not any(point.v_crit2 for point in points):
+        return []
+    shape = len(grid.temperature), len(grid.support_stiffness), len(grid.interference)
+    rows = [
+        (((one.margin_v_crit2, _ends_words(one, grid)), t, k), i)
+        for (t, k, i), one in zip(np.ndindex(shape), points, strict=True)
+    ]
+    groups = sorted(_places_of(rows), key=lambda group: group[0][0])
+    texts = [
+        " ".join([text, *_where(fits, supports, temperatures, grid)])
+        for (_, text), supports, fits, temperatures in groups[:_MOST_CRITICAL]
+    ]
+    more = len(groups) > _MOST_CRITICAL
+    return texts + ["critical_speeds.csv has those of the larger margins"] * more
+
+
+def _ends_words(one: CriticalPoint, grid: Grid) -> str:
+    """Return where stick and vibration end at one fit, support and temperature, as text."""
+    if not one.v_crit2:
+        return "nothing vibrates"
+    fastest = f"within the map (up to {grid.speed[-1]:.3g} rad/s)"
+    if math.isinf(one.v_crit1):
+        return f"neither stick (V_crit1) nor vibration (V_crit2) ends {fastest}"
+    stick = f"stick ends at {one.v_crit1:.3g} to {one.v_crit1_high:.3g} rad/s (V_crit1)"
+    ends = f"vibration at {one.v_crit2:.3g} to {one.v_crit2_high:.3g} rad/s (V_crit2)"
+    if not one.v_crit1:
+        stick, ends = "nothing sticks", ends.replace("vibration", "vibration ends")
+    if math.isinf(one.v_crit2):
+        ends = f"vibration (V_crit2) does not end {fastest}"
+    return f"{stick} and {ends}"
 
 
 def advice_words(
@@ -255,7 +335,8 @@ def advice_words(
     offers : sequence of Offer
         Of `noise.screening.advice.advise`.
     sounds : mapping of Condition to str
-        Noise at the other points that were simulated, such as ``creak, 85 dB(A)``.
+        Noise of the unchanged design at the other points that were simulated, such as ``creak,
+        85 dB(A)``.
     most : int
         Changes that are named.
 
@@ -281,9 +362,15 @@ def advice_words(
     text += f"; advice.csv has {len(ending) - len(shown)} more" * (len(ending) > len(shown))
     if best.left is None:
         return text
+    tried = "The other noisy point that was tried stays noisy with the first"
+    if best.elsewhere > 1:
+        tried = (
+            f"Of the {best.elsewhere} other noisy points tried, the loudest that stays noisy with "
+            "the first"
+        )
     return (
         f"no single change that was tried quiets the whole use. {text[0].upper()}{text[1:]}. "
-        f"The loudest that the first leaves: {sounds[best.left]}, at {condition_words(best.left)}"
+        f"{tried}: {condition_words(best.left)} (before the change {sounds[best.left]})"
     )
 
 
@@ -369,15 +456,21 @@ def _parts_words(parts: Robustness) -> list[str]:
     return texts
 
 
-def detail_lines(one: Standing, mapped: DesignMap) -> list[str]:
-    """Return lines on where a design is noisy, its level, changes, margin and certainty.
+def detail_lines(one: Standing, screening: Screening) -> list[str]:
+    """Return lines on where a design is noisy, level, changes, critical speeds and certainty.
 
     Parameters
     ----------
     one : Standing
-    mapped : DesignMap
-        Its map.
+    screening : Screening
+        That it is of.
     """
+    mapped = screening.map_of(one)
+    points = [
+        point
+        for point in screening.critical
+        if (point.design, point.environment, "steady") == (one.design, one.environment, one.motion)
+    ]
     where = "" if one.never_slips else one.words.partition(": ")[2]
     lines = [f"where: {text}" for text in where.split("; ") if text]
     if one.loudest is not None:
@@ -387,7 +480,8 @@ def detail_lines(one: Standing, mapped: DesignMap) -> list[str]:
         )
         lines += [f"what to change: {text}" for text in [one.advice] if text]
         lines += [f"limits: {text}" for text in limit_words(one.offers, one.loudest_label)]
-    lines += [f"margin: {text}" for text in [margin_words(one, mapped.grid.use)] if text]
+    lines += [f"critical speeds: {text}" for text in critical_words(points, mapped.grid)]
+    lines += [f"margin: {text}" for text in [margin_words(one, mapped.grid)] if text]
     lines.append(f"how sure: {'; '.join(sure_words(one, mapped))}")
     lines += [f"failed: {why}" for why in one.failed]
     return [*lines, *(f"note: {note}" for note in one.notes if note != one.never_slips)]
@@ -411,7 +505,7 @@ def summary_lines(screening: Screening) -> list[str]:
             why = one.never_slips or "with the shaft turning it never slips"
             lines.append(f"-. {head}: no rank; {why}")
         else:
-            details = detail_lines(one, screening.map_of(one))
+            details = detail_lines(one, screening)
             lines.append(f"{one.rank}. {head}: {use_head(one)}")
             lines += [f"   {line}" for line in details]
     if len(screening.designs) > 1:

@@ -27,7 +27,9 @@ from noise.pages.diagnosis import write_diagnosis
 from noise.pages.identification import write_identification
 from noise.pages.screen_sounds import ScreenMap, ScreenPoint
 from noise.screening.grid import Grid
-from noise.screening.words import use_words
+from noise.screening.standing import critical_points, standing_of
+from noise.screening.words import critical_words, margin_words, use_words
+from sim.analysis.regime import Regime
 from tests.helpers.made_diagnoses import KINDS, PARAMETERS, PLACE, STAGES
 
 OUTCOMES = 40
@@ -35,6 +37,8 @@ OUTCOMES = 40
 
 CHANNELS = ("angle", "torque", "acceleration", "pressure", "torque")
 """Of the stages, in their order."""
+
+SLIDING = Regime.STEADY_SLIDING
 
 TAGS = re.compile(r"<[^>]*>")
 
@@ -267,7 +271,8 @@ def test_what_is_said_of_a_design_is_what_its_map_shows():
             if found[1]:
                 assert float(found[1]) == pytest.approx(100.0 * there.mean(), abs=0.51), words
             # Each range that is named is of that label throughout, at the fits that it names.
-            told, smaller = np.zeros(there.shape, dtype=int), re.search(r"in (\d+) sm", found[2])
+            told = np.zeros(there.shape, dtype=int)
+            further = re.search(r"(?:in|at) (\d+) further (r?)", found[2])
             for first, last, fit in re.findall(
                 r"(?:from ([\d.]+) to|at) ([\d.]+) rad/s(?: at ([\d.]+) mm)?", found[2]
             ):
@@ -277,8 +282,60 @@ def test_what_is_said_of_a_design_is_what_its_map_shows():
                 told += np.outer(rows, inside)
             assert told.max() == 1, words
             assert there[told > 0].all(), words
-            edges = np.diff(there & (told == 0), axis=1, prepend=False).sum()
-            assert bool(smaller) == bool(edges), words
+            left = there & (told == 0)
+            assert bool(further) == bool(left.any()), words
+            if further:  # single points are called that
+                assert bool(further[2]) == (left.sum() > int(further[1])), words
+
+
+def test_critical_speeds_and_margins_of_a_design_are_those_of_its_map():
+    regimes = [one.value for one in (Regime.STICK_SLIP, Regime.QUASI_HARMONIC, SLIDING)]
+    for seed in range(5 * OUTCOMES):
+        rng = np.random.default_rng(seed)
+        n = int(rng.integers(2, 7))
+        speed = tuple(np.cumsum(rng.integers(1, 4, n)).astype(float).tolist())
+        fits, supports = (2.79e-4, 3.81e-4), (2214.0, 3745.0)
+        use = speed[int(rng.integers(0, 2))], speed[-1]
+        grid = Grid(speed, (), fits, supports, (23.0,), use)
+        # Nothing at the slowest at times; then stick, vibration and neither, as the speed rises.
+        first = int(rng.integers(0, 2))
+        edges = np.sort(rng.integers(0, n + 1, (1, 2, 2, 2)), axis=-1)
+        edges[edges <= first] = 0
+        kinds = (np.arange(n)[:, None] >= edges[..., None, :]).sum(axis=-1)
+        kinds[..., :first] = 2
+        regime = np.array(regimes)[kinds]
+        one = SimpleNamespace(
+            design="a", environment="dry", motion="steady", grid=grid, regime=regime,
+            growth=np.ones(grid.shape), label=np.where(regime == SLIDING.value, "none", "creak"),
+            sound=np.full(grid.shape, "none"), level=np.zeros(grid.shape),
+            level_max=np.zeros(grid.shape),
+        )  # fmt: skip
+        lines = critical_words(critical_points(one), grid)
+        stick, last = edges[0, ..., 0], edges[0, ..., 1]
+        assert bool(lines) == bool(last.any())
+        times = np.zeros((2, 2), dtype=int)
+        for line in lines:
+            rows = [f"{1e3 * fit:g} mm" in line or " mm" not in line for fit in fits]
+            columns = [f"{k:g}" in line or "Nm/rad" not in line for k in supports]
+            there = np.outer(columns, rows)
+            times += there
+            for ends, symbol, word in ((stick, "V_crit1", "sticks"), (last, "V_crit2", "vibrates")):
+                (end,) = set(ends[there].tolist())
+                span = f"at {speed[end - 1]:g} to {speed[min(end, n - 1)]:g} rad/s ({symbol})"
+                assert (span in line) == (0 < end < n), line
+                assert ("nothing vibrates" in line or f"nothing {word}" in line) == (end == 0), line
+        assert (times == 1).all() or not lines
+        words = margin_words(standing_of(one, critical_points(one)), grid)
+        assert ("does not end within the map" in words) == (last.max() == n)
+        # What the margin would be if vibration ended right there, and if it never did.
+        low = speed[0] if first else 0.0
+        margins = {
+            min((max(use[0] - [*speed, end][i], low - use[1]) for i in last[last > 0]), default=0.0)
+            for end in (speed[-1], np.inf)
+        }
+        assert ("the margin is at least -" in words) == (len(margins) > 1)
+        vibrates = regime[..., grid.used] != SLIDING.value
+        assert ("all speeds of use vibrate" in words) == vibrates.all(axis=-1).any()
 
 
 def test_the_line_of_a_file_is_its_longest_row():

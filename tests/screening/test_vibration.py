@@ -71,7 +71,10 @@ def test_what_no_single_change_quiets_is_said_with_what_is_left_worst():
     some = Offer("damping", 0.1, 50, True, quiet_elsewhere=2, elsewhere=3, left=worst)
     words = advice_words("squawk", AT, [some], {worst: "creak, 88 dB(A)"})
     assert words.startswith("no single change that was tried quiets the whole use. ")
-    assert words.endswith("leaves: creak, 88 dB(A), at 8 rad/s, 0.381 mm, 2214 Nm/rad")
+    assert words.endswith(
+        "Of the 3 other noisy points tried, the loudest that stays noisy with the first: 8 rad/s, "
+        "0.381 mm, 2214 Nm/rad (before the change creak, 88 dB(A))"
+    )
     assert "damping +50 % to 0.15 Nm s/rad (2 of 3)" in words
     every = replace(some, quiet_elsewhere=3, left=None)
     assert "no single change" not in advice_words("squawk", AT, [every], {})
