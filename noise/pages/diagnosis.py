@@ -331,7 +331,7 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
             place.conditions.replace("speed_rad_s", "speed [rad/s]"),
             p_number(place.p_value) + ", not certain" * (place.p_value > SURE),
         ]
-        for place in [*surest[:_MOST_PLACES], *located]
+        for place in sorted([*surest[:_MOST_PLACES], *located], key=lambda one: one.p_value)
     ]  # fmt: skip
     held_out = ", ".join(diagnosis.held_out) or "none, since nothing was fitted"
     facts = [
