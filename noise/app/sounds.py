@@ -228,6 +228,10 @@ _MOST_CELLS = 6000
 _LONGEST_BANDS = 120.0
 """Maximum interval for band levels [s]."""
 
+_LEAST_BAND = 20.0
+"""Maximum level of an interval, A-weighted, over its strongest third octave [dB]: that of equally
+strong bands is 16 dB over each of them."""
+
 
 def wav(track: Track, query: Query) -> bytes:
     """Return an interval as a WAV file of floats in the unit of the channel."""
@@ -256,6 +260,11 @@ def bands(track: Track, query: Query) -> dict[str, object]:
     first, last = read_stretch(query, track, _LONGEST_BANDS)
     signal = track.read(first, last)
     measured = sound_levels(signal, track.rate, reference=track.reference)
+    octaves = {band: _plain(level) for band, level in measured.third_octaves.items()}
+    strongest = max((level for level in octaves.values() if level is not None), default=-math.inf)
+    # The windows of the spectrum fade out the ends of the interval, which may hold all its sound.
+    if strongest < measured.level_a - _LEAST_BAND:
+        octaves = dict.fromkeys(octaves)
     return {
         "start": first / track.rate,
         "end": last / track.rate,
@@ -263,7 +272,7 @@ def bands(track: Track, query: Query) -> dict[str, object]:
         "level": _plain(measured.level),
         "level_a": _plain(measured.level_a),
         "level_af_max": _plain(measured.level_af_max),
-        "third_octaves": {band: _plain(level) for band, level in measured.third_octaves.items()},
+        "third_octaves": octaves,
     }
 
 

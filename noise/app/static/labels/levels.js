@@ -4,6 +4,7 @@ import { ticks } from "../shared/player.js";
 import { caption, DEEP, drawAxis, LINE, sheet } from "./timeline.js";
 
 const LEAST_RANGE = 30; // minimum range of the level axis [dB]
+const CAPTION = { width: 90, height: 17 }; // px
 
 export class LevelCourse {
   constructor(timeline, { plot, axis, readout }) {
@@ -50,16 +51,19 @@ export class LevelCourse {
     pen.strokeStyle = DEEP;
     pen.lineWidth = 1.5;
     pen.beginPath();
+    let below = false; // whether the curve passes where the caption would be
     const first = Math.max(0, Math.floor(this.timeline.start / cell) - 1);
     const last = Math.min(levels.length, Math.ceil(this.timeline.end / cell) + 1);
     const each = Math.max(1, Math.floor((last - first) / (2 * width)));
     for (let at = first; at < last; at += each) {
       let most = this.low;
       for (let one = at; one < Math.min(last, at + each); one++) most = Math.max(most, levels[one] ?? this.low);
-      pen.lineTo(this.timeline.share((at + each / 2) * cell) * width, y(most));
+      const x = this.timeline.share((at + each / 2) * cell) * width;
+      below ||= x < CAPTION.width && y(most) > height - CAPTION.height;
+      pen.lineTo(x, y(most));
     }
     pen.stroke();
-    caption(pen, `${this.found.unit}, Fast`, height);
+    caption(pen, `${this.found.unit}, Fast`, below ? CAPTION.height : height);
   }
 }
 
