@@ -7,11 +7,13 @@ separate process.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from models.rig import Rig
+from noise.app.worker_process import report_share
 from noise.base.labels import LABEL_LOOKS, MAP_LABELS, NAMED, PERSISTS
 from noise.pages.maps import MAP_SIZE, ConditionMap, areas_of, axis_of, cells_of
 from noise.pages.page import map_html
@@ -19,8 +21,8 @@ from noise.screening.advice import advise
 from noise.screening.batches import batch_evaluator
 from noise.screening.design import Design as Screened, Use
 from noise.screening.grid import shared_grid
-from noise.screening.mapping import map_design
-from noise.screening.point import evaluate_point
+from noise.screening.mapping import BEYOND, SIMULATED, DesignMap, map_design
+from noise.screening.point import PointResult, evaluate_point
 from noise.screening.vibration import Condition
 
 
@@ -53,7 +55,7 @@ _FASTEST = 13.0
 
 
 def chart_of(request: ChartRequest) -> dict[str, object]:
-    """Return the noise map as HTML, and its legend.
+    """Return the noise map as HTML, its legend, and the spacing of its points in words.
 
     Examples
     --------
@@ -76,8 +78,21 @@ def chart_of(request: ChartRequest) -> dict[str, object]:
         temperature=(request.temperature,),
     )
     grid = shared_grid([Screened("design", rig)], use)
-    with batch_evaluator(workers=1) as evaluate:
-        design_map = map_design(rig, grid, evaluate, design="design", most=simulations)
+    done, total = 0, simulations
+
+    def advance(points: int) -> None:
+        nonlocal done
+        done += points
+        report_share(done / total)
+
+    with batch_evaluator(workers=1, advance=advance) as evaluate:
+
+        def counted(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
+            nonlocal total
+            total = max(total, done + len(points))
+            return evaluate(rig, points)
+
+        design_map = map_design(rig, grid, counted, design="design", most=simulations)
     speed, fit = np.meshgrid(grid.speed, 1e3 * np.array(grid.interference))
     cells, labels = cells_of(speed.ravel(), fit.ravel().round(6)), design_map.label[0, 0]
     across = axis_of(cells.speed_edges, edges=True)
@@ -86,7 +101,25 @@ def chart_of(request: ChartRequest) -> dict[str, object]:
     noises = ConditionMap("Noise", across, up, areas, (), height=_HEIGHT, compared=True)
     shown = [label for label in MAP_LABELS if label != "none" and label in labels]
     legend = [f"{LABEL_LOOKS[label].mark} {_MEANING.get(label, label)}" for label in shown]
-    return {"legend": ", ".join(legend) or "Quiet everywhere", "html": map_html(noises)}
+    return {
+        "legend": ", ".join(legend) or "Quiet everywhere",
+        "html": map_html(noises),
+        "spacing": _spacing(design_map),
+    }
+
+
+def _spacing(design_map: DesignMap) -> str:
+    """Return the distance of known points across boundaries, in words."""
+    grid = design_map.grid
+    speed, fit = np.array(grid.speed), 1e3 * np.array(grid.interference)
+    known = np.isin(design_map.how, (SIMULATED, BEYOND))[0, 0]
+    widest = float(np.diff(speed).max(initial=0.0))
+    for row, label in zip(known, design_map.label[0, 0], strict=True):
+        at = np.flatnonzero(row)
+        across = label[at[1:]] != label[at[:-1]]
+        widest = max(widest, float(np.diff(speed[at])[across].max(initial=0.0)))
+    apart = [f"{widest:.2g} rad/s"]
+    return " and ".join(apart + ([f"{np.diff(fit).max():.2g} mm"] if fit.size > 1 else []))
 
 
 def suggestions_of(request: SuggestionRequest) -> dict[str, object]:

@@ -8,13 +8,14 @@ from __future__ import annotations
 import asyncio
 import gc
 import math
+import time
 from collections import deque
 from collections.abc import AsyncIterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
 from threading import Lock, Thread
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -36,6 +37,9 @@ if TYPE_CHECKING:
 
 _METER = RATE // BLOCK
 """Blocks per second, over which level and noise are shown."""
+
+_Named: TypeAlias = tuple[int, float, float, bytes]
+"""Question of `name_of`."""
 
 _NICE = 5
 """Niceness of the process that names the noise."""
@@ -81,7 +85,7 @@ class LiveSounds:
         self._lock = Lock()
         self._streams: dict[int, _Stream] = {}
         self._link: Connection | None = None
-        self._names: WorkerProcess[tuple[int, float, bytes], dict[str, object]] = WorkerProcess(
+        self._names: WorkerProcess[_Named, dict[str, object]] = WorkerProcess(
             f"{__name__}:name_of", _NICE
         )
 
@@ -100,7 +104,8 @@ class LiveSounds:
             gc.collect()
             gc.freeze()  # or all that is loaded is walked through while it plays
             Thread(target=self._read, args=(self._link,), daemon=True).start()
-        self._names.ask((0, 0.0, bytes(4 * RATE)))  # the first name is not to wait for the model
+        # The first name is not to wait for the model.
+        self._names.ask((0, 0.0, 0.0, bytes(4 * RATE)))
 
     def stop(self) -> None:
         """End all streams and the player."""
@@ -172,7 +177,8 @@ class LiveSounds:
     def levels(self, number: int) -> dict[str, object]:
         """Return the levels [dB re 20 uPa] and the noise of the last second of a run.
 
-        The noise is that of an earlier second, because classification takes time.
+        The noise is that of an earlier second, because classification takes time; ``name_age_s``
+        is how long ago that second ended.
         """
         stream = self._streams.get(number)
         recent = b"".join(stream.recent.copy()) if stream is not None else b""
@@ -180,9 +186,11 @@ class LiveSounds:
         if pressure.size < RATE // 4:
             return {"level_db": None, "level_dba": None, "l_afmax_dba": None}
         newest = self._names.newest
-        name = newest[1] if newest is not None and newest[0][0] == number else None
+        name = None
+        if newest is not None and newest[0][0] == number and newest[1] is not None:
+            name = newest[1] | {"name_age_s": time.monotonic() - newest[0][1]}
         if stream is not None and len(stream.recent) == _METER and not self._names.busy:
-            self._names.ask((number, stream.speed, recent))
+            self._names.ask((number, time.monotonic(), stream.speed, recent))
         measured = sound_levels(pressure, RATE)
         levels = {
             "level_db": measured.level,
@@ -216,22 +224,23 @@ class LiveSounds:
             stream.put(b"")
 
 
-def name_of(question: tuple[int, float, bytes]) -> dict[str, object]:
+def name_of(question: _Named) -> dict[str, object]:
     """Return the label and frequency [Hz] of the last second of a run.
 
     Parameters
     ----------
-    question : tuple of (int, float, bytes)
-        Number of the run, speed [rad/s], sound pressure as 32-bit floats [Pa].
+    question : tuple of (int, float, float, bytes)
+        Number of the run, time of its last sample [s], speed [rad/s], sound pressure as 32-bit
+        floats [Pa].
 
     Examples
     --------
-    >>> name_of((1, 5.0, bytes(4 * 48000)))
+    >>> name_of((1, 0.0, 5.0, bytes(4 * 48000)))
     {'label': 'none', 'frequency_hz': None}
     """
     from noise.labels.segments import file_label, label_recording
 
-    _, speed, samples = question
+    _, _, speed, samples = question
     pressure = np.frombuffer(samples, "<f4").astype(np.float64)
     run = Recording(
         pressure[None], RATE, (Channel("pressure"),), Condition(speed=speed), calibrated=True

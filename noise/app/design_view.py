@@ -86,14 +86,14 @@ def routes(opened: Opened) -> list[BaseRoute]:
     def charted(_: Request, request: dict[str, Any]) -> Response:
         question = _chart(design_of(request, bases).setting)
         detail = int(number(request, "detail", 0, 2, 2, whole=True))
-        return _waited(charts.answer_to(question._replace(detail=detail)))
+        return _waited(charts, question._replace(detail=detail))
 
     def helped(_: Request, request: dict[str, Any]) -> Response:
         setting = design_of(request, bases).setting
         at_first = float(setting.shaft.speed(np.zeros(1))[0])
         speed = max(abs(number(request, "speed", -_FASTEST, _FASTEST, at_first)), _SLOWEST)
         question = SuggestionRequest(_chart(setting), setting.interference, speed)
-        return _waited(suggestions.answer_to(question))
+        return _waited(suggestions, question)
 
     def saved(_: Request, request: dict[str, Any]) -> Response:
         return JSONResponse(save_rig(request, bases, opened.folder))
@@ -116,7 +116,9 @@ def _chart(setting: Setting) -> ChartRequest:
     return ChartRequest(setting.rig, setting.support_stiffness, setting.temperature)
 
 
-def _waited(answer: tuple[dict[str, object] | None, str] | None) -> Response:
-    """Return the result so far; the page polls until it is known."""
+def _waited(process: WorkerProcess[Any, dict[str, object]], question: object) -> Response:
+    """Return the result or the share that is done; the page polls until the result is known."""
+    answer = process.answer_to(question)
     result, error = answer or (None, "")
-    return JSONResponse({"known": answer is not None, "found": result, "error": error})
+    known, share = answer is not None, process.share_of(question)
+    return JSONResponse({"known": known, "found": result, "error": error, "share": share})

@@ -64,6 +64,7 @@ class WorkerProcess(Generic[_Question, _Answer]):
         self._current: tuple[_Question] | None = None
         self._newest: tuple[_Question, _Answer | None, str] | None = None
         self._stopped = False
+        self._share = (context or process_context()).RawValue("d", 0.0)
 
     def ask(self, question: _Question) -> None:
         """Replace the waiting question."""
@@ -80,6 +81,12 @@ class WorkerProcess(Generic[_Question, _Answer]):
             if waiting is None or waiting[0] != question:
                 self.ask(question)
             return None
+
+    def share_of(self, question: _Question) -> float:
+        """Return the share of a question that is done, as reported by `report_share`."""
+        with self._lock:
+            current = self._current is not None and self._current[0] == question
+            return float(self._share.value) if current else 0.0
 
     @property
     def newest(self) -> tuple[_Question, _Answer | None, str] | None:
@@ -102,8 +109,11 @@ class WorkerProcess(Generic[_Question, _Answer]):
     def _go_on(self) -> None:
         if self._stopped or self._current is not None or self._wanted is None:
             return
-        self._worker = self._worker or Worker(self._context or process_context())
+        self._worker = self._worker or Worker(
+            self._context or process_context(), _share_with, (self._share,)
+        )
         self._current, self._wanted = self._wanted, None
+        self._share.value = 0.0
         self._worker.submit(_answered, self._answer, self._nice, *self._current).add_done_callback(
             self._take
         )
@@ -119,6 +129,20 @@ class WorkerProcess(Generic[_Question, _Answer]):
             if self._current is not None:
                 self._newest, self._current = (*self._current, answer, error), None
             self._go_on()
+
+
+_shares: list[Any] = []
+"""Shared memory for the share that is done, in a process that answers."""
+
+
+def _share_with(share: object) -> None:
+    _shares[:] = [share]
+
+
+def report_share(share: float) -> None:
+    """Report the share of the current question that is done; outside such a process, do nothing."""
+    for one in _shares:
+        one.value = share
 
 
 @cache

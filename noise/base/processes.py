@@ -89,12 +89,23 @@ class Worker:
     context : multiprocessing.context.BaseContext, optional
         In which it starts; by default in a new interpreter: a forked copy would lack the threads
         of this one.
+    setup : callable, optional
+        Called with `arguments` in the process when it starts; they may be shared memory.
+    arguments : tuple
     """
 
-    def __init__(self, context: BaseContext | None = None) -> None:
+    def __init__(
+        self,
+        context: BaseContext | None = None,
+        setup: Callable[..., object] | None = None,
+        arguments: tuple[Any, ...] = (),
+    ) -> None:
         with interrupts_blocked(), _independent_start():
             self._executor = ProcessPoolExecutor(
-                1, context or get_context("spawn"), initializer=_exit_with_starter
+                1,
+                context or get_context("spawn"),
+                initializer=_exit_with_starter,
+                initargs=(setup, arguments),
             )
             self._process_id = self.submit(os.getpid)
         # Without this the interpreter would wait at exit for a busy worker.
@@ -207,8 +218,12 @@ def _watched(
     return perform(*args, **kwargs)
 
 
-def _exit_with_starter() -> None:
+def _exit_with_starter(
+    setup: Callable[..., object] | None = None, arguments: tuple[Any, ...] = ()
+) -> None:
     """Start a thread that exits the process when the process that started it has ended."""
+    if setup is not None:
+        setup(*arguments)
     starter = parent_process()
 
     def wait_for_end() -> None:

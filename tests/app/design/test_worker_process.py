@@ -10,7 +10,7 @@ from noise.app.design import design_of
 from noise.app.design_chart import ChartRequest, SuggestionRequest, suggestions_of
 from noise.app.design_controls import bases_of
 from noise.app.opened import open_paths
-from noise.app.worker_process import WorkerProcess
+from noise.app.worker_process import WorkerProcess, report_share
 
 BASES = bases_of(open_paths([]))
 PATIENCE = 120.0
@@ -39,6 +39,24 @@ def test_only_the_newest_question_is_answered_and_each_once():
         assert waited(lambda: beside.answer_to(49)) == (-49, "")
         assert not beside.busy
         assert beside.newest == (49, -49, "")
+    finally:
+        beside.stop()
+
+
+def half_done(seconds):
+    report_share(0.5)
+    time.sleep(seconds)
+
+
+def test_the_share_that_is_done_is_known_while_it_is_computed():
+    beside = WorkerProcess(f"{__name__}:half_done")
+    try:
+        beside.answer_to(1.0)
+        assert waited(lambda: beside.share_of(1.0)) == 0.5
+        assert beside.share_of(2.0) == 0.0
+        assert waited(lambda: beside.answer_to(1.0)) == (None, "")
+        beside.answer_to(3.0)
+        assert beside.share_of(1.0) == 0.0
     finally:
         beside.stop()
 

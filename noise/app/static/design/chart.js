@@ -3,8 +3,8 @@ import { api } from "../api.js";
 import { made } from "../dom.js";
 
 const AGAIN = 500, AFTER = 1000; // ms
-const FIRST = 3, WORK = [1, 3, 9]; // expected duration of the coarsest map [s]; relative durations of the maps
-const SEARCH = 10; // expected duration of advice [s]
+const DETAILS = 3; // maps, from coarse to fine
+const LEAST_SHARE = 0.1; // share of the work from which the time left is estimated
 const QUESTION = "What would end the noise?";
 
 export class Chart {
@@ -13,7 +13,6 @@ export class Chart {
     this.box = made("div", { className: "chart" });
     this.said = made("p", { className: "soft" });
     this.progress = made("progress", { max: 1, ariaLabel: "Map", hidden: true });
-    this.took = { map: FIRST, search: SEARCH }; // [s]
     this.ask = made("button", { type: "button", textContent: QUESTION, onclick: () => this.help() });
     this.helps = made("ul", { className: "helps" });
     panel.append(made("section", { className: "shown" }, made("h2", { textContent: "Map" }), this.box, this.progress, this.said),
@@ -27,7 +26,7 @@ export class Chart {
     this.box.classList.toggle("old", this.box.hasChildNodes());
     this.helps.replaceChildren();
     this.progress.hidden = true;
-    this.said.textContent = `Map updates about ${Math.ceil(this.took.map)} s after the last change.`;
+    this.said.textContent = this.box.hasChildNodes() ? "Map of the previous design; it updates after the last change." : "Map follows after the last change.";
     this.later = setTimeout(() => this.#follow(), AFTER);
     this.point();
   }
@@ -36,24 +35,29 @@ export class Chart {
   async #follow() {
     const stated = this.design.stated(), mine = this.following = {};
     const wanted = () => mine === this.following && !this.design.hidden();
-    for (const [detail, work] of WORK.entries()) {
+    for (let detail = 0; detail < DETAILS; detail++) {
       const words = detail ? `${this.legend} Computing a finer map` : "Computing the map";
-      const answer = await asked("design/chart", { ...stated, detail }, wanted, (since) => {
-        const all = this.took.map * work;
-        Object.assign(this.progress, { hidden: false, value: Math.min(0.95, since / all) });
-        this.said.textContent = `${words}: ${left(all, since)}`;
+      const answer = await asked("design/chart", { ...stated, detail }, wanted, (since, share) => {
+        Object.assign(this.progress, { hidden: false, value: share });
+        this.said.textContent = `${words}: ${left(since, share)}`;
       });
       if (!answer) return;
       this.progress.hidden = true;
       this.said.textContent = answer.error;
       if (!answer.found) return;
-      this.took.map = Math.max(0.5, answer.took / work);
       this.legend = `${answer.found.legend}.`;
       this.box.classList.remove("old");
       this.box.innerHTML = answer.found.html; // as on pages
+      this.#mark(detail < DETAILS - 1 ? answer.found.spacing : "");
       this.point();
     }
     this.said.textContent = `${this.legend} At constant speed, for this support and temperature; partly simulated, partly from stability analysis.`;
+  }
+
+  // Mark a map that is not the finest: what is heard may differ from it near its boundaries.
+  #mark(spacing) {
+    this.box.classList.toggle("preview", Boolean(spacing));
+    if (spacing) this.box.querySelector(".plot").append(made("p", { className: "uncertain", textContent: `Preview: boundaries are uncertain by ${spacing}` }));
   }
 
   // Show the current point on the map.
@@ -74,13 +78,12 @@ export class Chart {
     const about = values.get("motion") === "constant" || !heard ? stated : { ...stated, speed: Number(heard.toFixed(2)) };
     const wanted = () => mine === this.helping && JSON.stringify(stated) === JSON.stringify(this.design.stated());
     this.ask.disabled = true;
-    const answer = await asked("design/helps", about, wanted, (since) => {
-      this.ask.textContent = `Searching: ${left(this.took.search, since)}`;
+    const answer = await asked("design/helps", about, wanted, (since, share) => {
+      this.ask.textContent = `Searching: ${left(since, share)}`;
     });
     this.ask.disabled = false;
     this.ask.textContent = QUESTION;
     if (!answer) return;
-    this.took.search = Math.max(1, answer.took);
     this.helps.replaceChildren(...(answer.found ? this.#offers(answer.found, stated) : [made("li", { textContent: answer.error })]));
   }
 
@@ -100,15 +103,17 @@ export class Chart {
   }
 }
 
-const left = (all, since) => (since < all ? `about ${Math.ceil(all - since)} s left` : `${Math.floor(since)} s so far, longer than expected`);
+// Time left at the rate so far; too little done says nothing of it.
+const left = (since, share) => (share < LEAST_SHARE ? `${Math.floor(since)} s so far` : `about ${Math.ceil(since * (1 - share) / share)} s left`);
 
-// Poll until the answer is known or no longer wanted; `tell` gets the elapsed time [s].
+// Poll until the answer is known or no longer wanted; `tell` gets the elapsed time [s] and the share that is done.
 async function asked(path, stated, wanted, tell) {
   const began = performance.now(), since = () => (performance.now() - began) / 1000;
+  tell(0, 0);
   while (wanted()) {
-    tell(since());
     const answer = await api(path, stated, () => {}).catch((error) => ({ known: true, found: null, error: error.message }));
-    if (answer.known) return wanted() ? { ...answer, took: since() } : null;
+    if (answer.known) return wanted() ? answer : null;
+    if (wanted()) tell(since(), answer.share);
     await new Promise((resolve) => { setTimeout(resolve, AGAIN); });
   }
   return null;

@@ -43,6 +43,7 @@ export async function mount(panel) {
   const baseOf = (id) => about.bases.find((one) => one.id === id);
   const states = {}; // by slot: { base, values }
   let slot = "A", asked = 0, shown = null; // the base whose controls are shown
+  let heardAt = 0; // when the newest design was first heard [ms]
 
   design.stated = () => ({ base: shown, values: controls.changed });
   design.hidden = () => panel.hidden;
@@ -74,6 +75,7 @@ export async function mount(panel) {
     reset.title = reset.disabled ? "Nothing differs from the base" : "Drop all changes of this design";
     states[slot] = design.stated();
     sound.change(states[slot]);
+    view.classList.toggle("updating", sound.playing);
     facts();
     chart.changed();
   }
@@ -160,7 +162,10 @@ export async function mount(panel) {
     gain.textContent = `Full scale = ${sound.fullScale} Pa (${(20 * Math.log10(sound.fullScale / 2e-5)).toFixed(0)} dB peak re 20 µPa)`;
   });
   sound.addEventListener("refused", ({ detail }) => judge(detail.serial, detail.reason));
-  sound.addEventListener("heard", () => judge(sound.heardSerial));
+  sound.addEventListener("heard", () => {
+    heardAt = performance.now();
+    judge(sound.heardSerial);
+  });
   sound.addEventListener("block", ({ detail }) => {
     drawings.take(detail);
     design.speed = detail.speed;
@@ -171,7 +176,11 @@ export async function mount(panel) {
   setInterval(async () => {
     if (!sound.playing || panel.hidden) return;
     const found = await api(`design/levels?run=${sound.run}`).catch(() => null);
-    if (found && sound.playing) [name.textContent, level.textContent] = words(found, sound.fullScale);
+    if (!found || !sound.playing) return;
+    [name.textContent, level.textContent] = words(found, sound.fullScale);
+    // Name and level are of a second of sound, which may have begun before the newest design.
+    const ofIt = sound.heardSerial === sound.serial && found.name_age_s !== undefined && performance.now() - heardAt > 1000 * (1 + found.name_age_s);
+    if (ofIt) view.classList.remove("updating");
   }, LEVELS_EVERY);
   document.addEventListener("view-shown", ({ detail }) => {
     if (detail === "design") chart.changed();
@@ -179,6 +188,7 @@ export async function mount(panel) {
   });
 
   function silent() {
+    view.classList.remove("updating");
     name.textContent = "Not playing";
     level.textContent = "Press Play or Space to hear the design and to see its name and level. A and B switch between two designs.";
   }
