@@ -362,15 +362,15 @@ def advice_words(
     text += f"; advice.csv has {len(ending) - len(shown)} more" * (len(ending) > len(shown))
     if best.left is None:
         return text
-    tried = "The other noisy point that was tried stays noisy with the first"
+    rest = "The other noisy point that was tried stays noisy with the first"
     if best.elsewhere > 1:
-        tried = (
+        rest = (
             f"Of the {best.elsewhere} other noisy points tried, the loudest that stays noisy with "
             "the first"
         )
     return (
         f"no single change that was tried quiets the whole use. {text[0].upper()}{text[1:]}. "
-        f"{tried}: {condition_words(best.left)} (before the change {sounds[best.left]})"
+        f"{rest}: {condition_words(best.left)} (before the change {sounds[best.left]})"
     )
 
 
