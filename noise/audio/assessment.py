@@ -20,7 +20,7 @@ from models.recording import REFERENCE_PRESSURE, Recording
 from noise.audio.sound import pressure_channel, resampled
 
 _LONGEST = 600.0
-"""Longest sound of which the quality is told [s]: a second takes seconds."""
+"""Longest sound whose quality is computed [s]: each second takes seconds."""
 
 _QUALITY_COLUMNS = {
     "loudness": "loudness_sone",
@@ -151,8 +151,8 @@ def assess(recording: Recording, *, quality: bool = False) -> Assessment:
         raise ParameterError("sound quality needs a calibrated recording")
     if sound.size > _LONGEST * rate:
         raise ParameterError(
-            f"sound quality is told of {_LONGEST / 60.0:g} minutes at most, and this lasts "
-            f"{sound.size / rate / 60.0:.1f}"
+            f"sound quality is computed for at most {_LONGEST / 60.0:g} minutes; this recording "
+            f"lasts {sound.size / rate / 60.0:.1f}"
         )
     at_rate = resampled(sound - sound.mean(), rate, SOUND_QUALITY_RATE)
     return Assessment(levels, calibrated, sound_quality_of(at_rate, SOUND_QUALITY_RATE))

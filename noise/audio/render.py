@@ -122,7 +122,7 @@ def measure(
     rate, gap, fade
         As for `joined`.
     quality : bool
-        Whether its sound quality is told as well, where that can be.
+        Whether to compute sound quality as well, where possible.
     match : bool
         Whether it has to have a loudness.
 

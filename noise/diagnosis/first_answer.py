@@ -291,7 +291,7 @@ class FirstAnswer:
     suspected : tuple of str
         Effects that the rig file lists and that what is left looks like all the same.
     unlearned : tuple of str
-        What is said of sensors that the probabilities were not learned with.
+        Notes on sensors unlike those that the probabilities were learned with.
     flat : tuple of str
         Kinds of channel that are overloaded, as `noise.diagnosis.first_answer` tells.
     """

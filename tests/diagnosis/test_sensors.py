@@ -152,7 +152,7 @@ def test_a_sound_without_pause_tells_no_noise():
     seen, notes = with_estimated_sensors(RIG, [creak])
     assert seen.sensors.of("acceleration").noise is None
     assert seen.sensors.of("angle").noise == pytest.approx(1e-4, rel=0.1)
-    assert any("do not tell it" in note and "acceleration" in note for note in notes)
+    assert any("do not determine it" in note and "acceleration" in note for note in notes)
 
 
 def test_good_sensors_are_those_the_causes_were_learned_with():

@@ -177,11 +177,11 @@ def channel_costs(kinds: Collection[str]) -> list[str]:
         )
     unseen = ", ".join(sorted(name.replace("_", " ") for name in unseen_causes(kinds)))
     if {"acceleration", "pressure"} <= missing:
-        lines.append(f"no acceleration and no sound: nothing is said of {unseen}")
+        lines.append(f"no acceleration and no sound: {unseen} cannot be assessed")
     elif "acceleration" in missing:
         lines.append("no acceleration: structure and radiation cannot be told apart")
     elif "pressure" in missing:
-        lines.append(f"no sound: nothing is said of {unseen}")
+        lines.append(f"no sound: {unseen} cannot be assessed")
     if "angle" in missing:
         lines.append(
             "no shaft angle: the shaft is taken to turn evenly at the speed that was set, and an "

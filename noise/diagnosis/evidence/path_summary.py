@@ -42,7 +42,7 @@ _ECHO = (6e-4, 2e-2)
 """In which echoes are looked for, after what is direct [s]; assumed."""
 
 _SHORT = 256
-"""Samples of a short segment, in which impacts are told from what lasts; assumed."""
+"""Samples of a short segment, which separate impacts from lasting sound; assumed."""
 
 _LOW, _HIGHEST = (-1.0, 2500.0), 12e3
 """Bands of short segments: low from the constant on, high from there up to the highest [Hz];

@@ -377,9 +377,9 @@ def with_estimated_sensors(
         notes.append(f"steps of the converter, by the recordings: {', '.join(steps)}")
     if unknown:
         notes.append(
-            f"noise of the sensors of {', '.join(unknown)}: these recordings do not tell it (no "
-            "white floor between the slips); that of good sensors is assumed, which [sensors] of "
-            "the rig file can replace"
+            f"noise of the sensors of {', '.join(unknown)}: these recordings do not determine it "
+            "(no white floor between the slips); that of good sensors is assumed, which [sensors] "
+            "of the rig file can replace"
         )
     if louder:
         notes.append(f"more white noise than [sensors] of the rig file states: {', '.join(louder)}")

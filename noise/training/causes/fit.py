@@ -104,7 +104,7 @@ N_SUBSETS = 2
 _FEWEST_RECORDINGS = 3
 
 _FEWEST_QUIET = 30
-"""Cases of quiet benches without a cause, from which scatter is told; of all benches otherwise."""
+"""Least cases of quiet benches without a cause to estimate scatter; else those of all benches."""
 
 _POOR_SHARE = 0.3
 """Share of the cases that are learned again with channels missing."""
