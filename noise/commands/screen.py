@@ -84,7 +84,7 @@ def run(options: Namespace) -> int:
     with temporary_journal(table, call_identity("screening")) as journal:
         with steps("screening", 100, "percent") as bar:
             screening = _screening(options, use, environments, bar, journal)
-        from noise.screening.words import summary_lines
+        from noise.screening.summary import summary_lines
 
         for name, reason in (*screening.refused, *screening.failed):
             say(f"{name}: {reason}")

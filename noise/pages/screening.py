@@ -17,16 +17,15 @@ from noise.pages.page import CARD_BYTES, PAGE_BYTES, page_html, shortened_text, 
 from noise.pages.screen_sounds import screen_maps
 from noise.screening.environments import environment, in_environment
 from noise.screening.standing import SHARED, Standing
-from noise.screening.words import (
+from noise.screening.summary import (
     MARGIN_RULE,
     conditions_lines,
     detail_lines,
-    margin_is_bound,
-    percent,
     ranking_words,
     standing_place,
     use_head,
 )
+from noise.screening.words import margin_is_bound, percent
 
 if TYPE_CHECKING:
     from noise.screening.grid import Grid

@@ -15,9 +15,9 @@ from noise.screening.grid import shared_grid
 from noise.screening.loudness import with_loudness
 from noise.screening.mapping import map_design
 from noise.screening.point import evaluate_point
+from noise.screening.summary import summary_lines
 from noise.screening.tables import screening_tables
 from noise.screening.vibration import Condition
-from noise.screening.words import summary_lines
 from tests.helpers.quick_screens import quick_screen
 from tests.screening.long_runs import label_after
 

@@ -17,9 +17,9 @@ from noise.screening.point import evaluate_point
 from noise.screening.provenance import point_notes, rows_of
 from noise.screening.screen import screen
 from noise.screening.standing import refuse_unlike
+from noise.screening.summary import summary_lines
 from noise.screening.tables import screening_tables
 from noise.screening.vibration import Condition
-from noise.screening.words import summary_lines
 from tests.helpers.quick_screens import judged_by_speed, quick_screen
 
 THESIS = load_material_rig("fluorocarbon-thesis")
