@@ -35,7 +35,7 @@ from noise.identification.measured import (
     known_beforehand,
     read_measurements,
 )
-from noise.identification.outcome import Identification, LawScore, RecordingFit, as_json
+from noise.identification.outcome import Identification, LawScore, Number, RecordingFit, as_json
 from noise.identification.static_test import StaticTest
 
 
@@ -178,7 +178,6 @@ def result_lines(result: Identification) -> list[str]:
 
     Examples
     --------
-    >>> from noise.identification.outcome import Number
     >>> numbers = (
     ...     Number("elastomer_stiffness", "Nm/rad", 764.9, 747.1, 783.1, 6, 0.279e-3),
     ...     Number("critical_torque", "Nm", 11.73, 11.58, 11.89, 6, 0.279e-3),
@@ -188,26 +187,25 @@ def result_lines(result: Identification) -> list[str]:
     ['law = "coulomb"; at 0.279 mm: stiffness 764.9 (747.1 to 783.1) Nm/rad, critical torque 11.77
       (11.56 to 11.99) Nm; 90 % intervals']
     """
-    candidate = next((one for one in CANDIDATES if one.name == result.law), None)
-    law = f'law = "{result.law if candidate is None or not result.laws else candidate.law}"'
-    if result.laws and candidate is not None and candidate.effect:
-        law += f" with the effect {candidate.effect}"
-    places = sorted({one.interference for one in result.numbers if one.interference is not None})
+    fitted = [one.in_rig_file for one in CANDIDATES if result.laws and one.name == result.law]
+    law = fitted[0] if fitted else f'law = "{result.law}"'
     lines = []
-    for place in places:
+    for place in sorted(
+        {one.interference for one in result.numbers if one.interference is not None}
+    ):
         here = [one for one in result.numbers if one.interference == place]
-        parts = []
-        for name, words in _SUMMARY.items():
-            for one in here:
-                if one.name == name:
-                    support = one.support_stiffness
-                    of = "" if support is None else f" at a support of {support:g} Nm/rad"
-                    of = " with the clamp fixed" if support == math.inf else of
-                    parts.append(
-                        f"{words}{of} {one.value:.4g} ({one.low:.4g} to {one.high:.4g}) {one.unit}"
-                    )
+        parts = [_number_words(one) for name in _SUMMARY for one in here if one.name == name]
         lines.append(f"{law}; at {1e3 * place:g} mm: {', '.join(parts)}; 90 % intervals")
     return lines or [law]
+
+
+def _number_words(number: Number) -> str:
+    """Return a number of the summary with its support and interval."""
+    support = number.support_stiffness
+    where = "" if support is None else f" at a support of {support:g} Nm/rad"
+    where = " with the clamp fixed" if support == math.inf else where
+    interval = f"{number.value:.4g} ({number.low:.4g} to {number.high:.4g})"
+    return f"{_SUMMARY[number.name]}{where} {interval} {number.unit}"
 
 
 _SUMMARY = {

@@ -83,6 +83,12 @@ class Candidate:
     drops: Sequence[float] = (1.0,)
 
     @property
+    def in_rig_file(self) -> str:
+        """Law, and effect if there is one, as in a rig file."""
+        effect = f", with the effect {self.effect}" if self.effect else ""
+        return f'law = "{self.law}"{effect}'
+
+    @property
     def sticks(self) -> bool:
         """Whether the contact truly sticks."""
         return self.law == "coulomb"

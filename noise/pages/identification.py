@@ -184,7 +184,8 @@ def _html(result: Identification) -> str:
                 f"{100.0 * one.missed:.1f}",
                 bars=[b.Bar(0.0, 100.0 * one.missed / most, "cause" * (one.law == result.law))],
             ),
-            f"{100.0 * one.held_out:.1f}", f"{100.0 * one.trained:.1f}", _in_rig_file(one.law),
+            f"{100.0 * one.held_out:.1f}", f"{100.0 * one.trained:.1f}",
+            _CANDIDATES[one.law].in_rig_file,
         ]
         for one in result.laws
     ]  # fmt: skip
@@ -261,13 +262,6 @@ _RISE = (
 )
 
 
-def _in_rig_file(law: str) -> str:
-    """Return a law as in the rig file."""
-    candidate = _CANDIDATES[law]
-    effect = f", with the effect {candidate.effect}" if candidate.effect else ""
-    return f'law = "{candidate.law}"{effect}'
-
-
 def _title(result: Identification) -> str:
     counts = {"recordings": len(result.recordings), "static tests": len(result.static)}
     sources = [f"{n} {what}" for what, n in counts.items() if n]
@@ -284,9 +278,10 @@ def _answer(result: Identification) -> list[str]:
     if not result.laws:
         return [f"Law of friction as it was known: {result.law.replace('_', ' ')}.", *stiffness]
     chosen = next(score for score in result.laws if score.law == result.law)
+    chosen_law = _CANDIDATES[result.law]
     return [
-        f"Law of friction: {result.law.replace('_', ' ')} ({_CANDIDATES[result.law].words}; "
-        f"{_in_rig_file(result.law)} in the rig file). Within a cycle it leaves "
+        f"Law of friction: {result.law.replace('_', ' ')} ({chosen_law.words}; "
+        f"{chosen_law.in_rig_file} in the rig file). Within a cycle it leaves "
         f"{100.0 * chosen.missed:.1f} % of the oscillation unexplained, and "
         f"{100.0 * chosen.held_out:.1f} % of that of recordings that its fit did not use.",
         *stiffness,
