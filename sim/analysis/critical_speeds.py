@@ -140,32 +140,6 @@ def motion_from_rest(
     )
 
 
-def falls_below(
-    limit: float, speed: float, value: float, next_speed: float, next_value: float
-) -> float:
-    """Interpolate the speed at which a measure falls below its limit, on logarithmic scales.
-
-    A measure that falls below a tenth of the limit counts as a tenth of it.
-
-    Parameters
-    ----------
-    limit : float
-        Such as `sim.analysis.slips.LEAST_SUDDEN` [-].
-    speed, next_speed : float
-        [rad/s]
-    value, next_value : float
-        Values of the measure there, above the limit and below it [-].
-
-    Examples
-    --------
-    >>> round(falls_below(0.01, 4.0, 0.02, 8.0, 0.005), 3)
-    5.657
-    """
-    after = max(next_value, 0.1 * limit)
-    share = math.log(value / limit) / math.log(value / after)
-    return float(speed * (next_speed / speed) ** share)
-
-
 def _check(speeds: Sequence[float]) -> None:
     rising = all(a < b for a, b in pairwise(speeds))
     if not (speeds and speeds[0] > 0.0 and rising):
