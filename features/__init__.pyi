@@ -53,10 +53,6 @@ from .recording import (
     feature_vector as feature_vector,
     recording_features as recording_features,
 )
-from .sound_quality import (
-    SoundQuality as SoundQuality,
-    sound_quality_of as sound_quality_of,
-)
 from .table import (
     FEATURES as FEATURES,
     WINDOW_FEATURES as WINDOW_FEATURES,

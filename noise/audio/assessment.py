@@ -6,37 +6,20 @@ air, and all levels are told re full scale of the file that is written.
 """
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.level_meter import SoundLevels, a_weighting, sound_levels
 from features.kernels.levels import NOMINAL_THIRD_OCTAVES
-from features.sound_quality import SOUND_QUALITY_RATE, SoundQuality, sound_quality_of
-from models.errors import ParameterError
 from models.radiation.sound_power import BandPower
 from models.recording import REFERENCE_PRESSURE, Recording
-from noise.audio.sound import pressure_channel, resampled
-
-_LONGEST = 600.0
-"""Longest sound whose quality is computed [s]: each second takes seconds."""
-
-_QUALITY_COLUMNS = {
-    "loudness": "loudness_sone",
-    "loudness_n5": "loudness_n5_sone",
-    "loudness_n10": "loudness_n10_sone",
-    "sharpness": "sharpness_acum",
-    "roughness": "roughness_asper",
-    "tone_to_noise": "tone_to_noise_db",
-    "prominence": "prominence_db",
-    "tone_frequency": "tone_frequency_hz",
-}
+from noise.audio.sound import pressure_channel
 
 COLUMNS = (
     *("level_db", "level_dba", "l_afmax_dba", "level_dbfs"),
     *(f"third_octave_{band}_hz_db" for band in NOMINAL_THIRD_OCTAVES),
-    *_QUALITY_COLUMNS.values(),
 )
 """Of a table of levels, in the order of a sound level meter's."""
 
@@ -49,19 +32,17 @@ TOTAL = "total"
 
 @dataclass(frozen=True)
 class Assessment:
-    """Levels and sound quality of a recording.
+    """Levels of a recording.
 
     Parameters
     ----------
     levels : SoundLevels
         Re 20 uPa where `calibrated`, otherwise re full scale of the recording.
     calibrated : bool
-    quality : SoundQuality, optional
     """
 
     levels: SoundLevels
     calibrated: bool
-    quality: SoundQuality | None = None
 
     def in_file(self, full_scale: float) -> SoundLevels:
         """Return levels re full scale [unit of the recording] of the written file."""
@@ -79,9 +60,6 @@ class Assessment:
             }
             for band, level in self.levels.third_octaves.items():
                 row[f"third_octave_{band}_hz_db"] = _rounded(level)
-        if self.quality is not None:
-            for name, value in asdict(self.quality).items():
-                row[_QUALITY_COLUMNS[name]] = _rounded(value, 4)
         return row
 
     def entry(self, full_scale: float) -> dict[str, object]:
@@ -98,29 +76,22 @@ class Assessment:
         }
         return entry
 
-    def words(self, full_scale: float) -> list[str]:
-        """Return the values of `row` as lines of text, without third octaves."""
+    def words(self, full_scale: float) -> str:
+        """Return the values of `row` as text, without third octaves."""
         levels = self.levels if self.calibrated else self.in_file(full_scale)
         unit, re = ("dB", " re 20 uPa") if self.calibrated else ("dBFS", "")
-        lines = [
+        return (
             f"{levels.level_a:.1f} {unit}(A), L_AFmax {levels.level_af_max:.1f} {unit}, "
             f"{levels.level:.1f} {unit} unweighted{re}"
-        ]
-        if self.quality is not None:
-            named = {_QUALITY_COLUMNS[name]: of for name, of in asdict(self.quality).items()}
-            known = {name: of for name, of in named.items() if math.isfinite(of)}
-            lines.append(", ".join(f"{name} {of:.3g}" for name, of in known.items()))
-        return lines
+        )
 
 
-def assess(recording: Recording, *, quality: bool = False) -> Assessment:
+def assess(recording: Recording) -> Assessment:
     """Measure the sound of a recording's first pressure channel.
 
     Parameters
     ----------
     recording : Recording
-    quality : bool
-        Whether loudness, sharpness, roughness and tonality are told as well.
 
     Returns
     -------
@@ -129,9 +100,7 @@ def assess(recording: Recording, *, quality: bool = False) -> Assessment:
     Raises
     ------
     ParameterError
-        There is no pressure channel, or it can't be analysed; with `quality` also where it is
-        not calibrated, is longer than 10 minutes, or
-        `features.sound_quality.sound_quality_of` refuses it.
+        There is no pressure channel, or it can't be analysed.
 
     Examples
     --------
@@ -145,17 +114,7 @@ def assess(recording: Recording, *, quality: bool = False) -> Assessment:
     sound, rate = recording[pressure_channel(recording).name], recording.rate
     calibrated = recording.calibrated
     levels = sound_levels(sound, rate, reference=REFERENCE_PRESSURE if calibrated else 1.0)
-    if not quality:
-        return Assessment(levels, calibrated)
-    if not calibrated:
-        raise ParameterError("sound quality needs a calibrated recording")
-    if sound.size > _LONGEST * rate:
-        raise ParameterError(
-            f"sound quality is computed for at most {_LONGEST / 60.0:g} minutes; this recording "
-            f"lasts {sound.size / rate / 60.0:.1f}"
-        )
-    at_rate = resampled(sound - sound.mean(), rate, SOUND_QUALITY_RATE)
-    return Assessment(levels, calibrated, sound_quality_of(at_rate, SOUND_QUALITY_RATE))
+    return Assessment(levels, calibrated)
 
 
 def _rounded(value: float, digits: int = 2) -> float | None:

@@ -76,14 +76,11 @@ class Measured:
         [unit of the sound]
     loudness : float or None
         With the true peak at full scale [LUFS]; None where it was not asked for.
-    untold : tuple of str
-        Why the sound quality of a part is not told, though it was asked for.
     """
 
     parts: tuple[Part, ...]
     true_peak: float
     loudness: float | None
-    untold: tuple[str, ...]
 
     @property
     def name(self) -> str:
@@ -111,7 +108,6 @@ def measure(
     rate: int = 48000,
     gap: float = GAP,
     fade: float = FADE,
-    quality: bool = False,
     match: bool = False,
 ) -> Measured:
     """Measure the concatenated sound of recordings.
@@ -121,8 +117,6 @@ def measure(
     recordings : sequence of Recording
     rate, gap, fade
         As for `joined`.
-    quality : bool
-        Whether to compute sound quality as well, where possible.
     match : bool
         Whether it has to have a loudness.
 
@@ -141,17 +135,10 @@ def measure(
     """
     samples, times = joined(recordings, rate, gap=gap, fade=fade)
     peak = true_peak(samples, rate)
-    parts, untold = [], []
-    for recording, (start, end) in zip(recordings, times, strict=True):
-        try:
-            assessment = assess(recording, quality=quality)
-        except ParameterError as error:
-            if not quality:
-                raise
-            assessment = assess(recording)
-            untold.append(f"{recording.name}: {error}")
-        about = replace(recording, samples=np.empty((1, 0)))
-        parts.append(Part(start, end, about, assessment))
+    parts = [
+        Part(start, end, replace(recording, samples=np.empty((1, 0))), assess(recording))
+        for recording, (start, end) in zip(recordings, times, strict=True)
+    ]
     reached = None
     if match:
         try:
@@ -160,7 +147,7 @@ def measure(
             reached = loudness(samples / peak, rate)
         except ParameterError as error:
             raise ParameterError(f"{recordings[0].name}: {error}") from None
-    return Measured(tuple(parts), peak, reached, tuple(untold))
+    return Measured(tuple(parts), peak, reached)
 
 
 def full_scales(

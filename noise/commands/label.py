@@ -31,7 +31,6 @@ OPTIONS = (
     Option("--classifier FILE.npz", Path),
     Option("--surroundings rig|car|any", one_of(*SURROUNDINGS)),
     Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0),
-    Option("--loudness"),
     Option("--inference FILE.npz", Path),
     PLOT,
     *CALIBRATION,
@@ -75,7 +74,6 @@ def run(options: Namespace) -> int:
         full_scale=full_scale_of(options),
         sensitivity=options.sensitivity,
         surroundings=options.surroundings,
-        loudness=options.loudness,
     )
     _note_false_names(work)
     return run_batch(options, work, jobs, merge, export, result_lines)

@@ -56,7 +56,6 @@ OPTIONS = (
         Option("--match-loudness"),
     ),
     Option("--band LOW..HIGH", _band),
-    Option("--sound-quality"),
     *CALIBRATION,
     CONDITION,
 )
@@ -66,10 +65,6 @@ def run(options: Namespace) -> int:
     """Render the sounds."""
     from noise.commands.render_sources import sources_of
 
-    if options.sound_quality:
-        from features.sound_quality import check_available
-
-        check_available()
     if options.ab and options.match_loudness:
         raise ParameterError("--ab plays all parts at the same gain; leave --match-loudness out")
     sources = sources_of(options)
@@ -145,12 +140,7 @@ def _render(options: Namespace, files: list[_File], folder: Path | None) -> int:
     for file in track(files, "measuring", unit="file"):
         try:
             recordings = _recordings(file, options.band)
-            sound = measure(
-                recordings,
-                **shape,
-                quality=options.sound_quality,
-                match=options.match_loudness,
-            )
+            sound = measure(recordings, **shape, match=options.match_loudness)
         except (BushingNoiseError, MemoryError) as error:
             if folder is None and not isinstance(error, RecordingError):
                 raise
@@ -192,9 +182,7 @@ def _render(options: Namespace, files: list[_File], folder: Path | None) -> int:
         several = len(sound.parts) > 1
         for part, noise_name in zip(sound.parts, noise_names[name], strict=True):
             label = f"{name}: {part.about.name}" if several else name
-            levels, *quality = part.assessment.words(scale.value)
-            for line in (f"{noise_name}{levels}", *quality):
-                say(f"{label}: {line}")
+            say(f"{label}: {noise_name}{part.assessment.words(scale.value)}")
         report(target, target.with_suffix(".json"))
     if folder is not None:
         write_table(folder / "levels.csv", ("file", *COLUMNS, "filter", "note", "error"), rows)
@@ -222,7 +210,7 @@ def _filter_note(part: Part) -> str | None:
 
 
 def _notes(measured: Mapping[str, Measured]) -> None:
-    """Print notes on missing calibrations and on the assessments."""
+    """Print notes on missing calibrations."""
     unknown = [of.name for of in measured.values() if not of.calibrated]
     if unknown:
         more = f" and {counted(len(unknown) - 1, 'other')}" if len(unknown) > 1 else ""
@@ -230,8 +218,6 @@ def _notes(measured: Mapping[str, Measured]) -> None:
             f"{unknown[0]}{more}: not calibrated, so how loud it was is not known; levels are in "
             "dBFS only (--calibrator or --full-scale gives a calibration)"
         )
-    for of in measured.values():
-        note(*of.untold)
 
 
 _LEAST_AUDIBLE = -48.0

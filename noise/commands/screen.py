@@ -55,7 +55,6 @@ OPTIONS = (
             Option("--environment NAME", str, "dry"),
         ),
     ),
-    Option("--loudness"),
     OneOf(
         Option("--tolerances"),
         Option("--no-tolerances"),
@@ -116,7 +115,6 @@ def _screening(
         options.designs,
         use,
         environments=environments,
-        loudness=options.loudness,
         tolerances=True if options.tolerances else False if options.no_tolerances else None,
         rng=np.random.default_rng(options.seed or 0),
         change=_change(options),

@@ -21,7 +21,6 @@ from noise.classifier.model import CLASSIFIER
 from noise.inference import Inference, load_inference
 from noise.inference.model import INFERENCE
 from noise.labels.corrections import sign_corrections, with_corrections
-from noise.labels.levels import with_loudness
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, label_recording
 from noise.labels.table import COLUMNS, LabelTable
@@ -36,7 +35,6 @@ def label(
     inference: str | Path | None = None,
     full_scale: PascalPerFullScale | None = None,
     surroundings: str | None = None,
-    loudness: bool = False,
     out: str | Path | None = None,
     fresh: bool = False,
     workers: int = 1,
@@ -55,8 +53,6 @@ def label(
     surroundings : {"any", "car", "rig"}, optional
         Place of the recording, which decides the expected background sounds; by default ``rig`` if
         an operating condition is logged, else ``any``.
-    loudness : bool
-        Whether to compute the loudness N5 of segments, with the extra ``sound-quality``.
     out : path, optional
         File for the table: .csv, .xlsx, .jsonl or .parquet. As with
         ``bushing-noise label --out``, a journal beside it stores each finished recording: the next
@@ -106,7 +102,6 @@ def label(
         _absolute(inference),
         full_scale,
         surroundings=surroundings,
-        loudness=loudness,
     )
     work.prepare()
     if out is not None:
@@ -149,8 +144,6 @@ class Labelling:
         Factor on the odds of a noise [-].
     surroundings : str, optional
         As in `noise.labels.segments.label_recording`.
-    loudness : bool
-        Whether to compute the loudness N5 of segments.
 
     Examples
     --------
@@ -163,7 +156,6 @@ class Labelling:
     full_scale: PascalPerFullScale | None = None
     sensitivity: float = 1.0
     surroundings: str | None = None
-    loudness: bool = False
 
     doing = "labelling"
 
@@ -174,10 +166,6 @@ class Labelling:
 
     def prepare(self) -> None:
         """Load the classifier and, if one is named, the model that infers conditions."""
-        if self.loudness:
-            from features.sound_quality import check_available
-
-            check_available()
         _ = self._loaded, self._inference
 
     def identity(self) -> dict[str, object]:
@@ -186,7 +174,6 @@ class Labelling:
             "full_scale": self.full_scale,
             "sensitivity": self.sensitivity,
             "surroundings": self.surroundings,
-            "loudness": self.loudness,
             "classifier": model_digest(self.classifier, CLASSIFIER),
             "inference": model_digest(self.inference, INFERENCE),
         }
@@ -206,8 +193,6 @@ class Labelling:
             segments: list[Segment] = label_recording(
                 recording, self._loaded, per_track=per_track, surroundings=self.surroundings
             )
-            if self.loudness:
-                segments = with_loudness(recording, segments)
             rows = label_rows(name, recording, segments, self._inference)
             return rows, recording.calibrated
 

@@ -1,7 +1,6 @@
 """Sound levels of segments, and their levels over the background.
 
-A-weighted levels are those that `features.kernels.level_meter` measures of the same samples, and
-the loudness N5 is that of a library.
+A-weighted levels are those that `features.kernels.level_meter` measures of the same samples.
 
 The background is all that is not labelled as a noise. Its level is the one exceeded for 90 % of the
 time, L_A90 (ISO 1996-1), which a slamming door does not raise. Digital silence, as of a gate or an
@@ -11,7 +10,6 @@ editor, is excluded.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -19,10 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.level_meter import weighted_levels
-from features.sound_quality import SHORTEST, SOUND_QUALITY_RATE, loudness_n5
 from models.blocks import RecordingBlocks
 from models.recording import REFERENCE_PRESSURE
-from noise.audio.sound import resampled
 from noise.base.labels import NAMED
 
 if TYPE_CHECKING:
@@ -234,41 +230,3 @@ def background_level(levels: NDArray[np.float64], silent: float = -math.inf) -> 
 
 def _finite(level: float) -> float | None:
     return level if math.isfinite(level) else None
-
-
-_LONGEST = 600.0
-"""Maximum duration of an analysed segment [s]; the analysis takes about as long as the sound."""
-
-
-def with_loudness(blocks: RecordingBlocks, segments: Sequence[Segment]) -> list[Segment]:
-    """Return the segments with their loudness N5, as computed by `noise.audio.assessment.assess`.
-
-    Parameters
-    ----------
-    blocks : RecordingBlocks
-        The whole recording; without calibration or pressure, segments are returned unchanged.
-    segments : sequence of Segment
-
-    Returns
-    -------
-    list of Segment
-
-    Raises
-    ------
-    ParameterError
-        The extra ``sound-quality`` is not installed.
-    """
-    return [_with_loudness(blocks, segment) for segment in segments]
-
-
-def _with_loudness(blocks: RecordingBlocks, segment: Segment) -> Segment:
-    track = blocks if segment.channel == "all" else blocks.track(int(segment.channel) - 1)
-    row = track.first("pressure")
-    first = round(segment.start * track.rate)
-    last = min(round(segment.end * track.rate), track.n_samples)
-    seconds = (last - first) / track.rate
-    if row is None or not track.calibrated or not SHORTEST <= seconds <= _LONGEST:
-        return segment
-    sound = track.read(first, last)[row]
-    at_rate = resampled(sound - sound.mean(), track.rate, SOUND_QUALITY_RATE)
-    return replace(segment, loudness_n5=loudness_n5(at_rate, SOUND_QUALITY_RATE))

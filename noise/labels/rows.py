@@ -107,7 +107,6 @@ def segment_cells(segment: Segment) -> dict[str, object]:
         "level_db": _rounded(segment.level, 2),
         "level_dba": _rounded(segment.level_a, 2),
         "l_afmax_dba": _rounded(segment.level_af_max, 2),
-        "loudness_n5_sone": _rounded(segment.loudness_n5, 4),
         "snr_dba": _rounded(segment.snr, 2),
         "level_dbfs": _rounded(segment.level_dbfs, 2),
     }

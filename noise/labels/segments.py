@@ -56,9 +56,6 @@ class Segment:
     level_a, level_af_max : float or None
         A-weighted level, and its maximum with time weighting F [dB(A) re 20 uPa]; ``None`` if not
         calibrated.
-    loudness_n5 : float or None
-        Loudness exceeded in 5 % of the time, ISO 532-1 [sone]; ``None`` if not requested or not
-        calibrated, and for less than half a second or more than ten minutes.
     snr : float or None
         A-weighted level over the background [dB(A)], which is L_A90 of the recording without
         creaks, squawks, squeals and digital silence; ``None`` without such a part.
@@ -80,7 +77,6 @@ class Segment:
     level_a: float | None = None
     level_af_max: float | None = None
     snr: float | None = None
-    loudness_n5: float | None = None
 
 
 class Segments(list[Segment]):

@@ -34,7 +34,7 @@ CONDITIONS = {
 SEGMENT_COLUMNS = (
     "channel", "start_s", "end_s", "label",
     *(f"p_{label}" for label in LABELS),
-    "frequency_hz", "level_db", "level_dba", "l_afmax_dba", "loudness_n5_sone", "snr_dba",
+    "frequency_hz", "level_db", "level_dba", "l_afmax_dba", "snr_dba",
     "level_dbfs",
 )  # fmt: skip
 """Columns of a segment without its condition."""

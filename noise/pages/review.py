@@ -151,7 +151,6 @@ def _maps(path: Path, rows: Sequence[dict[str, object]]) -> list[ScreenMap]:
                 speed, fit, label,
                 str(row.get("regime") or ""),
                 number("level_dba"),
-                number("loudness_n5_sone"),
                 str(row.get("how") or ""),
                 number("frequency_hz") or None,
                 str(row.get("note") or ""),

@@ -47,8 +47,8 @@ class ScreenPoint(NamedTuple):
     label : str
     regime, how : str
         Of friction; how it is known.
-    level, loudness : float or None
-        L_Aeq [dB re 20 uPa] and N5 [sone].
+    level : float or None
+        L_Aeq [dB re 20 uPa].
     frequency : float or None
         At which the shaft swings [Hz]; None where it turns.
     note : str
@@ -60,7 +60,6 @@ class ScreenPoint(NamedTuple):
     label: str
     regime: str = ""
     level: float | None = None
-    loudness: float | None = None
     how: str = ""
     frequency: float | None = None
     note: str = ""
@@ -71,7 +70,6 @@ class ScreenPoint(NamedTuple):
         parts = [f"{self.speed:.3g} rad/s, {self.interference:.3g} mm: {self.label}"]
         parts += [self.regime.replace("_", " ")] if self.regime else []
         parts += [f"{self.level:.0f} dB(A)"] if self.level is not None else []
-        parts += [f"N5 {self.loudness:.3g} sone"] if self.loudness is not None else []
         return ", ".join(parts)
 
 
@@ -171,7 +169,6 @@ def screen_maps(screening: Screening) -> list[ScreenMap]:
                     label=str(one.label[t, k, row, column]),
                     regime=str(one.regime[t, k, row, column]),
                     level=_known(float(one.level[t, k, row, column])),
-                    loudness=_known(float(one.loudness[t, k, row, column])),
                     how=str(one.how[t, k, row, column]),
                     frequency=grid.frequency[column] if grid.frequency else None,
                     note=str(one.note[t, k, row, column]),

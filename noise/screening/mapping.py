@@ -83,8 +83,6 @@ class DesignMap:
         Label of the sound of the vibration, and its name by the physics of the motion.
     level, level_max : ndarray, shape of the grid
         L_Aeq and L_AFmax [dB re 20 uPa]; NaN where the contact slides steadily.
-    loudness : ndarray, shape of the grid
-        N5 [sone]; NaN where it was not asked for.
     how : ndarray of str, shape of the grid
         Of `HOW`.
     growth : ndarray, shape of the grid
@@ -108,7 +106,6 @@ class DesignMap:
     physics: NDArray[np.str_]
     level: NDArray[np.float64]
     level_max: NDArray[np.float64]
-    loudness: NDArray[np.float64]
     how: NDArray[np.str_]
     growth: NDArray[np.float64]
     note: NDArray[np.object_]
@@ -219,7 +216,6 @@ def map_design(
         physics=np.array(LABELS)[physics],
         level=level,
         level_max=level_max,
-        loudness=np.full(shape, np.nan),
         how=np.select(
             [(refined.beyond | ~ran).reshape(shape), refined.simulated.reshape(shape)],
             [BEYOND, SIMULATED],
@@ -244,9 +240,7 @@ def _copied(mapped: DesignMap, *known_by: NDArray[np.int64]) -> DesignMap:
     """Repeat the rows of a map at all temperatures and fits that have the same results."""
     at = [np.unique(known, return_inverse=True)[1] for known in known_by]
     own = [known == np.arange(known.size) for known in known_by]
-    names = (
-        "regime", "label", "sound", "physics", "level", "level_max", "loudness", "how", "growth",
-    )  # fmt: skip
+    names = ("regime", "label", "sound", "physics", "level", "level_max", "how", "growth")
     copies: dict[str, Any] = {name: getattr(mapped, name)[at[0]][:, :, at[1]] for name in names}
     copied = ~(own[0][:, None, None, None] & own[1][:, None])
     copies["how"] = np.where(copied, UNCHANGED, copies["how"])

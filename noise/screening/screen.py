@@ -214,7 +214,6 @@ def screen(
     given: Use | None = None,
     *,
     environments: Sequence[str] = (DRY,),
-    loudness: bool = False,
     tolerances: bool | None = None,
     rng: np.random.Generator | None = None,
     change: Callable[[Rig], Rig] | None = None,
@@ -236,8 +235,6 @@ def screen(
         alone, only that is mapped.
     environments : sequence of str
         Of `noise.screening.environments`.
-    loudness : bool
-        Whether to compute loudness as well; needs the extra ``sound-quality``.
     tolerances : bool, optional
         Whether to analyse the tolerances of all designs, with assumed ones where they state none;
         by default only of those that state some. It takes several seconds per design.
@@ -278,10 +275,6 @@ def screen(
     if not designs:
         raise ParameterError("there is no design to screen")
     names = list(dict.fromkeys(environment(name).name for name in environments))
-    if loudness:
-        from features.sound_quality import check_available
-
-        check_available()
     loaded, refused, files = load_designs(designs, change)
     motions = shared_motions(list(loaded.values()), given)
     grids = {
@@ -307,10 +300,6 @@ def screen(
                     one = map_design(
                         rig, grid, evaluate, design=name, environment=where, most=simulations
                     )
-                    if loudness:
-                        from noise.screening.loudness import with_loudness
-
-                        one = with_loudness(one, rig)
                     if swinging is not None and len(motions) > _ONE_SWING:
                         degrees = math.degrees(swinging.amplitude)
                         one = replace(one, motion=f"swinging by {degrees:.4g} degrees")

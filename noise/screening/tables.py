@@ -116,7 +116,6 @@ _MAP: Columns = {
     "growth_1_s": lambda mapped, at: round(float(mapped.growth[at]), 3),
     "level_dba": lambda mapped, at: round(float(mapped.level[at]), 2),
     "l_afmax_dba": lambda mapped, at: round(float(mapped.level_max[at]), 2),
-    "loudness_n5_sone": lambda mapped, at: round(float(mapped.loudness[at]), 3),
     "how": lambda mapped, at: str(mapped.how[at]),
     "note": lambda mapped, at: mapped.note[at] or None,
 }

@@ -2,7 +2,6 @@
 
 import json
 import re
-import sys
 
 import numpy as np
 import pytest
@@ -140,18 +139,6 @@ def test_without_calibration_levels_are_told_re_full_scale(tmp_path, capsys):
     assert not {"level_db", "level_dba", "third_octaves_db"} & set(part)
     render(plain, "--out", out, "--full-scale", "4", "--pascal-per-full-scale", "8")
     assert np.abs(read_recording(out)["pressure"]).max() == pytest.approx(2.0, rel=1e-3)
-
-
-def test_sound_quality_is_told_with_the_extra_alone(tmp_path, capsys, monkeypatch):
-    pytest.importorskip("mosqito")
-    path, out = pressure_file(tmp_path / "tone", tone(rms=2e-3, seconds=0.5)), tmp_path / "s.wav"
-    render(path, "--sound-quality", "--out", out)
-    (part,) = sidecar(out)["parts"]
-    assert part["loudness_sone"] == pytest.approx(1.0, abs=0.05)
-    assert "sone" in capsys.readouterr().err
-    monkeypatch.setitem(sys.modules, "mosqito", None)
-    render(path, "--sound-quality", "--out", out, code=2)
-    assert 'pip install "bushing-noise[sound-quality]"' in capsys.readouterr().err
 
 
 def test_what_would_clip_is_refused_with_the_level_that_would_not(runs, tmp_path, capsys):

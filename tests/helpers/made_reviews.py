@@ -18,7 +18,7 @@ TONE = 997.0
 SCREEN_COLUMNS = (
     "design", "environment", "temperature_C", "speed_rad_s", "interference_mm",
     "support_stiffness_Nm_rad", "motion", "frequency_hz", "regime", "label", "level_dba",
-    "loudness_n5_sone", "how",
+    "how",
 )  # fmt: skip
 
 

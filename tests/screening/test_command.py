@@ -41,7 +41,7 @@ def test_maps_margins_ranking_and_pictures_are_written(tmp_path, capsys):
     assert set(points[0]) >= {
         "design", "environment", "temperature_C", "speed_rad_s", "interference_mm",
         "support_stiffness_Nm_rad", "regime", "label", "persists", "label_by_physics", "level_dba",
-        "loudness_n5_sone", "how",
+        "how",
     }  # fmt: skip
     quiet, loud = points[0], points[3]
     assert (quiet["design"], quiet["label"], quiet["level_dba"]) == ("PDMS", "none", "")
@@ -152,12 +152,6 @@ def test_what_fails_is_told_and_loses_nothing_else(tmp_path, capsys, monkeypatch
     last = rows(tmp_path / "designs.csv")[-1]
     assert (last["design"], last["rank"]) == ("fluorocarbon-thesis", "2")
     assert last["error"] == "advice: no fit"
-
-
-def test_loudness_without_its_extra_is_refused_before_the_work(monkeypatch, capsys):
-    monkeypatch.setitem(__import__("sys").modules, "mosqito", None)
-    assert main(["screen", "PDMS", *QUICK, "--loudness"]) == 2
-    assert "bushing-noise[sound-quality]" in capsys.readouterr().err
 
 
 def test_a_map_is_the_same_bytes_whatever_the_number_of_workers(tmp_path):

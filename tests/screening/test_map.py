@@ -12,7 +12,6 @@ from noise.noise_definition import LEAST_LEVEL
 from noise.screening.batches import batch_evaluator
 from noise.screening.design import Design, Swinging, Use
 from noise.screening.grid import shared_grid
-from noise.screening.loudness import with_loudness
 from noise.screening.mapping import map_design
 from noise.screening.point import evaluate_point
 from noise.screening.summary import summary_lines
@@ -182,16 +181,6 @@ def test_a_design_that_cannot_be_simulated_does_not_stop_the_others():
     assert [one.design for one in found.maps] == ["PDMS"]
     with pytest.raises(ParameterError, match="grows without bound"):
         quick_screen([Design("fast", fast)], use)
-
-
-def test_loudness_is_that_of_the_loudest_point_of_a_region():
-    pytest.importorskip("mosqito")
-    use = Use(speed=(9.0, 10.0), interference=(0.279e-3,), support_stiffness=(3745.0,))
-    found = with_loudness(mapped("fluorocarbon", use), FLUOROCARBON)
-    heard = found.loudness[0, 0, 0]
-    assert np.all((heard > 1.0) & (heard < 60.0))
-    difference = found.level_max[0, 0, 0, 1] - found.level_max[0, 0, 0, 0]
-    assert heard[1] / heard[0] == pytest.approx(2.0 ** (difference / 10.0))
 
 
 HELD = Design("held", load_material_rig("fluorocarbon-thesis").changed(critical_torque="x1000"))

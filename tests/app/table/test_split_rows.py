@@ -76,9 +76,9 @@ def test_a_split_segment_is_as_calibrated_as_its_table(tmp_path):
 
 def test_another_label_ends_what_was_inferred_by_the_one_before(tabled):
     inferred = {"speed_rad_s": 5.0, "speed_rad_s_low": 4.0, "speed_rad_s_high": 6.0}
-    inferred |= {"speed_rad_s_source": "inferred", "loudness_n5_sone": 7.5}
+    inferred |= {"speed_rad_s_source": "inferred", "snr_dba": 7.5}
     inferred["note"] = f"left door; conditions inferred {ASSUMED}"
     write_table(tabled / "labels.csv", COLUMNS, [row("a.wav", "creak", **inferred)])
     (found,) = correct(labels_of(tabled), 0, [Correction(0.0, 2.0, "none")])
     assert (found["speed_rad_s"], found["speed_rad_s_source"]) == (None, "missing")
-    assert (found["note"], found["loudness_n5_sone"]) == ("left door", 7.5)
+    assert (found["note"], found["snr_dba"]) == ("left door", 7.5)
