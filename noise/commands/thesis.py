@@ -43,10 +43,14 @@ def _write_table(out: Path | None) -> None:
             check_table_path(out)
         check_target(out)
     say("preparing")
-    from noise.thesis.page import thesis_page, verdict_counts
-    from noise.thesis.row import COLUMNS
     from noise.thesis.runs import constant_note
-    from noise.thesis.table import group_names, thesis_rows
+    from noise.thesis.table import (
+        COLUMNS,
+        group_names,
+        thesis_page,
+        thesis_rows,
+        verdict_counts,
+    )
 
     rows = thesis_rows(track(group_names(), "computing", unit="row group"))
     if out is not None and is_page:

@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from features.kernels.harmonics import analyse_harmonics
 from features.kernels.spectra import autospectrum
 from models.condition import Condition
 from models.drawing import BLUE, GREY, ORANGE, frequency_axis, levels, padded, styled, thinned
 from models.recording import Recording
 from noise.pictures.figure import KINDS, new_figure
-from noise.thesis.repetition import repetition_rate
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import motion_slips
 from sim.motion import Motion
@@ -95,8 +95,10 @@ def _cycles(motion: Motion) -> float | None:
     """Return the rate of slips or torque periods [Hz]; None without oscillation."""
     if motion.torque.size < _LEAST_SAMPLES or not oscillates(motion.torque):
         return None
-    repetition = repetition_rate(motion_slips(motion), motion.torque, motion.rate)
-    return None if math.isnan(repetition) else repetition
+    rate = motion_slips(motion).rate
+    if math.isnan(rate):
+        rate = analyse_harmonics(motion.torque, motion.rate).fundamental
+    return None if math.isnan(rate) else rate
 
 
 def oscillates(torque: NDArray[np.floating]) -> bool:

@@ -14,14 +14,16 @@ from functools import cache, lru_cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from features.kernels.harmonics import analyse_harmonics
 from features.kernels.lines import Lines, find_lines
 from features.kernels.spectra import autospectrum
+from models.bushing import Sleeve
 from models.condition import FIXED
 from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
+from models.structure.beams import beam_structure
 from noise.base.remarks import constant_remark
 from noise.thesis.listing import STEP, ListingRun, run_listing
-from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_damping import critical_damping, largest_sticking, with_damping
 from sim.analysis.critical_speeds import SPEEDS, CriticalSpeeds, critical_speeds
 from sim.analysis.regime import LEAST_OSCILLATION
@@ -177,7 +179,8 @@ def _strongest_line(run: Motion) -> float:
 
 def _cycle_frequency(run: Motion) -> float:
     """Return slips a second, or periods of the torque where nothing slips [Hz]."""
-    return repetition_rate(motion_slips(run), run.torque, run.rate)
+    slips = motion_slips(run).rate
+    return analyse_harmonics(run.torque, run.rate).fundamental if math.isnan(slips) else slips
 
 
 def _third_over_second(run: Motion) -> float:
@@ -239,16 +242,47 @@ def _torsional_mode(material: str, case: Case, *, stuck: bool) -> float:
     return float(lumped.natural_frequencies(stuck=stuck)[0])
 
 
+def _effective_stiffness(material: str, case: Case) -> float:
+    """Return the stiffness of a bushing and its support in series (5.2) [Nm/rad]."""
+    stiffness = rig_of(material).fit(case.interference).elastomer_stiffness
+    return 1.0 / (1.0 / case.support_stiffness + 1.0 / stiffness)
+
+
+def _sleeve(material: str) -> Sleeve:
+    sleeve = rig_of(material).sleeve
+    assert sleeve is not None  # the shipped bench states it
+    return sleeve
+
+
+_BEAM_MODES = (250, 310, 900, 1375, 4500, 6000)
+"""Measured with beams (5.2.2) [Hz]."""
+
+
+def _beam_mode(material: str, case: Case, *, measured: float) -> float:
+    """Return the mode of clamp and beams that is nearest to a measured one [Hz]."""
+    rig = rig_of(material)
+    modes = beam_structure(
+        rig.beams, case.support_stiffness, rig.clamp_inertia, 0.01, 1.3 * measured
+    ).frequencies
+    return float(modes[np.abs(np.log(modes / measured)).argmin()])
+
+
 QUANTITIES: dict[str, Quantity] = {
     "acceleration": _recorded(lambda run: float(np.std(run.recording["acceleration"]))),
     "critical_damping": _critical_damping,
+    **{f"beam_mode_{mode}": partial(_beam_mode, measured=mode) for mode in _BEAM_MODES},
     "cycle_frequency": _of_motion(_cycle_frequency, steady=math.nan),
+    "effective_stiffness": _effective_stiffness,
     "first_peak_speed": _first_peak_speed,
     "mean_torque": _of_motion(lambda run: run.torque.mean()),
     "oscillation": _of_motion(_oscillation),
     "peak_pressure": _recorded(lambda run: np.abs(run.pressure).max()),
     "peak_speed": lambda material, case: float(motion(material, case).sliding_speed.max()),
     "quasi_harmonic_range": lambda *at: _speeds(*at).v_crit2 - _speeds(*at).v_crit1,
+    # With one coefficient of friction the torque goes with the pressure by Lame. Wall and hardness
+    # of the sleeve are chosen for the stiffness at 0.279 mm; no interference changes that.
+    "sleeve_pressure": lambda material, case: _sleeve(material).pressure(case.interference),
+    "sleeve_stiffness": lambda material, _: _sleeve(material).torsional_stiffness,
     "slip_frequency": _of_motion(lambda run: motion_slips(run).rate, steady=math.nan),
     "slip_pattern": _of_motion(lambda run: motion_slips(run).pattern or math.nan),
     "strongest_harmonic": _of_motion(

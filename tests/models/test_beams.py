@@ -25,7 +25,7 @@ from models.structure.beams import (
     rigid_clamp_inertia,
     torsional_stiffness,
 )
-from noise.thesis.exact_beams import (
+from tests.helpers.exact_beams import (
     ClampOnBeams,
     RootMotion,
     boundary_conditions,

@@ -15,15 +15,13 @@ import pytest
 
 from models.rig_file import load_material_rig
 from noise.cli import main
-from noise.thesis import page, row, table
-from noise.thesis.formulas import fixed_free_frequencies, free_free_frequencies
-from noise.thesis.heat import RUBBER, temperature_rise
-from noise.thesis.repetition import repetition_rate
+from noise.thesis import table
+from noise.thesis.runs import rig_of
 from noise.thesis.table import reasons
 from sim.analysis.critical_damping import critical_damping
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import Regime, friction_regime
-from sim.analysis.slips import find_slips
+from tests.helpers.exact_beams import ClampOnBeams, RootMotion, natural_frequencies
 
 PAGE = Path(__file__).parents[1] / "thesis.md"
 STALE = "tests/thesis.md is stale; run: bushing-noise thesis --out tests/thesis.md"
@@ -48,7 +46,7 @@ def computed_rows():
 @pytest.mark.ci
 @pytest.mark.slow
 def test_the_page_is_what_the_program_writes(computed_rows):
-    assert PAGE.read_text(encoding="utf-8") == page.thesis_page(computed_rows), STALE
+    assert PAGE.read_text(encoding="utf-8") == table.thesis_page(computed_rows), STALE
 
 
 @pytest.mark.ci
@@ -172,8 +170,8 @@ def test_what_parameters_were_chosen_for_says_so_and_is_counted_apart():
 
 
 def test_what_was_measured_and_missed_is_counted():
-    ten = row.number(10.0)
-    missed = row.Row("x", "y", "Hz", ten, exact=10.0, calibrated=20.0, measured=True)
+    ten = table.number(10.0)
+    missed = table.Row("x", "y", "Hz", ten, exact=10.0, calibrated=20.0, measured=True)
     assert missed.misses
     assert not replace(missed, measured=False).misses
     assert not replace(missed, calibrated=11.0).misses
@@ -182,7 +180,7 @@ def test_what_was_measured_and_missed_is_counted():
     nothing = replace(missed, exact=20.0, calibrated=np.nan)
     assert not nothing.misses
     rows = [missed, replace(missed, in_sample=True), formula, nothing]
-    assert page.measured_counts(rows) == (
+    assert table.measured_counts(rows) == (
         "Measured: 2 facts, of which 1 out of sample; more than 25 % off 2, of which 1 out of "
         "sample; not checkable 1."
     )
@@ -192,21 +190,21 @@ def test_what_was_measured_and_missed_is_counted():
 
 
 def given(published, exact, **about):
-    return row.Row("x", "y", "1", published, exact=exact, **about).verdict
+    return table.Row("x", "y", "1", published, exact=exact, **about).verdict
 
 
 def test_a_verdict_follows_from_the_distance_alone():
-    ten = row.number(10.0)
+    ten = table.number(10.0)
     assert [given(ten, v) for v in (10.05, 10.3, 12.4, 13.0, np.nan)] == [
         "holds", "off by 3.0 %", "off by 24 %", "fails", "not checkable",
     ]  # fmt: skip
-    assert given(row.Published("> 13", 13.0, np.inf), np.inf, limit=13.0) == "holds"
-    assert given(row.Published("< 250", -np.inf, 250.0), 368.0, measured=True) == "refuted"
+    assert given(table.Published("> 13", 13.0, np.inf), np.inf, limit=13.0) == "holds"
+    assert given(table.Published("< 250", -np.inf, 250.0), 368.0, measured=True) == "refuted"
 
 
 def test_a_calibrated_rig_that_misses_a_measurement_is_told_even_if_the_equations_meet_it():
     missed = replace(
-        row.Row("x", "y", "Hz", row.number(155.0), exact=153.1, tolerance=0.02, measured=True),
+        table.Row("x", "y", "Hz", table.number(155.0), exact=153.1, tolerance=0.02, measured=True),
         calibrated=85.0,
     )
     assert missed.verdict == "holds; calibrated fails"
@@ -215,23 +213,8 @@ def test_a_calibrated_rig_that_misses_a_measurement_is_told_even_if_the_equation
 
 
 def test_a_misprint_needs_the_corrected_number_to_hold():
-    assert given(row.number(0.7599), 0.07598, meant=row.number(0.07599)) == "misprint"
-    assert given(row.number(0.7599), 0.0781, meant=row.number(0.07599)) == "fails"
-
-
-# Repetition
-
-
-def test_a_torque_repeats_at_its_slips_or_its_period_or_not_at_all():
-    t = np.arange(30_000) / 30e3
-    for torque, wanted in (
-        (8.0 + 3.0 * ((150.0 * t) % 1.0), 150.0),
-        (8.0 + np.sin(2 * np.pi * 90.0 * t), 90.0),
-        (np.full(30_000, 8.0), np.nan),
-    ):
-        slips = find_slips(torque / 665.0, 2.0, 30e3, own_period=1e-3)
-        found = repetition_rate(slips, torque, 30e3)
-        assert found == pytest.approx(wanted, rel=0.01, nan_ok=True)
+    assert given(table.number(0.7599), 0.07598, meant=table.number(0.07599)) == "misprint"
+    assert given(table.number(0.7599), 0.0781, meant=table.number(0.07599)) == "fails"
 
 
 # The command
@@ -289,20 +272,66 @@ def test_critical_damping_of_the_equations_is_0_0781():
     assert found == pytest.approx(0.07810, abs=2e-5)
 
 
-# Heat and shaft
+# Arithmetic on the thesis's own numbers, which is data
 
 
-def test_a_half_space_obeys_the_heat_equation():
-    x, t, h, dt = 2e-4, 0.2, 2e-6, 1e-4
-    at = [temperature_rise(RUBBER, 1e4, t, x + i * h) for i in (-1, 0, 1)]
-    in_time = [temperature_rise(RUBBER, 1e4, t + s * dt, x) for s in (-1, 1)]
-    rate = (in_time[1] - in_time[0]) / (2 * dt)
-    assert rate == pytest.approx(RUBBER.diffusivity * (at[0] - 2 * at[1] + at[2]) / h**2, rel=1e-3)
+def stored(item, column="exact"):
+    rows = [one for one in table.thesis_rows(STORED) if one.item == item]
+    return [getattr(one, column) for one in rows]
 
 
-def test_a_shaft_with_a_small_end_inertia_is_a_quarter_wave_and_with_a_large_one_a_pendulum():
-    transit = 1 / 16262
-    assert fixed_free_frequencies(transit, 1e9)[0] == pytest.approx(0.25 / transit, rel=1e-6)
-    slow = fixed_free_frequencies(transit, 1e-6)
-    assert slow[0] == pytest.approx(1e-3 / (2 * np.pi * transit), rel=1e-3)
-    assert slow[1] == pytest.approx(free_free_frequencies(transit)[0], rel=1e-5)
+STORED = ("potentiometer", "torque_cell", "shaft", "beam_modes", "heating")
+
+
+def test_calibrations_are_the_regressions_of_the_printed_tables():
+    volts = [0.0020, 0.0511, 0.0777, 0.1035, 0.1581, 0.2140, 0.2410, 0.3161]  # Table B1
+    meant, printed = (0, 2, 3, 4, 6, 8, 9, 12), (2, 3, 4, 6, 8, 9, 10, 12)
+    for column, twelfths in (("exact", meant), ("as_printed", printed)):
+        slope, offset = np.polyfit(np.pi / 12.0 * np.array(twelfths), volts, 1)
+        assert stored("potentiometer_slope", column) == pytest.approx([slope])
+        assert stored("potentiometer_offset", column) == pytest.approx([offset])
+    down = [-483, -426, -361, -302, -240, -183, -120, -63, 0]  # Table C1 [mV]
+    up = [0, 63, 121, 184, 243, 306, 365, 428, 488]
+    torque = 5.0 * np.arange(9)
+    slopes = [np.polyfit(torque, up, 1)[0], np.polyfit(torque - 40.0, down, 1)[0]]
+    assert stored("torque_cell_slope") == pytest.approx(slopes)
+    assert stored("torque_cell_gain") == pytest.approx([1e3 / slopes[0]])
+
+
+def test_modes_of_the_shaft_follow_from_two_numbers():
+    fixed = np.array(stored("shaft_torsion")[:3]) * 2.0 * np.pi / 16262  # (A14), (A20)
+    assert fixed * np.tan(fixed) == pytest.approx(0.4201, rel=1e-4)
+    assert stored("shaft_torsion")[3:] == pytest.approx([8131.0, 16262.0, 24393.0])
+
+
+def test_modes_of_the_beams_between_rigid_anchors_are_the_exact_ones():
+    beams = replace(rig_of("fluorocarbon-thesis").beams, anchor_rotation=np.inf,
+                    anchor_translation=np.inf)  # fmt: skip
+    lateral = 3500.0 * 4.4482216 / 0.0254  # lb/in
+    long, short = (
+        {
+            motion: natural_frequencies(
+                ClampOnBeams(beams, length, 0.96, 1 / 1050, lateral, 750.0), 6e3, motion
+            )
+            for motion in RootMotion
+        }
+        for length in (0.123, 0.092)
+    )
+    turning, sideways = RootMotion.TURNING, RootMotion.SIDEWAYS
+    assert stored("beam_mode") == pytest.approx([
+        long[sideways][0], short[turning][1], long[turning][0], short[turning][0],
+        long[sideways][1], short[sideways][1], long[sideways][3], long[turning][3],
+    ])  # fmt: skip
+
+
+def test_heat_divides_such_that_shaft_and_rubber_are_equally_warm():
+    (steel, k_steel), (rubber, k_rubber) = (3.95e-6, 14.9), (6.69e-8, 0.16)  # Table G1
+    flux, seconds = 300.0 / 7.69e-4, 0.23
+    rise = [2.0 / k * np.sqrt(d * seconds / np.pi)
+            for d, k in ((steel, k_steel), (rubber, k_rubber))]  # fmt: skip
+    shares = np.array(rise[::-1]) / sum(rise)
+    assert stored("heat_share") == pytest.approx(100.0 * shares)
+    assert stored("temperature_rise")[0] == pytest.approx(flux * shares[0] * rise[0])
+    painted = rise[0] + 50e-6 / 0.2
+    ratio = painted * sum(rise) / rise[0] / (painted + rise[1])
+    assert stored("temperature_rise")[2] == pytest.approx(26.0 * ratio)

@@ -234,7 +234,6 @@ def natural_frequencies(
 
     Examples
     --------
-    >>> from noise.thesis.exact_beams import ClampOnBeams
     >>> from models.bench import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
     >>> rig = ClampOnBeams(steel, 0.123, 0.96, 1 / 1050, 6.13e5, 750.0)
