@@ -73,7 +73,6 @@ def calls() -> list[str]:
         "demo --out demo",
         "label runs --out runs-labels.csv",
         "features runs --out runs-features.csv",
-        "features demo/recordings --windows --out demo-windows.csv",
         "render runs/00.wav runs/01.wav --out set",
         "render runs/00.wav runs/01.wav --ab --out ab.wav",
         "frf demo/hits --arm 0.05 --out frf.npz --modes modes.csv",

@@ -1,8 +1,8 @@
 """Batch work on recordings: find them, process them in parallel and collect the rows.
 
 `Work` is a small object that can be pickled. Its results are plain numbers and texts in the order
-of the columns, so they are identical whether they were computed in this process, in another one, on
-a cluster, or read from a journal.
+of the columns, so they are identical whether they were computed in this process, in another one,
+or read from a journal.
 
 Linear algebra runs on one thread, because several threads sum in another order and round otherwise.
 """
@@ -181,7 +181,6 @@ def perform_all(
     journal: Journal,
     *,
     workers: int = 1,
-    scheduler: str | None = None,
 ) -> Generator[tuple[Job, JobResult]]:
     """Process recordings and store each result in the journal.
 
@@ -193,8 +192,6 @@ def perform_all(
     journal : Journal
     workers : int
         Number of processes; 1 is this process alone.
-    scheduler : str, optional
-        Address of a Dask cluster to use instead.
 
     Yields
     ------
@@ -205,13 +202,13 @@ def perform_all(
     Raises
     ------
     ParameterError
-        The cluster cannot be used, or the journal cannot be written.
+        The journal cannot be written.
     """
     if not jobs:
         return
     # The identity is taken before the content is read, which may change in between.
     identities = [file_identity(job.path) for job in jobs]
-    with closing(_results(work, jobs, workers, scheduler)) as results:
+    with closing(_results(work, jobs, workers)) as results:
         for index, result in results:
             job = jobs[index]
             result = refusal(work, job.name, DIED) if result is None else result
@@ -220,16 +217,11 @@ def perform_all(
 
 
 def _results(
-    work: Work, jobs: Sequence[Job], workers: int, scheduler: str | None
+    work: Work, jobs: Sequence[Job], workers: int
 ) -> Generator[tuple[int, JobResult | None]]:
     """Yield index and result of each recording as it completes; None if the workers died."""
     calls = [(work, str(job.path), str(job.path.absolute()), job.name) for job in jobs]
-    if scheduler is not None:
-        from noise.batch.cluster import cluster
-
-        with cluster(scheduler) as spread:
-            yield from spread(_perform_elsewhere, calls)
-    elif workers > 1:
+    if workers > 1:
         yield from spread_over_processes(_perform_elsewhere, calls, workers)
     else:
         with one_thread():

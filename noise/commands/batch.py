@@ -8,21 +8,19 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import BushingNoiseError, ParameterError
-from noise.base.files import check_target, export_paths, locked
+from noise.base.files import check_target, locked
 from noise.base.progress import counted, note, report, say, track
 from noise.base.tables import check_table_path, write_table
-from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_number
+from noise.commands.options import MOST_WORKERS, Option, refuse, whole_number
 
 if TYPE_CHECKING:
     from noise.batch.journal import Journal
     from noise.batch.work import BatchRows, Job, JobResult, Work
-    from noise.recordings.interpretation import PascalPerFullScale
 
     Rows = Iterable[dict[str, object]]
 
@@ -34,10 +32,7 @@ BATCH = (
     Option("paths PATH", Path, count="+"),
     Option("--out TABLE", Path),
     Option("--fresh"),
-    OneOf(
-        Option("--workers N", whole_number(1, most=MOST_WORKERS), 1),
-        Option("--scheduler ADDRESS", str),
-    ),
+    Option("--workers N", whole_number(1, most=MOST_WORKERS), 1),
 )
 
 
@@ -45,10 +40,6 @@ def check_batch(options: Namespace) -> None:
     """Refuse unusable options of a batch before the work."""
     check_table_path(options.out)
     check_target(options.out)
-    if options.scheduler is not None:
-        from noise.batch.cluster import check_cluster
-
-        check_cluster()
 
 
 def run_batch(
@@ -81,7 +72,7 @@ def run_batch(
     Raises
     ------
     ParameterError
-        The table cannot be written, or the cluster cannot be used.
+        The table cannot be written.
     """
     from noise.batch.journal import open_journal
     from noise.batch.work import BatchRows
@@ -149,10 +140,7 @@ def _results(
         say(f"{number} of {counted(len(jobs), 'recording')} are done already")
     if not remaining:
         return
-    results = perform_all(
-        work, remaining, journal, workers=options.workers, scheduler=options.scheduler
-    )
-    with closing(results):
+    with closing(perform_all(work, remaining, journal, workers=options.workers)) as results:
         yield from track(results, work.doing, total=len(remaining))
 
 
@@ -164,72 +152,3 @@ def _note_uncalibrated(results: Iterable[JobResult]) -> None:
             f"{counted(number, 'recording')} without calibration: levels in dBFS only "
             "(--calibrator or --full-scale gives one)"
         )
-
-
-_LONGEST = 600.0
-"""Longest picture [s]; longer recordings are drawn up to this time."""
-
-
-PLOT = Option("--plot FOLDER|PICTURE", Path)
-
-
-def check_plots(target: Path | None, jobs: Sequence[Job]) -> None:
-    """Refuse pictures that cannot be written, before the work.
-
-    Raises
-    ------
-    ParameterError
-        There are several recordings for one picture or two with the same name, or the target
-        cannot be written.
-    """
-    if target is None:
-        return
-    from noise.pictures.figure import PICTURE_ENDINGS
-
-    paths = export_paths(target, [job.name for job in jobs], PICTURE_ENDINGS, "--plot")
-    if target.is_file() and target.suffix.lower() not in PICTURE_ENDINGS:
-        raise ParameterError(f"--plot {target}: is a file; name a folder or a picture")
-    check_target(next(iter(paths.values())), "--plot")
-
-
-def draw_recordings(
-    target: Path | None,
-    jobs: Sequence[Job],
-    rows: Sequence[Mapping[str, object]] = (),
-    *,
-    full_scale: PascalPerFullScale | None = None,
-) -> list[Path]:
-    """Draw recordings with their labels and return the paths of the pictures.
-
-    Parameters
-    ----------
-    target : Path or None
-        Folder, or picture of a single recording; None draws nothing.
-    jobs : sequence of Job
-    rows : sequence of mapping
-        Rows of the label table.
-    full_scale : float or tuple of float, optional
-        Pressure of a full-scale sample [Pa], as for `noise.recordings.read_recording`.
-    """
-    if target is None:
-        return []
-    from noise.pictures.figure import PICTURE_ENDINGS, write_picture
-    from noise.pictures.recording import plot_recording
-    from noise.recordings.files import open_blocks
-
-    paths = export_paths(target, [job.name for job in jobs], PICTURE_ENDINGS, "--plot")
-    refused = {row.get("file") for row in rows if row.get("error")}
-    written = []
-    for job in track(jobs, "drawing"):
-        if job.name in refused:
-            continue
-        try:
-            with open_blocks(job.path, full_scale=full_scale) as blocks:
-                start = blocks.part(0, round(_LONGEST * blocks.rate))
-                own_rows = [row for row in rows if row.get("file") == job.name]
-                write_picture(paths[job.name], plot_recording(start, own_rows))
-        except BushingNoiseError as error:
-            note(f"{job.name} is not drawn: {error}")
-            continue
-        written.append(paths[job.name])
-    return written

@@ -16,7 +16,7 @@ from noise.base.files import check_target, export_paths, locked
 from noise.base.labels import SURROUNDINGS
 from noise.base.progress import counted, note, report
 from noise.base.tables import TABLE_ENDINGS, write_table
-from noise.commands.batch import BATCH, PLOT, check_batch, check_plots, draw_recordings, run_batch
+from noise.commands.batch import BATCH, check_batch, run_batch
 from noise.commands.options import CALIBRATION, Option, full_scale_of, number, one_of
 
 if TYPE_CHECKING:
@@ -32,7 +32,6 @@ OPTIONS = (
     Option("--surroundings rig|car|any", one_of(*SURROUNDINGS)),
     Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0),
     Option("--inference FILE.npz", Path),
-    PLOT,
     *CALIBRATION,
 )
 
@@ -48,7 +47,6 @@ def run(options: Namespace) -> int:
     jobs = find_jobs(options.paths)
     if options.audacity is not None:
         export_paths(options.audacity, [job.name for job in jobs], (".txt",), "--audacity")
-    check_plots(options.plot, jobs)
     from noise.labels.corrections import sign_corrections, with_corrections
     from noise.labels.labelling import Labelling
     from noise.labels.summary import result_lines
@@ -63,14 +61,11 @@ def run(options: Namespace) -> int:
         rows = list(rows)
         _note_assumed(rows)
         _note_speeds(rows)
-        drawn = draw_recordings(options.plot, jobs, rows, full_scale=work.full_scale)
-        return [*_export(options, rows), *drawn]
+        return _export(options, rows)
 
-    models = (options.classifier, options.inference)
-    if options.scheduler is not None:  # the workers have other working folders
-        models = tuple(path and path.absolute() for path in models)
     work = Labelling(
-        *models,
+        options.classifier,
+        options.inference,
         full_scale=full_scale_of(options),
         sensitivity=options.sensitivity,
         surroundings=options.surroundings,
@@ -148,8 +143,6 @@ def _from_tables(options: Namespace) -> int:
         raise ParameterError(
             f"{options.paths[0]}: is a table; say what to make of it with --map or --audacity"
         )
-    if options.plot is not None:
-        raise ParameterError("--plot draws recordings; name them in place of the table")
     rows = [row for path in options.paths for row in read_label_table(path)]
     if options.out is not None:
         with locked(options.out):

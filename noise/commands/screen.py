@@ -60,10 +60,7 @@ OPTIONS = (
         Option("--no-tolerances"),
     ),
     Option("--simulations N", _simulations),
-    OneOf(
-        Option("--workers N", whole_number(1, most=MOST_WORKERS), -1),
-        Option("--scheduler ADDRESS", str),
-    ),
+    Option("--workers N", whole_number(1, most=MOST_WORKERS), -1),
 )
 
 
@@ -120,7 +117,6 @@ def _screening(
         change=_change(options),
         simulations=None if math.isinf(simulations) else int(simulations),
         workers=options.workers,
-        scheduler=options.scheduler,
         progress=say,
         advance=bar.at,
         journal=journal,

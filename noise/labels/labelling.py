@@ -1,4 +1,4 @@
-"""Labelling of many recordings, also in several processes or on a cluster."""
+"""Labelling of many recordings, also in several processes."""
 
 from __future__ import annotations
 
@@ -38,7 +38,6 @@ def label(
     out: str | Path | None = None,
     fresh: bool = False,
     workers: int = 1,
-    scheduler: str | None = None,
 ) -> LabelTable:
     """Label recordings; a file that cannot be read is a row with the reason.
 
@@ -62,8 +61,6 @@ def label(
     workers : int
         Number of processes; with more than one, a script needs
         ``if __name__ == "__main__":`` around the call.
-    scheduler : str, optional
-        Address of a Dask cluster to use instead.
 
     Returns
     -------
@@ -73,8 +70,8 @@ def label(
     Raises
     ------
     ParameterError
-        A path does not exist, there are no recordings, a model or the cluster cannot be used,
-        or the table cannot be written, or cannot be read and may have corrections in it.
+        A path does not exist, there are no recordings, a model cannot be used, or the table cannot
+        be written, or cannot be read and may have corrections in it.
 
     Examples
     --------
@@ -109,8 +106,7 @@ def label(
     with open_journal(None if out is None else Path(out), work, fresh=fresh) as journal:
         refused: dict[int, JobResult] = {}
         left = [job for job in jobs if journal.find(job) is None]
-        performed = perform_all(work, left, journal, workers=workers, scheduler=scheduler)
-        with closing(performed):
+        with closing(perform_all(work, left, journal, workers=workers)) as performed:
             for job, done in performed:
                 if done.error is not None:
                     refused[job.index] = done

@@ -72,7 +72,7 @@ class Entry:
     calibrated : bool
     fast_levels : tuple of 2 ndarrays, shape (n,), optional
         Time [s] and A-weighted level, Fast [dB], where they were measured before the sound was
-        faded and resampled, as by `noise.pictures.recording.recorded_levels`.
+        faded and resampled, as by `noise.audio.spectrogram.recorded_levels`.
     note : str
         Where the labels come from, or why there is no sound.
     """

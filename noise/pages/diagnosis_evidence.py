@@ -22,6 +22,7 @@ from features.kernels.spectra import autospectrum
 from models.drawing import BLUE, VERMILION, padded, styled, thinned
 from models.recording import Recording
 from noise.audio.sound import audible
+from noise.audio.spectrogram import recorded_levels
 from noise.diagnosis.outcome import ROLES, Illustration
 from noise.diagnosis.text.words import number
 from noise.pages import blocks as b
@@ -29,7 +30,6 @@ from noise.pages.cards import facts_of
 from noise.pages.clips import RATE, Clip, Entry, common_gain, make_clips
 from noise.pages.figures import COLUMNS, LEAD, Line, Panel, cycle_window, lines_panel
 from noise.pictures.figure import KINDS
-from noise.pictures.recording import recorded_levels
 
 if TYPE_CHECKING:
     from noise.diagnosis.evidence.contact_summary import FrictionCurves

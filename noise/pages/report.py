@@ -13,13 +13,13 @@ from models.errors import ParameterError
 from models.recording import Recording
 from models.show import short_repr
 from noise.audio.sound import audible
+from noise.audio.spectrogram import recorded_levels
 from noise.labels.rows import label_rows
 from noise.pages import blocks as b
 from noise.pages.cards import facts_of
 from noise.pages.clips import RATE, Entry, common_gain, labels_sentence, make_clips
 from noise.pages.figures import recording_panels
 from noise.pages.page import page_html, write_page
-from noise.pictures.recording import recorded_levels
 
 if TYPE_CHECKING:
     from noise.labels.segments import Segment

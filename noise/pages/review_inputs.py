@@ -21,6 +21,7 @@ from models.errors import BushingNoiseError, ParameterError
 from models.recording import Recording
 from models.show import short_repr
 from noise.audio.sound import LOWEST_AUDIBLE_RATE, audible
+from noise.audio.spectrogram import recorded_levels
 from noise.base.progress import readable, track
 from noise.base.tables import TABLE_ENDINGS, table_columns
 from noise.classifier import Classifier, load_classifier
@@ -28,7 +29,6 @@ from noise.labels.rows import label_rows
 from noise.labels.segments import label_recording
 from noise.labels.table import read_label_table
 from noise.pages.clips import BYTES_A_SECOND, RATE, SHORTEST, Entry, FastLevels, Row, stretch_start
-from noise.pictures.recording import recorded_levels
 from noise.recordings import find_recordings
 from noise.recordings.files import open_blocks
 from noise.recordings.folders import files_below, is_file

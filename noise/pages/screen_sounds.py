@@ -23,12 +23,12 @@ from features.kernels.level_meter import a_weighted_level
 from models.errors import BushingNoiseError
 from models.rig import Rig
 from noise.audio.sound import audible
+from noise.audio.spectrogram import recorded_levels
 from noise.base.labels import LABELS, PERSISTS
 from noise.base.progress import track
 from noise.batch.work import one_thread
 from noise.pages.clips import RATE, Entry
 from noise.pictures.figure import support_words
-from noise.pictures.recording import recorded_levels
 from noise.screening.point import swing
 from sim.acquisition import Acquisition
 from sim.run import simulate

@@ -1,4 +1,4 @@
-"""Evaluation of batches of map points, on all cores or on a cluster.
+"""Evaluation of batches of map points, on all cores.
 
 A batch is points of one rig in one environment. It is cut into rows that differ in speed alone,
 which are independent, so that the numbers are the same whoever simulates them.
@@ -8,15 +8,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import astuple
-from typing import Any
 
 from joblib import Parallel, delayed, hash as digest
 
-from models.errors import BushingNoiseError, ParameterError
 from models.rig import Rig
-from noise.batch.cluster import cluster
 from noise.batch.journal import Journal
 from noise.batch.work import one_thread
 from noise.screening.point import PointResult, evaluate_row
@@ -26,15 +23,10 @@ from sim.analysis.regime import Regime
 Evaluator = Callable[[Rig, Sequence[Condition]], list[PointResult]]
 """Returns what is known of each point of a rig."""
 
-_DIED = "the workers of the cluster that simulated it died; do they have enough memory?"
-
 
 @contextmanager
 def batch_evaluator(
-    *,
-    workers: int = -1,
-    scheduler: str | None = None,
-    advance: Callable[[int], None] = lambda _: None,
+    *, workers: int = -1, advance: Callable[[int], None] = lambda _: None
 ) -> Iterator[Evaluator]:
     """Yield a function that simulates batches.
 
@@ -42,8 +34,6 @@ def batch_evaluator(
     ----------
     workers : int
         Threads; -1 is one a core.
-    scheduler : str, optional
-        Address of a Dask cluster that does it instead.
     advance : callable
         Is called with the number of points that were simulated since.
 
@@ -55,7 +45,7 @@ def batch_evaluator(
     Raises
     ------
     ParameterError
-        The cluster cannot be used, or a condition cannot be simulated.
+        A condition cannot be simulated.
 
     Examples
     --------
@@ -66,33 +56,18 @@ def batch_evaluator(
     'none'
     """
 
-    def on_threads(perform: Callable[..., Any], calls: list[Any]) -> Iterator[tuple[int, Any]]:
+    def evaluate(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
+        rows = _rows(points)
         work = Parallel(n_jobs=workers, prefer="threads", batch_size=1, return_as="generator")
+        results: dict[Condition, PointResult] = {}
         with one_thread():
-            yield from enumerate(work(delayed(perform)(*call) for call in calls))
-
-    with nullcontext(on_threads) if scheduler is None else cluster(scheduler) as spread:
-
-        def evaluate(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
-            rows = _rows(points)
-            results: dict[Condition, PointResult] = {}
-            for index, row in spread(_evaluate, [(rig, row) for row in rows]):
-                if not isinstance(row, list):
-                    raise ParameterError(row or _DIED)
-                results |= zip(rows[index], row, strict=True)
+            of_rows = work(delayed(evaluate_row)(rig, row) for row in rows)
+            for row, known in zip(rows, of_rows, strict=True):
+                results |= zip(row, known, strict=True)
                 advance(len(row))
-            return [results[at] for at in points]
+        return [results[at] for at in points]
 
-        yield evaluate
-
-
-def _evaluate(rig: Rig, row: list[Condition]) -> list[PointResult] | str:
-    """Return the results of a row, or why it cannot be simulated."""
-    try:
-        with one_thread():
-            return evaluate_row(rig, row)
-    except BushingNoiseError as error:
-        return str(error)
+    yield evaluate
 
 
 def _rows(points: Sequence[Condition]) -> list[list[Condition]]:

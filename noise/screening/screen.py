@@ -219,7 +219,6 @@ def screen(
     change: Callable[[Rig], Rig] | None = None,
     simulations: int | None = DEFAULT_SIMULATIONS,
     workers: int = -1,
-    scheduler: str | None = None,
     progress: Callable[[str], None] = lambda _: None,
     advance: Callable[[float], None] = lambda _: None,
     journal: Journal | None = None,
@@ -246,8 +245,6 @@ def screen(
         Of a map, more or less; None follows every boundary to the end.
     workers : int
         Threads; -1 is one a core.
-    scheduler : str, optional
-        Address of a Dask cluster that simulates the maps instead.
     progress : callable
         Is called with the name of each piece of work.
     advance : callable
@@ -285,7 +282,7 @@ def screen(
     work = _Work(advance, len(loaded) * len(grids), simulations or DEFAULT_SIMULATIONS)
     maps: list[DesignMap] = []
     notes: dict[tuple[str, str], list[str]] = {}
-    with batch_evaluator(workers=workers, scheduler=scheduler, advance=work.add) as evaluate:
+    with batch_evaluator(workers=workers, advance=work.add) as evaluate:
         if journal is not None:
             evaluate = keeping(evaluate, journal)
         for name, design in loaded.items():

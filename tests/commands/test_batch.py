@@ -12,15 +12,10 @@ import pytest
 import soundfile
 
 from features import recording_feature_names
-from models.blocks import RecordingBlocks
 from models.condition import Condition
-from models.recording import Channel, Recording
-from noise.classifier import load_classifier
 from noise.cli import main
 from noise.labels.summary import result_lines
 from noise.labels.table import COLUMNS, LabelTable, read_label_table
-from noise.labels.windows import FEATURE_NAMES, window_features
-from noise.recordings import read_recording, write_recording
 from tests.helpers.files import csv_rows, pressure_file
 
 
@@ -36,11 +31,9 @@ def runs(tmp_path, monkeypatch):
 
 
 def test_features_name_the_bad_file_in_the_table_and_go_on(runs, capsys):
-    assert main(["features", "runs", "./runs/a.wav", "--out", "new/f.csv", "--plot", "plots"]) == 1
+    assert main(["features", "runs", "./runs/a.wav", "--out", "new/f.csv"]) == 1
     out, err = capsys.readouterr()
-    plots = [f"{Path('plots') / name}.png" for name in "ac"]
-    assert out.splitlines() == [f"{Path('new/f.csv')}", *plots]
-    assert all(Path(plot).read_bytes().startswith(b"\x89PNG") for plot in plots)
+    assert out.splitlines() == [f"{Path('new/f.csv')}"]
     assert f"refused: {Path('runs/b.wav')}: is damaged or no sound file" in err
     assert "3 recordings, 1 refused" in err
     rows = csv_rows("new/f.csv")
@@ -48,27 +41,6 @@ def test_features_name_the_bad_file_in_the_table_and_go_on(runs, capsys):
     assert list(rows[0]) == ["file", *recording_feature_names(), "error"]
     assert [bool(row["error"]) for row in rows] == [False, True, False]
     assert [bool(row["pressure_level"]) for row in rows] == [True, False, True]
-
-
-def test_windows_are_listed_as_the_classifier_is_given_them(runs, capsys):
-    two = 0.1 * np.random.default_rng(0).normal(size=(48_000, 2))
-    soundfile.write("runs/two.wav", two, 48_000, subtype="FLOAT")
-    write_recording(Path("runs/turning"), Recording(np.zeros((1, 4800)), 48e3, (Channel("angle"),)))
-    assert main(["features", "runs", "--windows", "--out", "windows.csv"]) == 1
-    first, damaged, _, silent, *tracks = csv_rows("windows.csv")
-    assert list(first) == ["file", "channel", "start_s", "end_s", *FEATURE_NAMES, "error"]
-    assert "damaged" in damaged["error"]
-    assert "has no channel of pressure, acceleration or torque" in silent["error"]
-    assert [first[name] for name in ("channel", "start_s", "end_s")] == ["all", "0.0", "0.1"]
-    given = load_classifier().feature_names
-    recording = RecordingBlocks.of(read_recording(Path("runs/a.wav")))
-    values = window_features(recording).features[:, [FEATURE_NAMES.index(name) for name in given]]
-    listed = np.array([float(first[name] or "nan") for name in given], dtype=np.float32)
-    assert listed.tobytes() == values[0].tobytes()
-    assert np.isfinite(listed).any()
-    assert [row["channel"] for row in tracks] == ["1", "1", "1", "2", "2", "2"]
-    assert [row["start_s"] for row in tracks] == ["0.0", "0.25", "0.5"] * 2
-    assert all(row["pressure_flatness"] and not row["torque_mean"] for row in tracks)
 
 
 def test_labels_are_linked_to_conditions_with_a_map_and_label_tracks(runs, capsys):

@@ -63,9 +63,6 @@ BATCH = [
     ("runs --out runs/a.wav/t.csv", "is a file, not a folder"),
     ("runs --workers 0", "--workers is '0', expected a whole number from 1 to 1024"),
     (f"runs --workers {'9' * 5000}", "expected a whole number from 1 to 1024"),
-    ("runs --workers 2 --scheduler x", "not allowed with"),
-    ("runs --plot file.txt", "is a file; name a folder or a picture"),
-    ("runs --plot one.png", "2 recordings; name a folder"),
     ("", "PATH"),
 ]
 SIMULATE = [
@@ -166,7 +163,6 @@ CALLS = {
         ("nowhere.toml", "nowhere.toml"),
         ("PDMS --workers none", "--workers is 'none', expected a whole number from 1 to 1024"),
         ("PDMS --workers 1025", "expected a whole number from 1 to 1024"),
-        ("PDMS --workers 2 --scheduler x", "not allowed with"),
         ("PDMS --speed fast", "--speed is 'fast'"),
         ("PDMS --speed 5..x", "--speed"),
         ("PDMS --speed 0,1", "values must be above 0"),

@@ -129,7 +129,6 @@ CALLS = {
         for name, call in {
             "features": "features GIVEN",
             "label": "label GIVEN --out out.csv",
-            "drawn": "features GIVEN --plot plots",
             "render": "render GIVEN --out out.wav",
             "review": REVIEW,
             "identify": "identify GIVEN",
@@ -173,7 +172,7 @@ CALLS = {
 }  # fmt: skip
 """Name -> valid file, what it is called, command, further valid files beside it."""
 
-LONG = {"identify", "diagnose", "rig, diagnosed", "drawn", "review of labels.jsonl"}
+LONG = {"identify", "diagnose", "rig, diagnosed", "review of labels.jsonl"}
 """Calls that take seconds, or what another takes as well: damaged in the slow tests alone."""
 
 

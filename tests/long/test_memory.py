@@ -102,10 +102,6 @@ def test_two_hours_of_stereo(tmp_path, two_hours, command):
     assert peak(tmp_path, command, two_hours) < MOST
 
 
-def test_windows_of_two_hours_of_stereo(tmp_path, two_hours):
-    assert peak(tmp_path, "features", two_hours, "--windows") < MOST
-
-
 @pytest.mark.parametrize("command", COMMANDS)
 def test_forty_minutes_of_two_channels_of_a_logger(tmp_path, command):
     assert peak(tmp_path, command, logged(tmp_path / "run.h5", 48_000, 2, 2400)) < MOST
@@ -116,20 +112,13 @@ def test_ten_minutes_of_eight_channels_at_192_khz(tmp_path, eight_channels, comm
     assert peak(tmp_path, command, eight_channels) < MOST
 
 
-@pytest.mark.parametrize(
-    ("command", "options"),
-    [
-        *((command, ()) for command in COMMANDS),
-        ("features", ("--plot", "plots")),
-        ("features", ("--windows",)),
-    ],
-)
-def test_memory_does_not_grow_with_length(tmp_path, monkeypatch, command, options):
+@pytest.mark.parametrize("command", COMMANDS)
+def test_memory_does_not_grow_with_length(tmp_path, monkeypatch, command):
     monkeypatch.chdir(tmp_path)
     peaks = []
     for seconds in (600, 2400):
         path = written(tmp_path / f"{seconds}.wav", 48_000, 2, seconds)
-        peaks.append(peak(tmp_path, command, path, *options))
+        peaks.append(peak(tmp_path, command, path))
         path.unlink()
     assert peaks[1] < peaks[0] + GROWTH
 

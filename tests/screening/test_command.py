@@ -1,7 +1,6 @@
 """``bushing-noise screen``: what it writes, and what it refuses."""
 
 import csv
-import os
 from functools import partial
 
 import pytest
@@ -163,18 +162,3 @@ def test_a_map_is_the_same_bytes_whatever_the_number_of_workers(tmp_path):
             assert main(["screen", "fluorocarbon-thesis", *given]) == 0
     for name in ("map.csv", "critical_speeds.csv", "designs.csv", "map.png"):
         assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "2" / name).read_bytes()
-
-
-@pytest.mark.slow
-def test_a_map_from_a_cluster_is_byte_for_byte_that_of_this_machine(tmp_path, monkeypatch):
-    distributed = pytest.importorskip("distributed")
-    monkeypatch.setitem(os.environ, "OMP_NUM_THREADS", "1")
-    given = ["screen", "fluorocarbon", "--speed", "0.5..12/24", "--support-stiffness", "2214"]
-    assert main([*given, "--out", str(tmp_path / "here")]) == 0
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, worker_dashboard_address=None
-    ) as cluster:
-        more = ["--scheduler", cluster.scheduler_address, "--out", str(tmp_path / "there")]
-        assert main([*given, *more]) == 0
-    for name in ("map.csv", "critical_speeds.csv", "designs.csv"):
-        assert (tmp_path / "here" / name).read_bytes() == (tmp_path / "there" / name).read_bytes()
