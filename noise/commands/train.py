@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     _Sample = TypeVar("_Sample")
 
 
-_TEST_RATIO = 5
-"""Training samples per test sample with --samples N."""
-
 _SCORES = ("n", "accuracy", "macro_f1", "expected_calibration_error", "strangers_named")
 """Scores of the card that are printed."""
 
@@ -74,13 +71,11 @@ def run(options: Namespace) -> int:
 
 def _trained(options: Namespace, added: Sequence[Sample], progress: Steps) -> Classifier:
     """Return the trained classifier."""
-    from noise.training.classifier.fit import N_TEST, N_TRAINING, train
+    from noise.training.classifier.fit import N_TRAINING, train
 
-    n = options.samples
     return train(
         seed=options.seed,
-        n_training=n or N_TRAINING,
-        n_test=max(1, n // _TEST_RATIO) if n else N_TEST,
+        n_training=options.samples or N_TRAINING,
         added=added,
         progress=_simulating,
         growing=partial(_growing, progress),
@@ -91,7 +86,7 @@ def _own_samples(folders: Sequence[Path]) -> tuple[list[Sample], bool]:
     """Return the samples of the user's recordings, and whether files were refused."""
     if not folders:
         return [], False
-    from noise.training.classifier.own_recordings import own_samples, read_labelled
+    from noise.training.classifier.own_recordings import own_samples
 
     for folder in folders:
         is_table = folder.is_file() and folder.suffix.lower() in TABLE_ENDINGS
@@ -100,10 +95,9 @@ def _own_samples(folders: Sequence[Path]) -> tuple[list[Sample], bool]:
     samples: list[Sample] = []
     refusals: list[str] = []
     for folder in dict.fromkeys(folder.resolve() for folder in folders):
-        windows, unread = read_labelled(folder)
-        new_samples, unlearned = own_samples(track(windows, "analysing", unit="window"))
+        new_samples, refused = own_samples(folder, partial(track, doing="analysing", unit="file"))
         samples += new_samples
-        refusals += [*unread, *unlearned]
+        refusals += refused
     for line in refusals:
         refuse(line)
     if not samples:
@@ -127,7 +121,7 @@ def _inferring(progress: Steps, samples: Iterable[_Sample], total: int) -> Itera
 
 def _growing(progress: Steps, fits: Iterable[int], total: int) -> Iterable[int]:
     """Show the progress of the growing of trees."""
-    progress("growing trees, and scoring them on unseen samples")
+    progress("growing trees, and scoring them on what they have not learned")
     yield from track(fits, "growing trees", total=total, unit="fit")
 
 
@@ -135,7 +129,7 @@ def _scores(card: Mapping[str, object]) -> str:
     """Return the scores of a classifier as text."""
     parts = []
     for name in ("pressure", "three_channels"):
-        scores = card.get(name)
+        scores = card.get(f"{name}_kinds_left_out")
         if isinstance(scores, dict):
             numbers = ", ".join(
                 f"{key.replace('_', ' ')} {scores[key]:g}" for key in _SCORES if key in scores
@@ -148,10 +142,7 @@ def _own_scores(card: object) -> str:
     """Return the scores on the user's own recordings as text."""
     if not isinstance(card, dict):
         return "none"
-    parts = [
-        f"{counted(card['files'], 'file')}, each scored by trees grown without it (in brackets: by "
-        "trees grown without any of them)"
-    ]
+    parts = [f"{counted(card['files'], 'file')}, each scored by trees grown without it"]
     for label, scores in card["labels"].items():
         false_names = f"named {counted(scores['false_names'], 'time')} in something else"
         if not scores["windows"]:
@@ -160,7 +151,6 @@ def _own_scores(card: object) -> str:
         few = "" if scores["enough"] else ", too few files for a score"
         windows, files = counted(scores["windows"], "window"), counted(scores["files"], "file")
         parts.append(
-            f"{label}: {windows} of {files}, recall {scores['recall']:.0%} "
-            f"({scores['recall_before']:.0%}), {false_names} ({scores['false_names_before']}){few}"
+            f"{label}: {windows} of {files}, recall {scores['recall']:.0%}, {false_names}{few}"
         )
     return "; ".join(parts)

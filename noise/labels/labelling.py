@@ -177,7 +177,7 @@ class Labelling:
     def false_names(self) -> Mapping[str, Any]:
         """Return the false names in these surroundings by the card of the classifier; may be empty.
 
-        Keys are sensitivities, as in `noise.training.classifier.operating_point.false_name_rates`.
+        Keys are sensitivities, as in `noise.training.classifier.cross_fitting.false_name_rates`.
         """
         counted = self._loaded.card.get("false_names")
         return counted[self.surroundings or "any"] if isinstance(counted, dict) else {}

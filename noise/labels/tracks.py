@@ -1,20 +1,17 @@
 """Label tracks: drawing of labels over time, and files for Audacity.
 
 The format is that of Audacity's manual, "Importing and Exporting Labels": times in seconds with a
-decimal point, fields separated by tabs; a line that begins with a backslash is a frequency range.
+decimal point, fields separated by tabs.
 """
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.drawing import axes_or_new
-from models.errors import ParameterError, RecordingError
-from models.foreign_file import LARGEST_JSON, reading
+from models.errors import ParameterError
 from noise.base.files import atomic, export_paths
 from noise.base.labels import DARK_LABELS, LABEL_COLOURS
 
@@ -121,55 +118,6 @@ def label_track(rows: Iterable[Mapping[str, object]]) -> str:
         track = "" if channel in ("all", None) else f"track {channel}: "
         lines.append(f"{start:.6f}\t{end:.6f}\t{track}{row['label']}\n")
     return "".join(lines)
-
-
-def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
-    r"""Read a label track of Audacity.
-
-    Parameters
-    ----------
-    path : Path
-
-    Returns
-    -------
-    list of (float, float, str, str)
-        Start and end [s], channel as in the label table, and label.
-
-    Raises
-    ------
-    RecordingError
-        The file cannot be read, or is no label track.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = Path(folder) / "run07.txt"
-    ...     _ = path.write_text("0.5\t2.25\tcreak\n1\t2\ttrack 2: squeal\n")
-    ...     read_label_track(path)
-    [(0.5, 2.25, 'all', 'creak'), (1.0, 2.0, '2', 'squeal')]
-    """
-    with reading(path, "label track", error=RecordingError, largest=LARGEST_JSON):
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    stretches: list[tuple[float, float, str, str]] = []
-    for number, line in enumerate(lines, 1):
-        if not line.strip() or line.startswith("\\"):
-            continue
-        start, end, label = (*line.split("\t", 2), "", "")[:3]
-        try:
-            times = float(start), float(end)
-        except ValueError:
-            times = (math.nan, math.nan)
-        if not 0.0 <= times[0] <= times[1] < math.inf:
-            raise RecordingError(
-                f"{path}: line {number} is {line[:40]!r}, expected start, end and label with tabs "
-                "between"
-            )
-        track = re.fullmatch(r"track (\d+): (.*)", label.strip())
-        channel, name = (track[1], track[2]) if track else ("all", label.strip())
-        stretches.append((*times, channel, name))
-    return stretches
 
 
 def write_label_tracks(target: Path, rows: Sequence[Mapping[str, object]]) -> list[Path]:

@@ -148,7 +148,7 @@ def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
         assert not added
         assert list(growing(range(6), 6)) == [0, 1, 2, 3, 4, 5]
         asked.append((seed, list(progress(iter([1, 2]), 2))))
-        card = {"pressure": {"n": 600, "macro_f1": 0.9}}
+        card = {"pressure_kinds_left_out": {"n": 600, "macro_f1": 0.9}}
         return Namespace(save=lambda path: path.write_bytes(b"trained"), card=card)
 
     monkeypatch.setattr("noise.training.classifier.fit.train", train)

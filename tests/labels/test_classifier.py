@@ -8,7 +8,7 @@ from models.errors import ParameterError
 from noise.classifier import LABELS, load_classifier
 from noise.classifier.model import at_sensitivity
 from noise.labels.segmentation import QUIET, labelled_stretches
-from noise.training.classifier.operating_point import (
+from noise.training.classifier.cross_fitting import (
     FALSE_NAMES_AN_HOUR,
     false_names,
     fit_calibration,

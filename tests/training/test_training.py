@@ -25,21 +25,21 @@ def samples():
     return [draw_sample(seed) for seed in np.random.SeedSequence(6).spawn(48)]
 
 
-def learn_quickly(*samples, **options):
+def learn_quickly(samples, **options):
     """Learn in fewer rounds: what is asked here does not depend on how many there are."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cross_fitting, "_N_ROUNDS", 40)
-        return learn(*samples, **options)
+        return learn(samples, **options)
 
 
 @pytest.fixture(scope="module")
 def small(samples):
-    return learn_quickly(samples, 28, seed=3)
+    return learn_quickly(samples, seed=3)
 
 
 @pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes_of_predictions(small, samples):
-    again = learn_quickly(samples, 28, seed=3)
+    again = learn_quickly(samples, seed=3)
     features = columns(small, samples[0])
     assert small.predict_proba(features).tobytes() == again.predict_proba(features).tobytes()
     assert small.card == again.card
@@ -59,31 +59,25 @@ def test_no_bushing_is_simulated_for_what_is_made_up(samples):
     assert any(has_more_than_sound(s.features, FEATURE_NAMES).any() for s in samples)
 
 
-def test_the_card_tells_what_was_learned_and_scores_what_was_not(small):
-    assert 24 <= sum(small.card["samples"].values()) <= 28
-    assert 16 <= small.card["pressure"]["n"] <= 20
-    assert small.card["three_channels"]["n"] < small.card["pressure"]["n"]
-
-
 def test_samples_whose_name_hangs_on_a_bound_are_neither_learned_nor_scored(small, samples):
     clear = [i for i, sample in enumerate(samples) if not sample.ambiguous]
-    doubted = {clear[0], *clear[-2:]}  # one of those that are learned, two of those scored
-    unclear = [replace(s, ambiguous=s.ambiguous or i in doubted) for i, s in enumerate(samples)]
-    fewer = learn_quickly(unclear, 28, seed=3).card
-    assert sum(fewer["samples"].values()) == sum(small.card["samples"].values()) - 1
-    assert fewer["pressure"]["n"] == small.card["pressure"]["n"] - 2
+    unclear = [replace(s, ambiguous=s.ambiguous or i in clear[:3]) for i, s in enumerate(samples)]
+    fewer = learn_quickly(unclear, seed=3)
+    for card, n in ((small.card, len(clear)), (fewer.card, len(clear) - 3)):
+        assert sum(card["samples"].values()) == card["pressure_kinds_left_out"]["n"] == n
+        assert card["three_channels_kinds_left_out"]["n"] < n
 
 
 def test_too_few_samples_to_know_every_label_are_refused():
     with pytest.raises(ParameterError, match="draw more"):
-        train(seed=0, n_training=6, n_test=1)
+        train(seed=0, n_training=6)
 
 
 def test_every_label_occurs_among_the_samples(samples):
     assert {sample.label for sample in samples} == set(LABELS)
 
 
-def test_own_samples_are_learned_beside_the_others_and_scored_before_and_after(samples):
+def test_own_samples_are_learned_beside_the_others_and_scored(samples):
     labels = [label for label in LABELS if label != "squawk"]
     own = [
         Sample(sample.features[:, ::-1].copy(), "squawk", f"{i}.wav", OWN_WEIGHT, real=True)
@@ -96,12 +90,12 @@ def test_own_samples_are_learned_beside_the_others_and_scored_before_and_after(s
             begun.append((fit, total))
             yield fit
 
-    said = learn_quickly(samples, 34, seed=3, added=own, growing=growing).card["own"]
-    assert begun == [(fit, N_FOLDS + 2) for fit in range(N_FOLDS + 2)]
+    said = learn_quickly(samples, seed=3, added=own, growing=growing).card["own"]
+    assert begun == [(fit, N_FOLDS + 1) for fit in range(N_FOLDS + 1)]
     squawk = said["labels"]["squawk"]
     assert said["files"] == squawk["files"] == len(own)
     assert squawk["enough"]
-    assert squawk["recall"] > 0.8 > squawk["recall_before"]
+    assert squawk["recall"] > 0.8
 
 
 def test_what_is_scored_was_not_learned_by_what_scores_it():
@@ -132,4 +126,5 @@ def test_the_shipped_classifier_is_what_training_with_seed_0_gives():
     samples = [draw_sample(seed) for seed in np.random.SeedSequence(9).spawn(20)]
     features = np.concatenate([columns(shipped, sample) for sample in samples])
     assert again.predict_proba(features).tobytes() == shipped.predict_proba(features).tobytes()
-    assert again.card == shipped.card
+    for key in ("samples", "false_names", "real_sources_left_out"):
+        assert again.card[key] == shipped.card[key]

@@ -2,7 +2,7 @@
 
 Labels of simulated samples follow from physics (`noise.training.classifier.samples`); samples with
 ambiguous labels are not used. Calibration and scores are by left-out sources
-(`noise.training.classifier.cross_fitting`); test samples of known kinds are scored as well.
+(`noise.training.classifier.cross_fitting`).
 
 Of real sounds, the features of their windows are stored (``data/real_sounds.npz``), with sources
 and licences: CC0, CC BY and MIT. After a change of the features they are computed again from a
@@ -33,16 +33,13 @@ from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.processes import ending_with_parent
 from noise.classifier.model import Classifier
-from noise.labels.windows import FEATURE_NAMES, columns_of, window_features
+from noise.labels.windows import FEATURE_NAMES, window_features
 from noise.recordings import read_recording
 from noise.training.classifier.cross_fitting import (
     N_FOLDS,
     cross_fitted,
     left_out_scores,
-    masked,
     named_as,
-    unlearned_scores,
-    with_trees_of,
 )
 from noise.training.classifier.own_recordings import own_card
 from noise.training.classifier.samples import (
@@ -60,9 +57,6 @@ N_TRAINING = 4300
 
 _MADE_UP = 0.6
 """Number of additional samples without bushings, per training sample."""
-
-N_TEST = 480
-"""Number of test samples."""
 
 _KIND = ModelKind(
     "set of real sounds",
@@ -233,7 +227,6 @@ def train(
     *,
     seed: int = 0,
     n_training: int = N_TRAINING,
-    n_test: int = N_TEST,
     added: Sequence[Sample] = (),
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
     growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
@@ -243,8 +236,8 @@ def train(
     Parameters
     ----------
     seed : int
-    n_training, n_test : int
-        Numbers of training and test samples.
+    n_training : int
+        Number of training samples.
     added : sequence of Sample
         Samples of the user's recordings (`noise.training.classifier.own_recordings`).
     progress : callable, optional
@@ -255,7 +248,7 @@ def train(
     Returns
     -------
     Classifier
-        Its card has scores on left-out kinds and sources, and on test samples.
+        Its card has scores on left-out kinds and sources.
 
     Raises
     ------
@@ -269,17 +262,15 @@ def train(
     >>> train(seed=1).save("mine.npz")  # doctest: +SKIP
     """
     n_made_up = round(_MADE_UP * n_training)
-    total = n_made_up + n_training + n_test
     seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
-    seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
+    seeds += np.random.SeedSequence(seed).spawn(n_training)
     draw = ending_with_parent(draw_sample)
     drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
         delayed(draw)(one, bushings=i >= n_made_up) for i, one in enumerate(seeds)
     )
     real = load_real_sounds()
     classifier = learn(
-        list(progress(drawn, total) if progress else drawn),
-        n_made_up + n_training,
+        list(progress(drawn, len(seeds)) if progress else drawn),
         seed=seed,
         real=real.samples,
         added=added,
@@ -295,49 +286,38 @@ def train(
 
 def learn(
     samples: Sequence[Sample],
-    n_training: int,
     *,
     seed: int,
     real: Sequence[Sample] = (),
     added: Sequence[Sample] = (),
     growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
-    """Train on the first samples and all recorded sounds, and score the other samples.
+    """Train on samples and recorded sounds, and score each by what was learned without it.
 
     Raises
     ------
     ParameterError
-        Too few training samples to hold every label.
+        Too few samples to hold every label.
     """
-    training, test = (
-        [sample for sample in some if not sample.ambiguous]
-        for some in (samples[:n_training], samples[n_training:])
-    )
+    training = [sample for sample in samples if not sample.ambiguous]
     labels = {sample.label for sample in training}
     absent = ", ".join(label for label in LABELS if label not in labels)
     if absent:
-        raise ParameterError(f"{n_training} training samples hold no {absent}; draw more of them")
-    known = [*training, *real]
-    n_fits = N_FOLDS + 1 + bool(added)
+        raise ParameterError(f"{len(samples)} training samples hold no {absent}; draw more of them")
+    sounds = [*training, *real, *added]
+    n_fits = N_FOLDS + 1
     fits = iter(growing(range(n_fits), n_fits) if growing else range(n_fits))
-    classifier, left_out = cross_fitted([*known, *added], seed, fits)
+    classifier, left_out = cross_fitted(sounds, seed, fits)
+    next(fits, None)  # completes the progress bar
     card: dict[str, object] = {
         "samples": _counts(training),
-        "ambiguous": round(float(np.mean([sample.ambiguous for sample in samples])), 4),
-        **left_out_scores([*known, *added], left_out, classifier.thresholds),
+        **left_out_scores(sounds, left_out, classifier.thresholds),
     }
     if added:
-        next(fits, None)
-        without, thresholds = with_trees_of(classifier, known, seed), classifier.thresholds["any"]
-        columns = columns_of(without)
-        before = [
-            named_as(without.predict_proba(masked(s.features)[:, columns]), thresholds)
-            for s in added
-        ]
-        after = [named_as(p, thresholds) for p in left_out.alone[-len(added) :]]
-        card["own"] = own_card(added, np.array(before), np.array(after))
-    next(fits, None)  # completes the progress bar
-    return replace(classifier, card=card | unlearned_scores(classifier, test))
+        own = left_out.alone[-len(added) :]
+        names = [named_as(p, classifier.thresholds["any"]) for p in own]
+        card["own"] = own_card(added, np.array(names))
+    return replace(classifier, card=card)
 
 
 def _counts(sounds: Iterable[Sample]) -> dict[str, int]:
