@@ -1,9 +1,9 @@
 """Labelled recordings of the user, as training samples.
 
 Labels come from a row of a label table of ``bushing-noise label``, else from the name of a folder
-above the recording (``creak/run07.wav``). Of a table with corrections (`label_source` is ``human``),
-only the corrections are used. Unusable files and labels are skipped, each with one line of
-explanation.
+above the recording (``creak/run07.wav``). Of a table with corrections (`label_source` is
+``human``), only the corrections are used. Unusable files and labels are skipped, each with one line
+of explanation.
 """
 
 from __future__ import annotations
