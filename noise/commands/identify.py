@@ -58,7 +58,7 @@ def _identification(options: Namespace, progress: Steps) -> tuple[Identification
     measurements = read_measurements(options.data, calibrations)
     for name, reason in measurements.refused:
         say(f"{name}: {reason}")
-    if not (measurements.used or measurements.static):
+    if not measurements.used:
         say("no recording that a rig can be identified from; nothing is written")
         return None, True
     progress.expect(len(measurements.used) + 2 * len(CANDIDATES) + 2)

@@ -16,7 +16,7 @@ from noise.base import SURE_90
 from noise.base.arrays import Array
 from noise.identification.bushing_fit import BushingFit
 from noise.identification.law_fit import LawFit
-from noise.identification.law_model import LOCAL, fitted_evidence
+from noise.identification.law_model import LOCAL
 from noise.identification.outcome import UNITS, Forecast, Number, RecordingFit
 from sim.effects import EFFECTS
 from sim.friction import friction_law
@@ -154,13 +154,12 @@ def _of_fit(fit: LawFit, name: str) -> list[Number]:
     model, place = fit.model, LOCAL.index(name)
     means, spread = model.means(fit.vector), np.sqrt(np.diag(fit.covariance))
     shared = _OF_THE_LAW[name][model.candidate.sticks]
-    of_evidence = list(fitted_evidence(model).values())
     numbers = []
     for g, (i, key) in enumerate(model.groups):
         if i == place:
             at = key if isinstance(key, tuple) else (key, None)
             error = math.hypot(float(spread[model.n_local + g]), shared)
-            n = int(np.sum(model.group_of[:, i] == g)) + of_evidence.count(g)
+            n = int(np.sum(model.group_of[:, i] == g))
             numbers.append(_number(name, UNITS[name], math.exp(means[g]), error, n, *at))
     return sorted(numbers, key=lambda n: (n.interference or 0.0, n.support_stiffness or 0.0))
 

@@ -26,9 +26,8 @@ from noise.identification.bushing_numbers import (
     read_again,
     torque_levels,
 )
-from noise.identification.evidence import static_evidence, with_evidence
 from noise.identification.law_fit import MARGIN, choose_law
-from noise.identification.law_model import CANDIDATES, Candidate, fitted_evidence, subjects_of
+from noise.identification.law_model import CANDIDATES, Candidate, subjects_of
 from noise.identification.measured import (
     Beforehand,
     Measurements,
@@ -36,7 +35,6 @@ from noise.identification.measured import (
     read_measurements,
 )
 from noise.identification.outcome import Identification, LawScore, Number, RecordingFit, as_json
-from noise.identification.static_test import StaticTest
 
 
 class NothingSlipsError(ParameterError):
@@ -69,8 +67,6 @@ def identify_rig(
         No recording can be used, or nothing slips in any of them.
     """
     started = time.perf_counter()
-    if not measurements.used and measurements.static:
-        return _by_static_tests(measurements, beforehand)
     if not measurements.used:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in measurements.refused)
         raise ParameterError(f"no recording that a rig can be identified from: {reasons}")
@@ -83,22 +79,17 @@ def identify_rig(
         recordings.append(RecordingFit(one, alone, torque_levels(alone)))
         tell(_sentence(recordings[-1]))
     if not any(one.levels.slips for one in recordings):
-        if measurements.static:
-            return _by_static_tests(measurements, beforehand)
         raise NothingSlipsError(
             "no recording shows stick and slip, so that neither stiffness nor torques can be told; "
             "record slower rotation, or a larger interference"
         )
-    static, known = measurements.static, beforehand.known
-    subjects = subjects_of(recordings, known)
+    subjects = subjects_of(recordings, beforehand.known)
     if not subjects:
         raise NothingSlipsError(
             "no recording shows enough slips one like the other to tell a law; record longer, at "
             "one steady speed"
         )
-    # a contact that yields makes the elastomer look softer
-    evidence = {sticks: static_evidence(static, known, sticks=sticks) for sticks in (True, False)}
-    fit, scores, held_out = choose_law(known, subjects, tell, evidence)
+    fit, scores, held_out = choose_law(beforehand.known, subjects, tell)
     model = fit.model
     recordings = read_again(recordings, fit)
     stated = {one.measured.condition.material for one in recordings} - {None}
@@ -108,13 +99,10 @@ def identify_rig(
         fastest_fitted=max(one.measured.written_speed for one in recordings),
         temperature=dependence_of(beforehand.rig, recordings, material),
     )
-    fitted = fitted_evidence(model)
-    rest = [one for one in model.evidence if one not in fitted]
-    numbers = with_evidence(bushing_numbers(recordings, fit), rest)
     assumed, undetermined = _assumed(beforehand, recordings)
     return Identification(
         rig_toml=rig_text(rig, (_HEAD, f"{_structure(beforehand)}."), beforehand.structure),
-        numbers=(*numbers, *law_numbers(fit, rig)),
+        numbers=(*bushing_numbers(recordings, fit), *law_numbers(fit, rig)),
         laws=scores,
         law=model.candidate.name,
         recordings=tuple(recordings),
@@ -124,12 +112,10 @@ def identify_rig(
             *remarks(rig),
             *_notes(model.candidate, scores, held_out),
             *_moved_inertias(beforehand, rig),
-            *_static_notes(static),
         ),
         refused=measurements.refused,
         held_out=held_out,
         margin=MARGIN,
-        static=static,
         seconds=time.perf_counter() - started,
     )
 
@@ -183,12 +169,11 @@ def result_lines(result: Identification) -> list[str]:
     ...     Number("critical_torque", "Nm", 11.73, 11.58, 11.89, 6, 0.279e-3),
     ...     Number("law_critical_torque", "Nm", 11.77, 11.56, 11.99, 6, 0.279e-3),
     ... )
-    >>> result_lines(Identification("", numbers, (), "coulomb", ()))
+    >>> result_lines(Identification("", numbers, (), "constant", ()))
     ['law = "coulomb"; at 0.279 mm: stiffness 764.9 (747.1 to 783.1) Nm/rad, critical torque 11.77
       (11.56 to 11.99) Nm; 90 % intervals']
     """
-    fitted = [one.in_rig_file for one in CANDIDATES if result.laws and one.name == result.law]
-    law = fitted[0] if fitted else f'law = "{result.law}"'
+    law = next(one.in_rig_file for one in CANDIDATES if one.name == result.law)
     lines = []
     for place in sorted(
         {one.interference for one in result.numbers if one.interference is not None}
@@ -196,7 +181,7 @@ def result_lines(result: Identification) -> list[str]:
         here = [one for one in result.numbers if one.interference == place]
         parts = [_number_words(one) for name in _SUMMARY for one in here if one.name == name]
         lines.append(f"{law}; at {1e3 * place:g} mm: {', '.join(parts)}; 90 % intervals")
-    return lines or [law]
+    return lines
 
 
 def _number_words(number: Number) -> str:
@@ -220,37 +205,6 @@ _SUMMARY = {
 def identification_json(data: Path, rig: Path) -> dict[str, Any]:
     """Return the content of ``identification.json`` for a folder."""
     return as_json(identify(data, rig))
-
-
-def _by_static_tests(measurements: Measurements, beforehand: Beforehand) -> Identification:
-    """Return the known rig with the numbers that static tests and ring-downs alone give."""
-    rig, static = beforehand.rig, measurements.static
-    numbers = with_evidence([], static_evidence(static, beforehand.known))
-    fits = []
-    for place in sorted({one.interference for one in static}):
-        fit, here = rig.fit(place), [one for one in numbers if one.interference == place]
-        damping = {
-            one.support_stiffness: one.value
-            for one in here
-            if one.name == "damping" and one.support_stiffness is not None
-        }
-        stiffness = [one.value for one in here if one.name == "elastomer_stiffness"]
-        fits.append(
-            replace(
-                fit, damping={**fit.damping, **damping},
-                elastomer_stiffness=stiffness[0] if stiffness else fit.elastomer_stiffness,
-            )
-        )  # fmt: skip
-    inertia = [one.value for one in numbers if one.name == "clamp_inertia"]
-    rig = replace(rig, fits=tuple(fits), clamp_inertia=(*inertia, rig.clamp_inertia)[0])
-    steady = [one.name for one in measurements.used]
-    return Identification(
-        rig_toml=rig_text(rig, (_HEAD,), beforehand.structure), numbers=tuple(numbers), laws=(),
-        law=rig.friction.name, recordings=(), refused=measurements.refused, static=static,
-        assumed=("torques and the law of friction are the known rig's",),
-        not_found=tuple(f"torques from {name}: nothing slips there" for name in steady),
-        notes=tuple(_static_notes(static)),
-    )  # fmt: skip
 
 
 def _notes(
@@ -308,18 +262,6 @@ _MISSED = 0.2
 """Share of the oscillation missed above which no law describes the recordings; assumed."""
 
 _HEAD = "Identified from recordings; intervals and what is assumed are in identification.json."
-
-
-def _static_notes(tests: Sequence[StaticTest]) -> list[str]:
-    """Return a note on each static test that is not elastic."""
-    return [
-        f"{one.name}: loading and unloading part, by {100.0 * one.parting:.1f} % of the angle, so "
-        f"not all is elastic; with what yields in the contact the slope is "
-        f"{one.effective_stiffness:.4g} Nm/rad, without it {one.held_stiffness:.4g} "
-        f"(+-{100.0 * one.held_error:.1f} %)"
-        for one in tests
-        if not one.elastic
-    ]
 
 
 def dependence_of(

@@ -20,7 +20,6 @@ from models.rig import Fit, LawSpec, Rig
 from noise.base import packaged_toml
 from noise.base.arrays import Array
 from noise.identification.bushing_fit import Known
-from noise.identification.evidence import Evidence
 from noise.identification.measured import Measured
 from noise.identification.outcome import RecordingFit
 from noise.identification.prediction import Excerpts, excerpts_of, friction_of, predicted_torque
@@ -183,14 +182,11 @@ class LawModel:
     candidate : Candidate
     subjects : tuple of Subject
     known : Known
-    evidence : tuple of Evidence
-        Numbers of the rig from static tests.
     """
 
     candidate: Candidate
     subjects: tuple[Subject, ...]
     known: Known
-    evidence: tuple[Evidence, ...] = ()
 
     @cached_property
     def groups(self) -> tuple[tuple[int, object], ...]:
@@ -390,31 +386,6 @@ def share_error(model: LawModel) -> float:
     return model.known.share_error
 
 
-def fitted_evidence(model: LawModel) -> dict[Evidence, int]:
-    """Return the group of each piece of evidence that the fit uses.
-
-    Parameters
-    ----------
-    model : LawModel
-
-    Returns
-    -------
-    dict of Evidence to int
-        Without torques: evidence of them is of levels, not of the law's.
-    """
-    places = {group: g for g, group in enumerate(model.groups)}
-    groups = {}
-    for one in model.evidence:
-        if one.name not in LOCAL or one.name == "kinetic_torque":
-            continue
-        fit, support = one.interference, one.support_stiffness
-        i = LOCAL.index(one.name)
-        key: object = {"elastomer_stiffness": fit, "damping": (fit, support)}.get(one.name)
-        if (i, key) in places:
-            groups[one] = places[i, key]
-    return groups
-
-
 def priors(model: LawModel, loose: float = 1.0) -> tuple[Array, Array]:
     """Return the prior of a vector x: each row of matrix @ x - target has unit variance.
 
@@ -453,10 +424,6 @@ def priors(model: LawModel, loose: float = 1.0) -> tuple[Array, Array]:
         if i == LOCAL.index("damping"):
             usual = math.log(_USUAL_DAMPING)
         row({model.n_local + g: 1.0 / width[i]}, usual / width[i])
-    for one, g in fitted_evidence(model).items():
-        i = model.groups[g][0]
-        error = math.hypot(one.error, _SCATTER[i])
-        row({model.n_local + g: 1.0 / error}, math.log(one.value) / error)
     for j, (low, high, _) in enumerate(model.candidate.free.values()):
         weight = 2.0 / math.log(high / low)
         row({model.n_common + j: weight}, weight * 0.5 * math.log(low * high))

@@ -25,7 +25,6 @@ from noise.base.arrays import Array
 from noise.diagnosis.bench.check import refuse_unusable, speed_words
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 from noise.identification.bushing_fit import Known
-from noise.identification.static_test import StaticTest, static_test
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.rotation import as_logged
 
@@ -185,13 +184,10 @@ class Measurements:
         Recordings of rotation.
     refused : tuple of (str, str)
         Name and reason of each recording that is left out.
-    static : tuple of StaticTest
-        Recordings of slow motion below any slip.
     """
 
     used: tuple[Measured, ...]
     refused: tuple[tuple[str, str], ...]
-    static: tuple[StaticTest, ...] = ()
 
 
 def read_measurements(
@@ -215,31 +211,15 @@ def read_measurements(
     ParameterError
         There is no recording at all.
     """
-    used, refused, static = [], [], []
+    used, refused = [], []
     for path, name in find_recordings(paths):
         try:
-            recording = read_recording(path, calibrations=calibrations)
-            test = _static(recording, name)
-            if test is None:
-                used.append(measured(recording, name))
-            else:
-                static.append(test)
+            used.append(measured(read_recording(path, calibrations=calibrations), name))
         except BushingNoiseError as error:
             refused.append((name, str(error)))
-    if not (used or refused or static):
+    if not (used or refused):
         raise ParameterError(f"{', '.join(str(path) for path in paths)}: no recording")
-    return Measurements(tuple(used), tuple(refused), tuple(static))
-
-
-def _static(recording: Recording, name: str) -> StaticTest | None:
-    """Return a recording as a static test; None if it is none."""
-    rows = [recording.first(kind) for kind in ("torque", "angle")]
-    if not recording.calibrated or rows[0] is None or rows[1] is None:
-        return None
-    torque, angle = (np.asarray(recording.samples[row], dtype=np.float64) for row in rows)
-    if not (np.isfinite(torque).all() and np.isfinite(angle).all()):
-        return None
-    return static_test(torque, angle, recording.rate, recording.condition, name)
+    return Measurements(tuple(used), tuple(refused))
 
 
 def measured(recording: Recording, name: str) -> Measured:
@@ -281,10 +261,7 @@ def measured(recording: Recording, name: str) -> Measured:
             "speed of one sign"
         )
     if np.min(speed / mean) <= 0.0:
-        raise ParameterError(
-            "turns back and forth and slips; record rotation of one sign, or, as a static test, "
-            "slow motion to three quarters of the torque at which it slips"
-        )
+        raise ParameterError("turns back and forth, or stops; record rotation of one sign")
     stated = abs(recording.condition.speed or 0.0)
     if stated and (words := speed_words(abs(mean) / stated, stated)):
         raise ParameterError(words)

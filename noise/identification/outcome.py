@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from noise.identification.bushing_fit import BushingFit
     from noise.identification.bushing_numbers import Levels
     from noise.identification.measured import Measured
-    from noise.identification.static_test import StaticTest
 
 
 UNITS = {
@@ -150,8 +149,6 @@ class Identification:
         Recordings that the laws were compared on.
     margin : float
         Factor by which a simpler law may miss more and is still chosen.
-    static : tuple of StaticTest
-        Static tests, with ring-downs.
     seconds : float
         Time taken [s].
 
@@ -173,7 +170,6 @@ class Identification:
     refused: tuple[tuple[str, str], ...] = ()
     held_out: tuple[str, ...] = ()
     margin: float = 0.0
-    static: tuple[StaticTest, ...] = ()
     seconds: float = field(default=0.0, compare=False)
 
     def number(
@@ -220,7 +216,6 @@ def as_json(result: Identification) -> dict[str, Any]:
         "margin": result.margin,
         "held_out": list(result.held_out),
         "recordings": [_recording(one) for one in result.recordings],
-        "static": [_static(one) for one in result.static],
         "assumed": list(result.assumed),
         "not_found": list(result.not_found),
         "notes": list(result.notes),
@@ -236,7 +231,7 @@ def _rounded(value: Any) -> Any:
     return float(f"{value:.5g}") if isinstance(value, float) else value
 
 
-def _place(one: Number | StaticTest | KnownCondition) -> dict[str, Any]:
+def _place(one: Number | KnownCondition) -> dict[str, Any]:
     """Return interference and support, if there are any."""
     row: dict[str, Any] = {}
     if one.interference is not None:
@@ -249,18 +244,6 @@ def _place(one: Number | StaticTest | KnownCondition) -> dict[str, Any]:
 def _number(one: Number) -> dict[str, Any]:
     row = {"name": one.name, "unit": one.unit, **_place(one)}
     row |= {"value": one.value, "low": one.low, "high": one.high, "recordings": one.n_recordings}
-    return dict(_rounded(row))
-
-
-def _static(one: StaticTest) -> dict[str, Any]:
-    row = {
-        "file": one.name, **_place(one),
-        "effective_stiffness_Nm_rad": one.effective_stiffness,
-        "without_contact_Nm_rad": one.held_stiffness,
-        "elastic": one.elastic, "parting": round(one.parting, 4),
-    }  # fmt: skip
-    if ring := one.ring_down:
-        row |= {"ring_down_hz": ring.frequency, "ring_down_decay_1_s": ring.decay}
     return dict(_rounded(row))
 
 

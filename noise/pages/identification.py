@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.condition import Condition
 from models.drawing import BLUE, GREY, VERMILION, styled
 from noise.base.files import atomic
+from noise.base.progress import counted
 from noise.identification.law_model import CANDIDATES
 from noise.identification.outcome import Forecast, Identification, Number, RecordingFit, as_json
 from noise.pages import blocks as b
 from noise.pages.figures import Line, Panel, cycle_window, lines_panel
 from noise.pages.page import page_html, write_page
-
-if TYPE_CHECKING:
-    from noise.identification.static_test import RingDown, StaticTest
-
 
 _SHOWN = 0.03
 """Length of the part of a recording that is drawn [s]."""
@@ -81,60 +75,6 @@ def _prediction(forecast: Forecast) -> Panel:
         ],
         f"Recorded and predicted torque; {100.0 * missed:.1f} % is missed.",
         legend="lower right", room=(0.25, 0.0),
-    )  # fmt: skip
-
-
-def static_panels(test: StaticTest) -> tuple[Panel, ...]:
-    """Draw torque over angle of a static test, and its ring-down if there is one.
-
-    Parameters
-    ----------
-    test : StaticTest
-
-    Returns
-    -------
-    tuple of Panel
-    """
-    with styled():
-        slope = _slope(test)
-        return (slope,) if test.ring_down is None else (slope, _decay(test.ring_down))
-
-
-def _slope(test: StaticTest) -> Panel:
-    slope = f"{test.effective_stiffness:.4g} Nm/rad"
-    branches = (
-        "loading and unloading are one line"
-        if test.elastic
-        else f"loading and unloading part by {100.0 * test.parting:.1f} % of the angle"
-    )
-    middle = float(np.median(test.angle - test.torque / test.effective_stiffness))
-    ends = np.array([test.torque.min(), test.torque.max()])
-    return lines_panel(
-        "Torque over the shaft's angle, slowly", "Angle [mrad]", "Torque [Nm]",
-        [
-            Line(1e3 * test.angle, test.torque, GREY, "", style="", marker="."),
-            Line(1e3 * test.fitted_angle, test.torque, BLUE, "regression", 1.0),
-            Line(1e3 * (middle + ends / test.effective_stiffness), ends, VERMILION,
-                 f"rise by {slope}", style="--"),
-        ],
-        f"Torque over angle: {slope} (+-{100 * test.error:.1f} %), {branches}.",
-        legend="upper left",
-    )  # fmt: skip
-
-
-def _decay(ring: RingDown) -> Panel:
-    time = 1e3 * ring.time
-    envelope = float(np.abs(ring.fitted).max()) * np.exp(-ring.decay * ring.time)
-    ratio = ring.decay / (2.0 * math.pi * ring.frequency)
-    return lines_panel(
-        "After the shaft is held: ring-down", "Time [ms]", "Torque [Nm]",
-        [
-            Line(time, ring.torque, GREY, "recorded"),
-            Line(time, ring.fitted, BLUE, "fitted", 1.0),
-            *(Line(time, side * envelope, VERMILION, "", 1.0, "--") for side in (1.0, -1.0)),
-        ],
-        f"Ring-down at {ring.frequency:.0f} Hz, damping ratio {100.0 * ratio:.2f} %.",
-        legend="upper right",
     )  # fmt: skip
 
 
@@ -215,17 +155,6 @@ def _html(result: Identification) -> str:
                 [b.Table(("Number", "At", "Value", "Interval", "Recordings"), numbers)],
             ),
             b.Section(
-                "Static tests",
-                [
-                    b.Group(
-                        one.name,
-                        [b.Panels(static_panels(one))],
-                        ", ".join(Condition(None, one.interference, one.support_stiffness).words),
-                    )
-                    for one in result.static
-                ],
-            ),
-            b.Section(
                 "Law of friction",
                 [
                     b.Table(columns, laws),
@@ -263,9 +192,7 @@ _RISE = (
 
 
 def _title(result: Identification) -> str:
-    counts = {"recordings": len(result.recordings), "static tests": len(result.static)}
-    sources = [f"{n} {what}" for what, n in counts.items() if n]
-    return f"The rig, identified from {' and '.join(sources) or 'what was known'}"
+    return f"The rig, identified from {counted(len(result.recordings), 'recording')}"
 
 
 def _answer(result: Identification) -> list[str]:
@@ -275,8 +202,6 @@ def _answer(result: Identification) -> list[str]:
         for one in result.numbers
         if one.name == "elastomer_stiffness"
     ]
-    if not result.laws:
-        return [f"Law of friction as it was known: {result.law.replace('_', ' ')}.", *stiffness]
     chosen = next(score for score in result.laws if score.law == result.law)
     chosen_law = _CANDIDATES[result.law]
     return [

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from models.condition import Condition
+from models.errors import ParameterError
 from models.recording import Channel, Recording
 from models.rig import Fit, LawSpec
 from models.rig_file import load_material_rig
@@ -77,3 +78,13 @@ def test_the_sign_of_rotation_and_cell_does_not_matter(way):
     turned = measured(replace(one.recording, samples=np.stack([torque, angle])), "turned")
     assert np.array_equal(turned.torque, one.torque)
     assert np.allclose(turned.shaft_speed, one.shaft_speed)
+
+
+def test_a_shaft_that_turns_back_is_refused():
+    t = np.arange(30_000) / RATE
+    samples = np.stack([3.0 * np.sin(6.0 * t), 0.1 * np.sin(6.0 * t) + 0.05 * t])
+    swung = Recording(
+        samples, RATE, (Channel("torque"), Channel("angle")), Condition(None, 0.279e-3, 2214.0)
+    )
+    with pytest.raises(ParameterError, match="turns back and forth, or stops"):
+        measured(swung, "swung")

@@ -14,7 +14,6 @@ from noise.cli import main
 from noise.identification import law_fit
 from noise.identification.law_model import CANDIDATES
 from tests.blind.identify.rigs import make_rig, write_rig
-from tests.blind.identify.static import record_static, to_and_fro, write_static
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -30,15 +29,12 @@ def folder(tmp_path_factory):
     where = tmp_path_factory.mktemp("rig") / "data"
     made = make_rig(1, 0, recordings=3)
     write_rig(made, where)
-    _, fit, support = made.conditions[0]
-    slowly = record_static(made, fit, support, to_and_fro(4e-3, 1.0, 1.5), 7)
-    write_static(where / "slowly.wav", slowly, fit, support)
     return where
 
 
 @pytest.fixture(scope="module")
 def answered(folder, tmp_path_factory):
-    """Exit code, folder of answers and what is said, one recording of five being unusable."""
+    """Exit code, folder of answers and what is said, one recording being unusable."""
     mixed = tmp_path_factory.mktemp("mixed") / "data"
     shutil.copytree(folder, mixed)
     for path in mixed.glob("run*.json"):
@@ -135,8 +131,7 @@ def test_an_empty_folder_is_an_unusable_call(tmp_path):
 def test_a_notebook_gets_the_same(folder):
     identified = noise.identify(folder, folder / "known.toml")
     assert identified.law
-    assert len(identified.static) == 1
-    assert identified.number("elastomer_stiffness").n_recordings == 3 + 1
+    assert identified.number("elastomer_stiffness").n_recordings == 3
 
 
 @pytest.mark.parametrize(
@@ -153,7 +148,6 @@ def test_another_unit_is_refused_before_anything_is_fitted(
 
     wrong = tmp_path / "wrong"
     shutil.copytree(folder, wrong)
-    (wrong / "slowly.wav").unlink()
     for path in wrong.glob("run*.wav"):
         samples, rate = soundfile.read(path, always_2d=True)
         named = [
