@@ -13,11 +13,10 @@ from __future__ import annotations
 
 import time
 import uuid
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 from models.errors import ParameterError
 
@@ -191,61 +190,3 @@ def locked(target: Path, *, wait: bool = True) -> Iterator[None]:
         with suppress(OSError):  # Windows does not remove open files
             path.unlink()  # before the release: a waiting process makes its own file
         lock.release()
-
-
-def export_paths(
-    target: Path, files: Sequence[str], endings: Sequence[str], option: str
-) -> dict[str, Path]:
-    """Return the output path of each recording.
-
-    Parameters
-    ----------
-    target : Path
-        Folder, in which the files have the relative paths of the recordings; or, for a single
-        recording, a file with one of the endings.
-    files : sequence of str
-        Names of the recordings in tables.
-    endings : sequence of str
-        Accepted suffixes; the first is used for files in a folder.
-    option : str
-        Command-line option that names the target, for messages.
-
-    Returns
-    -------
-    dict of str to Path
-
-    Raises
-    ------
-    ParameterError
-        Two recordings have the same name, or the target is a file for several recordings.
-
-    Examples
-    --------
-    >>> from pathlib import Path
-    >>> paths = export_paths(Path("tracks"), ["day1/run07.wav"], [".txt"], "--audacity")
-    >>> paths["day1/run07.wav"].as_posix()
-    'tracks/day1/run07.txt'
-    """
-    if target.suffix.lower() in endings:
-        if len(set(files)) > 1:
-            raise ParameterError(
-                f"{option} {target}: is one file, but there are {len(set(files))} recordings; "
-                "name a folder"
-            )
-        return dict.fromkeys(files, target)
-    counts = Counter(files)
-    for file in files:
-        if counts[file] > 1:
-            raise ParameterError(
-                f"{option} {target}: two recordings are called {file}; name the folder that "
-                "holds them both"
-            )
-        if PurePosixPath(file).is_absolute() or ".." in PurePosixPath(file).parts:
-            raise ParameterError(f"{option} {target}: {file} lies outside of the folder named")
-    # Recordings that differ only in their suffix keep it: run07.wav.txt and run07.flac.txt.
-    names = [PurePosixPath(file).with_suffix(endings[0]) for file in files]
-    name_counts = Counter(names)
-    return {
-        file: target / (name if name_counts[name] == 1 else f"{file}{endings[0]}")
-        for file, name in zip(files, names, strict=True)
-    }

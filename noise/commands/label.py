@@ -1,6 +1,6 @@
-"""``bushing-noise label``: recordings into a table of labelled segments, a map and label tracks.
+"""``bushing-noise label``: recordings into a table of labelled segments, and a map.
 
-Label tables in place of recordings are joined, for a map or label tracks without new labelling.
+Label tables in place of recordings are joined, for a map without new labelling.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.files import check_target, export_paths, locked
+from noise.base.files import check_target, locked
 from noise.base.labels import SURROUNDINGS
 from noise.base.progress import counted, note, report
 from noise.base.tables import TABLE_ENDINGS, write_table
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 OPTIONS = (
     *BATCH,
     Option("--map PICTURE", Path),
-    Option("--audacity FOLDER", Path),
     Option("--classifier FILE.npz", Path),
     Option("--surroundings rig|car|any", one_of(*SURROUNDINGS)),
     Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0),
@@ -45,8 +44,6 @@ def run(options: Namespace) -> int:
     from noise.batch.work import find_jobs
 
     jobs = find_jobs(options.paths)
-    if options.audacity is not None:
-        export_paths(options.audacity, [job.name for job in jobs], (".txt",), "--audacity")
     from noise.labels.corrections import sign_corrections, with_corrections
     from noise.labels.labelling import Labelling
     from noise.labels.summary import result_lines
@@ -129,9 +126,6 @@ def _check_exports(options: Namespace) -> None:
                 f"--map {options.map}: its numbers would go into {table}, which --out names for "
                 "the labels; give one of them another name"
             )
-    if options.audacity is not None:
-        file = options.audacity.suffix.lower() == ".txt"
-        check_target(options.audacity if file else options.audacity / "run.txt", "--audacity")
 
 
 def _from_tables(options: Namespace) -> int:
@@ -139,10 +133,8 @@ def _from_tables(options: Namespace) -> int:
     from noise.labels.corrections import with_corrections
     from noise.labels.table import COLUMNS, own_columns, read_label_table
 
-    if options.out is None and options.map is None and options.audacity is None:
-        raise ParameterError(
-            f"{options.paths[0]}: is a table; say what to make of it with --map or --audacity"
-        )
+    if options.out is None and options.map is None:
+        raise ParameterError(f"{options.paths[0]}: is a table; draw it with --map")
     rows = [row for path in options.paths for row in read_label_table(path)]
     if options.out is not None:
         with locked(options.out):
@@ -155,13 +147,8 @@ def _from_tables(options: Namespace) -> int:
 
 
 def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
-    """Write map and label tracks; return their paths."""
+    """Write the map and its table; return their paths."""
     written: list[Path] = []
-    if options.audacity is not None:
-        from noise.labels.tracks import write_label_tracks
-
-        write_label_tracks(options.audacity, rows)
-        written.append(options.audacity)
     if options.map is not None:
         from noise.labels.conditions import MAP_COLUMNS, conditions_map, map_rows
         from noise.pictures.conditions import plot_conditions

@@ -106,7 +106,7 @@ class Segments(list[Segment]):
         ParameterError
             There are no segments.
         """
-        from noise.labels.tracks import draw_tracks
+        from noise.labels.table import draw_tracks
 
         tracks: dict[str, list[tuple[float, float, str]]] = {}
         for one in self:

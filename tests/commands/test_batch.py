@@ -44,11 +44,11 @@ def test_features_name_the_bad_file_in_the_table_and_go_on(runs, capsys):
 
 
 def test_labels_are_linked_to_conditions_with_a_map_and_label_tracks(runs, capsys):
-    given = ["--map", "map.svg", "--audacity", "tracks", "--sensitivity", "2"]
+    given = ["--map", "map.svg", "--sensitivity", "2"]
     assert main(["label", "runs", "--out", "t.csv", *given]) == 1
     out, err = capsys.readouterr()
     paths = [line for line in out.splitlines() if "  " not in line]
-    assert paths == ["t.csv", "tracks", "map.svg", "map.csv"]
+    assert paths == ["t.csv", "map.svg", "map.csv"]
     assert re.search(r"at a sensitivity of 2, .* \d+ false names per hour", err)
     rows = csv_rows("t.csv")
     assert list(rows[0]) == list(COLUMNS)
@@ -57,7 +57,6 @@ def test_labels_are_linked_to_conditions_with_a_map_and_label_tracks(runs, capsy
     ]  # fmt: skip
     reason = "is damaged or no sound file (Format not recognised)"
     assert rows[1]["error"] == f"{Path('runs/b.wav')}: {reason}"
-    assert Path("tracks/a.txt").read_text() == f"0.000000\t0.100000\t{rows[0]['label']}\n"
     (place,) = csv_rows("map.csv")
     assert (place["speed_rad_s_from"], place["recordings"]) == ("4.9", "2")
 

@@ -154,7 +154,7 @@ CALLS = {
         ("runs --out m.csv --map m.png", "give one of them another name"),
         ("runs --sensitivity 11", "--sensitivity"),
         ("runs --classifier none.npz", "none.npz"),
-        ("labels.csv", "say what to make of it with --map or --audacity"),
+        ("labels.csv", "is a table; draw it with --map"),
     ],
     "screen": [
         ("misspelt.toml", "unknown key 'desing'; did you mean 'design'?"),
@@ -258,7 +258,7 @@ def test_a_pipe_is_refused_by_every_command_and_not_waited_for(folder, monkeypat
         "label pipe.wav", "features pipe.wav", "render pipe.wav --out s.wav",
         "label runs/a.wav --classifier pipe.npz", "label runs/a.wav --inference pipe.npz",
         "simulate --rig pipe.toml --speed 5 --out s.wav", "screen pipe.toml", "frf pipe.npy",
-        "review pipe.csv --out s", "review pipe.json --out s", "label pipe.csv --audacity s",
+        "review pipe.csv --out s", "review pipe.json --out s", "label pipe.csv --map s.png",
         "diagnose runs/a.wav --rig pipe.toml", "open pipe.wav --no-browser",
     ):  # fmt: skip
         assert main(call.split()) in (1, 2), call

@@ -147,7 +147,7 @@ CALLS = {
     **{
         f"{what} of labels{ending}": (f"labels{ending}", f"given{ending}", call, SOUND)
         for ending in (".csv", ".jsonl", ".parquet", ".xlsx")
-        for what, call in {"tracks": "label GIVEN --audacity out", "review": REVIEW}.items()
+        for what, call in {"map": "label GIVEN --map out.png", "review": REVIEW}.items()
     },
     "map": ("map.csv", "given.csv", "review GIVEN --simulated 0 --out out.html", {}),
     "sidecar": ("sidecar.json", "given.json", "features given.wav", SOUND),

@@ -1,4 +1,4 @@
-"""What follows from a label table: joined again, as label tracks, as a map of conditions."""
+"""What follows from a label table: joined again, as a map of conditions."""
 
 from __future__ import annotations
 
@@ -9,14 +9,12 @@ from pathlib import Path
 import pytest
 from hypothesis import given, strategies as st
 
-from models.errors import ParameterError, RecordingError
-from noise.base.files import export_paths
+from models.errors import RecordingError
 from noise.base.tables import write_table
 from noise.classifier import LABELS
 from noise.cli import main
 from noise.labels.conditions import conditions_map
 from noise.labels.table import COLUMNS, read_label_table
-from noise.labels.tracks import write_label_tracks
 from noise.pictures.conditions import plot_conditions
 
 
@@ -78,14 +76,6 @@ def test_what_is_no_label_table_is_refused_with_the_reason(tmp_path, name, conte
         read_label_table(tmp_path / name)
 
 
-def test_each_recording_has_a_label_track(tmp_path):
-    written = write_label_tracks(tmp_path, TABLE)
-    names = [path.relative_to(tmp_path).as_posix() for path in written]
-    assert names == ["a.txt", "day1/b.txt", "c.txt"]
-    track = (tmp_path / "day1" / "b.txt").read_text()
-    assert track == "0.000000\t1.500000\tsqueal\n1.500000\t2.000000\tnone\n"
-
-
 def test_jitter_of_the_logged_speed_does_not_split_a_place_but_a_step_does():
     rows = [row(speed=v) for v in (4.97, 5.0, 5.02, -5.01, 6.0, 12.0)]
     assert [sum(p.segments.values()) for p in conditions_map(rows)] == [4, 1, 1]
@@ -126,21 +116,20 @@ def test_the_picture_shows_each_count_and_a_panel_for_each_support():
     assert [text.get_text() for text in figure.axes[1].texts] == ["1", "1"]
 
 
-def test_a_map_and_tracks_come_from_a_table_without_labelling(tmp_path, capsys, monkeypatch):
+def test_a_map_comes_from_a_table_without_labelling(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write_table("one.jsonl", COLUMNS, TABLE[:1])
     write_table("two.csv", COLUMNS, TABLE[1:])
-    given = ["one.jsonl", "two.csv", "--map", "m/map.png", "--audacity", "tracks"]
+    given = ["one.jsonl", "two.csv", "--map", "m/map.png"]
     assert main(["label", *given, "--out", "both.csv"]) == 0
     out, _ = capsys.readouterr()
-    assert out.split() == [str(Path(p)) for p in ("both.csv", "tracks", "m/map.png", "m/map.csv")]
+    assert out.split() == [str(Path(p)) for p in ("both.csv", "m/map.png", "m/map.csv")]
     assert read_label_table(Path("both.csv")) == read_label_table(Path("one.jsonl")) + (
         read_label_table(Path("two.csv"))
     )
     with Path("m/map.csv").open() as file:
         assert [r["label"] for r in csv.DictReader(file)] == ["creak", "squeal", "unknown"]
     assert Path("m/map.png").read_bytes()[:4] == b"\x89PNG"
-    assert Path("tracks/day1/b.txt").is_file()
 
 
 def test_a_table_without_labels_has_no_map(tmp_path, capsys, monkeypatch):
@@ -149,19 +138,3 @@ def test_a_table_without_labels_has_no_map(tmp_path, capsys, monkeypatch):
     assert main(["label", "t.csv", "--map", "m.png"]) == 0
     assert "no segment is labelled" in capsys.readouterr().err
     assert not Path("m.png").exists()
-
-
-def test_the_file_of_each_recording_lies_as_the_recording_does(tmp_path):
-    def paths(target, *files):
-        return [path.name for path in export_paths(target, files, [".txt"], "--audacity").values()]
-
-    assert paths(tmp_path / "one.txt", "a.wav") == ["one.txt"]
-    assert paths(tmp_path, "a.wav", "a.flac", "b.wav") == ["a.wav.txt", "a.flac.txt", "b.txt"]
-    for target, files, said in (
-        (tmp_path / "one.txt", ("a.wav", "b.wav"), "2 recordings; name a folder"),
-        (tmp_path, ("a.wav", "a.wav"), r"two recordings are called a\.wav"),
-        (tmp_path, ("../a.wav",), "outside"),
-        (tmp_path, ("/etc/a.wav",), "outside"),
-    ):
-        with pytest.raises(ParameterError, match=said):
-            paths(target, *files)
