@@ -149,7 +149,7 @@ def simulate_motion(
     drive = shaft.speed(np.arange(n, dtype=np.float64) * (1.0 / rate))
     effects = activated(rig.effects, EFFECTS) if effects is None else effects
     for active in effects:
-        drive = active.apply_drive(drive, rate, {"rng": rng, "whole": True})
+        drive = active.apply_drive(drive, rate, rng)
     with unusual_values_first(rig):
         solver = MotionSolver(
             rig, interference, support_stiffness, rate, effects, rng,

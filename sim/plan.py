@@ -14,7 +14,7 @@ from sim.shaft import ConstantSpeed, ShaftMotion
 from sim.temperature import at_temperature
 
 LONGEST_RUN = 600.0
-"""Longest run and longest settling [s]: the whole run is in memory. `sim.blocks` has no limit."""
+"""Longest run and longest settling [s]: the whole run is in memory."""
 
 
 @dataclass(frozen=True)

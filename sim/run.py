@@ -1,9 +1,9 @@
 """Simulation of one run of the rig: from an operating condition to a recording.
 
-`simulate` computes the stages of a run in one block: motion, forces and sound, signals at the
-sensors, samples. Each stage is a function of the one before, and of a random generator where it
-scatters, so callers that need only some stages call those. `sim.blocks` sends a run through the
-same solver, effects and filters block by block.
+`simulate` computes the stages of a run: motion, forces and sound, signals at the sensors, samples.
+Each stage is a function of the one before, and of a random generator where it scatters, so callers
+that need only some stages call those. `sim.live` sends a rig whose setting changes through the same
+solver and effects block by block.
 """
 
 import math
@@ -121,7 +121,7 @@ def apply_sensor_effects(
 ) -> Signals:
     """Apply effects on sensors, in order, to the signals of a whole run at a rate [Hz]."""
     for active in effects:
-        signals = active.apply_sensors(signals, rate, {"rng": rng, "whole": True})
+        signals = active.apply_sensors(signals, rate, rng)
     return signals
 
 

@@ -180,7 +180,7 @@ def _simulated(suspension: Suspension, plan: Plan, rng: np.random.Generator) -> 
     bar, rate = suspension.bar, plan.rate
     speed = plan.shaft.speed(np.arange(plan.n_settling + plan.n_recorded) / rate)
     for active in plan.effects:
-        speed = active.apply_drive(speed, rate, {"rng": rng, "whole": True})
+        speed = active.apply_drive(speed, rate, rng)
     chain = torsion_chain(
         bar, suspension.spacing, suspension.link_stiffness, suspension.link_damping,
         suspension.wheels,

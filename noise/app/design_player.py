@@ -22,7 +22,7 @@ from models.radiation.impulse_responses import ImpulseResponses
 from models.rig_file import load_material_rig
 from noise.app.worker_process import WorkerProcess
 from noise.batch.work import one_thread
-from sim.blocks import BlockEngine, paths_key, paths_of
+from sim.live import LiveSimulation, paths_key, paths_of
 from sim.plan import Setting
 from sim.shaft import ConstantSpeed
 
@@ -40,7 +40,7 @@ _NICE = 10
 
 @dataclass(frozen=True)
 class PathsQuestion:
-    """Request of impulse responses: a setting and its `sim.blocks.paths_key`, which is compared."""
+    """Request of impulse responses: a setting and its `sim.live.paths_key`, which is compared."""
 
     key: tuple[object, ...]
     setting: Setting = field(compare=False)
@@ -147,7 +147,7 @@ REFUSED = 0xFFFFFFFF
 
 @dataclass(eq=False)
 class _Run:
-    live: BlockEngine
+    live: LiveSimulation
     paths: LiveTransferPaths
     serial: int
     refused: int = -1
@@ -180,8 +180,7 @@ class Player:
             The setting is invalid.
         """
         paths = LiveTransferPaths(self.beside)
-        live = BlockEngine(setting, n=BLOCK, kinds=("pressure", "torque"), paths=paths)
-        self._runs[number] = _Run(live, paths, serial)
+        self._runs[number] = _Run(LiveSimulation(setting, paths, n=BLOCK), paths, serial)
 
     def stop(self, number: int) -> None:
         """End a run, if it exists."""
@@ -234,8 +233,8 @@ class Player:
         if run.paths.refusal and run.refused != run.serial:
             why += refusal(run.serial, run.paths.refusal)
             run.refused = run.serial
-        pressure = made.samples["pressure"].astype("<f4")
-        torque = made.samples["torque"][::TORQUE_STEP].astype("<f4")
+        pressure = made.pressure.astype("<f4")
+        torque = made.torque[::TORQUE_STEP].astype("<f4")
         sizes = pressure.size, torque.size
         header = HEADER.pack(run.sequence, run.serial, *sizes, made.speed)
         run.sequence += 1

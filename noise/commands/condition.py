@@ -104,7 +104,7 @@ CONDITION = Group(
         Option("--support-stiffness K", _support_stiffness),
         Option("--material NAME", str),
         Option("--temperature C", number(least=_TEMPERATURE.low)),
-        Option("--seconds S", number(above=0.0, most=20000.0)),
+        Option("--seconds S", number(above=0.0, most=120.0)),
         Option("--effect NAME[:KEY=VALUE,...]", _effect, repeated=True),
         Option("--effects FILE.py", Path),
         Option("--rig RIG.toml", Path),
@@ -120,21 +120,6 @@ def stated_options(options: Namespace) -> dict[str, Any]:
     return {
         name: value for name, value in values.items() if value is not None and value is not False
     }
-
-
-def is_long(arguments: Mapping[str, Any]) -> bool:
-    """Whether to simulate and write a run in blocks."""
-    from sim.blocks import whole_run_effects
-    from sim.effects.effect import activated
-    from sim.plan import LONGEST_RUN
-
-    effects = activated(arguments["rig"].effects, arguments["library"])
-    seconds = arguments["seconds"]
-    return bool(seconds > LONGEST_RUN or (seconds > _LONG and not whole_run_effects(effects)))
-
-
-_LONG = 60.0
-"""Length above which a run is written in blocks, unless an effect needs the whole run [s]."""
 
 
 def run_arguments(

@@ -14,21 +14,15 @@ from models.errors import ParameterError, naming
 from noise.base.files import check_target
 from noise.base.progress import note, report, say
 from noise.base.tables import check_table_path, write_table
-from noise.commands.condition import CONDITION, DEFAULT_SECONDS, is_long, run_arguments, with_notes
+from noise.commands.condition import CONDITION, DEFAULT_SECONDS, run_arguments, with_notes
 from noise.commands.options import Option, whole_number
 
 if TYPE_CHECKING:
-    import os
-
     from models.recording import Recording
-    from sim.blocks import BlockRun
     from sim.run import Run
 
 
 _DEFAULT_RATE = 30000
-_LONGEST_IN_MEMORY = 60.0
-"""Longest run for a picture or the sound power [s]."""
-
 _SHORTEST_FOR_POWER = 0.25
 """Shortest run for `sim.analysis.sound_power` [s]."""
 
@@ -54,16 +48,6 @@ def run(options: Namespace) -> int:
             return _run_suspension(options, suspension)
     arguments, notes = run_arguments(options, options.rate)
     note(*notes)
-    if options.out is not None and is_long(arguments):
-        from noise.base.remarks import NEVER_SLIPS
-        from sim.blocks import simulate_blocks
-
-        block_run = simulate_blocks(**arguments)
-        wav = write_run(options.out, block_run, notes)
-        if block_run.watch.never_slips:
-            note(NEVER_SLIPS)
-        report(wav, wav.with_suffix(".json"))
-        return 0
     from sim.run import simulate
 
     simulated = simulate(**arguments)
@@ -117,58 +101,6 @@ def _write_or_print(path: Path | None, recording: Recording) -> None:
     report(wav, wav.with_suffix(".json"))
 
 
-def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...] = ()) -> Path:
-    """Compute a run in blocks and write it into a WAV file with its sidecar.
-
-    Parameters
-    ----------
-    path : path-like
-        ``run07`` and ``run07.wav`` are equivalent; parent folders are made.
-    run : BlockRun
-        Result of `sim.blocks.simulate_blocks`; a WAV file holds 4 GiB, 2.4 h at 30 kHz.
-    notes : tuple of str
-        Notes for the sidecar; one is added if the contact never slips.
-
-    Returns
-    -------
-    Path
-        The WAV file.
-
-    Raises
-    ------
-    ParameterError
-        The motion cannot be solved, or the file cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> from models.rig_file import load_material_rig
-    >>> from noise.recordings import read_recording
-    >>> from sim.blocks import simulate_blocks
-    >>> run = simulate_blocks(load_material_rig("PDMS"), 5.0, seconds=0.2)
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     read_recording(write_run(Path(folder) / "run07", run)).duration
-    0.2
-    """
-    import numpy as np
-
-    from models.recording import Recording
-    from noise.base.remarks import NEVER_SLIPS
-    from noise.recordings.wav import write_blocks
-
-    about = Recording(
-        np.zeros((len(run.channels), 0)), run.rate, run.channels, run.condition, notes=notes
-    )
-    return write_blocks(
-        path,
-        run.blocks,
-        run.n_samples,
-        about,
-        lambda: (NEVER_SLIPS,) if run.watch.never_slips else (),
-    )
-
-
 def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any]) -> None:
     """Write the table of the sound power and print its sum."""
     from noise.audio.assessment import POWER_COLUMNS, sound_power_rows
@@ -217,14 +149,8 @@ def _check(options: Namespace) -> None:
     check_table_path(options.sound_power)
     seconds = DEFAULT_SECONDS if options.seconds is None else options.seconds
     for option, path in (("--plot", options.plot), ("--sound-power", options.sound_power)):
-        if path is None:
-            continue
-        check_target(path, option)
-        if seconds > _LONGEST_IN_MEMORY:
-            raise ParameterError(
-                f"{option} takes the whole run in memory, for which --seconds {seconds:g} is too "
-                f"long; give {_LONGEST_IN_MEMORY:g} or less"
-            )
+        if path is not None:
+            check_target(path, option)
     if options.sound_power is not None and seconds < _SHORTEST_FOR_POWER:
         raise ParameterError(
             f"--sound-power: --seconds {seconds:g} is too short for the band at 50 Hz; "

@@ -12,8 +12,7 @@ import math
 import os
 import struct
 import zlib
-from collections.abc import Callable, Iterable
-from dataclasses import replace
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -73,7 +72,6 @@ def write_blocks(
     blocks: Iterable[NDArray[np.float64]],
     n_samples: int,
     about: Recording,
-    late_notes: Callable[[], tuple[str, ...]] = tuple,
 ) -> Path:
     """Write blocks as one 32-bit float WAV file with its sidecar, atomically.
 
@@ -87,8 +85,6 @@ def write_blocks(
         Total number of samples.
     about : Recording
         Recording without samples: rate (a whole number of hertz), channels, condition, notes.
-    late_notes : callable, optional
-        Function that returns further notes after the last block.
 
     Returns
     -------
@@ -136,7 +132,6 @@ def write_blocks(
                 written += block.shape[1]
         if written != n_samples:
             raise ParameterError(f"{target}: {written} samples arrived, expected {n_samples}")
-        about = replace(about, notes=(*about.notes, *late_notes()))
         sidecar.write_text(sidecar_text(about, f"{checksum:08x}"), encoding="utf-8")
     return target
 

@@ -15,7 +15,6 @@ critical speed by more than 0.25 rad/s, the spacing of the speeds.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -73,48 +72,6 @@ _START = 5e-3
 """Time in which a contact at rest takes up the motion of the shaft [s]."""
 
 
-@dataclass
-class SlidingWatch:
-    """Monitor of whether the contact ever slips, for a motion that may come in parts.
-
-    Parameters
-    ----------
-    shaft_speed, sliding_speed : float
-        Highest speeds so far, the latter after the start [rad/s].
-    seconds : float
-        Duration so far [s].
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> from sim.run import simulate
-    >>> motion = simulate(load_material_rig("fluorocarbon-thesis"), 5.0, seconds=0.1).motion
-    >>> watch = SlidingWatch()
-    >>> for part in (motion.part(0, 900), motion.part(900)):
-    ...     watch.update(part)
-    >>> watch.never_slips
-    False
-    """
-
-    shaft_speed: float = 0.0
-    sliding_speed: float = 0.0
-    seconds: float = 0.0
-
-    def update(self, motion: Motion) -> None:
-        """Add a motion, or its next part."""
-        first = max(0, math.ceil((_START - self.seconds) * motion.rate))
-        later = np.abs(motion.sliding_speed[first:])
-        self.shaft_speed = max(self.shaft_speed, float(np.abs(motion.shaft_speed).max(initial=0.0)))
-        self.sliding_speed = max(self.sliding_speed, float(later.max(initial=0.0)))
-        self.seconds += motion.torque.size / motion.rate
-
-    @property
-    def never_slips(self) -> bool:
-        """Whether the contact has carried the bushing's surface along all the time."""
-        turned = self.shaft_speed > 0.0 and self.seconds > _START
-        return turned and self.sliding_speed <= _CARRIED_ALONG * self.shaft_speed
-
-
 def never_slips(motion: Motion) -> bool:
     """Return whether the contact carries the bushing's surface along all the time.
 
@@ -132,9 +89,10 @@ def never_slips(motion: Motion) -> bool:
     >>> never_slips(simulate(rig.changed(critical_torque="x1000"), 5.0, seconds=0.1).motion)
     True
     """
-    watch = SlidingWatch()
-    watch.update(motion)
-    return watch.never_slips
+    later = motion.sliding_speed[math.ceil(_START * motion.rate) :]
+    fastest = float(np.abs(motion.shaft_speed).max())
+    turned = fastest > 0.0 and later.size > 0
+    return turned and float(np.abs(later).max()) <= _CARRIED_ALONG * fastest
 
 
 def regime_measures(motion: Motion) -> tuple[float, float]:

@@ -15,7 +15,7 @@ noise; an encoder counts lines and has none (``angle=0``).
 >>> values = {"amount": 1.0, "pressure_level": 50.0, "acceleration": 0.2, "torque": 0.05,
 ...           "angle": 1e-3}
 >>> room = _sensors(quiet, 90e3, "pink", values,
-...                 {"rng": np.random.default_rng(0), "whole": True})["pressure"]
+...                 np.random.default_rng(0))["pressure"]
 >>> 49.0 < float(20.0 * np.log10(room.std() / 20e-6)) < 52.0
 True
 """
@@ -25,44 +25,22 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
 from sim.chain import channel_level
-from sim.effects.effect import Effect, Memory, Parameter, Signals, Stage, Values
+from sim.effects.effect import Effect, Parameter, Signals, Stage, Values
 
 _LOWEST, _HIGHEST = 20.0, 20e3
 """Band of the levels [Hz]."""
 
-_STRETCH = 0.3
-"""Length of a stretch of noise in a run of several blocks [s]."""
-
 _EXPONENTS = {"white": 0.0, "pink": 1.0, "brown": 2.0}
 
 
-def _sensors(signals: Signals, rate: float, form: str, values: Values, memory: Memory) -> Signals:
+def _sensors(
+    signals: Signals, rate: float, form: str, values: Values, rng: np.random.Generator
+) -> Signals:
     noisy = {}
     for name, signal in signals.items():
         level = values["amount"] * channel_level(name, values)
-        noisy[name] = signal + level * _next_noise(signal.size, rate, form, name, memory)
+        noisy[name] = signal + level * _noise(signal.size, rate, _EXPONENTS[form], rng)
     return noisy
-
-
-def _next_noise(n: int, rate: float, form: str, name: str, memory: Memory) -> NDArray[np.float64]:
-    """Return the next samples of a channel's noise.
-
-    Independent stretches overlap by half; the squares of their weights add up to one, so the level
-    is constant. A run in one block is one stretch.
-    """
-    if "whole" in memory:
-        return _noise(n, rate, _EXPONENTS[form], memory["rng"])
-    half = next_fast_len(round(0.5 * _STRETCH * rate), real=True)
-    angle = 0.5 * np.pi * (np.arange(half) + 0.5) / half
-    key = f"{name} {form}"
-    fading, ready = memory.get(key, (None, np.empty(0)))
-    while ready.size < n:
-        stretch = _noise(2 * half, rate, _EXPONENTS[form], memory["rng"])
-        if fading is not None:
-            ready = np.append(ready, fading * np.cos(angle) + stretch[:half] * np.sin(angle))
-        fading = stretch[half:]
-    memory[key] = fading, ready[n:]
-    return np.asarray(ready[:n])
 
 
 def _noise(n: int, rate: float, exponent: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -95,5 +73,4 @@ EFFECT = Effect(
     },
     strength="amount",
     sensors=_sensors,
-    in_blocks=True,
 )

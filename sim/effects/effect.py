@@ -1,4 +1,4 @@
-"""Interface of an effect, and its application to blocks of a run.
+"""Interface of an effect.
 
 An effect is a behaviour of a real rig that the plain model lacks. Each is one file with one
 `Effect` named ``EFFECT``, and acts in one stage of the signal path. Most have several functional
@@ -8,8 +8,7 @@ the plain model, to rounding.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from copy import deepcopy
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
@@ -30,13 +29,12 @@ if TYPE_CHECKING:
 
 Values = Mapping[str, float]
 Signals = dict[str, "NDArray[np.float64]"]
-Memory = dict[str, Any]
-Memories = dict[str, Memory]
-"""State of effects from block to block, by name of the effect."""
 
-DriveFunction = Callable[["NDArray[np.float64]", float, str, Values, Any], "NDArray[np.float64]"]
+DriveFunction = Callable[
+    ["NDArray[np.float64]", float, str, Values, "np.random.Generator"], "NDArray[np.float64]"
+]
 ForceFunction = Callable[["Motion", str, Values], "NDArray[np.float64]"]
-SensorFunction = Callable[[Signals, float, str, Values, Any], Signals]
+SensorFunction = Callable[[Signals, float, str, Values, "np.random.Generator"], Signals]
 ChainFunction = Callable[
     ["ImpulseResponses", str, Values, "np.random.Generator"], "ImpulseResponses"
 ]
@@ -86,11 +84,6 @@ class Effect:
         impacts to acceleration and pressure; they may be longer.
     sensors : callable, optional
         ``sensors(signals, rate, form, values, rng)`` returns changed signals by channel name.
-    in_blocks : bool
-        Whether `drive` and `sensors` can act block by block, as long runs and live designs need.
-        Their last argument is then ``memory`` instead of ``rng``: a dictionary with the generator
-        as ``rng`` that passes state from block to block; a run in one block has the entry
-        ``whole``. Otherwise they act on whole runs only.
     irregular : bool
         Whether it only makes slips differ at random, so that the rig has a version without it
         (`sim.rig_effects.constant_version`).
@@ -109,13 +102,12 @@ class Effect:
     force: ForceFunction | None = None
     chain: ChainFunction | None = None
     sensors: SensorFunction | None = None
-    in_blocks: bool = False
     irregular: bool = False
 
     @property
     def needs_whole_run(self) -> bool:
-        """Whether the effect acts on whole runs only."""
-        return not self.in_blocks and (self.drive is not None or self.sensors is not None)
+        """Whether the effect acts on whole runs only, and not on a live simulation."""
+        return self.drive is not None or self.sensors is not None
 
     def active(self, parameters: Mapping[str, float | str]) -> ActiveEffect:
         """Return the effect with parameters set; the others have their defaults.
@@ -148,20 +140,18 @@ class ActiveEffect:
         return self.values[self.effect.strength] == 0.0
 
     def apply_drive(
-        self, speed: NDArray[np.float64], rate: float, memory: Memory
+        self, speed: NDArray[np.float64], rate: float, rng: np.random.Generator
     ) -> NDArray[np.float64]:
-        """Return the changed speed of the shaft over the next block [rad/s], shape (n,)."""
+        """Return the changed speed of the shaft over a run [rad/s], shape (n,)."""
         if self.effect.drive is None:
             return speed
-        state = memory if self.effect.in_blocks else memory["rng"]
-        return self.effect.drive(speed, rate, self.form, self.values, state)
+        return self.effect.drive(speed, rate, self.form, self.values, rng)
 
-    def apply_sensors(self, signals: Signals, rate: float, memory: Memory) -> Signals:
-        """Return the changed signals of the next block at a rate [Hz], by channel."""
+    def apply_sensors(self, signals: Signals, rate: float, rng: np.random.Generator) -> Signals:
+        """Return the changed signals of a run at a rate [Hz], by channel."""
         if self.effect.sensors is None:
             return signals
-        state = memory if self.effect.in_blocks else memory["rng"]
-        return self.effect.sensors(signals, rate, self.form, self.values, state)
+        return self.effect.sensors(signals, rate, self.form, self.values, rng)
 
     def packed(self, rng: np.random.Generator) -> NDArray[np.float64]:
         """Return the numbers that the compiled function reads, shape (n,), units by the effect."""
@@ -211,87 +201,3 @@ def effect_named(name: str, effects: Mapping[str, Effect]) -> Effect:
         f"effect {name!r} is unknown{did_you_mean(name, sorted(effects))}; there are "
         f"{', '.join(sorted(effects))}"
     )
-
-
-def initial_memories(
-    effects: Sequence[ActiveEffect], seed: int, memories: Memories | None = None
-) -> Memories:
-    """Return the memory of each effect by name: from `memories`, or a new one with its own rng."""
-    import numpy as np
-
-    names = [active.effect.name for active in effects if active.effect.in_blocks]
-    initial = {name: {"rng": np.random.default_rng([seed, *name.encode()])} for name in names}
-    return initial | {name: memory for name, memory in (memories or {}).items() if name in initial}
-
-
-def drive_block(
-    even: NDArray[np.float64],
-    n: int,
-    rate: float,
-    effects: Sequence[ActiveEffect],
-    memories: Memories,
-) -> tuple[NDArray[np.float64], Memories]:
-    """Apply effects to the speed of the shaft over a block [rad/s], and return their memories.
-
-    Parameters
-    ----------
-    even : ndarray, shape (m,)
-        Speed without the effects [rad/s].
-    n : int
-        Samples of this block; those beyond are a preview of the next one.
-    rate : float
-        [Hz]
-    effects : sequence of ActiveEffect
-    memories : dict of str to dict
-        Memories after the block before, by name; not changed.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from sim.effects import EFFECTS
-    >>> uneven = [EFFECTS["speed_fluctuation"].active({"frequency": 10.0})]
-    >>> start = initial_memories(uneven, 0)
-    >>> first, later = drive_block(np.full(9, 5.0), 6, 100.0, uneven, start)
-    >>> second, _ = drive_block(np.full(6, 5.0), 6, 100.0, uneven, later)
-    >>> bool(np.allclose(first[6:], second[:3]))
-    True
-    """
-    import numpy as np
-
-    memories = deepcopy(memories)
-    for active in effects:
-        if active.effect.drive is None:
-            continue
-        memory = memories.get(active.effect.name, {})
-        blocks = [active.apply_drive(even[:n], rate, memory)]
-        if even.size > n:
-            blocks.append(active.apply_drive(even[n:], rate, deepcopy(memory)))
-        even = np.concatenate(blocks)
-    return even, memories
-
-
-def sensors_block(
-    signals: Signals, rate: float, effects: Sequence[ActiveEffect], memories: Memories
-) -> tuple[Signals, Memories]:
-    """Apply effects on sensors to the signals of a block, and return their memories.
-
-    Parameters
-    ----------
-    signals : dict of str to ndarray, shape (n,)
-    rate, effects, memories
-        As for `drive_block`.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from sim.effects import EFFECTS
-    >>> hum = [EFFECTS["mains_hum"].active({"form": "sine", "pressure_level": 94.0})]
-    >>> start = initial_memories(hum, 0)
-    >>> read, later = sensors_block({"pressure": np.zeros(960)}, 48e3, hum, start)
-    >>> round(float(read["pressure"].std()), 2), sorted(later["mains_hum"])
-    (1.0, ['pressure', 'rng'])
-    """
-    memories = deepcopy(memories)
-    for active in effects:
-        signals = active.apply_sensors(signals, rate, memories.get(active.effect.name, {}))
-    return signals, memories

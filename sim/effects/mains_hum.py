@@ -17,7 +17,7 @@ and picks up none, so the angle has none by default; a potentiometer like the th
 >>> values = {"amount": 1.0, "frequency": 50.0, "pressure_level": 94.0, "acceleration": 0.1,
 ...           "torque": 0.05, "angle": 1e-3}
 >>> hum = _sensors({"pressure": np.zeros(96_000)}, 96e3, "sine", values,
-...                {"rng": np.random.default_rng(0)})
+...                np.random.default_rng(0))
 >>> round(float(hum["pressure"].std()), 2)
 1.0
 """
@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.chain import channel_level
-from sim.effects.effect import Effect, Memory, Parameter, Signals, Stage, Values
+from sim.effects.effect import Effect, Parameter, Signals, Stage, Values
 
 _ODD = (1, 3, 5, 7, 9)
 
@@ -36,15 +36,13 @@ _CONDUCTION = 0.2
 """Share of each half-wave in which a rectifier conducts."""
 
 
-def _sensors(signals: Signals, rate: float, form: str, values: Values, memory: Memory) -> Signals:
+def _sensors(
+    signals: Signals, rate: float, form: str, values: Values, rng: np.random.Generator
+) -> Signals:
     humming = {}
     for name, signal in signals.items():
         level = values["amount"] * channel_level(name, values)
-        if name not in memory:
-            memory[name] = memory["rng"].uniform()
-        step = values["frequency"] / rate
-        turns = step * np.arange(signal.size, dtype=float) + memory[name]
-        memory[name] = (memory[name] + step * signal.size) % 1.0
+        turns = values["frequency"] / rate * np.arange(signal.size, dtype=float) + rng.uniform()
         humming[name] = signal + level * _hum(form, turns)
     return humming
 
@@ -79,5 +77,4 @@ EFFECT = Effect(
     },
     strength="amount",
     sensors=_sensors,
-    in_blocks=True,
 )

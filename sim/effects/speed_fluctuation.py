@@ -19,7 +19,7 @@ unknown; all values are assumed.
 
 >>> even = np.full(90_000, 5.0)
 >>> uneven = _drive(even, 90e3, "sine", {"depth": 0.1, "order": 1.0, "frequency": 10.0,
-...                 "bandwidth": 10.0}, {"rng": np.random.default_rng(0)})
+...                 "bandwidth": 10.0}, np.random.default_rng(0))
 >>> round(float(uneven.min()), 3), round(float(uneven.max()), 3)
 (4.5, 5.5)
 """
@@ -30,61 +30,42 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from sim.effects.effect import Effect, Memory, Parameter, Stage, Values
+from sim.effects.effect import Effect, Parameter, Stage, Values
 
 _HARMONICS = 4
 
 
 def _drive(
-    speed: NDArray[np.float64],
-    rate: float,
-    form: str,
-    values: Values,
-    memory: Memory,
+    speed: NDArray[np.float64], rate: float, form: str, values: Values, rng: np.random.Generator
 ) -> NDArray[np.float64]:
     if form == "random":
-        course = _random(speed.size, values["bandwidth"] / rate, memory)
+        course = _random(speed.size, values["bandwidth"] / rate, rng)
     else:
-        phase = _phase(speed, rate, values, memory)
-        course = _harmonics(phase, _HARMONICS if form == "harmonics" else 1, memory)
+        if values["frequency"] > 0.0:
+            step = 2.0 * math.pi * values["frequency"] / rate
+            phase = np.arange(speed.size, dtype=float) * step
+        else:
+            phase = values["order"] / rate * np.cumsum(speed)
+        course = _harmonics(phase, _HARMONICS if form == "harmonics" else 1, rng)
     return speed * (1.0 + values["depth"] * course)
 
 
-def _phase(
-    speed: NDArray[np.float64], rate: float, values: Values, memory: Memory
+def _harmonics(
+    phase: NDArray[np.float64], count: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    before = memory.get("phase", 0.0)
-    if values["frequency"] > 0.0:
-        step = 2.0 * math.pi * values["frequency"] / rate
-        phase = before + np.arange(speed.size, dtype=float) * step
-        memory["phase"] = before + speed.size * step
-    else:
-        phase = before + values["order"] / rate * np.cumsum(speed)
-        memory["phase"] = float(phase[-1])
-    return np.asarray(phase)
-
-
-def _harmonics(phase: NDArray[np.float64], count: int, memory: Memory) -> NDArray[np.float64]:
     """Return a sum of harmonics with the rms of a sine of amplitude one."""
-    starts = memory.setdefault("starts", [])
-    while len(starts) < count:
-        starts.append(memory["rng"].uniform(0.0, 2.0 * math.pi))
     course = np.zeros_like(phase)
-    for h, start in zip(range(1, count + 1), starts, strict=False):
-        course += np.sin(h * phase + start) / h
+    for h in range(1, count + 1):
+        course += np.sin(h * phase + rng.uniform(0.0, 2.0 * math.pi)) / h
     return course / math.sqrt(sum(h**-2 for h in range(1, count + 1)))
 
 
-def _random(n: int, bandwidth: float, memory: Memory) -> NDArray[np.float64]:
+def _random(n: int, bandwidth: float, rng: np.random.Generator) -> NDArray[np.float64]:
     """Return an Ornstein-Uhlenbeck process with the rms of a sine of amplitude one."""
-    rng, decay = memory["rng"], math.exp(-2.0 * math.pi * bandwidth)
+    decay = math.exp(-2.0 * math.pi * bandwidth)
     increments = rng.standard_normal(n) * math.sqrt(1.0 - decay**2)
-    if "last" not in memory:
-        increments[0] = rng.standard_normal()
-    before = decay * memory.get("last", 0.0)
-    course, _ = lfilter([math.sqrt(0.5)], [1.0, -decay], increments, zi=[before])
-    memory["last"] = float(course[-1])
-    return np.asarray(course)
+    increments[0] = rng.standard_normal()
+    return np.asarray(lfilter([math.sqrt(0.5)], [1.0, -decay], increments))
 
 
 EFFECT = Effect(
@@ -101,6 +82,5 @@ EFFECT = Effect(
     },
     strength="depth",
     drive=_drive,
-    in_blocks=True,
     irregular=True,
 )

@@ -205,15 +205,6 @@ def test_the_seed_and_the_rig_alone_decide_the_run(tmp_path):
     assert samples("--rig", str(tmp_path / "soft.toml")) == changed != samples()
 
 
-def test_a_long_run_is_written_in_blocks(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("noise.commands.condition._LONG", 0.1)
-    monkeypatch.setattr("sim.run.simulate", None)  # held in memory it would be
-    held = ["--change", "critical_torque=x9999"]
-    told = notes(tmp_path, capsys, "--speed", "5", "--seconds", "0.3", *held)
-    assert sum("nothing slips in this run" in line for line in told) == 1
-    assert read_recording(tmp_path / "run.wav").duration == 0.3
-
-
 ROAD = ["--oscillate", "6,2", "--seconds", "0.1"]
 
 

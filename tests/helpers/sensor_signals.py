@@ -9,7 +9,7 @@ RATE = 96e3
 
 def read(signals, name, seed=0, **parameters):
     active = EFFECTS[name].active(parameters)
-    return active.apply_sensors(signals, RATE, {"rng": np.random.default_rng(seed), "whole": True})
+    return active.apply_sensors(signals, RATE, np.random.default_rng(seed))
 
 
 def random_signals(seed=0, n=4000):

@@ -12,7 +12,7 @@ RATE = 10e3
 
 def driven(speed, seed=0, **parameters):
     active = EFFECT.active(parameters)
-    return active.apply_drive(speed, RATE, {"rng": np.random.default_rng(seed)})
+    return active.apply_drive(speed, RATE, np.random.default_rng(seed))
 
 
 def even(speed=5.0, seconds=10.0):

@@ -47,7 +47,7 @@ def played(effect=None):
     acceleration, pressure = (sum(each) for each in zip(*parts, strict=True))
     signals = {"torque": motion.torque, "acceleration": acceleration, "pressure": pressure}
     if effect is not None and effect.sensors is not None:
-        signals = effects[0].apply_sensors(signals, RATE, {"rng": rng, "whole": True})
+        signals = effects[0].apply_sensors(signals, RATE, rng)
     return signals
 
 
