@@ -44,7 +44,7 @@ from noise.diagnosis.outcome import (
     HypothesisFinding,
     StageFinding,
 )
-from noise.diagnosis.text.verdict_sentences import AGREES
+from noise.diagnosis.text.sentences import AGREES
 from noise.diagnosis.text.words import joined
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage

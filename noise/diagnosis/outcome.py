@@ -24,16 +24,6 @@ LARGEST_GAP = 100.0
 SURE = 0.05
 """Significance level of stages and places [-]; the customary one, assumed."""
 
-SHOWN_IN = {
-    "drive": ("drive", "friction"),
-    "friction": ("friction",),
-    "structure": ("structure",),
-    "radiation": ("radiation",),
-    "measurement": ("measurement", "friction", "structure", "radiation"),
-}
-"""Stages in which an effect of each stage may show: the shaft's motion depends on the contact, and
-an error of a sensor looks like one of the transfer path to it."""
-
 _DRAWN = 10
 """Number of causes that are drawn; assumed."""
 
@@ -334,7 +324,7 @@ class Diagnosis:
         matplotlib.axes.Axes
         """
         from models.drawing import BLUE, GREY, axes_or_new
-        from noise.diagnosis.text.verdict_sentences import headline
+        from noise.diagnosis.text.sentences import headline
         from noise.diagnosis.text.words import cause_of, percent
 
         causes = sorted(self.probabilities.items(), key=lambda item: -item[1])[:_DRAWN]
@@ -400,8 +390,7 @@ def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]
     improved : str, optional
         Name of the file of the improved rig.
     """
-    from noise.diagnosis.text.sentences import answer
-    from noise.diagnosis.text.verdict_sentences import headline
+    from noise.diagnosis.text.sentences import answer, headline
 
     words = {"headline": headline(diagnosis), "sentences": answer(diagnosis)}
     return {**_plain(diagnosis, _USUAL), "improved": improved, **words}

@@ -29,10 +29,12 @@ from noise.diagnosis.text.sentences import (
     answer,
     closed_words,
     fit_sentence,
+    headline,
+    is_named,
+    parameters_off,
     strength_sentence,
     strength_words,
 )
-from noise.diagnosis.text.verdict_sentences import headline, is_named, parameters_off
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
     STAGES,

@@ -8,7 +8,7 @@ import pytest
 from noise.diagnosis.causes.posterior import as_seldom
 from noise.diagnosis.gap.distance import NAMES, gap_of, reference
 from noise.diagnosis.run import diagnose
-from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
+from noise.diagnosis.text.sentences import headline, verdict_sentence
 from sim.acquisition import Acquisition
 from tests.helpers.small_rigs import RIG_FILE, at, run, write_case
 

@@ -15,8 +15,7 @@ from noise.app.jury import VOTES, Jury, in_words, random_pairs, scale
 from noise.base.labels import LABELS, MAP_LABELS, NAMED, PERSISTS
 from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.outcome import SURE, Agreement, EffectFinding, Location, StageFinding
-from noise.diagnosis.text.sentences import answer, fit_sentence, strength_sentence
-from noise.diagnosis.text.verdict_sentences import far_ones
+from noise.diagnosis.text.sentences import AGREES, answer, fit_sentence, strength_sentence
 from noise.diagnosis.text.words import finding_of
 from noise.identification.outcome import Identification, LawScore, Number
 from noise.labels.summary import result_lines
@@ -153,21 +152,13 @@ def check_rows(sentence, page, diagnosis):
         of_stage = next(one for one in page.chain if one.split()[0] == stage)
         assert f"{share} of all" in of_stage, sentence
         assert p_value in of_stage, sentence
-    for stage, channel in re.findall(r"shows in the (\w+) \([^)]*\): in the (\w+)", sentence):
-        if diagnosis.location is not None and stage != diagnosis.location.stage:
-            assert channel == CHANNELS[list(STAGES).index(stage)], sentence
-    if found := re.search(r"most in the (\w+) \(([\d.]+)(?: to ([\d.]+))? times\)", sentence):
+    if found := re.search(r"Farthest is (run\d), most in the (\w+) \(([\d.]+) times\)", sentence):
         heads = [one.strip() for one in page.row("Recording")]
-        column = heads.index(found[1].capitalize())
-        rows = [page.row(one.recording) for one in far_ones(diagnosis)]
-        if named := re.search(r"(run\d) deviates ([\d.]+) times", sentence):
-            rows = [page.row(named[1])]
-            assert float(rows[0][3]) == float(named[2]), sentence
-        reach = [float(row[column]) for row in rows]
-        ends = (float(found[2]), float(found[3] or found[2]))
-        assert ends == (min(reach), max(reach)), sentence
-        of_channels = [float(one) for row in rows for one in row[4:] if "not" not in one]
-        assert max(reach) == max(of_channels), sentence
+        row = page.row(found[1])
+        assert float(row[3]) == max(float(page.row(one.recording)[3])
+                                    for one in diagnosis.agreement), sentence  # fmt: skip
+        assert row[heads.index(found[2].capitalize())].strip() == found[3], sentence
+        assert float(found[3]) == max(float(one) for one in row[4:] if "not" not in one), sentence
     if diagnosis.verdict and (found := re.search(r"together deviate ([\d.]+) times", sentence)):
         whole = next(one for one in page.facts if "Gap before any fit" in one)
         gap = float(re.search(r"[\d.]+", whole)[0])
@@ -195,14 +186,13 @@ def check(sentence, page, diagnosis, gaps):
             cell = next(row[1] for row in page.rows if row[0].strip() == name.replace("_", " "))
             table = [float(end) for end in cell.split(" to ")]
             assert stated == pytest.approx(table, abs=0.006), sentence
-    reach = r"deviates? (?:up to )?([\d.]+)(?: to ([\d.]+))? times as much as repeat measurements"
+    reach = r"deviates? ([\d.]+)(?: to ([\d.]+))? times as much as repeat measurements"
     if found := re.search(reach, sentence):
-        least, most = float(found[1]), float(found[2] or found[1])
-        assert most == pytest.approx(max(gaps), abs=0.06), sentence
-        if "up to" not in sentence:
-            assert least == pytest.approx(min(gaps), abs=0.06), sentence
-    if found := re.search(r"the rig at (\d+) of (\d+) recordings", sentence):
-        assert (int(found[1]), int(found[2])) == (len(gaps) - len(far_ones(diagnosis)), len(gaps))
+        assert float(found[2] or found[1]) == pytest.approx(max(gaps), abs=0.06), sentence
+        assert float(found[1]) == pytest.approx(min(gaps), abs=0.06), sentence
+    if found := re.search(r"describes (\w+) of (\d+) recordings", sentence):
+        near = sum(one.gap <= AGREES for one in diagnosis.agreement)
+        assert (found[1], int(found[2])) == (str(near or "none"), len(gaps)), sentence
     for gap in re.findall(r"([\d.]+) times (?:as much|with it)", sentence):
         numbers = [float(one) for one in re.findall(r"\d+\.\d+|\d+", beside)]
         assert min(abs(float(gap) - one) for one in numbers) < 0.06, sentence

@@ -84,7 +84,7 @@ def _illustration(case: Case, i: int, before: Simulated, after: Simulated | None
 
 _LEFT = 2.0
 """Floors from which on a gap after a fit is one to explain; assumed. Of simulated repeats 5 % are
-farther off (`noise.diagnosis.text.verdict_sentences.AGREES`)."""
+farther off (`noise.diagnosis.text.sentences.AGREES`)."""
 
 
 def remainder_of(comparison: CaseComparison, model: Model, held: Sequence[int]) -> Remainder | None:

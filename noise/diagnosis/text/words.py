@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from models.errors import ParameterError
 from noise.base import packaged_toml
 from noise.diagnosis.outcome import LARGEST_GAP, SURE, Diagnosis, EffectFinding
 from sim.effects import EFFECTS
@@ -31,12 +30,6 @@ def stage_of_effect(diagnosis: Diagnosis, name: str) -> str:
     return str(EFFECTS[name].stage) if name in EFFECTS else ""
 
 
-def stages_acting(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """Return the stages that the effects of a verdict act in, each once."""
-    stages = (stage_of_effect(diagnosis, name) for name in diagnosis.verdict)
-    return tuple(dict.fromkeys(stage for stage in stages if stage))
-
-
 def begins(diagnosis: Diagnosis) -> bool:
     """Return whether the gap begins in the stage of its location.
 
@@ -51,7 +44,7 @@ def begins(diagnosis: Diagnosis) -> bool:
     place = diagnosis.location
     if place is None or place.p_value > SURE:
         return False
-    acting = stages_acting(diagnosis)
+    acting = {stage_of_effect(diagnosis, name) for name in diagnosis.verdict} - {""}
     return not acting or place.stage in acting
 
 
@@ -131,18 +124,11 @@ def cause_of(name: str) -> Cause:
 def chance(probability: float) -> str:
     """Return a probability as a word and a number.
 
-    Raises
-    ------
-    ParameterError
-        It does not lie between 0 and 1.
-
     Examples
     --------
     >>> chance(0.96), chance(0.999), chance(0.004)
     ('very likely, 96 %', 'virtually certain, > 99 %', 'exceptionally unlikely, < 1 %')
     """
-    if not 0.0 <= probability <= 1.0:
-        raise ParameterError(f"probability is {probability!r}; it lies between 0 and 1")
     word = next(word for least, word in _CHANCES if probability >= least)
     return f"{word}, {percent(probability)}"
 
