@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
     from models.recording import Recording
     from models.rig import LawSpec, Rig
-    from noise.diagnosis.evidence.contact_summary import FrictionCurves
 
 
 LARGEST_GAP = 100.0
@@ -188,8 +187,6 @@ class Illustration:
     measured: Recording
     before: Recording
     after: Recording | None
-    contacts: Mapping[str, FrictionCurves] = field(default_factory=dict)
-    """Friction torque of each, by ``measured``, ``before`` and ``after``."""
 
 
 @short_repr

@@ -8,9 +8,8 @@ resonance. Loudness is not matched, since it is part of an effect: all sounds sh
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +31,6 @@ from noise.pages.figures import COLUMNS, LEAD, Line, Panel, cycle_window, lines_
 from noise.pictures.figure import KINDS
 
 if TYPE_CHECKING:
-    from noise.diagnosis.evidence.contact_summary import FrictionCurves
     from noise.diagnosis.outcome import Diagnosis
 
 
@@ -141,11 +139,11 @@ def _signal(recording: Recording, kind: str) -> NDArray[np.float64] | None:
     return np.asarray(recording.samples[row], dtype=np.float64)
 
 
-def _line(role: str, x: NDArray[np.float64], y: NDArray[np.float64], **more: Any) -> Line:
+def _line(role: str, x: NDArray[np.float64], y: NDArray[np.float64]) -> Line:
     """Return a curve in the style of its role."""
     curve = CURVES[role]
     style = "dashes" if curve.dashed else "-"
-    return Line(x, y, curve.colour, curve.label, curve.width, style, **more)
+    return Line(x, y, curve.colour, curve.label, curve.width, style)
 
 
 def _cycles(runs: dict[str, Recording]) -> Panel:
@@ -207,53 +205,6 @@ def _spectra(runs: dict[str, Recording], kind: str) -> Panel:
         f"{about.name} in sixth octaves: over all, {', '.join(overall)}.",
         up_ends=ends, frequencies=(_LOWEST, _HIGHEST),
     )  # fmt: skip
-
-
-_OVER = {
-    "sliding_speed": ("Friction torque while it slips", "Sliding speed [rad/s]", 1.0),
-    "time_stuck": ("Slip begins: torque by time stuck", "Time stuck before [ms]", 1e3),
-    "time": ("Slip begins: torque over the recording", "Time [s]", 1.0),
-    "angle": ("Slip begins: torque by angle turned", "Angle turned [rad]", 1.0),
-}
-"""Title, label of the horizontal axis, and scale."""
-
-
-def contact_panels(contacts: Mapping[str, FrictionCurves]) -> tuple[Panel, ...]:
-    """Draw the friction torque with its 90 % interval.
-
-    Parameters
-    ----------
-    contacts : mapping of str to FrictionCurves
-        By ``measured``, ``before`` and ``after``.
-
-    Returns
-    -------
-    tuple of Panel
-        Empty without a measured one.
-
-    Examples
-    --------
-    >>> contact_panels({})
-    ()
-    """
-    if "measured" not in contacts:
-        return ()
-    with styled():
-        return tuple(_panel(name, contacts) for name in _OVER)
-
-
-def _panel(over: str, contacts: Mapping[str, FrictionCurves]) -> Panel:
-    title, across, scale = _OVER[over]
-    lines, words = [], []
-    for name, friction_curves in contacts.items():
-        curve = getattr(friction_curves, over)
-        if curve.x.size:
-            more = {"marker": "o", "low": curve.low, "high": curve.high}
-            lines.append(_line(name, scale * curve.x, curve.torque, **more))
-            ends = f"{curve.torque.min():.3g} to {curve.torque.max():.3g} Nm"
-            words.append(f"{CURVES[name].label} {ends}")
-    alt = f"{title}, over {across.lower()}: {'; '.join(words)}."
-    return lines_panel(title, across, "Torque [Nm]", lines, alt)
 
 
 LONGEST = 4.0
@@ -329,11 +280,14 @@ def draw_comparisons(
         entries |= dict(zip(keys, sounds.values(), strict=True))
         known = facts_of(Entry(illustration.name, condition=illustration.measured.condition))
         silent = "" if sounds else "There is no sound pressure to be heard."
-        panels = (*illustration_panels(illustration), *contact_panels(illustration.contacts))
         groups.append(
             b.Group(
                 illustration.name,
-                [b.Cards(keys, "narrow"), b.Text(silent, "soft small"), b.Panels(panels)],
+                [
+                    b.Cards(keys, "narrow"),
+                    b.Text(silent, "soft small"),
+                    b.Panels(illustration_panels(illustration)),
+                ],
                 ", ".join(fact.words for name, fact in known.items() if name != "material"),
                 "compared",
             )

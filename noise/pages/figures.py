@@ -72,10 +72,8 @@ class Line:
     colour, label : str
     width : float
         [point]
-    style, marker : str
+    style : str
         Of matplotlib; "dashes" are long ones.
-    low, high : ndarray, shape (n,), optional
-        Between which it is coloured, in the unit of the vertical axis [-].
     """
 
     x: NDArray[np.floating[Any]]
@@ -84,9 +82,6 @@ class Line:
     label: str = ""
     width: float = 1.5
     style: str = "-"
-    marker: str = ""
-    low: NDArray[np.floating[Any]] | None = None
-    high: NDArray[np.floating[Any]] | None = None
 
 
 Ends = tuple[float, float]
@@ -144,12 +139,9 @@ def lines_panel(
     # At the same place in every panel, however wide the numbers are.
     axes.yaxis.set_label_coords(-0.19, 0.5)
     for one in lines:
-        if one.low is not None and one.high is not None:
-            axes.fill_between(one.x, one.low, one.high, color=one.colour, alpha=0.18, linewidth=0)
         axes.plot(
             one.x, one.y, color=one.colour, label=one.label or None, lw=one.width,
-            ls=_STYLES.get(one.style, one.style), marker=one.marker,
-            ms=2 if one.marker == "." else 4,
+            ls=_STYLES.get(one.style, one.style),
         )  # fmt: skip
     low, high = up_ends or axes.get_ylim()
     axes.set_ylim(low - room[0] * (high - low), high + room[1] * (high - low))

@@ -21,30 +21,20 @@ moves both alike, a stiffness that depends on frequency does not.
 Of the friction torque the way up and the way down of a slip are separate, since a contact with a
 memory has another torque on either. A fitted level, slope and bend use all samples at once and
 scatter less than the classes do.
-
-For pictures the friction torque is drawn over what it may depend on, in bins of about as many slips
-each. An error of a mean is that of the slips' scatter, taken together with what gains differ by
-from run to run, which no number of slips averages out.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.slips import in_intervals, slip_intervals
-from models.recording import Recording
-from models.rig import Fit, Rig
-from models.show import short_repr
-from noise.base import SURE_90
+from models.rig import Fit
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import quantile
-from noise.diagnosis.evidence.reconstruction import Reconstruction, reconstruct, shaft_speed
-from noise.diagnosis.simulated.scatter import Scatter
-from sim.bushing import lumped_bushing
+from noise.diagnosis.evidence.reconstruction import Reconstruction
 
 _BEFORE = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)
 """Times before a slip starts at which the torque is looked at [s]."""
@@ -419,133 +409,3 @@ def _slope(x: Array, y: Array) -> float:
 def _correlation(x: Array, y: Array) -> float:
     spread = float(x.std() * y.std())
     return float(np.mean((x - x.mean()) * (y - y.mean()))) / spread if spread > 1e-12 else 0.0
-
-
-_CURVE_EDGES = np.array([2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 40.0, 50.0])
-"""Of bins of the sliding speed [rad/s]."""
-
-_BINS = 10
-"""Of slips, at most."""
-
-_FEWEST_SLIPS = 4
-"""Slips that make a curve, and a bin."""
-
-_NEAR = 6e-4
-"""Before a slip's start, in which its torque is looked for [s]."""
-
-
-@short_repr
-@dataclass(frozen=True, eq=False)
-class TorqueCurve:
-    """A mean torque and its 90 % interval.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n_bins,)
-        What it is drawn over [unit of its field in `FrictionCurves`].
-    torque, low, high : ndarray, shape (n_bins,)
-        Mean and limits of its interval [Nm].
-    """
-
-    x: Array
-    torque: Array
-    low: Array
-    high: Array
-
-
-@dataclass(frozen=True)
-class FrictionCurves:
-    """The friction torque of one recording.
-
-    Parameters
-    ----------
-    sliding_speed : TorqueCurve
-        While the surface slips, over the sliding speed [rad/s].
-    time_stuck, time, angle : TorqueCurve
-        When a slip begins, over the time stuck before it [s], over time [s] and over the angle by
-        which the shaft has turned [rad].
-    """
-
-    sliding_speed: TorqueCurve
-    time_stuck: TorqueCurve
-    time: TorqueCurve
-    angle: TorqueCurve
-
-
-def friction_curves(recording: Recording, rig: Rig) -> FrictionCurves | None:
-    """Rebuild the friction torque of a recording.
-
-    Parameters
-    ----------
-    recording : Recording
-    rig : Rig
-        Whose stiffness, damping and inertias the torque in the contact is rebuilt with.
-
-    Returns
-    -------
-    FrictionCurves or None
-        None where no torque or no condition is known, or where too few slips are.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> from sim.run import simulate
-    >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> run = simulate(rig, 1.0, interference=0.279e-3, support_stiffness=3745.0, seconds=0.4)
-    >>> curves = friction_curves(run.recording, rig)
-    >>> bool(np.all(abs(curves.time.torque - 10.7) < 0.5))  # the critical torque, at any time
-    True
-    """
-    c = recording.condition
-    row = recording.first("torque")
-    if row is None or c.speed is None or c.interference is None or c.support_stiffness is None:
-        return None
-    turn, rate = float(np.copysign(1.0, c.speed)), recording.rate
-    speed = np.full(recording.samples.shape[1], abs(c.speed))
-    if (angle := recording.first("angle")) is not None:
-        speed = shaft_speed(turn * recording.samples[angle], rate)
-    bushing = lumped_bushing(rig, c.interference, c.support_stiffness)
-    motion = reconstruct(turn * recording.samples[row], speed, rate, bushing)
-    starts, ends = slip_starts(motion, abs(c.speed))
-    if starts.size < _FEWEST_SLIPS + 1:
-        return None
-    near = round(_NEAR * rate)
-    peaks = np.array([motion.friction_torque[max(a - near, 0) : a + 2].max() for a in starts])
-    when = motion.start + starts / rate
-    turned = np.cumsum(motion.shaft_speed) / rate
-    return FrictionCurves(
-        sliding_speed=_over_speed(motion.sliding_speed, motion.friction_torque, starts, ends),
-        time_stuck=_binned((starts[1:] - ends[:-1]) / rate, peaks[1:]),
-        time=_binned(when, peaks),
-        angle=_binned(turned[starts], peaks),
-    )
-
-
-def _over_speed(
-    speed: Array, torque: Array, starts: NDArray[np.int64], ends: NDArray[np.int64]
-) -> TorqueCurve:
-    """Mean over slips of each slip's mean in a class of speed."""
-    rows = []
-    for a, b in zip(starts.tolist(), ends.tolist(), strict=True):
-        place = np.digitize(speed[a:b], _CURVE_EDGES) - 1
-        inside = (place >= 0) & (place < _CURVE_EDGES.size - 1)
-        total = np.bincount(place[inside], torque[a:b][inside], _CURVE_EDGES.size - 1)
-        count = np.bincount(place[inside], minlength=_CURVE_EDGES.size - 1)
-        rows.append(np.where(count > 0, total / np.maximum(count, 1), np.nan))
-    table = np.array(rows)
-    known = np.isfinite(table).sum(axis=0) >= _FEWEST_SLIPS
-    middles = 0.5 * (_CURVE_EDGES[1:] + _CURVE_EDGES[:-1])
-    return _curve(middles[known], [column[np.isfinite(column)] for column in table.T[known]])
-
-
-def _binned(x: Array, torque: Array) -> TorqueCurve:
-    order = np.argsort(x, kind="stable")
-    parts = np.array_split(order, max(1, min(_BINS, x.size // _FEWEST_SLIPS)))
-    return _curve(np.array([x[part].mean() for part in parts]), [torque[part] for part in parts])
-
-
-def _curve(x: Array, groups: list[Array]) -> TorqueCurve:
-    mean = np.array([group.mean() for group in groups])
-    error = np.array([group.std(ddof=1) / np.sqrt(group.size) for group in groups])
-    sure = SURE_90 * np.hypot(error, Scatter().gain * mean)
-    return TorqueCurve(x, mean, mean - sure, mean + sure)

@@ -19,7 +19,6 @@ from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import LawSpec
 from noise.base import SURE_90
-from noise.diagnosis.evidence.contact_summary import friction_curves
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit import Fitted
@@ -68,18 +67,10 @@ def illustrations_of(
     illustrations = []
     for i in held[:_DRAWN]:
         with suppress(ParameterError):
-            illustrations.append(_illustration(case, i, before, after))
+            measured = case.recordings[i]
+            fitted = None if after is None else after(measured)
+            illustrations.append(Illustration(case.names[i], measured, before(measured), fitted))
     return tuple(illustrations)
-
-
-def _illustration(case: Case, i: int, before: Simulated, after: Simulated | None) -> Illustration:
-    measured = case.recordings[i]
-    shown = {"measured": measured, "before": before(measured)}
-    if after is not None:
-        shown["after"] = after(measured)
-    curves_of = {name: friction_curves(recording, case.rig) for name, recording in shown.items()}
-    contacts = {name: curves for name, curves in curves_of.items() if curves is not None}
-    return Illustration(case.names[i], measured, shown["before"], shown.get("after"), contacts)
 
 
 _LEFT = 2.0
