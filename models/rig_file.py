@@ -237,7 +237,7 @@ def _layered(content: Mapping[str, Any], folder: Path, where: str, chain: tuple[
         rig = replace(rig, measured=measured_responses(content["measured_response"], folder, where))
     if "sensors" in content:
         table = content["sensors"]
-        rig = replace(rig, sensors=read_sensors(table, rig.sensors, folder, f"{where}, sensors"))
+        rig = replace(rig, sensors=read_sensors(table, rig.sensors, f"{where}, sensors"))
     if "change" in content:
         rig = changed_rig(rig, as_table(content["change"], "change", where), f"{where}, change")
     return rig

@@ -13,10 +13,8 @@ recordings"`` the noise is estimated where there are recordings.
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
-from pathlib import Path
 from typing import Any
 
-from models.calibration import Calibration, calibration_table, read_calibration
 from models.errors import ParameterError
 from models.schema import Quantity, as_table, refuse_unknown
 from models.show import short_repr
@@ -66,8 +64,6 @@ class Sensor:
         Resolution of the converter: its range in both signs has ``2**bits`` steps.
     antialias : float, optional
         Corner of the anti-alias filter at -3 dB [Hz].
-    calibration : Calibration, optional
-        Conversion of recorded numbers to the quantity, for recordings without another calibration.
 
     Examples
     --------
@@ -79,7 +75,6 @@ class Sensor:
     full_scale: float | None = None
     bits: int | None = None
     antialias: float | None = None
-    calibration: Calibration | None = None
 
     @property
     def step(self) -> float:
@@ -110,7 +105,7 @@ class Sensors:
     --------
     >>> fine, coarse = Sensors({"torque": Sensor(1e-3)}), Sensors({"torque": Sensor(bits=8)})
     >>> coarse.over(fine).of("torque")
-    Sensor(noise=0.001, full_scale=None, bits=8, antialias=None, calibration=None)
+    Sensor(noise=0.001, full_scale=None, bits=8, antialias=None)
     """
 
     by_kind: Mapping[str, Sensor] = field(default_factory=dict)
@@ -134,12 +129,6 @@ class Sensors:
         without = {kind: replace(sensor, antialias=None) for kind, sensor in self.by_kind.items()}
         return replace(self, by_kind=without)
 
-    @property
-    def calibrations(self) -> dict[str, Calibration]:
-        """Calibrations by kind of channel."""
-        pairs = ((kind, sensor.calibration) for kind, sensor in self.by_kind.items())
-        return {kind: calibration for kind, calibration in pairs if calibration is not None}
-
     def over(self, other: "Sensors") -> "Sensors":
         """Return these sensors, with properties that they do not state taken from others."""
         kinds = dict.fromkeys((*other.by_kind, *self.by_kind))
@@ -152,7 +141,7 @@ class Sensors:
 _IDEAL = Sensor()
 
 
-def read_sensors(table: Any, base: Sensors, folder: Path, where: str) -> Sensors:
+def read_sensors(table: Any, base: Sensors, where: str) -> Sensors:
     """Read sensors from a rig file's table, on top of those of its base.
 
     Parameters
@@ -161,8 +150,6 @@ def read_sensors(table: Any, base: Sensors, folder: Path, where: str) -> Sensors
         Table of the TOML file.
     base : Sensors
         Sensors of the base.
-    folder : Path
-        Folder of the rig file, to which names of tables are relative.
     where : str
         Name of the table in messages.
 
@@ -174,11 +161,11 @@ def read_sensors(table: Any, base: Sensors, folder: Path, where: str) -> Sensors
     Examples
     --------
     >>> table = {"range": {"torque": 102.5}, "bits": 12}
-    >>> read_sensors(table, Sensors(), Path(), "rig, sensors").of("torque").step
+    >>> read_sensors(table, Sensors(), "rig, sensors").of("torque").step
     0.050048828125
     """
     table = as_table(table, "sensors", where)
-    refuse_unknown(table, {*_KEYS.values(), "calibration"}, where)
+    refuse_unknown(table, _KEYS.values(), where)
     estimated = table.get("noise") == FROM_RECORDINGS
     stated: dict[str, dict[str, Any]] = {}
     for name, key in _KEYS.items():
@@ -191,12 +178,6 @@ def read_sensors(table: Any, base: Sensors, folder: Path, where: str) -> Sensors
         stated[name] = {
             kind: SENSOR_QUANTITIES[kind][name].read(value, where) for kind, value in entry.items()
         }
-    calibrations = as_table(table.get("calibration", {}), "calibration", where)
-    refuse_unknown(calibrations, CHANNEL_UNITS, f"{where}, calibration")
-    stated["calibration"] = {
-        kind: read_calibration(entry, kind, folder, f"{where}, calibration of {kind}")
-        for kind, entry in calibrations.items()
-    }
     kinds = dict.fromkeys(kind for values in stated.values() for kind in values)
     own = Sensors(
         {kind: Sensor(**{n: v[kind] for n, v in stated.items() if kind in v}) for kind in kinds}
@@ -253,6 +234,4 @@ def sensors_table(sensors: Sensors) -> dict[str, Any]:
             table[key] = stated
     if sensors.noise_from_recordings:
         table["noise"] = FROM_RECORDINGS
-    for kind, calibration in sensors.calibrations.items():
-        table.setdefault("calibration", {})[kind] = calibration_table(calibration, kind)
     return table

@@ -41,7 +41,6 @@ from pathlib import Path
 from typing import Any
 
 _EXPORTS = {
-    "models.calibration": ("Calibration",),
     "models.condition": ("FIXED", "Condition"),
     "models.errors": ("BushingNoiseError", "ParameterError", "RecordingError"),
     "models.recording": ("Channel", "Recording"),

@@ -54,8 +54,7 @@ def _identification(options: Namespace, progress: Steps) -> tuple[Identification
     from noise.identification.measured import known_beforehand, read_measurements
 
     beforehand = known_beforehand(options.rig, change_table(options.change or ()))
-    calibrations = beforehand.rig.sensors.calibrations
-    measurements = read_measurements(options.data, calibrations)
+    measurements = read_measurements(options.data)
     for name, reason in measurements.refused:
         say(f"{name}: {reason}")
     if not measurements.used:

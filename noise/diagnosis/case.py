@@ -259,7 +259,7 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
     names, recordings, refused = [], [], []
     for path, name in find_recordings(paths):
         try:
-            recording = usable(read_recording(path, calibrations=rig.sensors.calibrations), rig)
+            recording = usable(read_recording(path), rig)
         except BushingNoiseError as error:
             refused.append((name, str(error)))
         else:

@@ -151,8 +151,7 @@ def identify(
     """
     paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
     beforehand = known_beforehand(None if rig is None else Path(rig))
-    calibrations = beforehand.rig.sensors.calibrations
-    return identify_rig(read_measurements(paths, calibrations), beforehand)
+    return identify_rig(read_measurements(paths), beforehand)
 
 
 def result_lines(result: Identification) -> list[str]:

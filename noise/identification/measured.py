@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from scipy.fft import irfft, rfft, rfftfreq
 
-from models.calibration import Calibration
 from models.change import changed_rig
 from models.condition import KnownCondition
 from models.errors import BushingNoiseError, ParameterError
@@ -190,16 +189,12 @@ class Measurements:
     refused: tuple[tuple[str, str], ...]
 
 
-def read_measurements(
-    paths: Sequence[Path], calibrations: Mapping[str, Calibration] | None = None
-) -> Measurements:
+def read_measurements(paths: Sequence[Path]) -> Measurements:
     """Read the recordings in files and folders.
 
     Parameters
     ----------
     paths : sequence of Path
-    calibrations : mapping of str to Calibration, optional
-        As of `noise.recordings.read_recording`.
 
     Returns
     -------
@@ -214,7 +209,7 @@ def read_measurements(
     used, refused = [], []
     for path, name in find_recordings(paths):
         try:
-            used.append(measured(read_recording(path, calibrations=calibrations), name))
+            used.append(measured(read_recording(path), name))
         except BushingNoiseError as error:
             refused.append((name, str(error)))
     if not (used or refused):

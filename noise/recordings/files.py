@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.blocks import RecordingBlocks
-from models.calibration import Calibration
-from models.errors import RecordingError, naming
+from models.errors import RecordingError
 from models.foreign_file import reading, refusing
 from models.recording import Recording
 from noise.base.progress import note
@@ -43,10 +42,7 @@ _noted: set[str] = set()
 
 
 def read_recording(
-    path: str | os.PathLike[str],
-    *,
-    full_scale: PascalPerFullScale | None = None,
-    calibrations: Mapping[str, Calibration] | None = None,
+    path: str | os.PathLike[str], *, full_scale: PascalPerFullScale | None = None
 ) -> Recording:
     """Read a recording with the metadata of its sidecar or of the file itself.
 
@@ -59,8 +55,6 @@ def read_recording(
     full_scale : float or tuple of float, optional
         Pressure of a full-scale sample [Pa], for all tracks or for each. It overrides file and
         sidecar, except for samples that are already in a unit.
-    calibrations : mapping of str to Calibration, optional
-        Calibration by kind of channel, for channels that neither file nor sidecar calibrates.
 
     Returns
     -------
@@ -90,7 +84,7 @@ def read_recording(
     """
     path = Path(path)
     with refusing(str(path), "recording", RecordingError), open_raw(path) as raw:
-        return _whole(path, raw, interpret(path, raw, full_scale, calibrations))
+        return _whole(path, raw, interpret(path, raw, full_scale))
 
 
 @contextmanager
@@ -176,12 +170,12 @@ def open_raw(path: Path) -> Iterator[RawRecording]:
 def _whole(path: Path, raw: RawRecording, metadata: Metadata) -> Recording:
     """Return a recording with all its samples."""
     samples, channels = raw.whole(), metadata.channels
-    range_notes = _to_units(path, raw, metadata, samples)
+    _to_units(path, raw, metadata, samples)
     unwrapping = find_turns(
         channels, lambda a, b: samples[:, a:b], raw.n_samples, metadata.calibrated
     )
     unwrapping.add(samples, 0)
-    notes = (*metadata.notes, *range_notes, *unwrapping.notes)
+    notes = (*metadata.notes, *unwrapping.notes)
     _note_once(path, notes)
     return Recording(
         samples, raw.rate, channels, metadata.condition, metadata.calibrated, path.name, notes
@@ -224,24 +218,13 @@ def _in_chunks(path: Path, raw: RawRecording, metadata: Metadata) -> RecordingBl
 
 def _to_units(
     path: Path, raw: RawRecording, metadata: Metadata, samples: NDArray[np.float64], start: int = 0
-) -> list[str]:
-    """Convert samples from index `start` on to their units in place; return notes."""
-    notes = []
+) -> None:
+    """Convert samples from index `start` on to their units in place."""
     with np.errstate(over="ignore", invalid="ignore"):  # `check_finite` refuses them
-        for channel, curve, row in zip(metadata.channels, metadata.curves, samples, strict=True):
-            if curve is None:
-                if channel.full_scale != 1.0:
-                    row *= channel.full_scale
-                continue
-            with naming(f"{path}: channel {channel.name!r} ", RecordingError):
-                out = curve.beyond(row)
-                row[:] = curve.of(row)
-            if out:
-                notes.append(
-                    f"{channel.name} was read up to {out:.1%} of its span outside of {curve.source}"
-                )
+        for channel, row in zip(metadata.channels, samples, strict=True):
+            if channel.full_scale != 1.0:
+                row *= channel.full_scale
     check_finite(path, samples, raw.rate, metadata.channels, start)
-    return notes
 
 
 def names_channels(path: Path) -> bool:

@@ -4,13 +4,11 @@ The value of full scale of each channel comes from the first of these sources th
 
 1. the caller's `full_scale`, from an option or a calibrator's tone (pressure channels only); it is
    ignored with a note for samples that are already in a unit,
-2. the sidecar: its ``scale``, or, for floating-point samples, the name of the channel, because
-   such samples are in the unit of the channel; ``"calibrated": false`` disables 2 to 4,
+2. the sidecar: its ``scale``, such as N m per volt where a logger stored volts, or, for
+   floating-point samples without one, the name of the channel, because such samples are in the
+   unit of the channel; ``"calibrated": false`` disables 2 to 4,
 3. the description in the file, then its name, as sound level meters write them,
-4. the comment in the file,
-5. the calibration curve of the measurement chain under ``[sensors]`` in a rig file. If a sidecar
-   states volts or counts as the unit of a channel, only 1 and 5 apply, and its ``scale`` is in
-   these units per full scale.
+4. the comment in the file.
 
 Unless every channel has a value, the recording is not calibrated: samples remain fractions of full
 scale, and levels are in dBFS. A partial calibration would invite wrong comparisons.
@@ -27,7 +25,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -35,12 +32,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.calibration import READING_UNITS, Calibration
 from models.condition import Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import REFERENCE_PRESSURE, Channel
 from noise.recordings.formats import RawRecording
-from noise.recordings.sidecar import Sidecar, SidecarChannel, find_sidecar, sidecar_of
+from noise.recordings.sidecar import Sidecar, find_sidecar, sidecar_of
 
 PascalPerFullScale = float | tuple[float, ...]
 """Pressure of a full-scale sample [Pa], for all tracks or for each."""
@@ -67,8 +63,6 @@ class Metadata:
         Channels with the value of a sample of 1.0.
     condition : Condition
     calibrated : bool
-    curves : tuple of (Calibration or None)
-        Calibration curve of each channel; None if a factor suffices.
     notes : tuple of str
         Notes for the user, one line each.
     """
@@ -76,15 +70,11 @@ class Metadata:
     channels: tuple[Channel, ...]
     condition: Condition
     calibrated: bool
-    curves: tuple[Calibration | None, ...]
     notes: tuple[str, ...] = ()
 
 
 def interpret(
-    path: Path,
-    raw: RawRecording,
-    full_scale: PascalPerFullScale | None = None,
-    calibrations: Mapping[str, Calibration] | None = None,
+    path: Path, raw: RawRecording, full_scale: PascalPerFullScale | None = None
 ) -> Metadata:
     """Return the channels, condition and calibration of a file.
 
@@ -93,8 +83,8 @@ def interpret(
     path : Path
         The file; its sidecar lies beside it.
     raw : RawRecording
-    full_scale, calibrations
-        See `noise.recordings.read_recording`.
+    full_scale : float or tuple of float, optional
+        Pressure of a full-scale sample [Pa]; see `noise.recordings.read_recording`.
 
     Returns
     -------
@@ -123,17 +113,11 @@ def interpret(
         raise RecordingError(
             f"{sidecar_path}: names {len(sidecar.channels)} channels, {path.name} has {n_channels}"
         )
-    if not raw.fractional and any(one.scale is not None for one in sidecar.channels or ()):
-        raise RecordingError(
-            f"{sidecar_path}: gives a scale, but {path.name} holds floating-point samples, which "
-            f"are in the channel's unit; remove the scale"
-        )
     notes = [*raw.notes, *filter(None, [sidecar.note])]
-    channels, curves = _channels_and_curves(path, raw, sidecar, options, calibrations or {}, notes)
+    channels, calibrated = _calibrated(path, raw, sidecar, options, notes)
     # The sidecar takes precedence over the file.
     stated = {key: value for key, value in vars(sidecar.condition).items() if value is not None}
-    condition = replace(raw.condition, **stated)
-    return Metadata(channels, condition, bool(curves), curves or (None,) * n_channels, tuple(notes))
+    return Metadata(channels, replace(raw.condition, **stated), calibrated, tuple(notes))
 
 
 def _by_track(
@@ -187,15 +171,14 @@ def check_finite(
             )
 
 
-def _channels_and_curves(
+def _calibrated(
     path: Path,
     raw: RawRecording,
     sidecar: Sidecar,
     options: tuple[float | None, ...],
-    calibrations: Mapping[str, Calibration],
     notes: list[str],
-) -> tuple[tuple[Channel, ...], tuple[Calibration | None, ...]]:
-    """Return channels with the value of full scale, and curves; no curves if not calibrated."""
+) -> tuple[tuple[Channel, ...], bool]:
+    """Return channels with the value of full scale, and whether all of them have one."""
     texts = (raw.description, path.name, raw.comment)
     stated = next(filter(None, map(stated_full_scale, texts)), None)
     channels = tuple(one.channel for one in sidecar.channels or ()) or raw.channels or ()
@@ -205,57 +188,25 @@ def _channels_and_curves(
         channels = tuple(Channel(kind if i == 1 else f"{kind}_{i}") for i in numbers)
     named = sidecar.channels is not None or raw.channels is not None
     in_units = not raw.fractional and (named or sidecar.calibrated is True)
-    entries = sidecar.channels or [SidecarChannel(one.name) for one in channels]
-    pairs: list[tuple[Channel, Calibration | None]] = []
-    for channel, entry, option in zip(channels, entries, options, strict=True):
-        scale, reading = entry.scale, entry.reading
-        in_unit = sidecar.calibrated is not False and not reading
-        if channel.kind == "pressure" and option is not None:
-            if not (in_units and in_unit):
-                pairs.append((replace(channel, full_scale=option), None))
-                continue
-            notes.append(
-                f"{channel.name} is in {channel.unit} already; the value of full scale "
-                "(--full-scale, --calibrator) is ignored"
-            )
+    scales = [one.scale for one in sidecar.channels or ()] or [None] * len(channels)
+    values: list[float | None] = []
+    for channel, scale, option in zip(channels, scales, options, strict=True):
         metered = stated.value if stated and stated.kind == channel.kind else None
-        value = scale or (1.0 if in_units else metered) if in_unit else None
-        if value is not None:
-            pairs.append((replace(channel, full_scale=value), None))
-        elif channel.kind in calibrations:
-            where = f"{path}: channel {channel.name!r}"
-            curve = _curve(calibrations[channel.kind], reading, scale, raw.fractional, where)
-            pairs.append((replace(channel, full_scale=abs(curve.gain)), curve))
-        else:
-            return channels, ()
-    return tuple(channel for channel, _ in pairs), tuple(curve for _, curve in pairs)
-
-
-def _curve(
-    calibration: Calibration,
-    reading: str,
-    scale: float | None,
-    fractional: bool,
-    where: str,
-) -> Calibration:
-    """Return a calibration curve for the samples as stored in the file."""
-    reading_scale = scale if reading else None  # other scales are disabled by "calibrated": false
-    if fractional and reading_scale is None and (reading or calibration.unit):
-        unit = reading or calibration.unit
-        raise RecordingError(
-            f"{where} holds fractions of full scale, and {calibration.source} is in {unit}; state "
-            f"its unit, {unit!r}, and scale, in {unit} per full scale, in the sidecar"
-        )
-    size = 1.0 if reading_scale is None else reading_scale
-    if reading and calibration.unit:
-        (quantity, one), (expected, other) = (READING_UNITS[u] for u in (reading, calibration.unit))
-        if quantity != expected:
-            raise RecordingError(
-                f"{where} is in {reading}, and {calibration.source} in {calibration.unit}; "
-                "calibrate it in the unit that is recorded"
-            )
-        size *= one / other
-    return calibration.in_units_of(size)
+        value = scale or (1.0 if in_units else metered)
+        value = None if sidecar.calibrated is False else value
+        if channel.kind == "pressure" and option is not None:
+            if in_units and value == 1.0:
+                notes.append(
+                    f"{channel.name} is in {channel.unit} already; the value of full scale "
+                    "(--full-scale, --calibrator) is ignored"
+                )
+            else:
+                value = option
+        values.append(value)
+    if None in values:
+        return channels, False
+    pairs = zip(channels, values, strict=True)
+    return tuple(replace(channel, full_scale=value) for channel, value in pairs), True
 
 
 class FullScale(NamedTuple):

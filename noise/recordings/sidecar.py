@@ -5,9 +5,6 @@ ignored, so that engineers can keep notes in the same file, except for a conditi
 Values are never guessed: a number in quotes or a torque in kN m is refused; only spellings of the
 same unit are equivalent. A JSON file of another program, without any key of a sidecar, is ignored.
 
-Channels with raw readings of the measurement chain have the unit ``V``, ``mV`` or ``counts`` and
-need a calibration.
-
 ``"support_stiffness_Nm_rad": null`` is the clamp bolted to the baseplate; elsewhere null is the
 same as a missing key. Directions are normalised.
 
@@ -26,7 +23,6 @@ from pathlib import Path
 from reprlib import repr as show
 from typing import Annotated, Any, TypeVar
 
-from models.calibration import READING_UNITS
 from models.condition import CONDITION, FIXED, Condition
 from models.errors import ParameterError, RecordingError, naming
 from models.foreign_file import LARGEST_JSON, one_line, parse_json, reading
@@ -86,9 +82,10 @@ class SidecarChannel:
     ----------
     name : str
     unit : str, optional
-        Unit of the channel, or one of `models.calibration.READING_UNITS`, as spelled in the file.
+        Unit of the channel, as spelled in the file.
     scale : float, optional
-        [unit per full scale]
+        Factor on the samples: [unit per full scale], or [unit per stored number] for floating-point
+        samples.
     position, direction : tuple of float, optional
         Position [m] and unit vector [-], as for `models.recording.Channel`.
     """
@@ -103,18 +100,13 @@ class SidecarChannel:
 
     def __post_init__(self) -> None:
         own = self.channel.unit
-        if not (self.unit is None or self.reading or _spelling(self.unit) == _spelling(own)):
+        if not (self.unit is None or _spelling(self.unit) == _spelling(own)):
             raise ParameterError(f"unit = {show(self.unit)} must be {own!r}")
 
     @property
     def channel(self) -> Channel:
         """Channel with name, position and direction."""
         return Channel(self.name, self.position, self.direction)
-
-    @property
-    def reading(self) -> str:
-        """Unit of raw readings; empty for samples in the unit of the channel."""
-        return self.unit if self.unit in READING_UNITS else ""
 
 
 def _channels(value: Any, key: str, where: str) -> tuple[SidecarChannel, ...]:

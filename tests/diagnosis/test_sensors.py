@@ -1,12 +1,10 @@
 """A diagnosis expects the sensors that the rig file states, and says what they cost."""
 
 import json
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-import soundfile
 
 from models.rig import LawSpec
 from models.rig_file import load_material_rig, load_rig
@@ -23,7 +21,6 @@ from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.repeats import nominal_recordings
 from noise.diagnosis.simulated.scatter import Scatter
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
-from noise.identification.measured import read_measurements
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.run import simulate
@@ -170,34 +167,6 @@ def test_models_that_have_not_seen_such_sensors_raise_no_alarm_alone():
     assert not needs_explaining(0.001, 0.05, small, chance=0.4)
     assert needs_explaining(0.001, 0.05, small, chance=0.003)
     assert needs_explaining(0.001, 0.05, large, chance=0.4)
-
-
-def test_volts_are_identified_and_diagnosed_as_torque_and_angle(tmp_path):
-    sensors = """
-[sensors]
-calibration.torque = "cell.csv"
-calibration.angle = { sensitivity = 0.101, offset = -7e-4, reading = "V" }
-"""
-    (tmp_path / "rig.toml").write_text(RIG_FILE + sensors, encoding="utf-8")
-    table = [(torque, 0.4 + 12.19 * torque) for torque in range(-40, 41, 20)]
-    rows = "".join(f"{reading},{torque}\n" for torque, reading in table)
-    (tmp_path / "cell.csv").write_text(f"reading_mV,torque_Nm\n{rows}", encoding="utf-8")
-    made = run(at(1.0), seconds=0.6)
-    volts = np.array([(0.4 + 12.19 * made["torque"]) / 1e3, -7e-4 + 0.101 * made["angle"]])
-    soundfile.write(tmp_path / "run.wav", volts.T, round(RATE), subtype="DOUBLE")
-    channels = [{"name": name, "unit": "V"} for name in ("torque", "angle")]
-    conditions = {"interference_mm": 0.279, "support_stiffness_Nm_rad": 2214, "speed_rad_s": 1.0}
-    sidecar = {"channels": channels, "conditions": conditions}
-    (tmp_path / "run.json").write_text(json.dumps(sidecar), encoding="utf-8")
-    rig = load_rig(tmp_path / "rig.toml")
-    case = read_case([tmp_path / "run.wav"], rig)
-    used = read_measurements([tmp_path / "run.wav"], rig.sensors.calibrations).used
-    for recording in (case.recordings[0], used[0].recording):
-        assert recording["torque"] == pytest.approx(made["torque"], abs=1e-6)
-        assert recording["angle"] == pytest.approx(made["angle"], abs=1e-6)
-    refused = read_measurements([tmp_path / "run.wav"]).refused
-    assert "calibration under [sensors] of the rig file" in refused[0][1]
-    assert math.isclose(used[0].condition.speed, 1.0, rel_tol=0.01)
 
 
 def test_a_poor_hammer_test_is_told_and_a_good_one_is_not():

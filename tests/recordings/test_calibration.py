@@ -1,4 +1,4 @@
-"""What a sample is worth: option, sidecar, description, name, comment, chain, calibrator's tone."""
+"""What a sample is worth: option, sidecar, description, name, comment, calibrator's tone."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import pytest
 import soundfile
 from hypothesis import given, strategies as st
 
-from models.calibration import Calibration
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel
 from noise.recordings import read_recording
@@ -140,81 +139,17 @@ def test_whatever_is_stated_is_a_positive_number(text):
     assert found is None or 0 < found.value < math.inf
 
 
-# Volts and counts by the calibration of the chain
-
-CELL = Calibration(
-    (-483.0, -240.0, 0.0, 243.0, 488.0), (-40.0, -20.0, 0.0, 20.0, 40.0), "mV", source="cell.csv"
-)
-BOTH = {"torque": CELL, "angle": Calibration.line(0.101, -7e-4, "V")}
-READINGS = np.array([np.linspace(-0.4, 0.45, 64), np.linspace(0.0, 0.3, 64)], np.float32)
-TORQUE = np.interp(1e3 * READINGS[0], CELL.readings, CELL.values)
-ANGLE = (READINGS[1] + 7e-4) / 0.101
-
-
-def chain(folder, samples, *channels, subtype="FLOAT", **more):
-    samples = np.transpose(np.atleast_2d(samples))
-    return sound(folder / "run.wav", samples, subtype, channels=list(channels), **more)
-
-
-def volts(name, unit="V", **more):
-    return {"name": name, "unit": unit, **more}
-
-
-def test_volts_become_torque_and_angle(tmp_path):
-    path = chain(tmp_path, READINGS, volts("torque"), volts("angle"))
-    assert not read_recording(path).calibrated
-    run = read_recording(path, calibrations=BOTH)
+def test_volts_take_the_scale_of_the_sidecar(tmp_path):
+    channels = [{"name": "torque", "unit": "N m", "scale": 82.0}, {"name": "angle", "unit": "rad"}]
+    volts = np.stack([HALF, HALF], axis=1)
+    run = read_recording(sound(tmp_path / "run.wav", volts, "FLOAT", channels=channels))
     assert run.calibrated
-    assert run["torque"] == pytest.approx(TORQUE, abs=1e-5)
-    assert run["angle"] == pytest.approx(ANGLE, abs=1e-5)
-
-
-def test_integers_take_the_volts_of_full_scale_from_the_sidecar(tmp_path):
-    channels = [volts("torque", scale=1.25), volts("angle", "mV", scale=1250.0)]
-    path = chain(tmp_path, READINGS / 1.25, *channels, subtype="PCM_24")
-    run = read_recording(path, calibrations=BOTH)
-    assert run["torque"] == pytest.approx(TORQUE, abs=1e-4)
-    assert run["angle"] == pytest.approx(ANGLE, abs=1e-4)
-    assert run.channels[0].full_scale == pytest.approx(1250.0 * CELL.gain)
-
-
-def test_the_chain_is_asked_last(tmp_path):
-    plain = [{"name": "torque"}, {"name": "angle"}]
-    path = chain(tmp_path, [1e3 * READINGS[0], READINGS[1]], *plain, calibrated=False)
-    assert read_recording(path, calibrations=BOTH)["torque"] == pytest.approx(TORQUE, abs=1e-4)
-    path = chain(tmp_path, READINGS, volts("torque", "N m"), volts("angle"))
-    run = read_recording(path, calibrations=BOTH)
-    assert run["torque"] == pytest.approx(READINGS[0])
-    assert run["angle"] == pytest.approx(ANGLE, abs=1e-5)
-    path, microphone = chain(tmp_path, READINGS[0], volts("pressure")), Calibration.line(0.0433)
-    for option, first in ((None, -0.4 / 0.0433), (10.0, -4.0)):
-        run = read_recording(path, calibrations={"pressure": microphone}, full_scale=option)
-        assert run["pressure"][0] == pytest.approx(first)
-
-
-def test_readings_just_outside_are_noted(tmp_path):
-    path = chain(tmp_path, np.linspace(-480.0, 500.0, 64), volts("torque", "mV"))
-    run = read_recording(path, calibrations=BOTH)
-    assert run["torque"][-1] == pytest.approx(40.0 + 12.0 * 20.0 / 245.0)
-    assert run.notes == ("torque was read up to 1.2% of its span outside of cell.csv",)
-
-
-@pytest.mark.parametrize(
-    ("last", "channel", "subtype", "reason"),
-    [
-        (0.6, volts("torque"), "FLOAT", "reads 0.6, outside of cell.csv .-0.483 to"),
-        (0.1, volts("torque", "counts"), "FLOAT", "is in counts, and cell.csv in mV"),
-        (0.1, volts("torque"), "PCM_16", "holds fractions of full scale"),
-        (0.1, {"name": "torque"}, "PCM_16", "state its unit, 'mV', and scale"),
-        (0.1, volts("torque", "kV"), "FLOAT", "unit = 'kV' must be 'N m'"),
-    ],
-)
-def test_what_cannot_be_calibrated_is_refused_in_one_line(tmp_path, last, channel, subtype, reason):
-    path = chain(tmp_path, np.linspace(0.0, last, 64), channel, subtype=subtype)
-    with pytest.raises(RecordingError, match=reason) as refused:
-        read_recording(path, calibrations=BOTH)
-    assert "channel 'torque'" in str(refused.value)
-    assert "\n" not in str(refused.value)
+    assert run["torque"] == pytest.approx(41.0)
+    assert run["angle"] == pytest.approx(0.5)
+    channels = named("pressure", scale=20.0)
+    path = sound(tmp_path / "sound.wav", HALF, "FLOAT", channels=channels)
+    for option, value in ((None, 10.0), (4.0, 2.0)):
+        assert read_recording(path, full_scale=option)["pressure"] == pytest.approx(value)
 
 
 # A calibrator's tone

@@ -69,8 +69,6 @@ def test_what_no_sensor_measures_is_refused(tmp_path):
 def test_file_and_sidecar_must_not_contradict_each_other(tmp_path):
     path = sound(tmp_path / "run.wav", channels=named("torque", "angle"))
     assert "run.json: names 2 channels, run.wav has 1" in refusal(path)
-    path = sound(tmp_path / "run.wav", HALF, "FLOAT", channels=named("torque", scale=2.0))
-    assert "run.json: gives a scale, but run.wav holds floating-point" in refusal(path)
     path.with_suffix(".json").write_text("{")
     assert "run.json: is no JSON" in refusal(path)
 

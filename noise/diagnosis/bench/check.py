@@ -91,8 +91,8 @@ def refuse_unusable(recording: Recording, shortest: float) -> None:
     """
     if not recording.calibrated:
         raise ParameterError(
-            'is not in physical units; state units in a sidecar, with "calibrated": true, or '
-            "calibration under [sensors] of the rig file"
+            "is not in physical units; state unit and scale of each channel in a sidecar, with "
+            '"calibrated": true'
         )
     if recording.rate < LEAST_RATE:
         raise ParameterError(f"is sampled at {recording.rate:g} Hz; {LEAST_RATE:g} at least")
