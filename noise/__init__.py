@@ -53,7 +53,7 @@ _EXPORTS = {
     "noise.identification.outcome": ("Identification",),
     "noise.identification.identify": ("identify",),
     "noise.inference": ("Inference", "Inferred", "Interval", "load_inference"),
-    "noise.training.inference.fit": ("train_inference",),
+    "noise.training.inference": ("train_inference",),
     "noise.labels.segments": ("Segment", "Segments", "file_label", "label_recording"),
     "noise.labels.table": ("LabelTable",),
     "noise.labels.labelling": ("label",),

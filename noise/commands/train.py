@@ -55,7 +55,7 @@ def run(options: Namespace) -> int:
         classifier = _trained(options, added, progress)
         classifier.save(options.out)
         if options.inference is not None:
-            from noise.training.inference.fit import train_inference
+            from noise.training.inference import train_inference
 
             progress("simulating training samples of the model for conditions")
             model = train_inference(seed=options.seed, progress=partial(_inferring, progress))

@@ -8,7 +8,7 @@ bolted clamp, a separate point, needs no special treatment. If a subset of the c
 narrower interval than all, as the torque does for the interference, only the subset is used. An
 interval hardly narrower than that of the population is not reported.
 
-The intervals hold for the population of `noise.training.inference.population`.
+The intervals hold for the population of `noise.training.inference`.
 """
 
 from __future__ import annotations

@@ -6,14 +6,14 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal import lfilter
 
 from noise.base import log_uniform as log_uniform
+from noise.base.arrays import Array, Rng
 
 
-def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
+def coloured_noise(n: int, slope: float, rng: Rng) -> Array:
     """Return noise of unit standard deviation with a spectral density of ``f ** -slope``.
 
     Parameters
@@ -43,9 +43,7 @@ def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np
     return np.asarray(noise / noise.std())
 
 
-def wandering(
-    n: int, rate: float, frequency: float, rng: np.random.Generator
-) -> NDArray[np.float64]:
+def wandering(n: int, rate: float, frequency: float, rng: Rng) -> Array:
     """Return a smooth random trajectory, mostly within -1 to 1.
 
     Parameters
@@ -78,7 +76,7 @@ def wandering(
     return np.asarray(course)
 
 
-def low_pass(x: NDArray[np.float64], corner: float, rate: float) -> NDArray[np.float64]:
+def low_pass(x: Array, corner: float, rate: float) -> Array:
     """Return a signal after a first-order low-pass filter.
 
     Parameters
@@ -102,7 +100,7 @@ def low_pass(x: NDArray[np.float64], corner: float, rate: float) -> NDArray[np.f
     return np.asarray(lfilter([1.0 - pole], [1.0, -pole], x))
 
 
-def picked(shares: Mapping[str, float], rng: np.random.Generator) -> str:
+def picked(shares: Mapping[str, float], rng: Rng) -> str:
     """Draw a name with given probabilities.
 
     Parameters

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from noise.base.arrays import Array
 from noise.base.trees import LEAF, BoostedTrees, QuantileForest
 
 PER_LEAF = 8
@@ -18,12 +19,7 @@ _FEATURES_A_SPLIT = 0.8
 
 
 def grow_boosted_trees(
-    x: NDArray[np.floating[Any]],
-    y: NDArray[np.int64],
-    *,
-    weight: NDArray[np.float64],
-    n_rounds: int,
-    seed: int,
+    x: NDArray[np.floating[Any]], y: NDArray[np.int64], *, weight: Array, n_rounds: int, seed: int
 ) -> BoostedTrees:
     """Train boosted trees.
 
@@ -63,9 +59,9 @@ def boosted_nodes(
     x: NDArray[np.floating[Any]],
     y: NDArray[np.int64],
     *,
-    weight: NDArray[np.float64] | None = None,
+    weight: Array | None = None,
     **settings: Any,
-) -> tuple[list[list[NDArray[Any]]], NDArray[np.float64]]:
+) -> tuple[list[list[NDArray[Any]]], Array]:
     """Train boosted trees and return their nodes, from private attributes of scikit-learn.
 
     Parameters
@@ -92,7 +88,7 @@ def boosted_nodes(
     return rounds, np.asarray(model._baseline_prediction).reshape(-1)
 
 
-def as_arrays(grown: Sequence[tuple[int, NDArray[Any]]], base: NDArray[np.float64]) -> BoostedTrees:
+def as_arrays(grown: Sequence[tuple[int, NDArray[Any]]], base: Array) -> BoostedTrees:
     """Convert nodes of scikit-learn's trees to arrays.
 
     Parameters
@@ -124,13 +120,7 @@ def as_arrays(grown: Sequence[tuple[int, NDArray[Any]]], base: NDArray[np.float6
 
 
 def grow_quantile_forest(
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    *,
-    n_trees: int,
-    least_leaf: int,
-    share: float,
-    seed: int,
+    x: Array, y: Array, *, n_trees: int, least_leaf: int, share: float, seed: int
 ) -> QuantileForest:
     """Train a quantile forest.
 
@@ -185,7 +175,7 @@ def grow_quantile_forest(
     )
 
 
-def _single(tree: Any, arrivals: NDArray[np.int64], y: NDArray[np.float64]) -> QuantileForest:
+def _single(tree: Any, arrivals: NDArray[np.int64], y: Array) -> QuantileForest:
     """Return one tree with the quantiles of its leaves; nodes are in depth-first order."""
     leaf = tree.children_left < 0
     rows = np.cumsum(leaf) - 1
@@ -205,7 +195,7 @@ def _single(tree: Any, arrivals: NDArray[np.int64], y: NDArray[np.float64]) -> Q
     )
 
 
-def _at_most(threshold: NDArray[np.float64]) -> NDArray[np.float32]:
+def _at_most(threshold: Array) -> NDArray[np.float32]:
     """Round down to single precision, so that single-precision features pass the same branches."""
     rounded = threshold.astype(np.float32)
     return np.where(rounded > threshold, np.nextafter(rounded, np.float32(-np.inf)), rounded)

@@ -25,8 +25,7 @@ from noise.labels.summary import ASSUMED, assumes_material
 from noise.labels.table import COLUMNS, LabelTable, read_label_table
 from noise.pages.cards import facts_of
 from noise.pages.clips import Entry
-from noise.training.inference.fit import coverage, train_inference
-from noise.training.inference.population import draw_run_sample
+from noise.training.inference import coverage, draw_run_sample, train_inference
 from noise.training.trees import PER_LEAF, grow_quantile_forest
 from sim.run import simulate
 

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from noise.training.classifier.augmentation.recorder import (
+from noise.training.classifier.places import in_a_room
+from noise.training.classifier.recorder import (
     RATES,
     augmented,
     coded,
     levelled,
     through_a_microphone,
 )
-from noise.training.classifier.augmentation.rooms import in_a_room
 from noise.training.draws import coloured_noise
 
 

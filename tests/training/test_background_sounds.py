@@ -6,10 +6,9 @@ from scipy.signal import hilbert
 
 from features.kernels.harmonics import analyse_harmonics
 from noise.base.labels import SURROUNDINGS
-from noise.training.classifier.augmentation.backgrounds import quiet
 from noise.training.classifier.background_sounds import BACKGROUND_SOUNDS, background_sound
-from noise.training.classifier.background_sounds.building import voiced
-from noise.training.classifier.background_sounds.synthesis import synthesised
+from noise.training.classifier.places import quiet
+from noise.training.classifier.synthesis import synthesised, voiced
 
 RATE = 48e3
 

@@ -5,15 +5,19 @@ import pytest
 
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
-from noise.training.classifier.friction_sources.friction_sounds import (
+from noise.training.classifier.friction_mechanisms import (
+    ENVELOPE_RATE,
+    ModalBody,
+    Slips,
+    amplitudes,
+    slide,
+)
+from noise.training.classifier.friction_sounds import (
     FRICTION_SOUNDS,
     contact_load,
     friction_sound,
     pulses,
 )
-from noise.training.classifier.friction_sources.limit_cycle import ENVELOPE_RATE, amplitudes
-from noise.training.classifier.friction_sources.modal_body import ModalBody
-from noise.training.classifier.friction_sources.slider import Slips, slide
 
 RATE = 48e3
 

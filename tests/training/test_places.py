@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from noise.training.classifier.augmentation.places import (
+from noise.training.classifier.places import (
     CABINS,
     PLACES,
     a_weighted,

@@ -7,8 +7,7 @@ import pytest
 
 from noise.classifier import LABELS
 from noise.noise_definition import label_by_physics
-from noise.training.classifier.bushings import random_run, stretch
-from noise.training.classifier.designs import random_extras
+from noise.training.classifier.bushings import random_extras, random_run, stretch
 from noise.training.classifier.samples import (
     SHARES,
     SOURCES,

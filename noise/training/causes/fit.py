@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import expit
 
-from noise.base.arrays import Array
+from noise.base.arrays import Array, Rng
 from noise.base.trees import BoostedTrees
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
 from noise.diagnosis.evidence.case_row import evidence, scale_of
@@ -206,7 +206,7 @@ def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) ->
     return np.sort(most).astype(np.int64)
 
 
-def _copies(case: Known, rng: np.random.Generator) -> Iterator[Known]:
+def _copies(case: Known, rng: Rng) -> Iterator[Known]:
     """Yield a case, then the case with fewer recordings or channels."""
     yield case
     for _ in range(N_SUBSETS):
@@ -243,7 +243,7 @@ def with_channels(case: Known, channels: Sequence[str]) -> Known:
     return replace(case, table=replace(with_rows(table, without), bench=bench), truth=truth)
 
 
-def with_fewer(case: Known, rng: np.random.Generator) -> Known:
+def with_fewer(case: Known, rng: Rng) -> Known:
     """Return a case with some of its recordings only."""
     table = case.table
     n = len(table.measured)

@@ -29,6 +29,7 @@ from scipy.optimize import minimize
 from scipy.stats import chi2
 
 from features.windows.table import HOP
+from noise.base.arrays import Array
 from noise.base.labels import LABELS, SURROUNDINGS
 from noise.base.processes import ending_with_parent
 from noise.base.trees import BoostedTrees
@@ -112,7 +113,7 @@ class Rows:
 
     x: NDArray[np.float32]
     y: NDArray[np.int64]
-    weight: NDArray[np.float64]
+    weight: Array
     real: NDArray[np.bool_]
     owner: NDArray[np.intp]
 
@@ -191,8 +192,8 @@ class LeftOut:
         Part of each sound.
     """
 
-    alone: list[NDArray[np.float64]]
-    together: list[NDArray[np.float64] | None]
+    alone: list[Array]
+    together: list[Array | None]
     part: NDArray[np.int64]
 
 
@@ -221,8 +222,8 @@ def cross_fitted(
         delayed(grow)(rows.part(part[rows.owner] != k, known), seed, _N_ROUNDS)
         for k in range(N_FOLDS + 1)  # the last fit has all rows
     )
-    alone: list[NDArray[np.float64]] = [np.empty(0)] * len(sounds)
-    together: list[NDArray[np.float64] | None] = [None] * len(sounds)
+    alone: list[Array] = [np.empty(0)] * len(sounds)
+    together: list[Array | None] = [None] * len(sounds)
     for k, trees in enumerate(growing):
         next(fits, None)
         for i in np.flatnonzero(part == k).tolist():
@@ -296,10 +297,7 @@ def _trees(rows: Rows, seed: int, n_rounds: int) -> BoostedTrees:
 
 
 def _calibration(
-    votes: Sequence[NDArray[np.float64]],
-    labels: NDArray[np.int64],
-    weight: NDArray[np.float64],
-    chosen: NDArray[np.bool_],
+    votes: Sequence[Array], labels: NDArray[np.int64], weight: Array, chosen: NDArray[np.bool_]
 ) -> Calibration:
     windows = [p for p, one in zip(votes, chosen, strict=True) if one]
     group = np.repeat(np.arange(len(windows)), [len(p) for p in windows])
@@ -407,7 +405,7 @@ def left_out_scores(
     }
 
 
-def _scores(voted: Sequence[tuple[Sample, NDArray[np.float64]]]) -> dict[str, float]:
+def _scores(voted: Sequence[tuple[Sample, Array]]) -> dict[str, float]:
     """Return scores of sounds, each with the probabilities of its windows."""
     from sklearn.metrics import f1_score
 
@@ -430,7 +428,7 @@ def _scores(voted: Sequence[tuple[Sample, NDArray[np.float64]]]) -> dict[str, fl
     return {name: round(float(score), 4) for name, score in scores.items()}
 
 
-def named_as(p: NDArray[np.float64], thresholds: Sequence[float]) -> int:
+def named_as(p: Array, thresholds: Sequence[float]) -> int:
     """Return the label of a recording as a column of `LABELS`.
 
     Parameters
@@ -443,15 +441,12 @@ def named_as(p: NDArray[np.float64], thresholds: Sequence[float]) -> int:
     return int(named(_clearest(p), thresholds)[0])
 
 
-def _clearest(p: NDArray[np.float64]) -> NDArray[np.float64]:
+def _clearest(p: Array) -> Array:
     return clearest(p, np.zeros(len(p), dtype=np.intp))
 
 
 def fit_calibration(
-    votes: NDArray[np.float64],
-    group: NDArray[np.intp],
-    y: NDArray[np.int64],
-    weight: NDArray[np.float64] | None = None,
+    votes: Array, group: NDArray[np.intp], y: NDArray[np.int64], weight: Array | None = None
 ) -> Calibration:
     """Return the calibration with the lowest log loss.
 
@@ -481,10 +476,10 @@ def fit_calibration(
     rows = np.arange(y.size)
     weight = np.ones(y.size) if weight is None else weight
 
-    def calibration(x: NDArray[np.float64]) -> Calibration:
+    def calibration(x: Array) -> Calibration:
         return Calibration(float(np.exp(x[0])), tuple(np.exp(x[1:]).tolist()))
 
-    def loss(x: NDArray[np.float64]) -> float:
+    def loss(x: Array) -> float:
         p = clearest(calibration(x)(votes), group)[rows, y]
         return float(np.average(-np.log(p), weights=weight) + _PRIOR / y.size * np.mean(x**2))
 
@@ -492,9 +487,7 @@ def fit_calibration(
     return calibration(minimize(loss, np.zeros(labels + 1), method="L-BFGS-B", bounds=bounds).x)
 
 
-def fit_thresholds(
-    backgrounds: Sequence[NDArray[np.float64]],
-) -> tuple[float, float, float]:
+def fit_thresholds(backgrounds: Sequence[Array]) -> tuple[float, float, float]:
     """Return the lowest thresholds with at most `FALSE_NAMES_AN_HOUR`.
 
     Parameters
@@ -527,9 +520,7 @@ def fit_thresholds(
     return creak, squawk, squeal
 
 
-def false_names(
-    backgrounds: Sequence[NDArray[np.float64]], thresholds: Sequence[float]
-) -> NDArray[np.float64]:
+def false_names(backgrounds: Sequence[Array], thresholds: Sequence[float]) -> Array:
     """Return the rate of false names in background sounds.
 
     Parameters
@@ -566,7 +557,7 @@ class Background(NamedTuple):
         Part of the cross-fitting.
     """
 
-    probabilities: NDArray[np.float64]
+    probabilities: Array
     part: int
 
 

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from models.blocks import RecordingBlocks
 from models.errors import ParameterError
+from noise.base.arrays import Array, Rng
 from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.processes import ending_with_parent
@@ -151,7 +152,7 @@ def describe_folder(folder: Path) -> RealSounds:
     return RealSounds(tuple(samples), licences)
 
 
-def _varied(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -> Drawn:
+def _varied(sound: Array, rate: float, rng: Rng) -> Drawn:
     """Return a random variation of a loud part of a sound."""
     n = min(sound.size, round(log_uniform(*_LENGTHS, rng) * rate))
     loudest = np.abs(sound).max()

@@ -1,9 +1,9 @@
 """Training samples of the classifier: random synthetic recordings with labels, and their features.
 
 Bushings are simulated and labelled by physics (`noise.noise_definition`), other bodies creak,
-squawk and squeal by the same mechanisms (`noise.training.classifier.friction_sources`), and
+squawk and squeal by the same mechanisms (`noise.training.classifier.friction_sounds`), and
 background sounds and quiet are synthesised. All pass through random rooms, microphones, recorders
-and codecs (`noise.training.classifier.augmentation`).
+and codecs (`noise.training.classifier.recorder`).
 """
 
 from __future__ import annotations
@@ -16,15 +16,16 @@ from numpy.typing import NDArray
 from features.windows.table import HOP, LENGTH
 from models.blocks import RecordingBlocks
 from models.recording import Channel, Recording
+from noise.base.arrays import Array, Rng
 from noise.labels.windows import window_features
-from noise.training.classifier.augmentation.backgrounds import quiet
-from noise.training.classifier.augmentation.recorder import augmented, recorded, with_sensor_noise
 from noise.training.classifier.background_sounds import WEIGHTS, background_sound
 from noise.training.classifier.bushings import LabelledRun, random_run
-from noise.training.classifier.friction_sources.friction_sounds import (
+from noise.training.classifier.friction_sounds import (
     FRICTION_SOUNDS,
     friction_sound,
 )
+from noise.training.classifier.places import quiet
+from noise.training.classifier.recorder import augmented, recorded, with_sensor_noise
 from noise.training.draws import log_uniform, picked, wandering
 from sim.acquisition import Acquisition
 
@@ -160,7 +161,7 @@ def described(drawn: Drawn) -> Sample:
     return Sample(windows.features[chosen], drawn.label, drawn.source, ambiguous=drawn.ambiguous)
 
 
-def draw(rng: np.random.Generator, *, bushings: bool = True) -> Drawn:
+def draw(rng: Rng, *, bushings: bool = True) -> Drawn:
     """Return a random labelled recording.
 
     Parameters
@@ -189,7 +190,7 @@ def draw(rng: np.random.Generator, *, bushings: bool = True) -> Drawn:
     return draw_from(group, rng)
 
 
-def draw_from(source: str, rng: np.random.Generator) -> Drawn:
+def draw_from(source: str, rng: Rng) -> Drawn:
     """Return a random labelled recording of one of `SOURCES`.
 
     Examples
@@ -216,9 +217,7 @@ def draw_from(source: str, rng: np.random.Generator) -> Drawn:
     return Drawn(clip, label, source, span)
 
 
-def bushing_recording(
-    drawn: LabelledRun, rng: np.random.Generator
-) -> tuple[Recording, tuple[float, float]]:
+def bushing_recording(drawn: LabelledRun, rng: Rng) -> tuple[Recording, tuple[float, float]]:
     """Return a random recording of a run: the sound alone, or three channels.
 
     Parameters
@@ -264,11 +263,7 @@ def bushing_recording(
 
 
 def sound_recording(
-    sound: NDArray[np.float64],
-    rate: float,
-    rng: np.random.Generator,
-    *,
-    span: tuple[float, float] | None = None,
+    sound: Array, rate: float, rng: Rng, *, span: tuple[float, float] | None = None
 ) -> tuple[Recording, tuple[float, float]]:
     """Return a random recording of a sound; arguments as in `augmented`.
 
@@ -283,11 +278,11 @@ def sound_recording(
     return _of_sound(clip.samples, float(clip.rate)), clip.span
 
 
-def _of_sound(samples: NDArray[np.float64], rate: float) -> Recording:
+def _of_sound(samples: Array, rate: float) -> Recording:
     return Recording(samples[None, :], rate, (Channel("pressure"),), calibrated=False)
 
 
-def swelling(drawn: Drawn, rng: np.random.Generator) -> Drawn:
+def swelling(drawn: Drawn, rng: Rng) -> Drawn:
     """Return a recording with a random modulation of its level, if it has one channel.
 
     Parameters

@@ -25,7 +25,7 @@ import numpy as np
 from models.rig import LawSpec
 from models.sensors import Sensor, Sensors
 from noise.base import log_uniform, packaged_toml
-from noise.base.arrays import Array
+from noise.base.arrays import Array, Rng
 from noise.diagnosis.cases.draws import draw_numbers, drawn_effect
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects import EFFECTS
@@ -44,7 +44,7 @@ _LATEST = 0.55
 
 
 def draw_start(
-    name: str, speed: float, seconds: float, settling: float, rng: np.random.Generator
+    name: str, speed: float, seconds: float, settling: float, rng: Rng
 ) -> tuple[LoggedSpeed, float]:
     """Draw a course of speed.
 
@@ -77,13 +77,13 @@ def draw_start(
     return LoggedSpeed(time + before, speed * factor), before
 
 
-def _rest(seconds: float, rng: np.random.Generator) -> Course:
+def _rest(seconds: float, rng: Rng) -> Course:
     ramp = log_uniform(3e-3, 0.25 * seconds, rng)
     power = float(rng.uniform(0.6, 1.6))
     return lambda t: np.minimum(t / ramp, 1.0) ** power
 
 
-def _run_up(seconds: float, rng: np.random.Generator) -> Course:
+def _run_up(seconds: float, rng: Rng) -> Course:
     low, ramp = float(rng.uniform(0.2, 0.85)), float(rng.uniform(0.1, _LATEST)) * seconds
     smooth = bool(rng.random() < 0.5)
 
@@ -94,14 +94,14 @@ def _run_up(seconds: float, rng: np.random.Generator) -> Course:
     return course
 
 
-def _swing(seconds: float, rng: np.random.Generator) -> Course:
+def _swing(seconds: float, rng: Rng) -> Course:
     depth, frequency = float(rng.uniform(0.08, 0.5)), log_uniform(3.0, 25.0, rng)
     decay = float(rng.uniform(0.02, _LATEST / math.log(1e3))) * seconds
     phase = float(rng.uniform(0.0, 2.0 * math.pi))
     return lambda t: 1.0 + depth * np.exp(-t / decay) * np.sin(2 * np.pi * frequency * t + phase)
 
 
-STARTS: Mapping[str, Callable[[float, np.random.Generator], Course]] = {
+STARTS: Mapping[str, Callable[[float, Rng], Course]] = {
     "rest": _rest,
     "run_up": _run_up,
     "swing": _swing,
@@ -119,7 +119,7 @@ OWN_LAWS = {name: float(row["share"]) for name, row in _TABLE["laws"].items()} |
 """Laws, or materials that have one, and how often each is met."""
 
 
-def draw_law(name: str, rng: np.random.Generator) -> LawSpec:
+def draw_law(name: str, rng: Rng) -> LawSpec:
     """Draw the parameters of a law for a rig of the thesis's size.
 
     Examples
@@ -292,7 +292,7 @@ class Bench:
         return Sensors({kind: sensor(kind, noise) for kind, noise in self.noise.items()})
 
 
-def draw_bench(rng: np.random.Generator) -> Bench:
+def draw_bench(rng: Rng) -> Bench:
     """Draw a bench.
 
     Examples
@@ -325,7 +325,7 @@ def draw_bench(rng: np.random.Generator) -> Bench:
     return replace(bench, departures=tuple(met), seconds=min(bench.seconds, longest))
 
 
-def _sensors(rng: np.random.Generator) -> dict[str, Any]:
+def _sensors(rng: Rng) -> dict[str, Any]:
     return {
         "noise": {k: x * log_uniform(*_NOISE, rng) for k, x in Acquisition().noise.items()},
         "bits": int(rng.integers(_BITS[0], _BITS[1] + 1)) if rng.random() < 0.55 else 0,
@@ -333,26 +333,26 @@ def _sensors(rng: np.random.Generator) -> dict[str, Any]:
     }
 
 
-def _records(rng: np.random.Generator) -> dict[str, Any]:
+def _records(rng: Rng) -> dict[str, Any]:
     long = math.log(_LONGEST / _SHORTEST) * float(rng.random()) ** _RARELY
     return {"rate": float(rng.choice(_ALL_RATES)), "seconds": round(_SHORTEST * math.exp(long), 2)}
 
 
-def _sizes(rng: np.random.Generator) -> dict[str, Any]:
+def _sizes(rng: Rng) -> dict[str, Any]:
     return {"sizes": {name: log_uniform(1.0 / _LARGEST, _LARGEST, rng) for name in SIZES}}
 
 
-def _listed(rng: np.random.Generator) -> dict[str, Any]:
+def _listed(rng: Rng) -> dict[str, Any]:
     names = rng.choice(sorted(EFFECTS), int(rng.integers(1, 3)), replace=False).tolist()
     drawn = (drawn_effect(name, log_uniform(*_LISTED, rng), rng) for name in names)
     return {"listed": tuple(drawn)}
 
 
-def _conditions(rng: np.random.Generator) -> dict[str, Any]:
+def _conditions(rng: Rng) -> dict[str, Any]:
     return {"wrong_speed": _WRONG_SPEED, "warmer": float(rng.uniform(-_WARMER, _WARMER))}
 
 
-DEPARTURES: Mapping[str, tuple[float, Callable[[np.random.Generator], dict[str, Any]]]] = {
+DEPARTURES: Mapping[str, tuple[float, Callable[[Rng], dict[str, Any]]]] = {
     "sensors": (2.2, _sensors),
     "records": (1.2, _records),
     "sizes": (1.2, _sizes),
@@ -366,6 +366,6 @@ DEPARTURES: Mapping[str, tuple[float, Callable[[np.random.Generator], dict[str, 
 changes."""
 
 
-def _one(shares: Mapping[str, float], rng: np.random.Generator) -> str:
+def _one(shares: Mapping[str, float], rng: Rng) -> str:
     share = np.array(list(shares.values()))
     return str(rng.choice(list(shares), p=share / share.sum()))

@@ -20,7 +20,7 @@ from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
 from models.rig import Fit, Rig
 from models.sensors import Sensors
-from noise.base.arrays import Array
+from noise.base.arrays import Array, Rng
 from noise.diagnosis.cases.draws import drawn_effect
 from noise.diagnosis.simulated.model_runs import OFFSETS, with_offsets
 from noise.diagnosis.simulated.repeats import CHANNELS, plan_repeat, repeat_motion
@@ -251,7 +251,7 @@ def _warmer(rig: Rig, warmer: float) -> Rig:
     )
 
 
-def _draw_cause(rig: Rig, rng: np.random.Generator) -> tuple[Truth, list[ActiveEffect]]:
+def _draw_cause(rig: Rig, rng: Rng) -> tuple[Truth, list[ActiveEffect]]:
     kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
     if kind == "parameters":
         return Truth(kind, offsets=draw_offsets(rng)), []
@@ -284,20 +284,20 @@ def _without_effect(rig: Rig) -> set[str]:
     return nothing
 
 
-def draw_offsets(rng: np.random.Generator) -> tuple[tuple[str, float], ...]:
+def draw_offsets(rng: Rng) -> tuple[tuple[str, float], ...]:
     """Draw one or two parameters that are off, and by what factor [-]."""
     sign = float(rng.choice([-1.0, 1.0]))
     names = rng.choice(OFFSETS, int(rng.integers(1, 3)), replace=False).tolist()
     return tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
 
 
-def unknown_effect(name: str, strength: float, fit: Fit, rng: np.random.Generator) -> ActiveEffect:
+def unknown_effect(name: str, strength: float, fit: Fit, rng: Rng) -> ActiveEffect:
     """Draw an effect of `UNKNOWN_EFFECTS`, of a strength from 0 to 1 [-], on a rig's fit."""
     drawn = draw_unknown_effect(name, strength, fit.kinetic_torque, fit.elastomer_stiffness, rng)
     return drawn.active({})
 
 
-def active_effect(name: str, strength: float, rng: np.random.Generator) -> ActiveEffect:
+def active_effect(name: str, strength: float, rng: Rng) -> ActiveEffect:
     """Draw an effect of the contract, of a strength from 0 to 1 [-], in any form."""
     spec = drawn_effect(name, strength, rng)
     if rng.random() < _VARIANTS:
@@ -312,7 +312,7 @@ def _record(
     truth: Truth,
     chain_seed: int,
     acting: Sequence[set[str]],
-    rng: np.random.Generator,
+    rng: Rng,
 ) -> Recording:
     """Run and record a condition, and note in what channels each effect acts."""
     chance = np.random.default_rng(int(rng.integers(2**31)))
@@ -363,9 +363,7 @@ def _channels_of(
     }
 
 
-def _sampled(
-    signal: Array, decimation: int, kind: str, sensors: Sensors, rng: np.random.Generator
-) -> Array:
+def _sampled(signal: Array, decimation: int, kind: str, sensors: Sensors, rng: Rng) -> Array:
     """Decimate, add white noise, a coloured one and a drift, and convert."""
     x = decimate(signal, decimation)
     sensor = sensors.of(kind)
@@ -390,5 +388,5 @@ def _unsteady(n: int) -> tuple[Array, Array]:
     return np.sqrt(1.0 + np.fft.rfftfreq(n) / 1e-3), np.linspace(-1.0, 1.0, n)
 
 
-def _strength(rng: np.random.Generator) -> float:
+def _strength(rng: Rng) -> float:
     return math.exp(rng.uniform(math.log(WEAKEST), 0.0))

@@ -6,12 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from models.condition import FIXED, KnownCondition
 from models.rig import Fit, LawSpec, Rig
 from models.rig_file import load_material_rig
 from models.sensors import Sensors
+from noise.base.arrays import Rng
 from noise.training.causes.cases.benches import MATERIALS, Bench, draw_bench, draw_law, scaled_law
 from sim.motion import simulate_motion
 from sim.plan import DIAGNOSIS, REGIME_RATE
@@ -72,7 +71,7 @@ class Setting:
     sensors: Sensors
 
 
-def draw_setting(rng: np.random.Generator) -> Setting:
+def draw_setting(rng: Rng) -> Setting:
     """Draw a bench, a rig, and two to nine recordings.
 
     Examples
@@ -99,7 +98,7 @@ def draw_setting(rng: np.random.Generator) -> Setting:
     return Setting(replace(rig, sensors=stated), conditions, bench, sensors)
 
 
-def _rig(bench: Bench, rng: np.random.Generator) -> Rig:
+def _rig(bench: Bench, rng: Rng) -> Rig:
     """Draw a rig about the thesis's, or about a material's, as large as its bench says."""
     thesis = load_material_rig("fluorocarbon-thesis")
     if bench.law in MATERIALS:
@@ -150,7 +149,7 @@ def _vibrates(rig: Rig, conditions: Sequence[KnownCondition]) -> bool:
     return False
 
 
-def _sized(fit: Fit, bench: Bench, rng: np.random.Generator) -> Fit:
+def _sized(fit: Fit, bench: Bench, rng: Rng) -> Fit:
     """Return a fit of a rig of another size, about which its numbers scatter."""
     size = bench.sizes
     inertia = math.sqrt(size["elastomer_inertia"] * size["clamp_inertia"])
@@ -167,7 +166,7 @@ def _sized(fit: Fit, bench: Bench, rng: np.random.Generator) -> Fit:
     )
 
 
-def _about(value: float, rng: np.random.Generator) -> float:
+def _about(value: float, rng: Rng) -> float:
     return value * math.exp(_DESIGN_SPREAD * float(rng.standard_normal()))
 
 
@@ -176,7 +175,7 @@ def _support(support: float, bench: Bench) -> float:
     return float(round(support * bench.sizes["support"])) if support != FIXED else FIXED
 
 
-def _conditions(rig: Rig, bench: Bench, rng: np.random.Generator) -> tuple[KnownCondition, ...]:
+def _conditions(rig: Rig, bench: Bench, rng: Rng) -> tuple[KnownCondition, ...]:
     again = 2 if bench.repeats else 0
     most = int(_SIMULATED[not bench.law] / (bench.seconds + DIAGNOSIS.settling)) - again
     different = min(int(rng.integers(2, 8)), max(most, 2))

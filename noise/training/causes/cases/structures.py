@@ -13,7 +13,7 @@ from models.radiation.impulse_responses import ImpulseResponses
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.base import log_uniform
-from noise.base.arrays import Array
+from noise.base.arrays import Array, Rng
 from noise.diagnosis.cases.draws import log_uniforms
 from sim.bushing import LumpedBushing
 
@@ -119,7 +119,7 @@ class Structure:
         return acceleration, pressure
 
     def measured(
-        self, support_stiffness: float, rng: np.random.Generator, *, poor: bool = False
+        self, support_stiffness: float, rng: Rng, *, poor: bool = False
     ) -> MeasuredResponse:
         """Return the responses to the torque as a hammer test of a support [Nm/rad] finds them."""
         acceleration, pressure = (_as_measured(h, rng, poor) for h in self.from_torque(_LINES))
@@ -148,15 +148,13 @@ class Structure:
         )  # fmt: skip
 
 
-def draw_trade(rng: np.random.Generator) -> Trade:
+def draw_trade(rng: Rng) -> Trade:
     """Draw what stands behind a clamp."""
     share = np.array([trade.share for trade in TRADES])
     return TRADES[int(rng.choice(len(TRADES), p=share / share.sum()))]
 
 
-def draw_structure(
-    bushing: LumpedBushing, rng: np.random.Generator, trade: Trade = THESIS
-) -> Structure:
+def draw_structure(bushing: LumpedBushing, rng: Rng, trade: Trade = THESIS) -> Structure:
     """Draw the structure of a support; stiffer beams ring higher, a bolted clamp hardly moves."""
     fixed = bushing.clamp_is_fixed
     stiffer = 1.0 if fixed else (bushing.support_stiffness / 2214.0) ** 0.67
@@ -200,7 +198,7 @@ def _modes(frequency: Array, modes: Array) -> NDArray[np.complex128]:
 
 
 def _as_measured(
-    response: NDArray[np.complex128], rng: np.random.Generator, poor: bool
+    response: NDArray[np.complex128], rng: Rng, poor: bool
 ) -> tuple[NDArray[np.complex128], Array]:
     """Add the scatter of an average over impacts, whose coherence falls with what is passed."""
     size = np.abs(response)

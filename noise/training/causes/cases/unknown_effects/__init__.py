@@ -9,9 +9,8 @@ of ``unknown_effects.toml``.
 
 from __future__ import annotations
 
-import numpy as np
-
 from noise.base import packaged_toml
+from noise.base.arrays import Rng
 from noise.training.causes.cases.unknown_effects import mechanics, recorders
 from noise.training.causes.cases.variants import made
 from sim.effects.effect import Effect, Stage
@@ -26,7 +25,7 @@ _STRENGTH = {"strength": Parameter(1.0, "", 0.0, 1.0, "nothing at 0")}
 
 
 def draw_unknown_effect(
-    name: str, strength: float, kinetic_torque: float, stiffness: float, rng: np.random.Generator
+    name: str, strength: float, kinetic_torque: float, stiffness: float, rng: Rng
 ) -> Effect:
     """Draw an unknown effect.
 

@@ -13,9 +13,8 @@ from functools import partial
 from types import ModuleType
 from typing import Any
 
-import numpy as np
-
 from noise.base import packaged_toml
+from noise.base.arrays import Rng
 from noise.diagnosis.cases.draws import draw_numbers
 from noise.training.causes.cases.variants import chain, contact, drive, sensors
 from sim.effects import EFFECTS
@@ -24,7 +23,7 @@ from sim.parameters import Parameter
 
 __all__ = ["VARIANTS", "Recipe", "draw_variant", "made"]
 
-Recipe = Callable[[float, np.random.Generator], Effect]
+Recipe = Callable[[float, Rng], Effect]
 """Of a strength from 0 to 1, and a generator."""
 
 _TABLE = packaged_toml(__name__, "variants.toml")
@@ -36,7 +35,7 @@ def made(
     specs: Mapping[str, Any],
     modules: Sequence[ModuleType],
     strength: float,
-    rng: np.random.Generator,
+    rng: Rng,
     **known: Any,
 ) -> dict[str, Any]:
     """Make what an effect acts by: of drawn numbers, and of what is known and asked for.
@@ -66,7 +65,7 @@ def made(
     return acting
 
 
-def _drawn(name: str, row: Mapping[str, Any], strength: float, rng: np.random.Generator) -> Effect:
+def _drawn(name: str, row: Mapping[str, Any], strength: float, rng: Rng) -> Effect:
     """Draw the numbers of a row, and make its effect of them."""
     given = {key: spec for key, spec in row.items() if key not in ("form", "make")}
     given |= {k: v for k, v in _TABLE["draws"].get(row["make"], {}).items() if k not in row}
@@ -82,7 +81,7 @@ VARIANTS: Mapping[str, tuple[Recipe, ...]] = {
 """Recipes by the name of the effect."""
 
 
-def draw_variant(name: str, strength: float, rng: np.random.Generator) -> Effect:
+def draw_variant(name: str, strength: float, rng: Rng) -> Effect:
     """Draw one of an effect's further forms.
 
     Parameters

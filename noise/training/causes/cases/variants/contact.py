@@ -93,7 +93,7 @@ def films(a, shape, torque, drop, roughness, scale, low, widths, patches=0.0, *,
 
 def heats(
     a, resistance, times=(), parts=1.0, power=0.0, rise=0.0, shape=None, softening=0.04, passes=0,
-    kinetic=1.0, critical=1.0, stiffness=0.0, **_drawn,
+    kinetic=1.0, critical=1.0, stiffness=0.0, **_drawn
 ):  # fmt: skip
     """Lose torque over heat; by default so much a kelvin, down to a tenth."""
     rates = passes / np.full(passes, times) if passes else 1.0 / np.atleast_1d(times)

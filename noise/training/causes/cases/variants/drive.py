@@ -88,7 +88,7 @@ _SERIES = {
 
 def impacts(
     a, form, threshold, seed, *, power=0.5, late=0.0, uneven=0.0, chance=1.0, caught=0.0,
-    either_sense=False, **numbers,
+    either_sense=False, **numbers
 ):  # fmt: skip
     """Put an impact of unit peak where the contact slips.
 

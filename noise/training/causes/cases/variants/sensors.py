@@ -138,7 +138,7 @@ def following(a, levels, exponent):
 
 def hums(
     a, form, frequency, corner, levels, *, wobble=0.0, depth=0.0, uneven=0.0, together=False,
-    **numbers,
+    **numbers
 ):  # fmt: skip
     """Add a wave over the periods passed; frequency and level may wander."""
     wave = _WAVES.get(form, _harmonic)

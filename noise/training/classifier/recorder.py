@@ -12,13 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import soundfile
-from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.signal import firwin, lfilter, oaconvolve, resample_poly
 
-from noise.training.classifier.augmentation.backgrounds import background
-from noise.training.classifier.augmentation.places import a_weighted, in_a_place, place
-from noise.training.classifier.augmentation.rooms import in_a_room
+from noise.base.arrays import Array, Rng
+from noise.training.classifier.places import a_weighted, background, in_a_place, in_a_room, place
 from noise.training.draws import coloured_noise, log_uniform, low_pass, picked, wandering
 
 _BANDS = {
@@ -30,9 +28,7 @@ _BANDS = {
 """Ranges of the lower and upper band limits [Hz], order, and maximum ripple [dB]."""
 
 
-def through_a_microphone(
-    sound: NDArray[np.float64], rate: float, rng: np.random.Generator, *, kind: str = "free"
-) -> NDArray[np.float64]:
+def through_a_microphone(sound: Array, rate: float, rng: Rng, *, kind: str = "free") -> Array:
     """Return a sound through the frequency response of a random microphone.
 
     The response has slopes at both ends of the band and a gentle ripple. A phone has a narrower
@@ -72,9 +68,7 @@ def through_a_microphone(
     return coloured + _rubbing(coloured, rate, rng) if kind == "pocket" else np.asarray(coloured)
 
 
-def _rubbing(
-    sound: NDArray[np.float64], rate: float, rng: np.random.Generator
-) -> NDArray[np.float64]:
+def _rubbing(sound: Array, rate: float, rng: Rng) -> Array:
     """Return the noise of cloth that rubs against the microphone."""
     n = sound.size
     noise = low_pass(coloured_noise(n, rng.uniform(0.5, 1.5), rng), rng.uniform(500, 4000), rate)
@@ -82,9 +76,7 @@ def _rubbing(
     return np.asarray(10.0 ** rng.uniform(-2.0, -0.5) * sound.std() * strokes * noise / noise.std())
 
 
-def with_sensor_noise(
-    torque: NDArray[np.float64], acceleration: NDArray[np.float64], rng: np.random.Generator
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def with_sensor_noise(torque: Array, acceleration: Array, rng: Rng) -> tuple[Array, Array]:
     """Return torque and acceleration with random sensor noise.
 
     Parameters
@@ -104,9 +96,7 @@ def with_sensor_noise(
     return torque, acceleration + size * rng.standard_normal(acceleration.size)
 
 
-def levelled(
-    sound: NDArray[np.float64], rate: float, rng: np.random.Generator
-) -> NDArray[np.float64]:
+def levelled(sound: Array, rate: float, rng: Rng) -> Array:
     """Return a sound after automatic gain control with a random compression ratio.
 
     The output level rises by 1 dB for 1.3 to 4 dB of the smoothed input level.
@@ -139,7 +129,7 @@ def levelled(
     return np.asarray(sound * (power + floor) ** -exponent)
 
 
-def clipped(sound: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
+def clipped(sound: Array, rng: Rng) -> Array:
     """Return a sound clipped at 30-90 % of its peak, hard or soft.
 
     Parameters
@@ -173,7 +163,7 @@ _AT_ONCE = 4096
 _MP3_RATES = (16_000, 22_050, 24_000, 32_000, 44_100, 48_000)
 
 
-def coded(sound: NDArray[np.float64], rate: int, rng: np.random.Generator) -> NDArray[np.float64]:
+def coded(sound: Array, rate: int, rng: Rng) -> Array:
     """Return a sound of the same length after a random lossy codec.
 
     Parameters
@@ -204,9 +194,7 @@ def coded(sound: NDArray[np.float64], rate: int, rng: np.random.Generator) -> ND
     return decoded
 
 
-def quantised(
-    sound: NDArray[np.float64], bits: int, rng: np.random.Generator
-) -> NDArray[np.float64]:
+def quantised(sound: Array, bits: int, rng: Rng) -> Array:
     """Return a sound quantised to a number of bits, with or without dither, and clipped.
 
     Parameters
@@ -232,8 +220,8 @@ def quantised(
 
 
 def _round_trip(
-    sound: NDArray[np.float64], rate: int, container: str, subtype: str, quality: float
-) -> NDArray[np.float64] | None:
+    sound: Array, rate: int, container: str, subtype: str, quality: float
+) -> Array | None:
     """Return a sound after encoding and decoding; ``None`` if libsndfile cannot."""
     if container not in soundfile.available_formats():
         return None
@@ -292,12 +280,12 @@ class RecordedSound:
         Start and end of the sound in the clip [s]; the rest is silence or background.
     """
 
-    samples: NDArray[np.float64]
+    samples: Array
     rate: int
     span: tuple[float, float]
 
 
-def resampled(signal: NDArray[np.float64], rate: float, wanted: float) -> NDArray[np.float64]:
+def resampled(signal: Array, rate: float, wanted: float) -> Array:
     """Return a signal at another sampling rate; rates are rounded to whole hertz.
 
     Parameters
@@ -325,13 +313,13 @@ def resampled(signal: NDArray[np.float64], rate: float, wanted: float) -> NDArra
 
 
 def recorded(
-    sound: NDArray[np.float64],
+    sound: Array,
     rate: float,
-    rng: np.random.Generator,
+    rng: Rng,
     *,
     kind: str = "free",
     span: tuple[float, float] | None = None,
-) -> tuple[NDArray[np.float64], tuple[float, float]]:
+) -> tuple[Array, tuple[float, float]]:
     """Return a sound recorded in a random room or place by a random microphone.
 
     Parameters
@@ -370,11 +358,7 @@ def recorded(
 
 
 def augmented(
-    sound: NDArray[np.float64],
-    rate: float,
-    rng: np.random.Generator,
-    *,
-    span: tuple[float, float] | None = None,
+    sound: Array, rate: float, rng: Rng, *, span: tuple[float, float] | None = None
 ) -> RecordedSound:
     """Return a sound recorded with a random microphone, rate, gain, codec and cut.
 
@@ -422,9 +406,7 @@ def augmented(
     return RecordedSound(samples, wanted, lasts)
 
 
-def _cut(
-    sound: NDArray[np.float64], rate: int, rng: np.random.Generator
-) -> tuple[NDArray[np.float64], float]:
+def _cut(sound: Array, rate: int, rng: Rng) -> tuple[Array, float]:
     """Return a sound with random digital silence before and after, and the silence before [s]."""
     duration = sound.size / rate
     if rng.random() < 0.3:  # a shift of the windows
@@ -438,7 +420,7 @@ def _cut(
     return np.pad(sound, (before, after)), before / rate
 
 
-def _left(sound: NDArray[np.float64], rate: float, low: float) -> bool:
+def _left(sound: Array, rate: float, low: float) -> bool:
     """Whether enough of a sound remains at a low rate."""
     audible = float(a_weighted(sound, rate).std()) ** 2
     return float(a_weighted(resampled(sound, rate, low), low).std()) ** 2 >= _LEFT * audible

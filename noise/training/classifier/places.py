@@ -1,7 +1,5 @@
 """Noise of the places where engineers record, and mixing of a sound into a place.
 
-Some families of places are not learned, so that they give scores for unknown places.
-
 Halls of test benches: a hydraulic pump has the rate of its pistons with many harmonics, modulated
 by its shaft, and its valves hiss; fans have the rate of their blades; workshops have blows and
 grinders.
@@ -14,6 +12,7 @@ inverter a tone near 8 to 10 kHz.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
@@ -24,10 +23,39 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from scipy.signal import fftconvolve
 
 from features.kernels.level_meter import a_weighting
-from noise.training.classifier.augmentation.rooms import in_a_room
+from noise.base.arrays import Array, Rng
 from noise.training.classifier.background_sounds import background_sound
-from noise.training.classifier.background_sounds.building import blow, placed, wavering
-from noise.training.draws import log_uniform, wandering
+from noise.training.classifier.synthesis import blow, placed, wavering
+from noise.training.draws import coloured_noise, log_uniform, low_pass, picked, wandering
+
+
+def in_a_room(sound: Array, rate: float, rng: Rng) -> Array:
+    """Return a sound of the same length with random reflections and a tail.
+
+    Examples
+    --------
+    >>> click = np.zeros(4800)
+    >>> click[0] = 1.0
+    >>> echoing = in_a_room(click, 48e3, np.random.default_rng(0))
+    >>> echoing.shape, round(float(echoing[0]), 6)
+    ((4800,), 1.0)
+    """
+    t60 = log_uniform(0.1, 1.2, rng)
+    n = int(min(t60, 0.6) * rate)
+    time = np.arange(n) / rate
+    taps = rng.standard_normal(n) * 10.0 ** (-3.0 * time / t60)
+    taps[: int(rng.uniform(0.002, 0.01) * rate)] = 0.0
+    taps = low_pass(taps, rng.uniform(2e3, 12e3), rate)
+    taps *= 10.0 ** (rng.uniform(-20.0, 0.0) / 20.0) / math.sqrt(float(np.sum(taps**2)))
+    early = int(rng.integers(0, 9))
+    if early:
+        when = rng.uniform(0.001, 0.04, early)
+        taps[np.minimum((when * rate).astype(int), n - 1)] += (
+            rng.uniform(0.1, 0.7, early) * rng.choice((-1.0, 1.0), early) / (1.0 + 60.0 * when)
+        )
+    taps[0] = 1.0
+    return np.asarray(fftconvolve(sound, taps)[: sound.size])
+
 
 _SHAPE_SPREAD = 4.0
 """Standard deviation of a random spectrum around its shape at each point [dB]."""
@@ -74,13 +102,11 @@ CABINS = {
     "electric_car": Cabin((-4, 6), (-12, 5), (-40, -16), (-46, -22), (10, 180), (0,), (0.3, 1.5)),
     "standing_car": Cabin((-60, -30), (-50, -20), (-16, 0), (-6, 6), (11, 17), (3, 4), (1.0, 2.5)),
     "van": Cabin((-2, 8), (-8, 6), (-36, -12), (-6, 6), (12, 55), (4,), (1.0, 2.2)),
-    "lorry": Cabin((-8, 4), (-10, 4), (-34, -10), (0, 8), (9, 30), (6,), (1.0, 2.2)),
-    "convertible": Cabin((-8, 2), (4, 14), (-45, -25), (-10, 2), (15, 70), (4, 6), (1.2, 2.5)),
 }
 """Families of cabins by name."""
 
 
-def cabin(kind: str, n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+def cabin(kind: str, n: int, rate: float, rng: Rng) -> Array:
     """Return random noise of a family of cabins.
 
     Parameters
@@ -123,9 +149,7 @@ def cabin(kind: str, n: int, rate: float, rng: np.random.Generator) -> NDArray[n
     return np.asarray(sound / sound.std())
 
 
-def shaped_noise(
-    n: int, rate: float, shape: Sequence[tuple[float, float]], rng: np.random.Generator
-) -> NDArray[np.float64]:
+def shaped_noise(n: int, rate: float, shape: Sequence[tuple[float, float]], rng: Rng) -> Array:
     """Return noise with a spectrum of a given shape, with random deviations and a random tilt.
 
     Parameters
@@ -161,13 +185,8 @@ def shaped_noise(
 
 
 def orders(
-    turns: NDArray[np.float64],
-    rate: float,
-    spacing: float,
-    main: float,
-    roll_off: float,
-    rng: np.random.Generator,
-) -> NDArray[np.float64]:
+    turns: Array, rate: float, spacing: float, main: float, roll_off: float, rng: Rng
+) -> Array:
     """Return random orders of a turning shaft; multiples of the main order are the strongest.
 
     Parameters
@@ -207,7 +226,7 @@ def orders(
     return sound
 
 
-def _road(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+def _road(n: int, rate: float, rng: Rng) -> Array:
     """Return noise of rolling on a rough surface, sometimes with joints."""
     sound = shaped_noise(n, rate, _ROAD, rng)
     cavity = rng.uniform(190.0, 250.0)
@@ -225,9 +244,7 @@ def _road(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     return sound
 
 
-def _inverter(
-    turns: NDArray[np.float64], rate: float, rng: np.random.Generator
-) -> NDArray[np.float64]:
+def _inverter(turns: Array, rate: float, rng: Rng) -> Array:
     """Return a switching tone with sidebands at multiples of the electrical frequency."""
     carrier = rng.uniform(7e3, 10e3)
     phase = 2.0 * np.pi * np.cumsum(turns) / rate * float(rng.choice((3.0, 4.0)))
@@ -248,7 +265,7 @@ _BLADES = (5.0, 7.0, 8.0, 9.0, 11.0)
 _PISTONS = (7.0, 9.0, 11.0)
 
 
-def hydraulic_hall(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+def hydraulic_hall(n: int, rate: float, rng: Rng) -> Array:
     """Return noise of axial piston pumps at mains speed, valves, and a fan."""
     sound = _air(n, rate, rng)
     for _ in range(int(rng.integers(1, 3))):
@@ -259,7 +276,7 @@ def hydraulic_hall(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.
     return np.asarray(sound + valves)
 
 
-def workshop(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+def workshop(n: int, rate: float, rng: Rng) -> Array:
     """Return noise of ventilation, random blows, and a distant grinder or drill."""
     sound = _air(n, rate, rng)
     count = rng.poisson(rng.uniform(0.0, 3.0) * n / rate)
@@ -277,7 +294,7 @@ def workshop(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float6
     return sound
 
 
-def engine_cell(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+def engine_cell(n: int, rate: float, rng: Rng) -> Array:
     """Return noise of an engine on a dynamometer behind glass, and strong ventilation."""
     turns = rng.uniform(13.0, 100.0) * wavering(n, rate, 0.3, 0.02, rng)
     firing = 0.5 * float(rng.choice((3, 4, 6, 8)))
@@ -285,7 +302,7 @@ def engine_cell(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.flo
     return np.asarray(rng.uniform(0.3, 3.0) * engine / engine.std() + _air(n, rate, rng))
 
 
-def laboratory(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+def laboratory(n: int, rate: float, rng: Rng) -> Array:
     """Return noise of computer fans and soft ventilation."""
     sound = _air(n, rate, rng)
     for _ in range(int(rng.integers(1, 4))):
@@ -295,7 +312,7 @@ def laboratory(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.floa
     return sound
 
 
-def bench_with_a_motor(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+def bench_with_a_motor(n: int, rate: float, rng: Rng) -> Array:
     """Return noise of the drive of a bench: a motor with a gear and an inverter."""
     turns = rng.uniform(2.0, 50.0) * wavering(n, rate, 0.5, 0.02, rng)
     gear = orders(turns, rate, 1.0, float(rng.integers(10, 40)), rng.uniform(0.5, 2.0), rng)
@@ -304,53 +321,25 @@ def bench_with_a_motor(n: int, rate: float, rng: np.random.Generator) -> NDArray
     return np.asarray(sound + (rng.random() < 0.4) * 10.0 ** rng.uniform(-2.0, -0.7) * whine)
 
 
-def climate_chamber(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Return noise of the blower and compressor of a climate chamber."""
-    turns = rng.uniform(15.0, 50.0) * wavering(n, rate, 0.2, 0.003, rng)
-    blower = orders(turns, rate, 1.0, float(rng.choice(_BLADES)), rng.uniform(0.6, 1.5), rng)
-    cold = orders(np.full(n, _mains_turns(rng)), rate, 1.0, 2.0, rng.uniform(0.3, 1.2), rng)
-    sound = _air(n, rate, rng) + rng.uniform(0.1, 1.5) * blower / blower.std()
-    return np.asarray(sound + rng.uniform(0.1, 1.5) * cold / cold.std())
-
-
-def compressor_room(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Return noise of a piston compressor: pulses of air and metal."""
-    time = np.arange(n) / rate
-    beat = np.cos(2.0 * np.pi * log_uniform(6.0, 25.0, rng) * time + rng.uniform(0.0, 6.3))
-    pulses = np.exp(rng.uniform(1.0, 8.0) * (beat - 1.0))
-    metal = shaped_noise(n, rate, _HISS, rng)
-    sound = _air(n, rate, rng) * (0.3 + pulses) + rng.uniform(0.02, 0.5) * metal * pulses
-    return np.asarray(sound)
-
-
-def _air(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+def _air(n: int, rate: float, rng: Rng) -> Array:
     air = shaped_noise(n, rate, _AIR, rng)
     return in_a_room(air, rate, rng) if rng.random() < 0.2 else air
 
 
-def _mains_turns(rng: np.random.Generator) -> float:
+def _mains_turns(rng: Rng) -> float:
     """Return the speed of an asynchronous motor of two or four poles at 50 or 60 Hz [1/s]."""
     return float(rng.choice((25.0, 30.0, 50.0, 60.0))) * rng.uniform(0.95, 0.995)
 
 
-HALLS: Mapping[str, Callable[[int, float, np.random.Generator], NDArray[np.float64]]] = {
+HALLS: Mapping[str, Callable[[int, float, Rng], Array]] = {
     recipe.__name__: recipe
-    for recipe in (
-        hydraulic_hall, workshop, engine_cell, laboratory, bench_with_a_motor, climate_chamber,
-        compressor_room,
-    )
-}  # fmt: skip
+    for recipe in (hydraulic_hall, workshop, engine_cell, laboratory, bench_with_a_motor)
+}
 """Halls by name: functions of the number of samples, the rate [Hz] and a generator."""
 
 
 PLACES = (*CABINS, *HALLS)
 """Families of cabins and halls."""
-
-LEFT_OUT = ("lorry", "convertible", "climate_chamber", "compressor_room")
-"""Families that the shipped classifier did not learn."""
-
-LEARNED = tuple(name for name in PLACES if name not in LEFT_OUT)
-"""Families that the shipped classifier learned."""
 
 _AUDIBLE_DB = 3.0
 """Minimum level of an audible sound above the place, in its best half octave [dB]."""
@@ -378,13 +367,8 @@ _BANDS = 160.0 * 2.0 ** (0.5 * np.arange(12))
 
 
 def place(
-    n: int,
-    rate: float,
-    rng: np.random.Generator,
-    *,
-    among: Sequence[str] = LEARNED,
-    peopled: bool = True,
-) -> NDArray[np.float64]:
+    n: int, rate: float, rng: Rng, *, among: Sequence[str] = PLACES, peopled: bool = True
+) -> Array:
     """Return random noise of a place.
 
     Parameters
@@ -422,8 +406,8 @@ def place(
 
 
 def in_a_place(
-    sound: NDArray[np.float64], surroundings: NDArray[np.float64], rate: float, snr: float
-) -> tuple[NDArray[np.float64], tuple[float, float]]:
+    sound: Array, surroundings: Array, rate: float, snr: float
+) -> tuple[Array, tuple[float, float]]:
     """Return a sound mixed with the noise of a place, raised if it would be inaudible.
 
     Parameters
@@ -466,7 +450,7 @@ def in_a_place(
     return sound + share * 10.0 ** (-(lift + more) / 20.0) * surroundings, span
 
 
-def a_weighted(sound: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+def a_weighted(sound: Array, rate: float) -> Array:
     """Return an A-weighted sound.
 
     Parameters
@@ -492,9 +476,7 @@ def a_weighted(sound: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     return np.asarray(irfft(rfft(sound, m) * gain, m)[: sound.size])
 
 
-def _stands_out(
-    sound: NDArray[np.float64], surroundings: NDArray[np.float64], rate: float
-) -> NDArray[np.float64]:
+def _stands_out(sound: Array, surroundings: Array, rate: float) -> Array:
     """Return the level of a sound above a place in its best half octave, by frame [dB].
 
     Pauses of the sound have -300 dB.
@@ -523,3 +505,127 @@ def _longest(sounds: NDArray[np.bool_], duration: float) -> tuple[float, float]:
     best = int((ends - starts).argmax())
     end = duration if ends[best] == sounds.size else int(ends[best]) * _FRAME
     return int(starts[best]) * _FRAME, end
+
+
+_QUIETS = {
+    "hiss": 0.12, "hum": 0.14, "background": 0.09, "sliding": 0.07, "place": 0.56, "silence": 0.02,
+}  # fmt: skip
+"""Shares of the kinds of quiet [-]."""
+
+
+def background(n: int, rate: float, rng: Rng) -> Array:
+    """Return steady noise of a room, a cabin, a road or wind, of unit standard deviation.
+
+    The noise of a cabin falls by 6 to 10 dB per octave, with weak engine orders; that of tyres has
+    a hump at 150-1000 Hz; wind has low frequencies and gusts.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> float(background(4800, 48e3, np.random.default_rng(1)).std().round(6))
+    1.0
+    """
+    kind = rng.random()
+    if kind < 0.5:
+        return coloured_noise(n, rng.uniform(0.0, 2.0), rng)
+    if kind < 0.7:
+        noise = coloured_noise(n, rng.uniform(1.8, 3.2), rng)
+        if rng.random() < 0.5:
+            noise = noise + _engine_orders(n, rate, rng)
+    elif kind < 0.85:
+        noise = _hump(n, rate, rng) + rng.uniform(0.2, 1.0) * coloured_noise(n, 1.5, rng)
+    else:
+        gust = coloured_noise(n, 3.0, rng)
+        noise = coloured_noise(n, rng.uniform(1.5, 2.5), rng) * np.exp(
+            0.5 * rng.uniform(0.0, 1.0) * gust
+        )
+    return np.asarray(noise / noise.std())
+
+
+def _engine_orders(n: int, rate: float, rng: Rng) -> Array:
+    time = np.arange(n) / rate
+    firing = rng.uniform(25.0, 120.0)
+    orders = np.zeros(n)
+    for k in (0.5, 1.0, 1.5, 2.0, 3.0):
+        strength = rng.uniform(0.0, 0.5) / k
+        orders += strength * np.sin(2.0 * np.pi * (k * firing * time + rng.random()))
+    return orders
+
+
+def _hump(n: int, rate: float, rng: Rng) -> Array:
+    """Return noise in a band of one or two octaves."""
+    m = next_fast_len(n, real=True)
+    spectrum = rfft(rng.standard_normal(m))
+    frequency = np.maximum(np.arange(spectrum.size) * rate / m, 1.0)
+    centre = log_uniform(150.0, 1000.0, rng)
+    octaves = np.log2(frequency / centre) / rng.uniform(0.5, 1.5)
+    noise = irfft(spectrum * np.exp(-0.5 * octaves**2), m)[:n]
+    return np.asarray(noise / noise.std())
+
+
+def quiet(n: int, rate: float, rng: Rng) -> Array:
+    """Return a random recording of quiet: a place, hiss, hum, background, sliding, silence.
+
+    More than half are cabins and halls without people. Hum is of the mains or a transformer, 50 to
+    120 Hz, with up to 20 harmonics, of which odd ones may be stronger. Steady sliding hisses
+    without lines.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> quiet(480, 48e3, np.random.default_rng(0)).shape
+    (480,)
+    """
+    kind = picked(_QUIETS, rng)
+    if kind == "silence":
+        return np.zeros(n)
+    if kind == "place":
+        return place(n, rate, rng, peopled=False)
+    if kind == "background":
+        return background(n, rate, rng)
+    noise = coloured_noise(n, rng.uniform(0.0, 2.2), rng)
+    if kind == "hum":
+        return noise + _hum(n, rate, rng)
+    if kind == "sliding":
+        octaves = coloured_noise(n, rng.uniform(0.0, 1.5), rng)
+        return np.asarray(noise + rng.uniform(0.0, 2.0) * np.diff(octaves, prepend=octaves[0]))
+    return noise
+
+
+def _hum(n: int, rate: float, rng: Rng) -> Array:
+    time = np.arange(n) / rate
+    mains = float(rng.choice((50.0, 60.0, 100.0, 120.0))) * rng.uniform(0.999, 1.001)
+    loud = 10.0 ** rng.uniform(-0.3, 1.7)
+    roll_off = rng.uniform(0.3, 2.5)
+    odd = rng.random() < 0.5
+    hum = np.zeros(n)
+    for k in range(1, int(rng.integers(2, 21))):
+        strength = loud * k**-roll_off * rng.lognormal(0.0, 0.5)
+        if odd and k % 2 == 0:
+            strength *= 0.1
+        hum += strength * np.sin(2 * math.pi * (k * mains * time + rng.random()))
+    return hum

@@ -11,16 +11,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from noise.base import packaged_toml
-from noise.training.classifier.background_sounds.synthesis import synthesised
+from noise.base.arrays import Array, Rng
+from noise.training.classifier.synthesis import synthesised
 from noise.training.draws import log_uniform, low_pass, picked
 
-__all__ = ["BACKGROUND_SOUNDS", "WEIGHTS", "background_sound"]
-
 BACKGROUND_SOUNDS: Mapping[str, Mapping[str, Any]] = packaged_toml(
-    __name__, "background_sounds.toml"
+    "noise.training.classifier", "background_sounds.toml"
 )
 """Rows by name; ``surroundings`` lists where a sound may occur, of car and rig."""
 
@@ -29,8 +27,8 @@ WEIGHTS = {name: float(row["weight"]) for name, row in BACKGROUND_SOUNDS.items()
 
 
 def background_sound(
-    n: int, rate: float, rng: np.random.Generator, name: str | None = None, *, alone: bool = False
-) -> NDArray[np.float64]:
+    n: int, rate: float, rng: Rng, name: str | None = None, *, alone: bool = False
+) -> Array:
     """Return a random background sound of unit peak, sometimes with a second one.
 
     Parameters
@@ -68,9 +66,7 @@ def background_sound(
     return np.asarray(sound / np.abs(sound).max())
 
 
-def _alone(
-    n: int, rate: float, rng: np.random.Generator, name: str | None = None
-) -> NDArray[np.float64]:
+def _alone(n: int, rate: float, rng: Rng, name: str | None = None) -> Array:
     drawn = name or picked(WEIGHTS, rng)
     for _ in range(5):  # a pause between blows may be longer than the sound
         sound = synthesised(BACKGROUND_SOUNDS[drawn], n, rate, rng)

@@ -1,12 +1,12 @@
 """Synthesis of creaks, squawks and squeals of the bodies in ``friction_sounds.toml``.
 
-- slips: each slip of `noise.training.classifier.friction_sources.slider` releases a force in
+- slips: each slip of `noise.training.classifier.friction_mechanisms` releases a force in
   proportion to its size, a half-sine pulse with the rattle of asperities, and the body
-  (`noise.training.classifier.friction_sources.modal_body`) rings. A heavier load gives fewer and
+  (`noise.training.classifier.friction_mechanisms`) rings. A heavier load gives fewer and
   larger slips.
 - sawtooth: steady stick-slip whose force, with close harmonics, is radiated by a strongly damped
   body; likewise a bowed string.
-- modes: friction excites modes (`noise.training.classifier.friction_sources.limit_cycle`). If they
+- modes: friction excites modes (`noise.training.classifier.friction_mechanisms`). If they
   share their losses, one dominates and another may replace it; otherwise several sound at once.
 
 By definition (`noise.noise_definition`), slips so regular and fast that discrete frequencies stand
@@ -21,25 +21,25 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
 from noise.base import packaged_toml
-from noise.training.classifier.friction_sources.limit_cycle import (
+from noise.base.arrays import Array, Rng
+from noise.training.classifier.friction_mechanisms import (
     ENVELOPE_RATE,
+    ModalBody,
+    Slips,
     amplitudes,
     carried,
-)
-from noise.training.classifier.friction_sources.modal_body import (
-    ModalBody,
     overlapping_modes,
     random_body,
+    random_drive,
+    slide,
 )
-from noise.training.classifier.friction_sources.slider import Slips, random_drive, slide
 from noise.training.draws import coloured_noise, log_uniform, low_pass, wandering
 
 FRICTION_SOUNDS: Mapping[str, Mapping[str, Any]] = packaged_toml(
-    "noise.training.classifier.friction_sources", "friction_sounds.toml"
+    "noise.training.classifier", "friction_sounds.toml"
 )
 """Rows of the table by name."""
 
@@ -72,13 +72,13 @@ class FrictionSound:
         Whether the label is close to a bound of its definition.
     """
 
-    samples: NDArray[np.float64]
+    samples: Array
     label: str
     span: tuple[float, float]
     ambiguous: bool = False
 
 
-def friction_sound(name: str, n: int, rate: float, rng: np.random.Generator) -> FrictionSound:
+def friction_sound(name: str, n: int, rate: float, rng: Rng) -> FrictionSound:
     """Return a random sound of a body.
 
     Parameters
@@ -115,7 +115,7 @@ def friction_sound(name: str, n: int, rate: float, rng: np.random.Generator) -> 
     )
 
 
-def contact_load(row: Mapping[str, Any], m: int, rng: np.random.Generator) -> NDArray[np.float64]:
+def contact_load(row: Mapping[str, Any], m: int, rng: Rng) -> Array:
     """Return a random load of a contact at `ENVELOPE_RATE`: bouts near 1 with gaps of 0.
 
     Parameters
@@ -161,12 +161,8 @@ def contact_load(row: Mapping[str, Any], m: int, rng: np.random.Generator) -> ND
 
 
 def _slips_under(
-    load: NDArray[np.float64],
-    row: Mapping[str, Any],
-    n: int,
-    rate: float,
-    rng: np.random.Generator,
-) -> tuple[Slips, NDArray[np.float64]]:
+    load: Array, row: Mapping[str, Any], n: int, rate: float, rng: Rng
+) -> tuple[Slips, Array]:
     """Return random slips at a suitable rate, and the load."""
     while True:
         fastest = _log_between(row["fastest_hz"], rng)
@@ -199,13 +195,8 @@ def _is_ambiguous(slips: Slips, label: str) -> bool:
 
 
 def _struck(
-    slips: Slips,
-    load: NDArray[np.float64],
-    row: Mapping[str, Any],
-    n: int,
-    rate: float,
-    rng: np.random.Generator,
-) -> NDArray[np.float64]:
+    slips: Slips, load: Array, row: Mapping[str, Any], n: int, rate: float, rng: Rng
+) -> Array:
     """Return the sound of slips that strike a body, with a second contact in a fifth of cases."""
     sound = np.zeros(n)
     for i in range(2 if rng.random() < 0.2 else 1):
@@ -242,27 +233,22 @@ def _struck(
 _STRUCK = [name for name, row in FRICTION_SOUNDS.items() if row["mechanism"] == "slips"]
 
 
-def _log_between(ends: Sequence[float], rng: np.random.Generator) -> float:
+def _log_between(ends: Sequence[float], rng: Rng) -> float:
     return log_uniform(ends[0], ends[1], rng)
 
 
-def _logs_between(ends: Sequence[float], n: int, rng: np.random.Generator) -> NDArray[np.float64]:
+def _logs_between(ends: Sequence[float], n: int, rng: Rng) -> Array:
     low, high = np.log(ends)
     return np.asarray(np.exp(rng.uniform(low, high, n)))
 
 
-def _unit(response: NDArray[np.float64]) -> NDArray[np.float64]:
+def _unit(response: Array) -> Array:
     return np.asarray(response / np.abs(response).max())
 
 
 def pulses(
-    slips: Slips,
-    n: int,
-    rate: float,
-    rng: np.random.Generator,
-    *,
-    lasting: Sequence[float] = (3e-5, 5e-4),
-) -> NDArray[np.float64]:
+    slips: Slips, n: int, rate: float, rng: Rng, *, lasting: Sequence[float] = (3e-5, 5e-4)
+) -> Array:
     """Return the force of slips: pulses of random strength, with a rattle.
 
     Parameters
@@ -304,13 +290,7 @@ def pulses(
     return np.asarray(fftconvolve(train, shape)[:n])
 
 
-def _sawtooth(
-    load: NDArray[np.float64],
-    row: Mapping[str, Any],
-    n: int,
-    rate: float,
-    rng: np.random.Generator,
-) -> NDArray[np.float64]:
+def _sawtooth(load: Array, row: Mapping[str, Any], n: int, rate: float, rng: Rng) -> Array:
     slips_a_second = _log_between(row["rate_hz"], rng)
     wander = rng.uniform(*row["wander"]) * wandering(n, rate, rng.uniform(0.5, 5.0), rng)
     shake = np.sin(2.0 * np.pi * rng.uniform(4.0, 8.0) * np.arange(n) / rate)
@@ -346,13 +326,7 @@ def _sawtooth(
     return np.asarray(sound + sound.std() * level * hiss)
 
 
-def _modes(
-    load: NDArray[np.float64],
-    row: Mapping[str, Any],
-    n: int,
-    rate: float,
-    rng: np.random.Generator,
-) -> NDArray[np.float64]:
+def _modes(load: Array, row: Mapping[str, Any], n: int, rate: float, rng: Rng) -> Array:
     m = load.size
     chances = np.array(row.get("n_modes", (0.6, 0.3, 0.1)))
     n_modes = int(rng.choice(chances.size, p=chances / chances.sum())) + 1

@@ -1,1 +1,0 @@
-"""Augmentation of sounds: room, noise, microphone, recorder, codec and cut."""

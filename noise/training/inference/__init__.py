@@ -1,1 +1,0 @@
-"""Training of the shipped model that infers operating conditions from a segment."""
