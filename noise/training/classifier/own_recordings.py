@@ -99,8 +99,8 @@ def own_samples(
     else:
         tabled = _from_tables(source, refusals)
         paths = [path for path, _ in find_recordings(source)]
-        found = {path.resolve() for path in paths}
-        paths += [path for path, stretches in tabled.items() if stretches and path not in found]
+        present = {path.resolve() for path in paths}
+        paths += [path for path, stretches in tabled.items() if stretches and path not in present]
     for path in progress(paths):
         try:
             stretches = tabled.get(path.resolve())
