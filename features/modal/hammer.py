@@ -3,14 +3,13 @@
 Each hit is one segment with a boxcar window: the force ends and the response decays before its end,
 so a window would only add damping. Otherwise an exponential window over force and response makes
 them decay; it shifts each pole by its own rate and nothing else, which is removed from the modes
-again. Cross- and autospectra are averaged over the hits. H1 assumes noise in the response only, H2
-in the force only, Hv in both in proportion to their power, which is their geometric mean.
+again. Cross- and autospectra are averaged over the hits. The estimator is H1, which
+assumes noise in the response only.
 
 A second contact of the hammer causes notches in the spectrum of the force, a clipped force is
 wrong, and a drifting force hides its lowest lines; none can be corrected, so such hits are refused.
 
-J. S. Bendat, A. G. Piersol, Random Data, chapters 6 and 9; for Hv G. T. Rocklin, J. Crowley,
-H. Vold, A comparison of the H1, H2, and Hv frequency response functions, Proc. IMAC 3 (1985).
+J. S. Bendat, A. G. Piersol, Random Data, chapters 6 and 9.
 """
 
 from __future__ import annotations
@@ -26,9 +25,6 @@ from scipy.signal import csd, find_peaks, welch
 from models.errors import ParameterError, RecordingError
 from models.show import short_repr
 from models.transfer_functions.transfer_function import TransferFunction
-
-ESTIMATORS = ("H1", "H2", "Hv")
-"""Estimators for noise in the response, in the force, and in both."""
 
 DOUBLE_HIT = 0.05
 """Share of the largest force from which a further contact counts; ringing of the sensor's filter is
@@ -276,7 +272,6 @@ def force_nulls(
 def estimate_transfer_function(
     hits: Sequence[Hit],
     *,
-    estimator: str = "H1",
     input_unit: str = "N",
     output_unit: str = "m/s^2",
     name: str = "response",
@@ -287,8 +282,6 @@ def estimate_transfer_function(
     ----------
     hits : sequence of Hit
         One or more hits of one sampling rate and length.
-    estimator : str
-        ``"H1"``, ``"H2"`` or ``"Hv"``.
     input_unit, output_unit : str
         Units of force and response.
     name : str
@@ -302,7 +295,7 @@ def estimate_transfer_function(
     Raises
     ------
     ParameterError
-        There are no hits, they differ in sampling rate or length, or the estimator is unknown.
+        There are no hits, or they differ in sampling rate or length.
 
     Examples
     --------
@@ -315,8 +308,6 @@ def estimate_transfer_function(
     """
     if not hits:
         raise ParameterError("there are no hits to average")
-    if estimator not in ESTIMATORS:
-        raise ParameterError(f"estimator = {estimator!r} must be {', '.join(ESTIMATORS)}")
     n, rate = hits[0].force.size, hits[0].rate
     for hit in hits:
         if hit.force.size != n or hit.response.size != n or hit.rate != rate:
@@ -331,15 +322,8 @@ def estimate_transfer_function(
     _, of_response = welch(response, rate, "boxcar", n, 0, detrend=False)
     # Empty bins give zero without a warning.
     estimate = cross / np.maximum(of_force, np.finfo(np.float64).tiny)
-    power = np.abs(cross) ** 2
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = power / (of_force * of_response)
-        if estimator == "H2":
-            estimate = np.where(
-                power > 0.0, of_response / np.where(power > 0.0, cross.conj(), 1), 0
-            )
-        elif estimator == "Hv":
-            estimate = estimate * np.where(ratio > 0.0, 1 / np.sqrt(ratio), 0.0)
+        ratio = np.abs(cross) ** 2 / (of_force * of_response)
     coherence = np.clip(np.where(np.isfinite(ratio), ratio, 0.0), 0.0, 1.0)
     return TransferFunction(
         frequencies, estimate, coherence if len(hits) > 1 else None, input_unit, output_unit, name

@@ -11,25 +11,20 @@ import os
 import signal
 import sys
 import threading
-import time
 from collections import Counter, deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
-from functools import lru_cache, partial
 from multiprocessing import current_process, get_context, parent_process, resource_tracker
 from multiprocessing.context import BaseContext
 from multiprocessing.util import Finalize
 from types import ModuleType
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, TypeVar
 
-Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 
 _ATTEMPTS = 2
-_POLL_INTERVAL = 0.5
-"""Interval at which a worker checks that its parent is alive [s]."""
 
 
 def spread_over_processes(
@@ -142,7 +137,7 @@ class Worker:
 def _independent_start() -> Iterator[None]:
     """Start processes that do not run the caller's script, even from a daemonic process.
 
-    Python forbids daemonic processes, such as Dask workers, to have children.
+    Python forbids daemonic processes to have children.
     """
     script, config = sys.modules["__main__"], current_process()._config  # type: ignore[attr-defined]
     sys.modules["__main__"], daemon = ModuleType("__main__"), config.get("daemon", False)
@@ -183,41 +178,6 @@ def interrupts_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def ending_with_parent(perform: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
-    """Wrap a function for joblib so that its worker processes exit with this process.
-
-    Workers of joblib otherwise wait for minutes after their parent was killed.
-
-    Parameters
-    ----------
-    perform : callable
-        Function that can be pickled.
-
-    Returns
-    -------
-    callable
-        Function with the same result.
-
-    Examples
-    --------
-    >>> ending_with_parent(max)(1, 2)
-    2
-    """
-    return partial(_watched, os.getpid(), perform)
-
-
-def _watched(
-    parent: int,
-    perform: Callable[Parameters, Result],
-    *args: Parameters.args,
-    **kwargs: Parameters.kwargs,
-) -> Result:
-    """Call a function, and in a child process watch the parent from now on."""
-    if os.getppid() == parent:
-        _watch(parent)
-    return perform(*args, **kwargs)
-
-
 def _exit_with_starter(
     setup: Callable[..., object] | None = None, arguments: tuple[Any, ...] = ()
 ) -> None:
@@ -232,17 +192,3 @@ def _exit_with_starter(
             os._exit(1)
 
     threading.Thread(target=wait_for_end, daemon=True).start()
-
-
-@lru_cache(maxsize=1)
-def _watch(parent: int) -> None:
-    """Start a thread that exits the process when its parent is gone."""
-    if os.name == "nt":  # orphans keep their parent's number there
-        return
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(_POLL_INTERVAL)
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()

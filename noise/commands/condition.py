@@ -109,7 +109,6 @@ CONDITION = Group(
         Option("--effects FILE.py", Path),
         Option("--rig RIG.toml", Path),
         CHANGE,
-        Option("--converter"),
     ),
 )
 
@@ -176,11 +175,9 @@ def run_arguments(
 
     import numpy as np
 
-    from models.sensors import Sensors
-    from sim.acquisition import THESIS_CONVERTER, Acquisition
+    from sim.acquisition import Acquisition
 
-    sensors = THESIS_CONVERTER if options.converter else Sensors()
-    arguments["acquisition"] = Acquisition(rate=rate, sensors=sensors)
+    arguments["acquisition"] = Acquisition(rate=rate)
     arguments["rng"] = np.random.default_rng(options.seed)
     return arguments, notes
 

@@ -13,7 +13,7 @@ from models.errors import ParameterError, RecordingError
 from noise.base.files import atomic, check_target
 from noise.base.progress import counted, note, report, say, track
 from noise.base.tables import check_table_path, write_table
-from noise.commands.options import Option, band, number, one_of, refuse
+from noise.commands.options import Option, band, number, refuse
 
 if TYPE_CHECKING:
     import numpy as np
@@ -44,7 +44,6 @@ OPTIONS = (
     Option("--out FILE", Path),
     Option("--modes TABLE", Path),
     Option("--arm M", number(above=0.0, most=100.0)),
-    Option("--estimator H1|H2|Hv", one_of("H1", "H2", "Hv"), "H1"),
     Option("--response NAME", _channel),
     Option("--band LOW..HIGH", band),
     Option("--coherence C", number(least=0.0, most=1.0), _DEFAULT_COHERENCE),
@@ -80,7 +79,6 @@ def run(options: Namespace) -> int:
         )
     transfer = estimate_transfer_function(
         hits,
-        estimator=options.estimator,
         input_unit="N" if options.arm is None else "N m",
         output_unit=unit,
         name=f"response of {counted(len(hits), 'hit')}",

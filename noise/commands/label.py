@@ -30,7 +30,6 @@ OPTIONS = (
     Option("--classifier FILE.npz", Path),
     Option("--surroundings rig|car|any", one_of(*SURROUNDINGS)),
     Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0),
-    Option("--inference FILE.npz", Path),
     *CALIBRATION,
 )
 
@@ -62,7 +61,6 @@ def run(options: Namespace) -> int:
 
     work = Labelling(
         options.classifier,
-        options.inference,
         full_scale=full_scale_of(options),
         sensitivity=options.sensitivity,
         surroundings=options.surroundings,

@@ -29,43 +29,24 @@ OPTIONS = (
     Option("--out FILE.npz", Path, required=True),
     Option("--add DIR|TABLE", Path, repeated=True),
     Option("--samples N", whole_number(1)),
-    Option("--inference FILE.npz", Path),
 )
 
 
 def run(options: Namespace) -> int:
     """Train and save the classifier, and print its scores."""
-    for path, option, what in (
-        (options.out, "--out", "a classifier"),
-        (options.inference, "--inference", "a model"),
-    ):
-        if path is not None and (path.suffix.lower() != ".npz" or path.is_dir()):
-            raise ParameterError(f"{option} {path}: {what} is a file that ends in .npz")
-        if path is not None:
-            check_target(path, option)
-    if options.inference is not None and options.inference.absolute() == options.out.absolute():
-        raise ParameterError(
-            f"--inference {options.inference}: is what --out names for the classifier; give one of "
-            "them another name"
-        )
-    with steps("training", 3 if options.inference is None else 5) as progress:
+    if options.out.suffix.lower() != ".npz" or options.out.is_dir():
+        raise ParameterError(f"--out {options.out}: a classifier is a file that ends in .npz")
+    check_target(options.out)
+    with steps("training", 3) as progress:
         progress("preparing")
         added, refused = _own_samples(options.add or ())
         progress("simulating training samples of the classifier")
         classifier = _trained(options, added, progress)
         classifier.save(options.out)
-        if options.inference is not None:
-            from noise.training.inference import train_inference
-
-            progress("simulating training samples of the model for conditions")
-            model = train_inference(seed=options.seed, progress=partial(_inferring, progress))
-            model.save(options.inference)
     say(f"trained: {_scores(classifier.card)}")
     if added:
         say(f"own recordings: {_own_scores(classifier.card.get('own'))}")
     report(options.out)
-    if options.inference is not None:
-        report(options.inference)
     return int(refused)
 
 
@@ -111,12 +92,6 @@ def _own_samples(folders: Sequence[Path]) -> tuple[list[Sample], bool]:
 def _simulating(samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
     """Show the progress of simulations."""
     return track(samples, "simulating", total=total, unit="training sample")
-
-
-def _inferring(progress: Steps, samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
-    """Show the progress of the training of the model for conditions."""
-    yield from _simulating(samples, total)
-    progress("growing trees of the model for conditions")
 
 
 def _growing(progress: Steps, fits: Iterable[int], total: int) -> Iterable[int]:

@@ -50,7 +50,7 @@ _NARROWER = 0.8
 """Maximum width of a reported interval, as a share of that of the population [-]; assumed."""
 
 INFERENCE = ModelKind(
-    "model of conditions", 1, "bushing-noise train --inference",
+    "model of conditions", 1, "noise.train_inference",
     ("noise.inference", "conditions.npz"),
 )  # fmt: skip
 

@@ -18,7 +18,6 @@ from noise.batch.journal import open_journal
 from noise.batch.work import BatchRows, JobResult, find_jobs, perform_all
 from noise.classifier import Classifier, load_classifier
 from noise.classifier.model import CLASSIFIER
-from noise.inference import Inference, load_inference
 from noise.inference.model import INFERENCE
 from noise.labels.corrections import sign_corrections, with_corrections
 from noise.labels.rows import label_rows
@@ -32,7 +31,6 @@ def label(
     paths: str | Path | Sequence[str | Path],
     *,
     classifier: str | Path | None = None,
-    inference: str | Path | None = None,
     full_scale: PascalPerFullScale | None = None,
     surroundings: str | None = None,
     out: str | Path | None = None,
@@ -45,8 +43,8 @@ def label(
     ----------
     paths : path or sequence of paths
         Recordings, or folders, which are searched recursively.
-    classifier, inference : path, optional
-        Files that ``bushing-noise train`` made; by default those that are shipped.
+    classifier : path, optional
+        File that ``bushing-noise train`` made; by default the shipped one.
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     surroundings : {"any", "car", "rig"}, optional
@@ -95,8 +93,7 @@ def label(
             f"surroundings {surroundings!r} are unknown; there are {', '.join(SURROUNDINGS)}"
         )
     work = Labelling(
-        _absolute(classifier),
-        _absolute(inference),
+        None if classifier is None else Path(classifier).absolute(),  # for other processes
         full_scale,
         surroundings=surroundings,
     )
@@ -121,19 +118,14 @@ def label(
     return table
 
 
-def _absolute(path: str | Path | None) -> Path | None:
-    """Return the absolute path, which holds in other processes and on other machines."""
-    return None if path is None else Path(path).absolute()
-
-
 @dataclass(frozen=True)
 class Labelling:
     """Work of a batch: labelled segments of each recording.
 
     Parameters
     ----------
-    classifier, inference : Path, optional
-        Files that ``bushing-noise train`` made; by default those that are shipped.
+    classifier : Path, optional
+        File that ``bushing-noise train`` made; by default the shipped one.
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     sensitivity : float
@@ -148,7 +140,6 @@ class Labelling:
     """
 
     classifier: Path | None = None
-    inference: Path | None = None
     full_scale: PascalPerFullScale | None = None
     sensitivity: float = 1.0
     surroundings: str | None = None
@@ -161,8 +152,8 @@ class Labelling:
         return COLUMNS
 
     def prepare(self) -> None:
-        """Load the classifier and, if one is named, the model that infers conditions."""
-        _ = self._loaded, self._inference
+        """Load the classifier."""
+        _ = self._loaded
 
     def identity(self) -> dict[str, object]:
         """Return what determines the rows: options and digests of the models."""
@@ -171,7 +162,7 @@ class Labelling:
             "sensitivity": self.sensitivity,
             "surroundings": self.surroundings,
             "classifier": model_digest(self.classifier, CLASSIFIER),
-            "inference": model_digest(self.inference, INFERENCE),
+            "inference": model_digest(None, INFERENCE),
         }
 
     def false_names(self) -> Mapping[str, Any]:
@@ -189,21 +180,12 @@ class Labelling:
             segments: list[Segment] = label_recording(
                 recording, self._loaded, per_track=per_track, surroundings=self.surroundings
             )
-            rows = label_rows(name, recording, segments, self._inference)
-            return rows, recording.calibrated
+            return label_rows(name, recording, segments), recording.calibrated
 
     @cached_property
     def _loaded(self) -> Classifier:
         return load_classifier(self.classifier).sensitive(self.sensitivity)
 
-    @cached_property
-    def _inference(self) -> Inference | None:
-        # The shipped model is loaded for the first noise without a logged condition.
-        if self.inference is None:
-            return None
-
-        return load_inference(self.inference)
-
     def __getstate__(self) -> dict[str, object]:
-        """Pickle the fields without the loaded models."""
+        """Pickle the fields without the loaded classifier."""
         return {field.name: getattr(self, field.name) for field in fields(self)}

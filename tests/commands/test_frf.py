@@ -81,7 +81,7 @@ def test_modes_of_the_structure_are_found(hits):
 
 def test_a_call_says_what_it_averages_and_how_far_that_is_to_be_trusted(hits, capsys):
     np.save("short.npy", np.load(hits[0])[:, :12000])
-    assert main(["frf", *hits, "short.npy", "--estimator", "hv", "--coherence", "1"]) == 0
+    assert main(["frf", *hits, "short.npy", "--coherence", "1"]) == 0
     out, err = capsys.readouterr()
     rows = list(csv.DictReader(io.StringIO(out)))
     assert list(rows[0]) == ["frequency_hz", "real", "imag", "coherence"]

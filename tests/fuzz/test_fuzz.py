@@ -106,9 +106,8 @@ def valid(tmp_path_factory):
     hit = np.column_stack([t, 100.0 * np.exp(-(((t - 2e-3) / 2e-4) ** 2)), np.sin(900.0 * t)])
     np.save(folder / "hit.npy", hit)
     np.savetxt(folder / "hit.csv", hit[:300], "%.6g", ",", header="time,force,response")
-    for package, name in (("noise.classifier", "classifier"), ("noise.inference", "conditions")):
-        with resources.as_file(resources.files(package) / "data" / f"{name}.npz") as path:
-            shutil.copy(path, folder / f"{name}.npz")
+    with resources.as_file(resources.files("noise.classifier") / "data/classifier.npz") as path:
+        shutil.copy(path, folder / "classifier.npz")
     f = 100.0 + 150.0 * np.arange(40)
     np.savez(
         folder / "response.npz", frequency_hz=f, response=0.1 + 0.01j * f,
@@ -168,7 +167,6 @@ CALLS = {
     "hit.npy": ("hit.npy", "given.npy", "frf GIVEN --out out.npz", {}),
     "hit.csv": ("hit.csv", "given.csv", "frf GIVEN --out out.npz", {}),
     "classifier": ("classifier.npz", "given.npz", "label run.wav --classifier GIVEN", RUN),
-    "inference": ("conditions.npz", "given.npz", "label run.wav --inference GIVEN", RUN),
 }  # fmt: skip
 """Name -> valid file, what it is called, command, further valid files beside it."""
 

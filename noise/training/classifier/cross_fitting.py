@@ -31,7 +31,6 @@ from scipy.stats import chi2
 from features.windows.table import HOP
 from noise.base.arrays import Array
 from noise.base.labels import LABELS, SURROUNDINGS
-from noise.base.processes import ending_with_parent
 from noise.base.trees import BoostedTrees
 from noise.classifier.model import (
     Calibration,
@@ -217,9 +216,8 @@ def cross_fitted(
     """
     part, rows = parts(sounds, seed), Rows.of(sounds)
     known: NDArray[np.bool_] = np.asarray(np.isfinite(rows.x).any(axis=0))
-    grow = ending_with_parent(_summed_trees)
     growing = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(grow)(rows.part(part[rows.owner] != k, known), seed, _N_ROUNDS)
+        delayed(_summed_trees)(rows.part(part[rows.owner] != k, known), seed, _N_ROUNDS)
         for k in range(N_FOLDS + 1)  # the last fit has all rows
     )
     alone: list[Array] = [np.empty(0)] * len(sounds)

@@ -32,7 +32,6 @@ from models.errors import ParameterError
 from noise.base.arrays import Array, Rng
 from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
-from noise.base.processes import ending_with_parent
 from noise.classifier.model import Classifier
 from noise.labels.windows import FEATURE_NAMES, window_features
 from noise.recordings import read_recording
@@ -265,9 +264,8 @@ def train(
     n_made_up = round(_MADE_UP * n_training)
     seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
     seeds += np.random.SeedSequence(seed).spawn(n_training)
-    draw = ending_with_parent(draw_sample)
     drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(draw)(one, bushings=i >= n_made_up) for i, one in enumerate(seeds)
+        delayed(draw_sample)(one, bushings=i >= n_made_up) for i, one in enumerate(seeds)
     )
     real = load_real_sounds()
     classifier = learn(
