@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from models.rig import LawSpec
-from noise.training.causes.cases.benches import (
+from noise.training.causes.cases.draw import Truth, visible_through
+from noise.training.causes.cases.rigs import (
     DEPARTURES,
     MATERIALS,
     OWN_LAWS,
@@ -18,7 +19,6 @@ from noise.training.causes.cases.benches import (
     draw_start,
     scaled_law,
 )
-from noise.training.causes.cases.draw import Truth, visible_through
 from sim.acquisition import Acquisition
 from sim.friction import LAWS, friction_law
 from sim.parameters import resolve

@@ -13,9 +13,8 @@ import pytest
 import noise
 from models.errors import ParameterError
 from noise.diagnosis.causes.posterior import load_posterior
-from noise.training.causes import __main__ as command, store
-from noise.training.causes.fit import train_posterior
-from noise.training.causes.store import draw_into, load_cases
+from noise.training.causes import __main__ as command, fit
+from noise.training.causes.fit import draw_into, load_cases, train_posterior
 from tests.helpers.made_posteriors import made_cases, made_posterior
 
 
@@ -27,14 +26,14 @@ def folder(tmp_path, monkeypatch):
         made = made_cases(1, each=2)[: len(seeds)]
         return [replace(case, seed=seed) for seed, case in zip(seeds, made, strict=True)]
 
-    monkeypatch.setattr(store, "known_cases_of_a_rig", of_a_rig)
-    assert len(list(draw_into(tmp_path, range(400_000, 400_000 + 2 * store.CHUNK)))) == 2
+    monkeypatch.setattr(fit, "known_cases_of_a_rig", of_a_rig)
+    assert len(list(draw_into(tmp_path, range(400_000, 400_000 + 2 * fit.CHUNK)))) == 2
     return tmp_path
 
 
 def test_cases_come_back_from_their_files(folder):
     cases = load_cases(folder)
-    assert [case.seed for case in cases] == list(range(400_000, 400_000 + 2 * store.CHUNK))
+    assert [case.seed for case in cases] == list(range(400_000, 400_000 + 2 * fit.CHUNK))
     for before, after in zip(made_cases(1, each=2)[:4], cases[:4], strict=True):
         assert after.truth == before.truth
         assert after.table.conditions == before.table.conditions
@@ -57,7 +56,7 @@ def test_the_command_trains_on_files(folder, monkeypatch):
     target = folder / "causes.npz"
     monkeypatch.setattr(sys, "argv", ["causes", "train", str(folder), "--out", str(target)])
     assert command.main() == 0
-    assert load_posterior(target).card["cases"] == 2 * store.CHUNK
+    assert load_posterior(target).card["cases"] == 2 * fit.CHUNK
 
 
 def test_no_private_module_of_scikit_learn_is_imported():

@@ -17,7 +17,7 @@ from noise.diagnosis.simulated.scatter import Scatter
 from noise.training.causes.cases.draw import KINDS, WEAKEST, draw_case
 from noise.training.causes.cases.rigs import draw_setting
 from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
-from noise.training.causes.store import known_cases_of_a_rig
+from noise.training.causes.fit import known_cases_of_a_rig
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG, SECONDS, at, run
 

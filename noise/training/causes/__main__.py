@@ -11,8 +11,7 @@ from noise.base.files import check_target
 from noise.base.progress import counted, say, track
 from noise.diagnosis.causes.location import learn_stage_nulls
 from noise.training.causes.cases.draw import SHARED
-from noise.training.causes.fit import null_scale, train_posterior
-from noise.training.causes.store import CHUNK, draw_into, load_cases
+from noise.training.causes.fit import CHUNK, draw_into, load_cases, null_scale, train_posterior
 
 
 def main() -> int:

@@ -1,21 +1,376 @@
-"""Rigs as users have them, and the conditions that they record; drawn without knowing the cause."""
+"""Rigs and benches as users have them, and what they record; drawn without knowing the cause.
+
+A bench is what a rig is recorded on and with. Three in ten are quiet and of the thesis's size; the
+others depart from that in several ways at once, over ranges wider than those of any bench that is
+known. Rigs may have friction laws of their own, with parameters about those of the shipped
+materials. What a law's numbers are on a rig of another size follows from their units: twists go
+with torque over stiffness, times with the period of the bushing, speeds with the ratio of both. So
+the rig still does what it did. A shaft comes to its speed within a recording from rest, run up, or
+swinging in.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from models.condition import FIXED, KnownCondition
 from models.rig import Fit, LawSpec, Rig
 from models.rig_file import load_material_rig
-from models.sensors import Sensors
-from noise.base.arrays import Rng
-from noise.training.causes.cases.benches import MATERIALS, Bench, draw_bench, draw_law, scaled_law
+from models.sensors import Sensor, Sensors
+from noise.base import log_uniform, packaged_toml
+from noise.base.arrays import Array, Rng
+from noise.diagnosis.cases.draws import draw_numbers, drawn_effect
+from sim.acquisition import THESIS_CONVERTER, Acquisition
+from sim.effects import EFFECTS
+from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.plan import DIAGNOSIS, REGIME_RATE
 from sim.rig_effects import constant_version
-from sim.shaft import ConstantSpeed
+from sim.shaft import ConstantSpeed, LoggedSpeed
+
+if TYPE_CHECKING:
+    Course = Callable[[Array], Array]
+
+
+_STEP = 5e-4
+"""Of the times at which a course of speed is given [s]."""
+
+_LATEST = 0.55
+"""Share of a recording after which the shaft turns evenly, to a per mille of its speed."""
+
+
+def draw_start(
+    name: str, speed: float, seconds: float, settling: float, rng: Rng
+) -> tuple[LoggedSpeed, float]:
+    """Draw a course of speed.
+
+    Parameters
+    ----------
+    name : str
+        Of `STARTS`.
+    speed : float
+        In the end [rad/s].
+    seconds, settling : float
+        Of the recording, and how long a shaft that does not start in it turns before [s].
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    shaft : LoggedSpeed
+    before : float
+        How long it turns before the recording begins [s].
+
+    Examples
+    --------
+    >>> shaft, before = draw_start("rest", 2.0, 0.5, 0.35, np.random.default_rng(0))
+    >>> shaft.speed(np.array([0.0, 0.5])), before
+    (array([0., 2.]), 0.0)
+    """
+    course = STARTS[name](seconds, rng)
+    time = np.arange(0.0, seconds + 2.0 * _STEP, _STEP)
+    factor = course(time)
+    before = 0.0 if factor[0] == 0.0 else settling
+    return LoggedSpeed(time + before, speed * factor), before
+
+
+def _rest(seconds: float, rng: Rng) -> Course:
+    ramp = log_uniform(3e-3, 0.25 * seconds, rng)
+    power = float(rng.uniform(0.6, 1.6))
+    return lambda t: np.minimum(t / ramp, 1.0) ** power
+
+
+def _run_up(seconds: float, rng: Rng) -> Course:
+    low, ramp = float(rng.uniform(0.2, 0.85)), float(rng.uniform(0.1, _LATEST)) * seconds
+    smooth = bool(rng.random() < 0.5)
+
+    def course(t: Array) -> Array:
+        x = np.minimum(t / ramp, 1.0)
+        return low + (1.0 - low) * (x * x * (3.0 - 2.0 * x) if smooth else x)
+
+    return course
+
+
+def _swing(seconds: float, rng: Rng) -> Course:
+    depth, frequency = float(rng.uniform(0.08, 0.5)), log_uniform(3.0, 25.0, rng)
+    decay = float(rng.uniform(0.02, _LATEST / math.log(1e3))) * seconds
+    phase = float(rng.uniform(0.0, 2.0 * math.pi))
+    return lambda t: 1.0 + depth * np.exp(-t / decay) * np.sin(2 * np.pi * frequency * t + phase)
+
+
+STARTS: Mapping[str, Callable[[float, Rng], Course]] = {
+    "rest": _rest,
+    "run_up": _run_up,
+    "swing": _swing,
+}
+"""Each takes the length of the recording [s] and a generator, and gives the speed over that in the
+end as a function of time."""
+
+
+_TABLE = packaged_toml("noise.training.causes.cases", "laws.toml")
+
+MATERIALS: Mapping[str, float] = _TABLE["materials"]
+"""Shipped ones with laws of their own, and how often each is met."""
+
+OWN_LAWS = {name: float(row["share"]) for name, row in _TABLE["laws"].items()} | {**MATERIALS}
+"""Laws, or materials that have one, and how often each is met."""
+
+
+def draw_law(name: str, rng: Rng) -> LawSpec:
+    """Draw the parameters of a law for a rig of the thesis's size.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> sorted(draw_law("maxwell_slip", np.random.default_rng(0)).parameters)[-2:]
+    ['spread', 'stribeck_speed']
+    """
+    ranges = {key: spec for key, spec in _TABLE["laws"][name].items() if key != "share"}
+    return LawSpec(name, draw_numbers(ranges, rng))
+
+
+def scaled_law(law: LawSpec, *, angle: float, time: float, torque: float) -> LawSpec:
+    """Return a law as it is on a rig of another size.
+
+    Parameters
+    ----------
+    law : LawSpec
+    angle, time, torque : float
+        Factors on twists, on the period of the bushing, on torques [-].
+
+    Returns
+    -------
+    LawSpec
+        With all its parameters, those that leave their range held at its end.
+
+    Examples
+    --------
+    >>> stribeck = LawSpec("lugre", {"stribeck_speed": 1.0})
+    >>> scaled_law(stribeck, angle=3.0, time=0.5, torque=2.0).parameters["stribeck_speed"]
+    6.0
+    """
+    factors: Mapping[str, float] = {
+        "1/rad": 1.0 / angle, "rad": angle, "s": time, "rad/s": angle / time,
+        "s/rad": time / angle, "rad/Nm": angle / torque,
+    }  # fmt: skip
+    declared = friction_law(law.name).parameters
+    given = {name: float(law.parameters.get(name, p.default)) for name, p in declared.items()}
+    return LawSpec(
+        law.name,
+        {
+            name: min(max(value * factors.get(declared[name].unit, 1.0), declared[name].low),
+                      declared[name].high)
+            for name, value in given.items()
+        },
+    )  # fmt: skip
+
+
+NOISE_DRAWN = (0.7, 1.6)
+"""Between which the noise of a quiet bench's sensors lies, times that of `sim.acquisition`."""
+
+SIZES = ("elastomer_inertia", "clamp_inertia", "elastomer_stiffness", "torque", "support")
+"""What a bench of another size has more or less of, each by itself."""
+
+_QUIET = 0.3
+"""Share of the benches."""
+
+_OWN_LAW = 0.7
+"""Share of the others whose law is not the constant one."""
+
+_HOW_MANY = (0.12, 0.3, 0.28, 0.2, 0.1)
+"""Shares of benches with none, one, two ... departures besides the law."""
+
+_RATES = (25_600, 30_000, 32_000, 44_100, 48_000, 51_200)
+_ALL_RATES = (12_000, 16_000, 20_000, 22_050, *_RATES, 65_536, 96_000)
+_LENGTHS = (0.4, 0.5, 0.6, 0.8, 1.0)
+_SHORTEST, _LONGEST, _RARELY = 0.3, 5.0, 4.0
+"""Of records [s]; the larger the last, the rarer the long ones."""
+
+_LONGEST_OF_LAWS = {True: 1.6, False: 0.7}
+"""Where the law is not the constant one, whose motion costs ten times as much [s]: of benches with
+records of other lengths, and of the others."""
+
+_NOISE = (0.2, 6.0)
+_BITS = (12, 16)
+_LARGEST = 3.4
+"""Factor on a size."""
+
+_WRONG_SPEED, _WARMER = 0.04, 6.0
+"""Largest relative error of stated speeds, and of the temperature [K]."""
+
+_LISTED = (0.05, 0.6)
+"""Strengths of what a rig file lists."""
+
+
+@dataclass(frozen=True)
+class Bench:
+    """One bench.
+
+    Parameters
+    ----------
+    departures : tuple of str
+        In what it is not quiet: ``laws``, or of `DEPARTURES`.
+    rate, seconds : float
+        Of its recordings [Hz], [s].
+    noise : mapping of str to float
+        Standard deviation of white noise by channel [unit of the channel].
+    bits : int
+        Of a converter; 0 where samples have no steps.
+    ranges : float
+        Of that converter, over the thesis's [-].
+    stated : bool
+        Whether the rig file states noise and converter.
+    law : str
+        Of `noise.training.causes.cases.rigs.OWN_LAWS`; empty for the constant one.
+    sizes : mapping of str to float
+        Factors from the thesis's rig, by `SIZES` [-].
+    listed : tuple of LawSpec
+        Effects that the rig file lists besides those of its material.
+    repeats : bool
+        Whether two conditions are recorded twice.
+    wrong_speed : float
+        Relative error of stated speeds, at most [-].
+    warmer : float
+        Than stated [K].
+    responses : str
+        How the hammer test was: ``good``, ``poor`` or ``none``.
+    start : str
+        Of `noise.training.causes.cases.rigs.STARTS`; empty where recordings are settled.
+    """
+
+    departures: tuple[str, ...] = ()
+    rate: float = 30e3
+    seconds: float = 0.5
+    noise: Mapping[str, float] = field(default_factory=lambda: dict(Acquisition().noise))
+    bits: int = 0
+    ranges: float = 1.0
+    stated: bool = False
+    law: str = ""
+    sizes: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(SIZES, 1.0))
+    listed: tuple[LawSpec, ...] = ()
+    repeats: bool = True
+    wrong_speed: float = 0.0
+    warmer: float = 0.0
+    responses: str = "good"
+    start: str = ""
+
+    @property
+    def angle(self) -> float:
+        """Factor on twists [-]."""
+        return self.sizes["torque"] / self.sizes["elastomer_stiffness"]
+
+    @property
+    def time(self) -> float:
+        """Factor on how long a slip lasts [-]."""
+        return math.sqrt(self.sizes["elastomer_inertia"] / self.sizes["elastomer_stiffness"])
+
+    @property
+    def pace(self) -> float:
+        """Factor on the speeds at which such a rig does the same [-]."""
+        return self.angle / self.time
+
+    def sensors(self, largest: Mapping[str, float]) -> Sensors:
+        """Return what it records through.
+
+        Parameters
+        ----------
+        largest : mapping of str to float
+            Values to expect by channel; its converter's range is doubled until it holds them [unit
+            of the channel].
+        """
+
+        def sensor(kind: str, noise: float) -> Sensor:
+            if not self.bits:
+                return Sensor(noise)
+            usual = self.ranges * (THESIS_CONVERTER.of(kind).full_scale or 1.0)
+            doubled = math.ceil(math.log2(max(largest.get(kind, 0.0) / usual, 1.0)))
+            return Sensor(noise, full_scale=usual * 2.0**doubled, bits=self.bits)
+
+        return Sensors({kind: sensor(kind, noise) for kind, noise in self.noise.items()})
+
+
+def draw_bench(rng: Rng) -> Bench:
+    """Draw a bench.
+
+    Examples
+    --------
+    >>> bench = draw_bench(np.random.default_rng(0))
+    >>> bool(bench.law) == ("laws" in bench.departures)
+    True
+    """
+    usual = Acquisition().noise
+    bench = Bench(
+        rate=float(rng.choice(_RATES)),
+        seconds=float(rng.choice(_LENGTHS)),
+        noise={kind: level * float(rng.uniform(*NOISE_DRAWN)) for kind, level in usual.items()},
+        stated=bool(rng.random() < 0.5),
+    )
+    if rng.random() < _QUIET:
+        return bench
+    met: list[str] = []
+    if rng.random() < _OWN_LAW:
+        met.append("laws")
+    count = max(int(rng.choice(len(_HOW_MANY), p=_HOW_MANY)), 1 - len(met))
+    often = np.array([share for share, _ in DEPARTURES.values()])
+    met += rng.choice(list(DEPARTURES), count, replace=False, p=often / often.sum()).tolist()
+    if "laws" in met:
+        bench = replace(bench, law=_one(OWN_LAWS, rng))
+    for name, (_, draw) in DEPARTURES.items():
+        if name in met:
+            bench = replace(bench, **draw(rng))
+    longest = _LONGEST_OF_LAWS["records" in met] if bench.law else _LONGEST
+    return replace(bench, departures=tuple(met), seconds=min(bench.seconds, longest))
+
+
+def _sensors(rng: Rng) -> dict[str, Any]:
+    return {
+        "noise": {k: x * log_uniform(*_NOISE, rng) for k, x in Acquisition().noise.items()},
+        "bits": int(rng.integers(_BITS[0], _BITS[1] + 1)) if rng.random() < 0.55 else 0,
+        "ranges": log_uniform(0.5, 2.0, rng),
+    }
+
+
+def _records(rng: Rng) -> dict[str, Any]:
+    long = math.log(_LONGEST / _SHORTEST) * float(rng.random()) ** _RARELY
+    return {"rate": float(rng.choice(_ALL_RATES)), "seconds": round(_SHORTEST * math.exp(long), 2)}
+
+
+def _sizes(rng: Rng) -> dict[str, Any]:
+    return {"sizes": {name: log_uniform(1.0 / _LARGEST, _LARGEST, rng) for name in SIZES}}
+
+
+def _listed(rng: Rng) -> dict[str, Any]:
+    names = rng.choice(sorted(EFFECTS), int(rng.integers(1, 3)), replace=False).tolist()
+    drawn = (drawn_effect(name, log_uniform(*_LISTED, rng), rng) for name in names)
+    return {"listed": tuple(drawn)}
+
+
+def _wrong_conditions(rng: Rng) -> dict[str, Any]:
+    return {"wrong_speed": _WRONG_SPEED, "warmer": float(rng.uniform(-_WARMER, _WARMER))}
+
+
+DEPARTURES: Mapping[str, tuple[float, Callable[[Rng], dict[str, Any]]]] = {
+    "sensors": (2.2, _sensors),
+    "records": (1.2, _records),
+    "sizes": (1.2, _sizes),
+    "listed": (0.9, _listed),
+    "single": (1.1, lambda _rng: {"repeats": False}),
+    "conditions": (1.1, _wrong_conditions),
+    "responses": (1.1, lambda rng: {"responses": "poor" if rng.random() < 0.67 else "none"}),
+    "starts": (1.2, lambda rng: {"start": str(rng.choice(list(STARTS)))}),
+}
+"""Ways besides the friction law in which a bench is not quiet: how often each is met, and what it
+changes."""
+
+
+def _one(shares: Mapping[str, float], rng: Rng) -> str:
+    share = np.array(list(shares.values()))
+    return str(rng.choice(list(shares), p=share / share.sum()))
+
 
 _FITS = {0.178e-3: (430.0, 5.35, 4.0), 0.279e-3: (665.0, 10.7, 8.0), 0.381e-3: (1011.0, 27.0, 20.0)}
 """Stiffness [Nm/rad], critical and kinetic torque [Nm] at each interference [m]: Table 4.1."""

@@ -8,9 +8,8 @@ to the diagnosis: their parameters are drawn, nobody sets them. Each is a row of
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
-from types import ModuleType
 from typing import Any
 
 from noise.base import packaged_toml
@@ -27,26 +26,20 @@ Recipe = Callable[[float, Rng], Effect]
 """Of a strength from 0 to 1, and a generator."""
 
 _TABLE = packaged_toml(__name__, "variants.toml")
-_MODULES = (chain, contact, drive, sensors)
+_MAKERS = {**vars(chain), **vars(contact), **vars(drive), **vars(sensors)}
 
 
 def made(
-    make: str,
-    specs: Mapping[str, Any],
-    modules: Sequence[ModuleType],
-    strength: float,
-    rng: Rng,
-    **known: Any,
+    function: Callable[..., Any], specs: Mapping[str, Any], strength: float, rng: Rng, **known: Any
 ) -> dict[str, Any]:
     """Make what an effect acts by: of drawn numbers, and of what is known and asked for.
 
     Parameters
     ----------
-    make : str
-        A function of one of the modules.
+    function : callable
+        Function of the strength and the numbers.
     specs : mapping
         What is drawn, as the tables explain it.
-    modules : sequence of module
     strength : float
         [-]
     rng : numpy.random.Generator
@@ -58,7 +51,6 @@ def made(
     dict of str to object
         Hooks of an `sim.effects.effect.Effect`.
     """
-    (function,) = (getattr(module, make) for module in modules if hasattr(module, make))
     parameters = inspect.signature(function).parameters
     given = {name: value for name, value in known.items() if name in parameters}
     acting: dict[str, Any] = function(strength, **given, **draw_numbers(specs, rng))
@@ -69,7 +61,7 @@ def _drawn(name: str, row: Mapping[str, Any], strength: float, rng: Rng) -> Effe
     """Draw the numbers of a row, and make its effect of them."""
     given = {key: spec for key, spec in row.items() if key not in ("form", "make")}
     given |= {k: v for k, v in _TABLE["draws"].get(row["make"], {}).items() if k not in row}
-    acting = made(row["make"], given, _MODULES, strength, rng, form=row["form"])
+    acting = made(_MAKERS[row["make"]], given, strength, rng, form=row["form"])
     own = {"strength": Parameter(strength, "", 0.0, 1.0, "nothing at 0")}
     return Effect(name, EFFECTS[name].stage, (row["form"],), own, "strength", **acting)
 
