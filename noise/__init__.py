@@ -24,7 +24,7 @@ Diagnose: `diagnose`, `Diagnosis`.
 
 Identify: `identify`, `Identification`.
 
-Review: `review`, `Review`, `write_report`, `ReportEntry`.
+Review: `review`, `Review`.
 
 Errors: `BushingNoiseError`, `ParameterError`, `RecordingError`.
 
@@ -65,7 +65,6 @@ _EXPORTS = {
     "noise.screening.design": ("Design", "Swinging", "Use", "load_design"),
     "noise.screening.parts": ("Robustness", "robustness"),
     "noise.screening.screen": ("Screening", "screen"),
-    "noise.pages.report": ("ReportEntry", "write_report"),
     "noise.pages.review": ("Review", "review"),
     "sim.acquisition": ("Acquisition",),
     "sim.analysis.critical_damping": ("critical_damping",),

@@ -1,6 +1,7 @@
 """Demonstration of the whole chain: simulated creak, squawk, squeal and silence, and a report.
 
-The conditions are those of Figures 5.21, 5.22 and 5.24 of the thesis, and PDMS for comparison.
+The conditions are those of Figures 5.21, 5.22 and 5.24 of the thesis, and PDMS for comparison,
+which is silent at every speed (Section 5.1.2).
 Simulated hammer hits on the modelled clamp and beams, without the bushing and at a distance `ARM`
 from the axis, are examples for ``bushing-noise frf``.
 """
@@ -27,9 +28,9 @@ from noise.base.tables import write_table
 from noise.classifier import load_classifier
 from noise.labels.corrections import with_corrections
 from noise.labels.rows import label_rows
-from noise.labels.segments import Segment, file_label, label_recording
+from noise.labels.segments import label_recording
 from noise.labels.table import LabelTable
-from noise.pages.report import ReportEntry, write_report
+from noise.pages.review import review
 from noise.recordings import read_recording, write_recording
 from sim.run import simulate
 
@@ -45,8 +46,6 @@ class Case:
     material : str
     speed, interference, support_stiffness : float
         [rad/s], [m], [Nm/rad]
-    source : str
-        Place in the thesis.
     """
 
     name: str
@@ -54,14 +53,13 @@ class Case:
     speed: float
     interference: float
     support_stiffness: float
-    source: str
 
 
 CASES = (
-    Case("creak", "fluorocarbon", 1.0, 0.381e-3, 2214.0, "the condition of Figure 5.21"),
-    Case("squawk", "fluorocarbon", 5.0, 0.279e-3, 2214.0, "the condition of Figure 5.22"),
-    Case("squeal", "fluorocarbon", 10.0, 0.279e-3, 3745.0, "the condition of Figure 5.24"),
-    Case("none", "PDMS", 5.0, 0.381e-3, 2214.0, "silent at every speed (Section 5.1.2)"),
+    Case("creak", "fluorocarbon", 1.0, 0.381e-3, 2214.0),
+    Case("squawk", "fluorocarbon", 5.0, 0.279e-3, 2214.0),
+    Case("squeal", "fluorocarbon", 10.0, 0.279e-3, 3745.0),
+    Case("none", "PDMS", 5.0, 0.381e-3, 2214.0),
 )
 
 _SECONDS = 2.0
@@ -109,7 +107,7 @@ def run_demo(out: Path, *, seed: int = 0) -> list[dict[str, object]]:
 
     say("labelling, rendering, drawing")
     classifier = load_classifier()
-    feature_rows, rows, entries = [], [], []
+    feature_rows, rows = [], []
     for case in track(CASES, "label"):
         file = f"{case.name}.wav"
         # Read back, so that a simulated recording is treated like a measured one.
@@ -117,34 +115,24 @@ def run_demo(out: Path, *, seed: int = 0) -> list[dict[str, object]]:
         segments = label_recording(recording, classifier)
         feature_rows.append({"file": file, **recording_features(recording), "error": None})
         rows += label_rows(file, recording, segments)
-        entries.append(_entry(case, recording, segments, out / "audio" / file))
+        _write_sound(recording, out / "audio" / file)
     write_table(out / "features.csv", ("file", *recording_feature_names(), "error"), feature_rows)
     with locked(out / "labels.csv"):
         LabelTable(with_corrections(out / "labels.csv", rows)).write(out / "labels.csv")
-    write_report(
+    review(
+        [*(out / "recordings" / f"{case.name}.wav" for case in CASES), out / "labels.csv"],
         out / "report.html",
-        entries,
         title="Creak, squawk and squeal of a rubber bushing",
-        summary=(
-            "Three conditions at which the fluorocarbon bushing made a noise on the rig, and one "
-            "at which PDMS made none: simulated, radiated through the baseplate, labelled from "
-            "the recordings alone."
-        ),
+        classify=False,
     )
     return rows
 
 
-def _entry(case: Case, recording: Recording, segments: list[Segment], audio: Path) -> ReportEntry:
-    """Write the audible sound of a case and return its entry in the report."""
+def _write_sound(recording: Recording, path: Path) -> None:
+    """Write the audible sound of a recording."""
     sound = audible(recording, _RATE)
     full_scale = max(QUIETEST_FULL_SCALE, common_full_scale([sound]))
-    write_audio(audio, sound, _RATE, full_scale=full_scale, recording=recording)
-    return ReportEntry(
-        title=case.name.capitalize() if case.name != "none" else "Silence",
-        recording=recording,
-        segment=file_label(segments),
-        note=f"Simulated: {case.source} of De Togni's thesis.",
-    )
+    write_audio(path, sound, _RATE, full_scale=full_scale, recording=recording)
 
 
 ARM = 0.05

@@ -15,7 +15,7 @@ import numpy as np
 from models.rig import Rig
 from noise.app.worker_process import report_share
 from noise.base.labels import LABEL_LOOKS, MAP_LABELS, NAMED, PERSISTS
-from noise.pages.maps import MAP_SIZE, ConditionMap, areas_of, axis_of, cells_of
+from noise.pages.maps import ConditionMap, areas_of, axis_of
 from noise.pages.page import map_html
 from noise.screening.advice import advise
 from noise.screening.batches import batch_evaluator
@@ -93,12 +93,11 @@ def chart_of(request: ChartRequest) -> dict[str, object]:
             return evaluate(rig, points)
 
         design_map = map_design(rig, grid, counted, design="design", most=simulations)
-    speed, fit = np.meshgrid(grid.speed, 1e3 * np.array(grid.interference))
-    cells, labels = cells_of(speed.ravel(), fit.ravel().round(6)), design_map.label[0, 0]
-    across = axis_of(cells.speed_edges, edges=True)
-    up = axis_of(cells.interference_edges, edges=True)
-    areas = areas_of(cells, labels.ravel().tolist(), across, up, (MAP_SIZE[0], _HEIGHT))
-    noises = ConditionMap("Noise", across, up, areas, (), height=_HEIGHT, compared=True)
+    labels = design_map.label[0, 0]
+    across = axis_of(grid.speed)
+    up = axis_of([round(1e3 * fit, 6) for fit in grid.interference], named_over=_HEIGHT)
+    areas = areas_of(labels, across, up, _HEIGHT)
+    noises = ConditionMap("Noise", across, up, areas, height=_HEIGHT)
     shown = [label for label in MAP_LABELS if label != "none" and label in labels]
     legend = [f"{LABEL_LOOKS[label].mark} {_MEANING.get(label, label)}" for label in shown]
     return {

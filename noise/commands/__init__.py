@@ -45,7 +45,7 @@ COMMANDS = {
     "frf": "hammer hits -> frequency response, coherence and modes",
     "diagnose": "recordings against the simulator -> which effect is missing, how much it explains",
     "identify": "recordings of a rig -> its rig file, with intervals",
-    "review": "recordings, labels, screens, diagnoses -> one page to look at and to listen to",
+    "review": "recordings and labels -> one page to look at and to listen to",
     "train": "build the classifier again from simulation",
     "open": "a local app: listen, correct labels, hear a design while it is changed, compare blind",
     "new-rig": "a commented rig file to start from",

@@ -1,4 +1,4 @@
-"""``bushing-noise review``: one page of recordings, labels, screens and diagnoses."""
+"""``bushing-noise review``: one page of recordings and labels."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from noise.commands.options import (
     full_scale_of,
     number,
     refuse,
-    whole_number,
 )
 
 OPTIONS = (
@@ -21,9 +20,8 @@ OPTIONS = (
     Option("--out DIR|PAGE.html", Path, required=True),
     Option("--title TEXT", str, "Review"),
     Option("--seconds S", number(least=1.0, most=600.0), 10.0),
-    Option("--megabytes MB", number(least=1.0, most=2000.0), 25.0),
+    Option("--megabytes MB", number(least=1.0, most=2000.0), 40.0),
     Option("--pascal-per-full-scale PA", number(above=0.0)),
-    Option("--simulated N", whole_number(0, most=1000), 48),
     Option("--no-labelling"),
     *CALIBRATION,
 )
@@ -43,15 +41,13 @@ def run(options: Namespace) -> int:
         pascal_per_full_scale=options.pascal_per_full_scale,
         seconds=options.seconds,
         megabytes=options.megabytes,
-        simulated=options.simulated,
         classify=not options.no_labelling,
-        seed=options.seed,
     )
     for refusal in page.refused:
         refuse(f"{refusal.name}: {refusal.reason}")
-    if page.shortened is not None:
+    if page.longest < options.seconds:
         note(
-            f"sounds are cut to {page.shortened:.3g} s to keep to {options.megabytes:g} MB; "
+            f"sounds are cut to {page.longest:.3g} s to keep to {options.megabytes:g} MB; "
             "--megabytes allows more"
         )
     size = page.path.stat().st_size / 1e6

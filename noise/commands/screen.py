@@ -19,7 +19,6 @@ from noise.commands.options import (
     Option,
     changed,
     check_folder,
-    number,
     whole_number,
 )
 
@@ -40,7 +39,6 @@ OPTIONS = (
     Option("designs DESIGN", str, count="+"),
     Option("--out FOLDER", Path),
     Option("--sounds N", whole_number(0), 24),
-    Option("--megabytes MB", number(above=0.0), 10.0),
     CHANGE,
     Group(
         "conditions",
@@ -187,7 +185,7 @@ def _write(options: Namespace, screening: Screening, progress: Steps) -> list[Pa
         written.append(path)
     progress("making the sounds of the report")
     write_screening(
-        folder / "report.html", screening, sounds=options.sounds, megabytes=options.megabytes,
-        seed=options.seed or 0, workers=options.workers,
+        folder / "report.html", screening, sounds=options.sounds, seed=options.seed or 0,
+        workers=options.workers,
     )  # fmt: skip
     return [*written, folder / "report.html"]

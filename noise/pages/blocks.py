@@ -1,13 +1,13 @@
-"""Building blocks of pages: text, tables, figures, cards of sounds, condition maps.
+"""Building blocks of pages: text, tables, figures, cards of sounds.
 
-A report, a review, a screen, a diagnosis and an identification are sections of the same blocks.
+A review, a screen, a diagnosis and an identification are sections of the same blocks.
 ``templates/blocks.html.j2`` has a macro for each, by the name of its class; a block of nothing is
 left out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,16 +15,14 @@ from noise.base.labels import LABELS
 
 if TYPE_CHECKING:
     from noise.pages.figures import Panel  # which loads matplotlib
-    from noise.pages.maps import ConditionMap
 
 
 @dataclass(frozen=True)
 class Text:
-    """Paragraph with a CSS class `style` and bold words before it."""
+    """Paragraph with a CSS class `style`."""
 
     words: str
     style: str = ""
-    bold: str = ""
 
     def __bool__(self) -> bool:
         return bool(self.words)
@@ -68,8 +66,6 @@ class Cell(NamedTuple):
         Above it.
     labels : sequence of (str, str)
         Labels, each with a text.
-    link : str
-        Id of the element that the cell links to.
     items : sequence of str
     """
 
@@ -77,7 +73,6 @@ class Cell(NamedTuple):
     small: str = ""
     bars: Sequence[Bar] = ()
     labels: Sequence[tuple[str, str]] = ()
-    link: str = ""
     items: Sequence[str] = ()
 
 
@@ -91,15 +86,12 @@ class Table:
     rows : sequence of sequences of (Cell or str)
     head : int
         Index of the column that names each row.
-    name : str
-        Accessible name.
     style : str
     """
 
     columns: Sequence[str]
     rows: Sequence[Sequence[Cell | str]]
     head: int = 0
-    name: str = ""
     style: str = ""
 
     @property
@@ -116,7 +108,6 @@ class Panels:
     """Figures side by side."""
 
     pictures: Sequence[Panel]
-    caption: str = ""
 
     def __bool__(self) -> bool:
         return bool(self.pictures)
@@ -124,25 +115,14 @@ class Panels:
 
 @dataclass(frozen=True)
 class Cards:
-    """Cards of sounds by id, with filters by label and further blocks per card."""
+    """Cards of sounds by id, with filters by label."""
 
     keys: Collection[str]
     style: str = ""
     counts: Sequence[tuple[str, int]] = ()
-    more: Mapping[str, Sequence[Block]] | None = None
 
     def __bool__(self) -> bool:
         return bool(self.keys)
-
-
-@dataclass(frozen=True)
-class Maps:
-    """Condition maps side by side."""
-
-    maps: Sequence[ConditionMap]
-
-    def __bool__(self) -> bool:
-        return bool(self.maps)
 
 
 @dataclass(frozen=True)
@@ -189,5 +169,5 @@ class Section:
         return any(self.blocks)
 
 
-Block = Text | Items | Pre | Table | Panels | Cards | Maps | Group | Sounds | Other | Section
+Block = Text | Items | Pre | Table | Panels | Cards | Group | Sounds | Other | Section
 """Type of all blocks."""

@@ -1,12 +1,10 @@
-"""Sounds of a page: entries, common gain, FLAC clips within a size budget.
+"""Sounds of a page: entries, common gain, FLAC clips.
 
 A page is for the ear, so a long recording is represented by the stretch that shows why it has its
 name, not by its beginning. Sixteen bits hold a set whose loudest sound is 60 dB above its quietest
 with 36 dB to spare, and FLAC gives them back bit by bit in about half the space, in every browser
 of today. All calibrated sounds have one full scale, so that what is louder there is louder here;
-those that nobody calibrated have another one, common to them. Where the budget is too small, every
-sound is shortened to the same length, and the page says so. Equal loudness is one factor a sound,
-switched on by the listener who compares characters.
+those that nobody calibrated have another one, common to them.
 """
 
 from __future__ import annotations
@@ -14,7 +12,7 @@ from __future__ import annotations
 import io
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -24,11 +22,7 @@ from numpy.typing import NDArray
 from models.condition import Condition
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
-from noise.audio.gain import (
-    full_scale_without_clipping,
-    true_peak,
-)
-from noise.audio.sound import FADE, fade_ends
+from noise.audio.gain import full_scale_without_clipping, true_peak
 from noise.base.labels import LABELS
 from noise.base.progress import counted
 from noise.labels.summary import labels_in, naming_row
@@ -112,23 +106,6 @@ class Entry:
         return labels_in(self.rows)
 
 
-def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
-    """Return the start of an excerpt that shows the naming segment of a recording [s].
-
-    Examples
-    --------
-    >>> rows = [{"label": "squeal", "start_s": 40.0, "end_s": 42.0}]
-    >>> stretch_start(rows, 60.0, 10.0), stretch_start([], 60.0, 10.0)
-    (36.0, 0.0)
-    """
-    row = naming_row(rows)
-    if row is None or length >= duration:
-        return 0.0
-    start, end = number_or(row.get("start_s"), 0.0), number_or(row.get("end_s"), duration)
-    wanted = start if end - start >= length else 0.5 * (start + end - length)
-    return float(min(max(wanted, 0.0), duration - length))
-
-
 def label_counts(entries: Iterable[Entry]) -> list[tuple[str, int]]:
     """Count the entries with each label; those without labels come last, as "".
 
@@ -164,17 +141,10 @@ def number_or(value: object, missing: float) -> float:
     return float(value) if isinstance(value, int | float) else missing
 
 
-SHORTEST = 1.0
-"""Minimum duration after shortening [s]."""
-
 BYTES_A_SECOND = 120_000.0
 """Maximum size of a second of loud noise [byte]."""
 
-_ROUNDED_UP, _STEP = 1.05, 100_000.0
-"""Margin factor and rounding step of a stated size [byte]."""
-
 _BITS = 16
-_BASE64 = 4.0 / 3.0
 
 
 @dataclass(frozen=True)
@@ -270,139 +240,57 @@ def common_gain(entries: Iterable[Entry], pascal: float | None = None) -> Gain:
     ParameterError
         A sound would clip at the full scale given.
     """
-    peaks: dict[bool, list[tuple[float, str]]] = {True: [], False: []}  # titles may be alike
-    for entry, largest in _that_may_be_loudest(list(entries)):
-        peak = true_peak(largest.astype(np.float64), RATE)
-        peaks[entry.calibrated].append((peak, entry.title))
+    peaks: dict[bool, tuple[float, str]] = {}
+    entries = list(entries)
+    for calibrated in (True, False):
+        sounds = [
+            (one.sound, float(np.abs(one.sound).max(initial=0.0)), one.title)
+            for one in entries
+            if one.sound is not None and one.calibrated == calibrated
+        ]
+        # The true peak is less than 12 dB above the largest sample.
+        most = max((largest for _, largest, _ in sounds), default=0.0)
+        loud = [
+            (true_peak(sound.astype(np.float64), RATE), title)
+            for sound, largest, title in sounds
+            if largest >= 0.25 * most
+        ]
+        if loud:
+            peaks[calibrated] = max(loud)
     least = {
-        calibrated: full_scale_without_clipping(max(of)[0]) or 1.0 if of else None
-        for calibrated, of in peaks.items()
+        calibrated: full_scale_without_clipping(peak) or 1.0
+        for calibrated, (peak, _) in peaks.items()
     }
     if pascal is None:
-        return Gain(least[True], least[False])
-    if (needed := least[True]) is not None and pascal < needed:
+        return Gain(least.get(True), least.get(False))
+    if (needed := least.get(True)) is not None and pascal < needed:
         raise ParameterError(
-            f"{max(peaks[True])[1]}: would clip at {pascal:g} Pa per full scale; "
+            f"{peaks[True][1]}: would clip at {pascal:g} Pa per full scale; "
             f"{needed:g} Pa is the least that holds all sounds"
         )
-    return Gain(pascal if peaks[True] else None, least[False], stated=True)
+    return Gain(None if needed is None else pascal, least.get(False), stated=True)
 
 
-def make_clips(
-    entries: Mapping[str, Entry],
-    gain: Gain,
-    *,
-    budget: float = math.inf,
-    beside: float = 0.0,
-    dither: np.random.Generator | None = None,
-) -> tuple[dict[str, Clip], float | None]:
-    """Encode sounds, shortened if they exceed a size budget.
-
-    Parameters
-    ----------
-    entries : mapping of str to Entry
-        By id.
-    gain : Gain
-    budget : float
-        Maximum size of the page [byte].
-    beside : float
-        Size of the rest of the page [byte].
-    dither : numpy.random.Generator, optional
-        By default there is no dither, and silence stays digital zero.
-
-    Returns
-    -------
-    clips : dict of str to Clip
-        Of the entries that have a sound.
-    shortened : float or None
-        Duration of shortened sounds [s]; None if none is shortened.
-
-    Raises
-    ------
-    ParameterError
-        Not even `SHORTEST` seconds of each would fit.
+def make_clips(entries: Mapping[str, Entry], gain: Gain) -> dict[str, Clip]:
+    """Encode the sounds of entries by id, without dither, so that silence stays digital zero.
 
     Examples
     --------
     >>> from noise.pages.clips import Entry
     >>> silence = Entry("silence", duration=1.0, sound=np.zeros(RATE, np.float32))
-    >>> clips, shortened = make_clips({"s1": silence}, Gain(1.0, None))
-    >>> clips["s1"].end, shortened
-    (1.0, None)
+    >>> make_clips({"s1": silence}, Gain(1.0, None))["s1"].end
+    1.0
     """
-    seeds = [None if dither is None else int(dither.integers(1 << 62)) for _ in entries]
-
-    def cut_to(longest: float) -> dict[str, Clip]:
-        return {
-            key: _clip(entry, entry.sound, longest, gain, seed)
-            for (key, entry), seed in zip(entries.items(), seeds, strict=True)
-            if entry.sound is not None
-        }
-
-    room = budget - beside
-    clips = cut_to(math.inf)
-    if not clips or _weight(clips) <= room:
-        return clips, None
-    length = _length_that_fits(list(clips.values()), room) if room > 0.0 else 0.0
-    if length < SHORTEST:
-        least = math.ceil(_ROUNDED_UP * (beside + _weight(cut_to(SHORTEST))) / _STEP) * _STEP
-        raise ParameterError(
-            f"{len(clips)} sounds of {SHORTEST:g} s each do not fit into {budget / 1e6:.3g} MB; "
-            f"they need about {least / 1e6:.3g} MB; allow more, or name fewer"
-        )
-    while True:
-        clips = cut_to(length)
-        if _weight(clips) <= room or length <= SHORTEST:
-            return clips, length
-        length = max(SHORTEST, 0.9 * length)  # the loud parts were kept
-
-
-def _that_may_be_loudest(
-    entries: Sequence[Entry],
-) -> Iterator[tuple[Entry, NDArray[np.float32]]]:
-    """Yield sounds within 12 dB of the largest sample; true peaks of others are lower."""
-    for calibrated in (True, False):
-        audible = [
-            (entry, entry.sound, float(np.abs(entry.sound).max(initial=0.0)))
-            for entry in entries
-            if entry.sound is not None and entry.calibrated == calibrated
-        ]
-        most = max((largest for _, _, largest in audible), default=0.0)
-        yield from ((entry, sound) for entry, sound, largest in audible if largest >= 0.25 * most)
-
-
-def _clip(
-    entry: Entry, samples: NDArray[np.float32], longest: float, gain: Gain, seed: int | None
-) -> Clip:
-    whole, offset = samples.size / RATE, entry.offset
-    if whole > longest:
-        first = stretch_start(entry.rows, entry.duration, longest) - offset
-        first = min(max(first, 0.0), whole - longest)
-        begin = round(first * RATE)
-        samples = samples[begin : begin + round(longest * RATE)].copy()
-        offset += begin / RATE
-        fade_ends(samples, round(FADE * RATE))
-    full_scale = gain.of(entry)
+    clips = {}
     largest = largest_sample(_BITS)  # a sample beyond would wrap round
-    fractions = np.clip((samples / full_scale).astype(np.float64), -largest, largest)
-    dither = None if seed is None else np.random.default_rng(seed)
-    steps = np.frombuffer(integers(fractions, _BITS, dither), "<i2")
-    flac = io.BytesIO()
-    soundfile.write(flac, steps, RATE, format="FLAC", subtype="PCM_16")
-    return Clip(flac.getvalue(), samples, offset, offset + samples.size / RATE, full_scale)
-
-
-def _weight(clips: Mapping[str, Clip]) -> float:
-    return sum(_BASE64 * len(clip.flac) for clip in clips.values())
-
-
-def _length_that_fits(clips: Sequence[Clip], budget: float) -> float:
-    """Return the common maximum length at which all clips fit the budget."""
-    rates = [_BASE64 * len(clip.flac) / (clip.end - clip.start) for clip in clips]
-    lengths = [clip.end - clip.start for clip in clips]
-    low, high = 0.0, max(lengths)
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        total = sum(r * min(d, middle) for r, d in zip(rates, lengths, strict=True))
-        low, high = (middle, high) if total <= budget else (low, middle)
-    return low
+    for key, entry in entries.items():
+        if (samples := entry.sound) is None:
+            continue
+        full_scale = gain.of(entry)
+        fractions = np.clip((samples / full_scale).astype(np.float64), -largest, largest)
+        flac = io.BytesIO()
+        steps = np.frombuffer(integers(fractions, _BITS, None), "<i2")
+        soundfile.write(flac, steps, RATE, format="FLAC", subtype="PCM_16")
+        end = entry.offset + samples.size / RATE
+        clips[key] = Clip(flac.getvalue(), samples, entry.offset, end, full_scale)
+    return clips

@@ -295,7 +295,7 @@ def draw_comparisons(
     if not groups:
         return {}, {}, []
     gain = common_gain(entries.values())
-    clips, _ = make_clips(entries, gain)
+    clips = make_clips(entries, gain)
     curves = b.Other("curves", list(CURVES.values()))
     return (
         entries,

@@ -22,9 +22,6 @@ from noise.pages.cards import draw_entries, frequency_ticks, scale_picture
 from noise.pages.clips import Clip, Entry
 from noise.pages.maps import LEVELS, MAP_SIZE, ConditionMap
 
-PAGE_BYTES, CARD_BYTES = 75_000.0, 45_000.0
-"""Size of an empty page, and maximum size per sound without its samples [byte]."""
-
 
 def page_html(
     kind: str,
@@ -123,8 +120,8 @@ def map_html(shown: ConditionMap) -> str:
     Examples
     --------
     >>> from noise.pages.maps import axis_of
-    >>> axis = axis_of([0.0, 10.0], edges=True)
-    >>> map_html(ConditionMap("Noise", axis, axis, (), ())).count("<svg")
+    >>> axis = axis_of([0.0, 10.0])
+    >>> map_html(ConditionMap("Noise", axis, axis, ())).count("<svg")
     2
     """
     blocks = _environment().get_template("blocks.html.j2").module
@@ -142,20 +139,6 @@ def as_base64(content: bytes) -> str:
     return base64.b64encode(content).decode()
 
 
-def shortened_text(shortened: float | None) -> b.Text:
-    """Return the note that sounds were shortened, or an empty text.
-
-    Examples
-    --------
-    >>> bool(shortened_text(None)), shortened_text(4.0).words[-29:]
-    (False, '4 s; each says which stretch.')
-    """
-    if shortened is None:
-        return b.Text("")
-    words = f"So that the page keeps to its size, sounds are no longer than {shortened:.3g} s"
-    return b.Text(f"{words}; each says which stretch.", "soft")
-
-
 @lru_cache(maxsize=1)
 def _environment() -> Environment:
     environment = Environment(
@@ -169,6 +152,7 @@ def _environment() -> Environment:
         "label_display": LABEL_LOOKS,
         "frequencies": frequency_ticks(),
         "map_marks": {name: look.mark for name, look in (LABEL_LOOKS | LEVELS).items()},
+        "levels": LEVELS,
         "map_size": tuple(round(length) for length in MAP_SIZE),
         "scale": scale_picture,
     }

@@ -1,264 +1,97 @@
-"""Review page: recordings, labels, screens and diagnoses with sounds.
+"""Review page: recordings and their labels, with sounds.
 
-The page shows maps first, then diagnoses and recordings. It lists all refused inputs, because its
-readers do not see the terminal.
+A file is taken at its word and refused where it is not what its ending says. A folder is searched:
+what in it is neither a recording nor a label table is passed over. Refusals are collected, for a
+review that lacks one bad file is better than none; the page lists them, because its readers do not
+see the terminal. A recording is cut as it is read: a campaign may be larger than memory.
 """
 
 from __future__ import annotations
 
-import math
 import os
+from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from models.errors import BushingNoiseError, ParameterError, RecordingError
-from models.foreign_file import LARGEST_JSON, parse_json, reading, refusing
-from models.rig import Rig
+from models.blocks import RecordingBlocks
+from models.errors import BushingNoiseError, ParameterError
+from models.recording import Recording
 from models.show import short_repr
-from noise.base.labels import LABELS, MAP_LABELS, PERSISTS
-from noise.base.progress import counted
-from noise.base.tables import read_table
-from noise.labels.table import cell_number, cell_truth, check_name
+from noise.audio.sound import LOWEST_AUDIBLE_RATE, audible
+from noise.audio.spectrogram import recorded_levels
+from noise.base.progress import readable, track
+from noise.base.tables import TABLE_ENDINGS, table_columns
+from noise.classifier import Classifier, load_classifier
+from noise.labels.rows import label_rows
+from noise.labels.segments import label_recording
+from noise.labels.summary import naming_row
+from noise.labels.table import read_label_table
 from noise.pages import blocks as b
-from noise.pages.clips import Entry, common_gain, label_counts, labels_sentence, make_clips
-from noise.pages.comparison import Compared, compare_designs
-from noise.pages.maps import recorded_maps
-from noise.pages.page import (
-    CARD_BYTES,
-    PAGE_BYTES,
-    page_html,
-    shortened_text,
-    write_page,
+from noise.pages.clips import (
+    BYTES_A_SECOND,
+    RATE,
+    Entry,
+    Row,
+    common_gain,
+    label_counts,
+    labels_sentence,
+    make_clips,
+    number_or,
 )
-from noise.pages.review_inputs import Inputs, Refusal, recorded_entries, sort_inputs
-from noise.pages.screen_sounds import ScreenMap, ScreenPoint
-from noise.recordings.folders import is_file
+from noise.pages.page import page_html, write_page
+from noise.recordings import find_recordings
+from noise.recordings.files import open_blocks
+from noise.recordings.folders import files_below
+from noise.recordings.formats import formats
 from noise.recordings.interpretation import PascalPerFullScale
-from noise.screening.design import load_design
-from noise.screening.environments import DRY, environment, in_environment
+
+PAGE = "report.html"
+"""Name of the page in a folder."""
+
+_PAGE_BYTES, _CARD_BYTES = 75_000.0, 45_000.0
+"""Size of an empty page, and maximum size per sound without its samples [byte]."""
+
+_SHORTEST = 1.0
+"""Minimum duration of an excerpt [s]."""
 
 
-def rig_of(screened: ScreenMap, folder: Path, designs: Sequence[Path]) -> Rig:
-    """Return the rig of a screened design in its environment.
+@dataclass(frozen=True)
+class Refusal:
+    """Refused input and the reason."""
 
-    Parameters
-    ----------
-    screened : ScreenMap
-    folder : Path
-        Folder of the screen.
-    designs : sequence of Path
-        Design files of the call.
+    name: str
+    reason: str
 
-    Raises
-    ------
-    ParameterError
-        The design file is missing or invalid.
-    """
-    name = screened.design
-    files = [path for path in designs if path.stem == name or _named(path) == name]
-    beside = (folder / "designs" / f"{name}.toml", folder / f"{name}.toml")
-    files += [path for path in beside if is_file(path)]
-    surroundings = environment(screened.environment or DRY)
-    if files:
-        return in_environment(load_design(files[0]).rig, surroundings)
-    try:
-        return in_environment(load_design(name).rig, surroundings)
-    except ParameterError:
-        raise ParameterError(
-            f"the file of design {name} is not at hand; name {name}.toml beside the screen"
-        ) from None
+    @classmethod
+    def of(cls, path: Path, error: BushingNoiseError | str) -> Refusal:
+        """Return the refusal of a file; its path is removed from the error message.
+
+        Examples
+        --------
+        >>> Refusal.of(Path("run07.wav"), "run07.wav: is empty").reason
+        'is empty'
+        """
+        return cls(readable(str(path)), readable(str(error).removeprefix(f"{path}: ")))
 
 
-def _named(path: Path) -> str | None:
-    try:
-        return load_design(path).name
-    except BushingNoiseError:
-        return None
+@dataclass(frozen=True)
+class _LabelTable:
+    path: Path
+    rows: tuple[Row, ...]
 
+    def of(self, recording: Path) -> tuple[Row, ...]:
+        """Return the rows of a recording.
 
-_NEEDED = ("design", "speed_rad_s", "interference_mm", "label")
-_SUPPORT = "support_stiffness_Nm_rad"
-
-
-def read_screen(path: Path) -> list[ScreenMap]:
-    r"""Read the map of a screen.
-
-    Parameters
-    ----------
-    path : Path
-        CSV, JSON Lines or Parquet with at least the columns design, speed_rad_s, interference_mm
-        and label; a support stiffness that is empty or ``fixed`` is the bolted clamp.
-
-    Returns
-    -------
-    list of ScreenMap
-        In the order of the table.
-
-    Raises
-    ------
-    RecordingError
-        The file cannot be read, or a value is invalid.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> text = "design,speed_rad_s,interference_mm,label\nold,5,0.279,squawk\nnew,5,0.279,none\n"
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = Path(folder) / "map.csv"
-    ...     _ = path.write_text(text)
-    ...     [(one.title, one.points[0].words) for one in read_screen(path)]
-    [('old', '5 rad/s, 0.279 mm: squawk'), ('new', '5 rad/s, 0.279 mm: none')]
-    """
-    _, rows = read_table(path)
-    with refusing(str(path), "map of a screen", RecordingError):
-        return _maps(path, rows)
-
-
-def _maps(path: Path, rows: Sequence[dict[str, object]]) -> list[ScreenMap]:
-    if not rows:
-        raise RecordingError(f"{path}: has no rows, so is no map of a screen")
-    maps: dict[tuple[str, str, str, float | None, float | None], list[ScreenPoint]] = {}
-    for n, row in enumerate(rows, 1):
-        where = f"{path}: row {n}"
-        named = row if isinstance(row, dict) else {}  # a line of JSON may be anything
-        missing = [column for column in _NEEDED if named.get(column) in (None, "")]
-        if missing:
-            raise RecordingError(f"{where} has no {missing[0]}")
-        label = str(row["label"])
-        if label not in LABELS:
-            raise RecordingError(f"{where} has label {label!r}, expected {', '.join(LABELS)}")
-        if row.get("persists") not in (None, "") and cell_truth(row, "persists", where):
-            label = PERSISTS
-        check_name(row["design"], "design", where)
-        number = partial(cell_number, row, where=where)
-        key = (
-            str(row["design"]),
-            str(row.get("environment") or ""),
-            str(row.get("motion") or ""),
-            number("temperature_C"),
-            _support(row, where),
-        )
-        speed, fit = number("speed_rad_s"), number("interference_mm")
-        if speed is None or fit is None:
-            raise RecordingError(f"{where}: speed and interference are numbers")
-        maps.setdefault(key, []).append(
-            ScreenPoint(
-                speed, fit, label,
-                str(row.get("regime") or ""),
-                number("level_dba"),
-                str(row.get("how") or ""),
-                number("frequency_hz") or None,
-                str(row.get("note") or ""),
-            )
-        )  # fmt: skip
-    return [ScreenMap(*key, tuple(points)) for key, points in maps.items()]
-
-
-def _support(row: dict[str, object], where: str) -> float | None:
-    if _SUPPORT not in row:
-        return None
-    if row[_SUPPORT] in (None, "", "fixed", math.inf):
-        return math.inf
-    return cell_number(row, _SUPPORT, where)
-
-
-def read_diagnosis(path: Path) -> b.Section:
-    """Return a diagnosis as a section of a page: answer, next measurement, notes.
-
-    Parameters
-    ----------
-    path : Path
-        File ``diagnosis.json``.
-
-    Raises
-    ------
-    RecordingError
-        The file cannot be read or is not a diagnosis.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> from noise.diagnosis.outcome import Diagnosis
-    >>> from noise.pages.diagnosis import write_diagnosis
-    >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
-    >>> with tempfile.TemporaryDirectory() as name:
-    ...     write_diagnosis(Path(name), nothing)
-    ...     read_diagnosis(Path(name) / "diagnosis.json").heading.partition(": ")[2]
-    'No gap'
-    """
-    with reading(path, "diagnosis", error=RecordingError, largest=LARGEST_JSON):
-        data = parse_json(path.read_text(encoding="utf-8"))
-        if not isinstance(data, dict) or "verdict" not in data or "probabilities" not in data:
-            raise RecordingError(f"{path}: has no verdict and probabilities, so is no diagnosis")
-        if isinstance(data["verdict"], list) and "sentences" not in data:
-            raise RecordingError(f"{path}: is of an earlier version of the program; diagnose again")
-        head, following = str(data["headline"]), str(data["next_measurement"])
-        sentences, notes = ([str(one) for one in data[key]] for key in ("sentences", "notes"))
-        return b.Section(
-            f"Diagnosis {path.parent.resolve().name}: {head}",
-            [
-                *(b.Text(sentence) for sentence in sentences),
-                b.Text(following, "next", "To measure next:"),
-                b.Items(notes, "soft"),
-                b.Text("Sounds and figures: report.html beside diagnosis.json.", "soft small"),
-            ],
-            "diagnosis",
-        )
-
-
-def screened_maps(
-    inputs: Inputs, refused: list[Refusal], *, number: int, seed: int
-) -> tuple[Compared | None, dict[str, Entry]]:
-    """Lay out the maps of screens, and simulate their sounds.
-
-    Parameters
-    ----------
-    inputs : Inputs
-    refused : list of Refusal
-        Extended by unreadable inputs.
-    number : int
-        Of sounds, of all maps together.
-    seed : int
-
-    Returns
-    -------
-    compared : Compared or None
-        None where there is no screen.
-    heard : dict of str to Entry
-        Sounds by id.
-    """
-    maps: list[ScreenMap] = []
-    rigs: list[Rig | str] = []
-    for path in inputs.screens:
-        try:
-            of_file = read_screen(path)
-        except BushingNoiseError as error:
-            refused.append(Refusal.of(path, error))
-            continue
-        rigs += [_rig(one, path.parent, inputs.designs) for one in of_file]
-        if {one.title for one in maps} & {one.title for one in of_file}:
-            of_file = [replace(one, design=f"{one.design}, {path.parent.name}") for one in of_file]
-        maps += of_file
-    if not maps:
-        return None, {}
-    return compare_designs(maps, rigs, number=number, seed=seed)
-
-
-def _rig(screened: ScreenMap, folder: Path, designs: Sequence[Path]) -> Rig | str:
-    """Return the rig of a map, or the reason why it has no sound."""
-    try:
-        return rig_of(screened, folder, designs)
-    except BushingNoiseError as error:
-        return str(error)
-
-
-_PAGE = "report.html"
+        A row's file is relative to some folder that the table does not name: so it is one below
+        the table's own folder, or else any whose path ends like it.
+        """
+        resolved = recording.resolve()
+        folder, ending = self.path.parent, readable(resolved.as_posix())  # as tables have it
+        beside = tuple(r for r in self.rows if (folder / str(r["file"])).resolve() == resolved)
+        return beside or tuple(r for r in self.rows if ending.endswith(f"/{r['file']}"))
 
 
 @short_repr
@@ -271,44 +104,42 @@ class Review:
     path : Path
     sounds : int
         Number of playable sounds.
-    shortened : float or None
-        Duration of shortened sounds [s]; None if none was shortened.
+    longest : float
+        Longest excerpt that the size of the page allows [s].
     refused : tuple of Refusal
         Refused inputs.
 
     Examples
     --------
     >>> from pathlib import Path
-    >>> Review(Path("review/report.html"), 12, None, ()).path.name
+    >>> Review(Path("review/report.html"), 12, 10.0, ()).path.name
     'report.html'
     """
 
     path: Path
     sounds: int
-    shortened: float | None
+    longest: float
     refused: tuple[Refusal, ...]
 
 
 def review(
     paths: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
-    out: str | os.PathLike[str] = _PAGE,
+    out: str | os.PathLike[str] = PAGE,
     *,
     title: str = "Review",
     full_scale: PascalPerFullScale | None = None,
     pascal_per_full_scale: float | None = None,
     seconds: float = 10.0,
-    megabytes: float = 25.0,
-    simulated: int = 48,
+    megabytes: float = 40.0,
     classify: bool = True,
-    seed: int = 0,
 ) -> Review:
-    """Write a review page of recordings, labels, screens and diagnoses with sounds.
+    """Write a review page of recordings and labels with sounds.
 
     Parameters
     ----------
     paths : path-like or iterable of path-like
-        Recordings, label tables, maps of a screen (``map.csv``), diagnoses (``diagnosis.json``),
-        rig files of a screen's designs (``.toml``), and folders of them at any depth.
+        Recordings, label tables, and folders of them at any depth. With tables alone, the
+        recordings below the folder of the first.
     out : path-like
         The page, or a folder for ``report.html``.
     title : str
@@ -320,14 +151,9 @@ def review(
     seconds : float
         Longest stretch of a recording that is played [s].
     megabytes : float
-        Size of the page [MB]; where it does not hold all, sounds are shortened, and the page says
-        so.
-    simulated : int
-        How many sounds are simulated for the maps of screens, of all maps together.
+        Largest size of the page [MB]; of many recordings shorter stretches are played.
     classify : bool
         Whether recordings that no table labels are labelled by the classifier that is shipped.
-    seed : int
-        Of simulated sounds and of the dither.
 
     Returns
     -------
@@ -342,78 +168,67 @@ def review(
     Examples
     --------
     >>> import tempfile
-    >>> from models.recording import Channel, Recording
+    >>> from models.recording import Channel
     >>> from noise.recordings import write_recording
     >>> hum = np.sin(2 * np.pi * 100 * np.arange(48000) / 48e3)[np.newaxis]
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     run = write_recording(f"{folder}/run07", Recording(hum, 48e3, (Channel("pressure"),)))
     ...     made = review(run, f"{folder}/review.html", classify=False)
-    ...     made.sounds, made.shortened, made.refused
-    (1, None, ())
+    ...     made.sounds, made.longest, made.refused
+    (1, 10.0, ())
     """
     named = [paths] if isinstance(paths, str | os.PathLike) else list(paths)
-    inputs = sort_inputs([Path(path) for path in named])
-    target = page_path(Path(out))
-    refused = list(inputs.refused)
-    budget = 1e6 * megabytes
-    recorded = recorded_entries(
-        inputs, refused, seconds=seconds, full_scale=full_scale, budget=budget, classify=classify
-    )
-    diagnosed = _diagnosed(inputs, refused)
-    compared, simulated_sounds = screened_maps(inputs, refused, number=simulated, seed=seed)
-
-    keys = [f"s{number + 1}" for number in range(len(recorded))]
-    entries = dict(zip(keys, recorded, strict=True)) | simulated_sounds
-    if not (entries or compared or diagnosed):
+    recordings, table_paths = _inputs([Path(path) for path in named])
+    tables, refused = _read_tables(table_paths)
+    if not recordings and not refused:
+        raise ParameterError(f"{', '.join(map(str, named))}: there are no recordings")
+    n = max(1, len(recordings))
+    longest = (1e6 * megabytes - _PAGE_BYTES - n * _CARD_BYTES) / (n * BYTES_A_SECOND)
+    if longest < _SHORTEST:
+        least = _PAGE_BYTES + n * (_CARD_BYTES + _SHORTEST * BYTES_A_SECOND)
+        raise ParameterError(
+            f"{n} sounds of {_SHORTEST:g} s each do not fit into {megabytes:g} MB; they need "
+            f"{1e-6 * least:.1f} MB; allow more, or name fewer"
+        )
+    longest = min(seconds, longest)
+    labelled = [next(filter(None, (one.of(path) for one in tables)), ()) for path, _ in recordings]
+    needs = any(all(row["label"] is None for row in rows) for rows in labelled)
+    classifier = load_classifier() if classify and needs else None
+    entries: dict[str, Entry] = {}
+    work = list(zip(recordings, labelled, strict=True))
+    for (path, name), rows in track(work, "reading"):
+        entry = _read_entry(path, name, rows, classifier, longest, full_scale)
+        if isinstance(entry, Refusal):
+            refused.append(entry)
+        else:
+            entries[f"s{len(entries) + 1}"] = entry
+    if not entries:
         raise ParameterError(f"{refused[0].name}: {refused[0].reason}; there is nothing else")
     gain = common_gain(entries.values(), pascal_per_full_scale)
-    n_maps = 0 if compared is None else compared.n_maps
-    drawn = 0.0 if compared is None else compared.weight
-    beside = PAGE_BYTES + CARD_BYTES * len(entries) + drawn
-    clips, shortened = make_clips(
-        entries, gain, budget=budget, beside=beside, dither=np.random.default_rng(seed)
-    )
-    rows = [{**row, "file": key} for key in keys for row in entries[key].rows]
-    titles = {key: entry.title for key, entry in entries.items()}
-    of_recordings, unplaced = recorded_maps(rows, titles, clips)
-    counts = label_counts(recorded)
-    left_out = f"Not on a map, without a logged speed and interference: {unplaced}."
-    summary = _summary(recorded, diagnosed, n_maps, len(simulated_sounds))
+    clips = make_clips(entries, gain)
+    counts = label_counts(entries.values())
+    refusals = b.Items([(one.name, one.reason) for one in refused])
     html = page_html(
         "review",
         title,
         [
-            b.Text(summary, "summary"),
-            b.Sounds(gain.sentences if clips else (), LABELS if compared is None else MAP_LABELS),
-            shortened_text(shortened),
+            b.Text(f"{labels_sentence(list(entries.values()))}.", "summary"),
+            b.Sounds(gain.sentences if clips else ()),
         ],
         [
-            b.Section(
-                "Not on this page",
-                [b.Items([(one.name, one.reason) for one in refused])],
-                "refused",
-            ),
-            b.Section("What the screen expects", [b.Other("designs", compared)]),
-            b.Section(
-                "Which noise at which condition",
-                [
-                    b.Maps(of_recordings),
-                    b.Text(left_out if of_recordings and unplaced else "", "note"),
-                ],
-            ),
-            *diagnosed,
+            b.Section("Not on this page", [refusals], "refused"),
             b.Section(
                 "Recordings",
-                [b.Cards(keys, counts=counts if len(counts) > 1 else [])],
+                [b.Cards(list(entries), counts=counts if len(counts) > 1 else [])],
                 "recordings",
             ),
         ],
         entries=entries,
         clips=clips,
-        without_card=simulated_sounds,
     )
+    target = page_path(Path(out))
     write_page(target, html)
-    return Review(target, len(clips), shortened, tuple(refused))
+    return Review(target, len(clips), longest, tuple(refused))
 
 
 def page_path(out: Path) -> Path:
@@ -424,28 +239,132 @@ def page_path(out: Path) -> Path:
     >>> page_path(Path("review")).name, page_path(Path("review.html")).name
     ('report.html', 'review.html')
     """
-    return out if out.suffix.lower() in (".html", ".htm") and not out.is_dir() else out / _PAGE
+    return out if out.suffix.lower() in (".html", ".htm") and not out.is_dir() else out / PAGE
 
 
-def _diagnosed(inputs: Inputs, refused: list[Refusal]) -> list[b.Section]:
-    diagnosed = []
-    for path in inputs.diagnoses:
+def _inputs(paths: Sequence[Path]) -> tuple[list[tuple[Path, str]], list[Path]]:
+    """Return recordings with unique names, and label tables, each once."""
+    recordings: dict[Path, tuple[Path, str]] = {}
+    tables: dict[Path, Path] = {}
+    only_tables = True
+    for path in paths:
+        files = find_recordings(path)  # complains of what is not there
+        if path.is_dir():
+            only_tables = False
+            recordings |= _originals(files)
+            for file, _ in files_below(path):
+                if file.suffix.lower() in TABLE_ENDINGS and table_columns(file) >= {
+                    "file",
+                    "label",
+                }:
+                    tables.setdefault(file.resolve(), file)
+        elif path.suffix.lower() in TABLE_ENDINGS:
+            tables.setdefault(path.resolve(), path)
+        elif not _is_sidecar(path):
+            only_tables = False
+            recordings.setdefault(path.resolve(), files[0])
+    if only_tables and tables:
+        recordings = _originals(find_recordings(next(iter(tables.values())).absolute().parent))
+    counts = Counter(name for _, name in recordings.values())
+    return [
+        (path, name if counts[name] == 1 else readable(str(path)))
+        for path, name in recordings.values()
+    ], list(tables.values())
+
+
+def _originals(files: Sequence[tuple[Path, str]]) -> dict[Path, tuple[Path, str]]:
+    """Return files by their place, without ``audio/run07.wav`` beside ``recordings/run07.wav``."""
+    there = {path.resolve(): (path, name) for path, name in files}
+    return {
+        place: file
+        for place, file in there.items()
+        if place.parent.name != "audio"
+        or place.parent.with_name("recordings") / place.name not in there
+    }
+
+
+def _is_sidecar(path: Path) -> bool:
+    """Whether a file is the sidecar of a recording."""
+    is_json = path.suffix.lower() == ".json"
+    return is_json and any(path.with_suffix(ending).is_file() for ending in formats())
+
+
+def _read_tables(paths: Iterable[Path]) -> tuple[list[_LabelTable], list[Refusal]]:
+    tables, refused = [], []
+    for path in paths:
+        lines: list[str] = []
         try:
-            diagnosed.append(read_diagnosis(path))
+            tables.append(_LabelTable(path, tuple(read_label_table(path, lines))))
         except BushingNoiseError as error:
-            refused.append(Refusal.of(path, error))
-    return diagnosed
+            lines.append(str(error))
+        refused += [Refusal.of(path, line) for line in lines]
+    return tables, refused
 
 
-def _summary(
-    recorded: Sequence[Entry], diagnosed: Sequence[b.Section], n_maps: int, n_sounds: int
-) -> str:
-    parts = []
-    if recorded:
-        parts.append(labels_sentence(recorded))
-    if diagnosed:
-        parts.append(f"{len(diagnosed)} diagnos{'is' if len(diagnosed) == 1 else 'es'}")
-    if n_maps:
-        sounds = f" with {counted(n_sounds, 'simulated sound')}" if n_sounds else ""
-        parts.append(f"{counted(n_maps, 'map')} of a screen{sounds}")
-    return f"{'; '.join(parts)}." if parts else ""
+def _read_entry(
+    path: Path,
+    name: str,
+    rows: Sequence[Row],
+    classifier: Classifier | None,
+    longest: float,
+    full_scale: PascalPerFullScale | None,
+) -> Entry | Refusal:
+    """Read the entry of a recording: its labels, and an excerpt of at most `longest` seconds."""
+    try:
+        with open_blocks(path, full_scale=full_scale) as blocks:
+            notes = []
+            if any(row["label"] is not None for row in rows):
+                notes.append("labelled by the table")
+            elif classifier is not None:
+                notes.append("labelled for this page")
+                rows = label_rows(name, blocks, label_recording(blocks, classifier))
+            duration = blocks.n_samples / blocks.rate
+            offset = stretch_start(rows, duration, longest)
+            excerpt, why = _excerpt(blocks, offset, longest)
+            notes += [why] * bool(why)
+            sound = levels = None
+            if excerpt is not None:
+                sound = audible(excerpt, RATE).astype(np.float32)
+                time, level = recorded_levels(excerpt)
+                levels = offset + time, level
+    except BushingNoiseError as error:
+        return Refusal.of(path, error)
+    except OSError as error:  # it was there when the folder was searched
+        return Refusal.of(path, f"cannot be read ({error.strerror or error})")
+    return Entry(
+        name, tuple(rows), blocks.condition, duration, sound, offset, blocks.calibrated,
+        "; ".join(notes), levels,
+    )  # fmt: skip
+
+
+def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
+    """Return the start of an excerpt that shows the naming segment of a recording [s].
+
+    Examples
+    --------
+    >>> rows = [{"label": "squeal", "start_s": 40.0, "end_s": 42.0}]
+    >>> stretch_start(rows, 60.0, 10.0), stretch_start([], 60.0, 10.0)
+    (36.0, 0.0)
+    """
+    row = naming_row(rows)
+    if row is None or length >= duration:
+        return 0.0
+    start, end = number_or(row.get("start_s"), 0.0), number_or(row.get("end_s"), duration)
+    wanted = start if end - start >= length else 0.5 * (start + end - length)
+    return float(min(max(wanted, 0.0), duration - length))
+
+
+def _excerpt(
+    blocks: RecordingBlocks, offset: float, longest: float
+) -> tuple[Recording | None, str]:
+    """Return the audible excerpt and a remark; None without sound."""
+    row = blocks.first("pressure")
+    if row is None:
+        return None, "no sound pressure to be heard"
+    if blocks.rate < LOWEST_AUDIBLE_RATE:
+        return None, f"sampled at {blocks.rate:g} Hz, so nothing can be heard"
+    first = round(offset * blocks.rate)
+    last = min(blocks.n_samples, first + round(longest * blocks.rate))
+    others = sum(channel.kind == "pressure" for channel in blocks.channels) - 1
+    excerpt = blocks.track(row).cut(first, last)
+    return excerpt, f"1 of {others + 1} channels is heard" if others else ""

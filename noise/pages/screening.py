@@ -11,10 +11,9 @@ import numpy as np
 from noise.base.labels import LABEL_LOOKS, MAP_LABELS
 from noise.base.progress import counted
 from noise.pages import blocks as b
-from noise.pages.clips import BYTES_A_SECOND, SHORTEST, common_gain, make_clips
-from noise.pages.comparison import compare_designs
-from noise.pages.page import CARD_BYTES, PAGE_BYTES, page_html, shortened_text, write_page
-from noise.pages.screen_sounds import screen_maps
+from noise.pages.clips import common_gain, make_clips
+from noise.pages.page import page_html, write_page
+from noise.pages.screen_maps import compare_designs
 from noise.screening.environments import environment, in_environment
 from noise.screening.standing import SHARED, Standing
 from noise.screening.summary import (
@@ -91,7 +90,6 @@ def write_screening(
     screening: Screening,
     *,
     sounds: int = 24,
-    megabytes: float = 10.0,
     seed: int = 0,
     workers: int = 1,
 ) -> None:
@@ -102,11 +100,9 @@ def write_screening(
     path : Path
     screening : Screening
     sounds : int
-        How many are simulated at most, of all designs together; fewer where they do not fit.
-    megabytes : float
-        Size of the page [MB].
+        How many are simulated at most, of all designs together; each takes up to 0.3 MB.
     seed : int
-        Of all sounds alike, and of the dither.
+        Of all sounds alike.
     workers : int
         Threads; -1 is one a core.
 
@@ -128,36 +124,29 @@ def write_screening(
     True
     """
     rigs = {one.name: one.rig for one in screening.designs}
-    maps = screen_maps(screening)
     held = {one.design: one.never_slips for one in screening.standings if one.rank is None}
     # A contact that is wound up without end would set the gain of all others.
     laid = [
         held.get(one.design) or in_environment(rigs[one.design], environment(one.environment))
-        for one in maps
+        for one in screening.maps
     ]
-    room = 1e6 * megabytes - PAGE_BYTES
-    each = CARD_BYTES + SHORTEST * BYTES_A_SECOND
     compared, entries = compare_designs(
-        maps, laid, number=min(sounds, int(room / each)), seed=seed, workers=workers,
-        pair=_pair(screening),
-    )  # fmt: skip
+        screening, laid, number=sounds, seed=seed, workers=workers, pair=_pair(screening)
+    )
     gain = common_gain(entries.values())
-    left = max(room - CARD_BYTES * len(entries) - compared.weight, each * len(entries))
-    clips, shortened = make_clips(entries, gain, budget=left, dither=np.random.default_rng(seed))
+    clips = make_clips(entries, gain)
     refused = [
         *screening.refused,
         *((f"{name}, in part", reason) for name, reason in screening.failed),
     ]
     first, *lines = conditions_lines(screening)
     compared_at = [f"Compared: {first}.", *(f"{line[0].upper()}{line[1:]}." for line in lines)]
-    several = ", and what differs" if len(compared.names) > 1 else ""
     html = page_html(
         "screening",
         _title(screening),
         [
             b.Text(ranking_words(screening.standings), "summary"),
             b.Sounds(gain.sentences, MAP_LABELS),
-            shortened_text(shortened),
         ],
         [
             b.Section("Not on this page", [b.Items(refused)], "refused"),
@@ -169,7 +158,7 @@ def write_screening(
                 ],
             ),
             b.Section(
-                f"Which noise where{several}",
+                "Which noise where",
                 [b.Text(_SOUNDS if clips else "", "soft aloud"), b.Other("designs", compared)],
             ),
         ],

@@ -46,10 +46,6 @@ class Kind(NamedTuple):
         Of levels, in the channel's unit, such as [Pa]; that of ISO 1683 where there is one.
     density : str
         The reference of the autospectral density in words.
-    least_swing : float
-        Taken for the swing of a signal that swings less, in the channel's unit, such as [Pa].
-    quiet : float
-        A spectrum's axis ends no lower [dB].
     """
 
     name: str
@@ -57,21 +53,17 @@ class Kind(NamedTuple):
     colour: str
     reference: float
     density: str
-    least_swing: float
-    quiet: float
 
 
-def _kind(
-    name: str, label: str, reference: float, density: str, least_swing: float, quiet: float
-) -> Kind:
+def _kind(name: str, label: str, reference: float, density: str) -> Kind:
     look = CHANNEL_LOOKS[name]
-    return Kind(label, look.unit, look.colour, reference, density, least_swing, quiet)
+    return Kind(label, look.unit, look.colour, reference, density)
 
 
 KINDS = {
-    "torque": _kind("torque", "Torque", 1.0, "(1 Nm)²/Hz", 0.1, -40.0),
-    "acceleration": _kind("acceleration", "Beam acceleration", 1e-6, "(1 µm/s²)²/Hz", 0.1, 80.0),
-    "pressure": _kind("pressure", "Sound pressure", REFERENCE_PRESSURE, "(20 µPa)²/Hz", 1e-3, 40.0),
+    "torque": _kind("torque", "Torque", 1.0, "(1 Nm)²/Hz"),
+    "acceleration": _kind("acceleration", "Beam acceleration", 1e-6, "(1 µm/s²)²/Hz"),
+    "pressure": _kind("pressure", "Sound pressure", REFERENCE_PRESSURE, "(20 µPa)²/Hz"),
 }
 """The kinds of channel that are shown, in their order."""
 

@@ -28,10 +28,8 @@ import soundfile
 from models.errors import BushingNoiseError
 from noise.base.tables import write_table
 from noise.cli import main
-from noise.pages.diagnosis import write_diagnosis
 from tests.helpers.logger_files import WRITERS, Wave, uff
-from tests.helpers.made_diagnoses import one_effect
-from tests.helpers.made_reviews import row, screen_rows, write_screen
+from tests.helpers.made_reviews import row
 from tests.helpers.small_rigs import RIG_FILE
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="memory is counted as Linux does")
@@ -96,12 +94,9 @@ def valid(tmp_path_factory):
     uff(folder / "logger.uff", (waves[0].samples, "Pa"))
     for name, text in TEXTS.items():
         (folder / name).write_text(text, encoding="utf-8")
-    write_diagnosis(folder / "diagnosis", one_effect())
-    shutil.move(folder / "diagnosis" / "diagnosis.json", folder / "diagnosis.json")
     rows = [row("given.wav", "creak", 0.0, 0.02), row("given.wav", "none", 0.02, 0.05)]
     for ending in (".csv", ".jsonl", ".parquet", ".xlsx"):
         write_table(folder / f"labels{ending}", list(rows[0]), rows)
-    shutil.move(write_screen(folder / "screen", screen_rows()) / "map.csv", folder / "map.csv")
     t = np.arange(1000) / 20e3
     hit = np.column_stack([t, 100.0 * np.exp(-(((t - 2e-3) / 2e-4) ** 2)), np.sin(900.0 * t)])
     np.save(folder / "hit.npy", hit)
@@ -148,7 +143,6 @@ CALLS = {
         for ending in (".csv", ".jsonl", ".parquet", ".xlsx")
         for what, call in {"map": "label GIVEN --map out.png", "review": REVIEW}.items()
     },
-    "map": ("map.csv", "given.csv", "review GIVEN --simulated 0 --out out.html", {}),
     "sidecar": ("sidecar.json", "given.json", "features given.wav", SOUND),
     "rig": ("rig.toml", "given.toml", f"simulate --rig GIVEN {BRIEF}", {}),
     "rig, diagnosed": ("rig.toml", "given.toml", "diagnose run.wav --rig GIVEN --out out", RUN),
@@ -163,7 +157,6 @@ CALLS = {
     "effects": (
         "effects.py", "given.py", f"simulate --effects GIVEN --effect zero_offset {BRIEF}", {},
     ),
-    "diagnosis": ("diagnosis.json", "diagnosis.json", REVIEW, {}),
     "hit.npy": ("hit.npy", "given.npy", "frf GIVEN --out out.npz", {}),
     "hit.csv": ("hit.csv", "given.csv", "frf GIVEN --out out.npz", {}),
     "classifier": ("classifier.npz", "given.npz", "label run.wav --classifier GIVEN", RUN),

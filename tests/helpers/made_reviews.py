@@ -1,8 +1,6 @@
-"""What a review is made of, small: recordings with sidecars, a label table, a screen."""
+"""What a review is made of, small: recordings with sidecars, a label table."""
 
 from __future__ import annotations
-
-import csv
 
 import numpy as np
 
@@ -14,12 +12,6 @@ from noise.recordings import write_recording
 
 RATE = 48_000
 TONE = 997.0
-
-SCREEN_COLUMNS = (
-    "design", "environment", "temperature_C", "speed_rad_s", "interference_mm",
-    "support_stiffness_Nm_rad", "motion", "frequency_hz", "regime", "label", "level_dba",
-    "how",
-)  # fmt: skip
 
 
 def sound(kind, seconds=1.5):
@@ -64,28 +56,4 @@ def write_campaign(folder):
         row("none.wav", "none"),
     ]
     write_table(folder / "labels.csv", COLUMNS, rows)
-    return folder
-
-
-def screen_rows(design="fluorocarbon", environment="dry"):
-    """Five speeds by four interferences: creak, squawk, squeal, none, none from slow to fast."""
-    labels = ("creak", "squawk", "squeal", "none", "none")
-    return [
-        {
-            "design": design, "environment": environment, "temperature_C": 23.0,
-            "speed_rad_s": speed, "interference_mm": fit, "support_stiffness_Nm_rad": 2214.0,
-            "regime": "stick-slip" if label != "none" else "sliding", "label": label,
-            "level_dba": 80.0 if label != "none" else None, "how": "simulated",
-        }
-        for fit in (0.2, 0.25, 0.3, 0.35)
-        for speed, label in zip((2.0, 4.0, 6.0, 8.0, 10.0), labels, strict=True)
-    ]  # fmt: skip
-
-
-def write_screen(folder, rows):
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "map.csv").open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, SCREEN_COLUMNS)
-        writer.writeheader()
-        writer.writerows(rows)
     return folder

@@ -12,11 +12,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 
 from models.rig_file import load_material_rig
-from noise.pages.comparison import compare_designs
-from noise.pages.maps import cells_of, common_cells
-from noise.pages.screen_sounds import chosen_points, screen_maps, shared_points
+from noise.pages import screen_maps
+from noise.pages.maps import MAP_SIZE, areas_of, axis_of
+from noise.pages.screen_maps import MOST_SILENT, chosen_points, compare_designs, places_of
 from noise.pages.screening import RANKING, ranking_rows, write_screening
-from noise.screening.design import Design, Use
+from noise.screening.design import Design, Swinging, Use
 from tests.helpers.quick_screens import quick_screen
 
 QUICK = Use(speed=(1.0, 5.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
@@ -100,7 +100,8 @@ def test_a_hostile_name_is_text_and_nothing_else(two, plain, tmp_path, names):
     assert [(tag, set(attrs)) for tag, attrs in page.tags] == [
         (tag, set(attrs)) for tag, attrs in plain.tags
     ]
-    assert page.data("compared")["names"] == names
+    options = [attrs["value"] for tag, attrs in page.tags if tag == "option"]
+    assert options == ["0", "1", "0", "1"]
 
 
 def by_name(rows):
@@ -149,64 +150,67 @@ def test_the_same_seed_gives_the_same_page(two, tmp_path):
     assert pages[0] == pages[1] != pages[2]
 
 
-def test_a_page_keeps_to_its_size(two, tmp_path):
-    page_of(two, tmp_path, sounds=6, megabytes=0.6)
-    assert (tmp_path / "report.html").stat().st_size < 0.6e6
-    page = page_of(two, tmp_path, sounds=6, megabytes=0.01)
-    assert page.data("about") == {}
-
-
-def test_cells_have_the_labels_and_levels_of_the_map(two):
-    compared, heard = compare_designs(
-        screen_maps(two), ["not wanted"] * len(screen_maps(two)), number=5, seed=0
-    )
-    assert heard == {}
-    (place,) = compared.data["places"]
-    for number, mapped in enumerate(two.maps):
-        cells = place["designs"][str(number)]
-        labels = [compared.data["labels"][label] for label in cells["label"]]
-        assert labels == mapped.label[0, 0].ravel().tolist()
-        levels = [np.nan if level is None else level for level in cells["level"]]
-        assert np.allclose(levels, mapped.level[0, 0].ravel(), atol=0.06, equal_nan=True)
-
-
-points = st.lists(
-    st.tuples(st.integers(1, 12), st.integers(1, 6)), min_size=1, max_size=20, unique=True
+@given(
+    st.integers(1, 6),
+    st.integers(1, 5),
+    st.lists(st.sampled_from(("creak", "squawk", "none")), min_size=30, max_size=30),
 )
+def test_areas_cover_the_map_once_and_have_the_label_of_their_point(n_across, n_up, labels):
+    speed, fit = np.arange(n_across) * 2.0 + 1.0, np.arange(n_up) * 0.05 + 0.2
+    given = np.array(labels[: n_across * n_up]).reshape(n_up, n_across)
+    across, up = axis_of(speed), axis_of(fit, named_over=300.0)
+    areas = areas_of(given, across, up, 300.0)
+    assert sum(a.width * a.height for a in areas) == pytest.approx(MAP_SIZE[0] * 300.0, rel=1e-3)
+    for (row, column), label in np.ndenumerate(given):
+        x, y = MAP_SIZE[0] * across.share(speed[column]), 300.0 * (1.0 - up.share(fit[row]))
+        (found,) = (a for a in areas if a.x < x < a.x + a.width and a.y < y < a.y + a.height)
+        assert found.label == label
 
 
-@given(points, points)
-def test_maps_laid_over_each_other_keep_what_lies_where(first, second):
-    maps = [
-        cells_of(*(np.array(axis, dtype=float) for axis in zip(*of, strict=True)))
-        for of in (first, second)
-    ]
-    for own, laid in zip(maps, common_cells(maps), strict=True):
-        assert laid.point.shape == (laid.interference_edges.size - 1, laid.speed_edges.size - 1)
+def test_long_numbers_of_an_axis_have_room():
+    assert len(axis_of([7.13, 7.14]).ticks) < len(axis_of([0.0, 14.0]).ticks)
 
-        def area(cells):
-            sizes = np.outer(np.diff(cells.interference_edges), np.diff(cells.speed_edges))
-            return {
-                int(n): float(sizes[cells.point == n].sum())
-                for n in np.unique(cells.point)
-                if n >= 0
-            }
 
-        assert area(laid) == pytest.approx(area(own))
+def test_no_more_points_are_heard_than_allowed_and_none_twice(two):
+    (place,) = places_of(two)
+    label = place.of("label")
+    assert chosen_points(place, 0) == []
+    for most in range(1, 4):
+        chosen = chosen_points(place, most)
+        assert len(chosen) == len(set(chosen)) <= most
+        assert sum((label[:, row, column] == "none").all() for row, column in chosen) <= MOST_SILENT
+
+
+def test_a_point_of_a_swinging_shaft_is_heard_swinging(monkeypatch):
+    use = Use(swinging=Swinging(0.25, (1.0, 2.0)), interference=(0.279e-3,))
+    found = quick_screen(["fluorocarbon"], replace(use, support_stiffness=(2214.0,)))
+    turned = []
+
+    def simulate(rig, shaft, **others):
+        turned.append(shaft)
+        return run_of(rig, shaft, **(others | {"seconds": 0.1}))
+
+    run_of = screen_maps.simulate
+    monkeypatch.setattr(screen_maps, "simulate", simulate)
+    rigs = [load_material_rig("fluorocarbon")] * len(found.maps)
+    _, sounds = compare_designs(found, rigs, number=2, seed=0)
+    assert [shaft.amplitude for shaft in turned] == pytest.approx([0.25] * len(turned))
+    assert any("swinging" in entry.title for entry in sounds.values())
 
 
 def test_the_loudest_of_each_noise_is_heard():
     use = replace(QUICK, speed=tuple(np.linspace(0.5, 12.5, 13)))
     damped = Design("damped", load_material_rig("fluorocarbon").changed(damping="x2"))
     wide = quick_screen(["fluorocarbon", damped], use)
-    shared = shared_points(screen_maps(wide))
-    chosen = chosen_points(shared, 10)
+    (place,) = places_of(wide)
+    label, level = place.of("label"), place.of("level")
+    speed = place.maps[0].grid.speed
+    chosen = chosen_points(place, 10)
     for number in range(2):
-        noisy = [p.points[number] for p in shared if p.points[number].label != "none"]
-        for label in {point.label for point in noisy}:
-            loudest = max((p for p in noisy if p.label == label), key=lambda p: p.level)
+        for name in set(label[number].ravel().tolist()) - {"none", "persists"}:
+            loudest = speed[np.where(label[number] == name, level[number], -1.0).argmax()]
             near = [
-                p for p in chosen
-                if abs(p.speed - loudest.speed) <= 1.0 and p.points[number].label == label
+                at for at in chosen
+                if abs(speed[at[1]] - loudest) <= 1.0 and label[number][at] == name
             ]  # fmt: skip
             assert near

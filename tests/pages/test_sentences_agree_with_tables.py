@@ -21,10 +21,9 @@ from noise.identification.outcome import Identification, LawScore, Number
 from noise.labels.summary import result_lines
 from noise.pages.cards import draw_entries
 from noise.pages.clips import Entry, label_counts, labels_sentence
-from noise.pages.comparison import compare_designs
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.identification import write_identification
-from noise.pages.screen_sounds import ScreenMap, ScreenPoint
+from noise.pages.screen_maps import compare_designs
 from noise.screening.grid import Grid
 from noise.screening.standing import critical_points, standing_of
 from noise.screening.words import critical_words, margin_words, use_words
@@ -404,22 +403,29 @@ def test_the_summary_of_a_review_is_what_its_cards_show():
 
 
 def drawn_screen(rng):
-    """Maps of one to three designs over one grid, with points of any label and origin."""
-    speeds = np.sort(rng.choice(np.arange(1.0, 14.0), rng.integers(1, 6), replace=False))
-    fits = np.sort(rng.choice([0.229, 0.279, 0.33, 0.381], rng.integers(1, 4), replace=False))
+    """A screening of one or two designs, as far as their maps are looked at."""
+    n_fits, n_speeds = (int(rng.integers(low, 7)) for low in (1, 2))
+    grid = Grid(
+        tuple(1.0 + np.arange(n_speeds)), (), tuple(1e-3 * (0.2 + 0.05 * np.arange(n_fits))),
+        (2214.0,), (23.0,), (1.0, 5.0),
+    )  # fmt: skip
+    shape = grid.shape
+
+    def drawn(*among):
+        return rng.choice(among, shape)
+
     maps = []
-    for design in ("old", "new", "softer")[: int(rng.integers(1, 4))]:
-        points = [
-            ScreenPoint(
-                float(speed), float(fit), label := str(rng.choice(MAP_LABELS)), "",
-                None if label == "none" else float(rng.uniform(40.0, 95.0)), None,
-                str(rng.choice(["simulated", "refined", "unchanged"])), None,
-                str(rng.choice(["", "damping held", "faster than fitted"])),
+    for design in ("old", "new")[: int(rng.integers(1, 3))]:
+        label = drawn(*MAP_LABELS)
+        level = np.where(label == "none", np.nan, rng.uniform(40.0, 95.0, shape))
+        maps.append(
+            SimpleNamespace(
+                design=design, environment="dry", motion="steady", grid=grid, label=label,
+                level=level, regime=drawn("stick-slip"),
+                how=drawn(*WORDS_OF_HOW), note=drawn("", "damping held", "faster than fitted"),
             )
-            for fit in fits for speed in speeds
-        ]  # fmt: skip
-        maps.append(ScreenMap(design, "dry", "", 23.0, 2214.0, tuple(points)))
-    return maps
+        )  # fmt: skip
+    return SimpleNamespace(maps=tuple(maps))
 
 
 WORDS_OF_HOW = {
@@ -430,24 +436,21 @@ WORDS_OF_HOW = {
 
 def test_the_notes_of_a_comparison_are_what_its_maps_show():
     for seed in range(DRAWS):
-        maps = drawn_screen(np.random.default_rng(seed))
-        compared, _ = compare_designs(maps, ["no rig"] * len(maps), number=0, seed=0)
+        screening = drawn_screen(np.random.default_rng(seed))
+        maps = screening.maps
+        compared, _ = compare_designs(screening, ["no rig"] * len(maps), number=0, seed=0)
         (place,) = compared.places
-        assert int(re.match(r"(\d+) point", place.note)[1]) == len(maps[0].points), place.note
+        assert int(re.match(r"(\d+) point", place.note)[1]) == maps[0].label.size, place.note
         for how, words in WORDS_OF_HOW.items():
             stated = re.search(rf"(\d+) {words}", place.note)
-            number = sum(point.how == how for one in maps for point in one.points)
+            number = sum(int((one.how == how).sum()) for one in maps)
             assert int(stated[1] if stated else 0) == number, place.note
-        for one, drawn, cells in zip(
-            maps, place.maps[: len(maps)], place.cells["designs"].values(), strict=True
-        ):
-            labels = [MAP_LABELS[number] for number in cells["label"]]
-            assert labels == [point.label for point in one.points]
+        for one, drawn in zip(maps, place.maps, strict=True):
             for note in ("damping held", "faster than fitted"):
                 stated = re.search(rf"{note}: (\w+) points", drawn.note, re.IGNORECASE)
-                number = sum(note in point.note for point in one.points)
-                words = "all" if number == len(one.points) else str(number)
+                number = int((one.note == note).sum())
+                words = "all" if number == one.note.size else str(number)
                 assert (stated[1] if stated else "0") == words, drawn.note
-            for label, points in (("none", drawn.areas), ("none", drawn.levels)):
-                quiet = {point.label == label for point in one.points}
-                assert any(area.label == label for area in points) == (True in quiet)
+            for areas in (drawn.areas, drawn.levels):
+                quiet = bool((one.label == "none").any())
+                assert any(area.label == "none" for area in areas) == quiet
