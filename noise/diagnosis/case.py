@@ -23,7 +23,7 @@ from models.recording import Recording
 from models.rig import Rig
 from noise.diagnosis.bench.channels import length_unit, misplaced_torque
 from noise.diagnosis.bench.check import clipped_channels, refuse_unusable, without_dead_channels
-from noise.diagnosis.gap.distance import KINDS
+from noise.diagnosis.gap import KINDS
 from noise.diagnosis.preparation.prepare import measured_speed, prepared
 from noise.diagnosis.preparation.settled_part import shortest
 from noise.diagnosis.text.words import joined

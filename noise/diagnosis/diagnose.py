@@ -36,7 +36,7 @@ from noise.diagnosis.causes.verdict import (
     next_measurement,
 )
 from noise.diagnosis.first_answer import FirstAnswer, first_answer
-from noise.diagnosis.gap.distance import KINDS, Gap
+from noise.diagnosis.gap import KINDS, Gap
 from noise.diagnosis.outcome import (
     Agreement,
     Diagnosis,

@@ -42,11 +42,10 @@ from noise.diagnosis.causes.verdict import (
     unseen_causes,
     with_none,
 )
-from noise.diagnosis.evidence.bench_context import lacking_coherence
 from noise.diagnosis.evidence.channel_summary import USABLE
-from noise.diagnosis.evidence.summary import CaseTable, case_table
+from noise.diagnosis.evidence.summary import CaseTable, case_table, lacking_coherence
 from noise.diagnosis.fit.case_comparison import CaseComparison
-from noise.diagnosis.gap.distance import KINDS, Gap
+from noise.diagnosis.gap import KINDS, Gap
 from noise.diagnosis.simulated.model_runs import Model
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects.effect import Effect

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from noise.base.files import atomic
 from noise.diagnosis.fit.closing import CLOSABLE
-from noise.diagnosis.gap.distance import KINDS, closed_fraction
+from noise.diagnosis.gap import KINDS, closed_fraction
 from noise.diagnosis.improved_file import NAME, improved_sentence
 from noise.diagnosis.outcome import (
     SURE,

@@ -9,8 +9,9 @@ from noise.diagnosis.evidence.channel_summary import (
     BAND_EDGES,
     band_bins,
     channel_summary,
+    common_residual,
+    path_summary,
 )
-from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.reconstruction import angle_summary, shaft_speed
 from noise.diagnosis.evidence.summary import summary
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions

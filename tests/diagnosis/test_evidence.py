@@ -8,8 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from noise.diagnosis.evidence.bench_context import CONTEXT
-from noise.diagnosis.evidence.case_row import MISSING, PARTS, evidence, evidence_names, scale_of
+from noise.diagnosis.evidence.summary import (
+    CONTEXT,
+    MISSING,
+    PARTS,
+    evidence,
+    evidence_names,
+    scale_of,
+)
 from tests.helpers.small_rigs import table_of
 
 NAMES = ("contact_peak", "pressure_gain_4", "torque_offset")

@@ -11,10 +11,9 @@ from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.gap.distance import group_costs, signature
+from noise.diagnosis.gap import group_costs, signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
-from noise.diagnosis.simulated.repeats import nominal_repeats
-from noise.diagnosis.simulated.scatter import Scatter
+from noise.diagnosis.simulated.repeats import Scatter, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import (
     TransferFunctionCache,
     torque_transfer_functions,

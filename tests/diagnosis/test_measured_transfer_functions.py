@@ -11,8 +11,7 @@ from models.condition import Condition
 from models.rig_file import load_material_rig
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.simulated.repeats import nominal_recordings
-from noise.diagnosis.simulated.scatter import Scatter, perturb_rig
+from noise.diagnosis.simulated.repeats import Scatter, nominal_recordings, perturb_rig
 from noise.diagnosis.simulated.transfer_functions import (
     predict,
     shift_clamp_mode,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from noise.diagnosis.causes.posterior import as_seldom
-from noise.diagnosis.gap.distance import NAMES, gap_of, reference
+from noise.diagnosis.gap import NAMES, gap_of, reference
 from noise.diagnosis.run import diagnose
 from noise.diagnosis.text.sentences import headline, verdict_sentence
 from sim.acquisition import Acquisition

@@ -19,7 +19,7 @@ from noise.diagnosis.causes.verdict import (
     needs_explaining,
     next_measurement,
 )
-from noise.diagnosis.gap.distance import Gap
+from noise.diagnosis.gap import Gap
 from noise.training.causes.cases.draw import Truth
 from noise.training.causes.fit import (
     Known,

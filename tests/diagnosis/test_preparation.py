@@ -9,7 +9,7 @@ from hypothesis import given, strategies as st
 from models.condition import KnownCondition
 from models.recording import Channel, Recording
 from models.sensors import Sensor, Sensors
-from noise.diagnosis.evidence.path_summary import path_summary
+from noise.diagnosis.evidence.channel_summary import path_summary
 from noise.diagnosis.preparation.prepare import (
     at_measured_speeds,
     converter_step,

@@ -11,17 +11,17 @@ from scipy.stats import binomtest, kstest
 from models.condition import Condition
 from models.rig_file import load_material_rig, load_rig
 from noise.diagnosis.case import read_case
-from noise.diagnosis.gap.distance import (
+from noise.diagnosis.gap import (
     GROUPS,
     NAMES,
     block_signatures,
+    floor_widening,
     gap_of,
     reference,
+    repeat_gap,
     signature,
 )
-from noise.diagnosis.gap.floor import floor_widening, repeat_gap
-from noise.diagnosis.simulated.repeats import condition_key, nominal_recordings
-from noise.diagnosis.simulated.scatter import Scatter
+from noise.diagnosis.simulated.repeats import Scatter, condition_key, nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.blind.cases import run_case, write_case
 from tests.blind.design import draw_design

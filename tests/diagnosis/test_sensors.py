@@ -15,11 +15,10 @@ from noise.cli import main
 from noise.diagnosis.case import read_case
 from noise.diagnosis.causes.verdict import needs_explaining
 from noise.diagnosis.first_answer import poor_responses, unlearned_sensors
-from noise.diagnosis.gap.distance import NAMES, Gap
+from noise.diagnosis.gap import NAMES, Gap
 from noise.diagnosis.preparation.prepare import estimated_noise, with_estimated_sensors
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
-from noise.diagnosis.simulated.repeats import nominal_recordings
-from noise.diagnosis.simulated.scatter import Scatter
+from noise.diagnosis.simulated.repeats import Scatter, nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from noise.diagnosis.causes.location import learn_stage_nulls
-from noise.diagnosis.evidence.case_row import scale_of
+from noise.diagnosis.evidence.summary import scale_of
 from noise.training.causes.cases.draw import Truth
 from noise.training.causes.fit import Known, train_posterior
 from sim.effects import EFFECTS

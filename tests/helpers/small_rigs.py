@@ -10,8 +10,13 @@ import numpy as np
 from models.condition import KnownCondition
 from models.rig import Fit, LawSpec
 from models.rig_file import load_material_rig
-from noise.diagnosis.simulated.repeats import plan_repeat, record, repeat_motion
-from noise.diagnosis.simulated.scatter import Scatter, perturb_run
+from noise.diagnosis.simulated.repeats import (
+    Scatter,
+    perturb_run,
+    plan_repeat,
+    record,
+    repeat_motion,
+)
 from noise.diagnosis.simulated.transfer_functions import chain_of, torque_transfer_functions
 from noise.recordings import write_recording
 from sim.chain import apply_chain_effects

@@ -12,8 +12,7 @@ import pytest
 
 from noise.diagnosis.cases.draws import drawn_effect
 from noise.diagnosis.simulated.model_runs import OFFSETS, with_offsets
-from noise.diagnosis.simulated.repeats import CHANNELS
-from noise.diagnosis.simulated.scatter import Scatter
+from noise.diagnosis.simulated.repeats import CHANNELS, Scatter
 from noise.training.causes.cases.draw import KINDS, WEAKEST, draw_case
 from noise.training.causes.cases.rigs import draw_setting
 from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect

@@ -118,7 +118,7 @@ _LENGTH = 2048
 
 _LEAD, _TAIL = 0.08, 0.01
 """Time omitted at the start, where the structure still rings from earlier, and at the end [s]; as
-in `noise.diagnosis.evidence.path_summary`."""
+in `noise.diagnosis.evidence.channel_summary`."""
 
 _STRONG = 1e-3
 """Least power of a spectral line of the prediction, as a share of the strongest line [-];

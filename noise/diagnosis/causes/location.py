@@ -26,8 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from noise.base.model_file import ModelKind, load_model, save_model
-from noise.diagnosis.evidence.case_row import deviations, standard_errors
 from noise.diagnosis.evidence.channel_summary import BAND_EDGES
+from noise.diagnosis.evidence.summary import deviations, standard_errors
 from noise.diagnosis.outcome import LARGEST_GAP, SURE, Location, StageFinding
 from sim.effects.effect import Stage
 

@@ -26,8 +26,13 @@ from scipy.stats import t as students_t
 
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import BoostedTrees
-from noise.diagnosis.evidence.case_row import evidence
-from noise.diagnosis.evidence.summary import CaseTable, column_moments, same_channels, summary
+from noise.diagnosis.evidence.summary import (
+    CaseTable,
+    column_moments,
+    evidence,
+    same_channels,
+    summary,
+)
 from noise.diagnosis.simulated.repeats import condition_key, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 from sim.effects import EFFECTS

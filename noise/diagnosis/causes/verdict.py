@@ -20,7 +20,7 @@ from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 
 if TYPE_CHECKING:
-    from noise.diagnosis.gap.distance import Gap
+    from noise.diagnosis.gap import Gap
 
 
 Hypothesis = frozenset[str]

@@ -21,21 +21,31 @@ from numpy.typing import NDArray
 from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import LawSpec, Rig
-from noise.diagnosis.evidence.case_row import aligned
 from noise.diagnosis.evidence.reconstruction import closed_spectrum
-from noise.diagnosis.evidence.summary import CaseTable, path_numbers, same_channels, signals_of
-from noise.diagnosis.gap.distance import Gap, Reference, group_costs, signature
-from noise.diagnosis.gap.floor import references_of, repeat_gap
+from noise.diagnosis.evidence.summary import (
+    CaseTable,
+    aligned,
+    path_numbers,
+    same_channels,
+    signals_of,
+)
+from noise.diagnosis.gap import (
+    Gap,
+    Reference,
+    group_costs,
+    references_of,
+    repeat_gap,
+    signature,
+)
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
-from noise.diagnosis.simulated.repeats import condition_key
-from noise.diagnosis.simulated.scatter import Scatter
+from noise.diagnosis.simulated.repeats import Scatter, condition_key
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect
 
 T = TypeVar("T")
 
 N_REPEATS = 12
-"""Simulated repeats that tell what repeats differ by; as of `noise.diagnosis.gap.floor`."""
+"""Simulated repeats that tell what repeats differ by; as of `noise.diagnosis.gap`."""
 
 _N_OF_MODEL = 6
 """The first of these, that tell where a model lies; assumed."""

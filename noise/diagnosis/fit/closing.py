@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from noise.diagnosis.gap.distance import closed_fraction
+from noise.diagnosis.gap import closed_fraction
 
 CLOSABLE = 0.5
 """A gap is worth closing from so many floors above the floor; assumed."""

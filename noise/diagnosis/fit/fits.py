@@ -23,7 +23,7 @@ from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit import Fitted
 from noise.diagnosis.fit.improve import improved_rig
-from noise.diagnosis.gap.floor import worst_places
+from noise.diagnosis.gap import worst_places
 from noise.diagnosis.outcome import EffectFinding, Illustration, Remainder
 from noise.diagnosis.simulated.model_runs import OFFSETS, Model, ModelRuns
 

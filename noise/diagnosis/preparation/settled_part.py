@@ -165,7 +165,7 @@ _SHORTEST = LEAD + TAIL + 0.1
 """Least duration with enough cycles [s]."""
 
 _PATH_ENDS = 0.09
-"""Duration of the ends that `noise.diagnosis.evidence.path_summary` omits before it takes spectra
+"""Duration of the ends that `evidence.channel_summary` omits before it takes spectra
 of segments [s]."""
 
 RINGING = 0.06

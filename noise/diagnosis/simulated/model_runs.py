@@ -23,11 +23,22 @@ from models.recording import Recording
 from models.rig import Fit, LawSpec, Rig
 from models.sensors import Sensor
 from noise.base.arrays import Array
-from noise.diagnosis.gap.distance import KINDS, channel_signature, joined_signature
-from noise.diagnosis.simulated.repeats import condition_key, plan_repeat, record, repeat_motion
-from noise.diagnosis.simulated.scatter import Scatter, perturb_run
-from noise.diagnosis.simulated.structure import chain_changes, n_closed, radiated_sound
-from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, chain_of
+from noise.diagnosis.gap import KINDS, channel_signature, joined_signature
+from noise.diagnosis.simulated.repeats import (
+    Scatter,
+    condition_key,
+    perturb_run,
+    plan_repeat,
+    record,
+    repeat_motion,
+)
+from noise.diagnosis.simulated.transfer_functions import (
+    TransferFunctionCache,
+    chain_changes,
+    chain_of,
+    n_closed,
+    radiated_sound,
+)
 from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import apply_chain_effects
 from sim.effects.effect import ActiveEffect, Effect, Signals
@@ -192,7 +203,7 @@ class ModelRuns:
         Returns
         -------
         ndarray, shape (n_values,)
-            As of `noise.diagnosis.gap.distance.signature`.
+            As of `noise.diagnosis.gap.signature`.
 
         Raises
         ------

@@ -42,8 +42,14 @@ from noise.base.arrays import Array, Rng
 from noise.base.files import atomic, check_target
 from noise.base.trees import BoostedTrees
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
-from noise.diagnosis.evidence.case_row import evidence, scale_of
-from noise.diagnosis.evidence.summary import CaseTable, NominalNumbers, Numbers, case_table
+from noise.diagnosis.evidence.summary import (
+    CaseTable,
+    NominalNumbers,
+    Numbers,
+    case_table,
+    evidence,
+    scale_of,
+)
 from noise.diagnosis.preparation.prepare import prepared
 from noise.diagnosis.simulated.repeats import CHANNELS
 from noise.training.causes.cases.draw import SHARED, DrawnCase, Truth, draw_case, visible_through

@@ -23,8 +23,13 @@ from models.sensors import Sensors
 from noise.base.arrays import Array, Rng
 from noise.diagnosis.cases.draws import drawn_effect
 from noise.diagnosis.simulated.model_runs import OFFSETS, with_offsets
-from noise.diagnosis.simulated.repeats import CHANNELS, plan_repeat, repeat_motion
-from noise.diagnosis.simulated.scatter import Scatter, perturb_run
+from noise.diagnosis.simulated.repeats import (
+    CHANNELS,
+    Scatter,
+    perturb_run,
+    plan_repeat,
+    repeat_motion,
+)
 from noise.training.causes.cases.rigs import NOISE_DRAWN, Setting, draw_setting, draw_start
 from noise.training.causes.cases.structures import THESIS, draw_structure, draw_trade
 from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
