@@ -202,7 +202,7 @@ class JuryPlaying:
         key = index, state.st_size, state.st_mtime_ns, match
         with self._lock:
             if key not in self._measured:
-                self._measured[key] = measure([self._sound_of(index)], rate=_RATE, match=match)
+                self._measured[key] = measure([self._sound_of(index)], match=match)
             return self._measured[key]
 
     def _sound_of(self, index: int) -> Recording:

@@ -16,7 +16,9 @@ from noise.audio.gain import least_full_scale
 from noise.audio.sound import pressure_channel
 from noise.base.files import atomic
 from noise.recordings.sidecar import sidecar_text
-from noise.recordings.wav import BITS, largest_sample, wav_bytes, with_full_scale
+from noise.recordings.wav import largest_sample, wav_bytes, with_full_scale
+
+_BITS = 24
 
 
 def write_audio(
@@ -25,9 +27,7 @@ def write_audio(
     rate: int,
     *,
     full_scale: float,
-    bits: int = 24,
     recording: Recording,
-    dither: np.random.Generator | None = None,
     about: Mapping[str, object] | None = None,
 ) -> Path:
     """Write a WAV file for listening and its sidecar, atomically.
@@ -42,12 +42,8 @@ def write_audio(
         Sampling rate [Hz].
     full_scale : float
         Value of a full-scale sample, in the unit of `samples`.
-    bits : int
-        One of `noise.recordings.wav.BITS`; 32 is floating point, full scale being 1.
     recording : Recording
         Where the sound comes from: its condition, microphone and calibration go into the sidecar.
-    dither : numpy.random.Generator, optional
-        Of the dither of integer samples; none by default.
     about : mapping of str to object, optional
         What else the sidecar says, as JSON has it.
 
@@ -75,28 +71,21 @@ def write_audio(
     0.25
     """
     target = audio_path(Path(path))
-    if bits not in BITS:
-        raise ParameterError(f"{target}: samples of {bits} bit; there are 16, 24 and 32 (float)")
     if not 0.0 < full_scale < math.inf:
         raise ParameterError(f"{target}: full scale is {full_scale!r}, expected a positive number")
-    if not np.abs(samples).max(initial=0.0) <= full_scale * largest_sample(bits):
+    if not np.abs(samples).max(initial=0.0) <= full_scale * largest_sample(_BITS):
         raise ParameterError(
             f"{target}: full scale {full_scale:g} would clip; the smallest that does not is "
-            f"{least_full_scale(samples, bits):g}"
+            f"{least_full_scale(samples, _BITS):g}"
         )
     channel = replace(pressure_channel(recording), name="pressure")
     content = json.loads(
         sidecar_text(replace(recording, samples=np.empty((1, 0)), channels=(channel,)))
     )
-    if recording.calibrated and bits < 32:
+    if recording.calibrated:
         content["channels"][0]["scale"] = full_scale
-    elif recording.calibrated:
-        # Floating-point samples whose channels are named would be read as pascals; these are
-        # fractions of full scale, and the file's description says what that is.
-        del content["calibrated"]
-        content["audio"] = content.pop("channels")[0] | {"scale": full_scale}
     description = with_full_scale(full_scale) if recording.calibrated else ""
-    data = wav_bytes(samples / full_scale, rate, bits, description=description, dither=dither)
+    data = wav_bytes(samples / full_scale, rate, _BITS, description=description)
     content["wav_crc32"] = f"{zlib.crc32(data):08x}"
     text = json.dumps(content | dict(about or {}), indent=1) + "\n"
     with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:

@@ -35,7 +35,7 @@ from noise.audio.gain import (
     matched_loudness,
     true_peak,
 )
-from noise.audio.sound import FADE, GAP, joined, refuse_mixed
+from noise.audio.sound import GAP, RATE, joined, refuse_mixed
 from noise.recordings.sidecar import sidecar_text
 
 COLUMNS = (
@@ -102,20 +102,13 @@ class FullScale:
     target: float | None = None
 
 
-def measure(
-    recordings: Sequence[Recording],
-    *,
-    rate: int = 48000,
-    gap: float = GAP,
-    fade: float = FADE,
-    match: bool = False,
-) -> Measured:
+def measure(recordings: Sequence[Recording], *, gap: float = GAP, match: bool = False) -> Measured:
     """Measure the concatenated sound of recordings.
 
     Parameters
     ----------
     recordings : sequence of Recording
-    rate, gap, fade
+    gap : float
         As for `joined`.
     match : bool
         Whether it has to have a loudness.
@@ -133,8 +126,8 @@ def measure(
     >>> of.calibrated, round(of.true_peak, 3)
     (True, 1.0)
     """
-    samples, times = joined(recordings, rate, gap=gap, fade=fade)
-    peak = true_peak(samples, rate)
+    samples, times = joined(recordings, gap=gap)
+    peak = true_peak(samples, RATE)
     parts = [
         Part(start, end, replace(recording, samples=np.empty((1, 0))), assess(recording))
         for recording, (start, end) in zip(recordings, times, strict=True)
@@ -144,7 +137,7 @@ def measure(
         try:
             if peak == 0.0:
                 raise ParameterError("a silent sound has no loudness to be matched")
-            reached = loudness(samples / peak, rate)
+            reached = loudness(samples / peak, RATE)
         except ParameterError as error:
             raise ParameterError(f"{recordings[0].name}: {error}") from None
     return Measured(tuple(parts), peak, reached)
@@ -211,12 +204,7 @@ def render(
     of: Measured,
     full_scale: FullScale,
     *,
-    rate: int = 48000,
     gap: float = GAP,
-    fade: float = FADE,
-    bits: int = 24,
-    seed: int | Sequence[int] = 0,
-    note: str | None = None,
 ) -> tuple[list[dict[str, object]], str]:
     """Write one file of a set.
 
@@ -228,14 +216,8 @@ def render(
     of : Measured
         Of these recordings.
     full_scale : FullScale
-    rate, gap, fade
+    gap : float
         As they were measured.
-    bits : int
-        One of `noise.recordings.wav.BITS`; 16 is dithered.
-    seed : int or sequence of int
-        Of the dither.
-    note : str, optional
-        For the sidecar: what the listener should know of the gain.
 
     Returns
     -------
@@ -260,14 +242,14 @@ def render(
     ...     render(target, runs, measure(runs), FullScale(2.0, "calibrated"))[1]
     'true peak -6.0 dBTP, loudness -9.0 LUFS'
     """
-    samples, _ = joined(recordings, rate, gap=gap, fade=fade)
+    samples, _ = joined(recordings, gap=gap)
     value = full_scale.value
     if full_scale.target is not None:
         # The gate of the loudness moves with the gain.
-        value = matched_full_scale(samples, rate, full_scale.target)
+        value = matched_full_scale(samples, RATE, full_scale.target)
         value = max(value, of.true_peak / CEILING)
-    long_enough = samples.size >= LOUDNESS_BLOCK * rate
-    reached = loudness(samples / value, rate) if long_enough else -math.inf
+    long_enough = samples.size >= LOUDNESS_BLOCK * RATE
+    reached = loudness(samples / value, RATE) if long_enough else -math.inf
     peak = of.true_peak / value
     file: dict[str, object] = {
         "gain": full_scale.gain,
@@ -275,18 +257,13 @@ def render(
         "true_peak_dbtp": round(20.0 * math.log10(peak), 2) if peak > 0.0 else None,
         "loudness_lufs": round(reached, 2) if math.isfinite(reached) else None,
     }
-    made: dict[str, object] = {**file, "dither": "triangular" if bits == 16 else None}
-    if note:
-        made["note"] = note
     write_audio(
         path,
         samples,
-        rate,
+        RATE,
         full_scale=value,
-        bits=bits,
         recording=_common([part.about for part in of.parts]),
-        dither=np.random.default_rng(seed) if bits == 16 else None,
-        about={"render": made, "parts": [_entry(part, value) for part in of.parts]},
+        about={"render": file, "parts": [_entry(part, value) for part in of.parts]},
     )
     rows = [
         {"part": part.about.name, "start_s": part.start, "end_s": part.end,

@@ -17,6 +17,9 @@ from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 
+RATE = 48_000
+"""Sampling rate of rendered sound [Hz]."""
+
 FADE = 0.010
 """Half a Hann window at either end [s]."""
 
@@ -251,24 +254,20 @@ def pressure_recording(
 
 
 def joined(
-    recordings: Sequence[Recording], rate: int = 48000, *, gap: float = GAP, fade: float = FADE
+    recordings: Sequence[Recording], *, gap: float = GAP
 ) -> tuple[NDArray[np.float64], list[tuple[float, float]]]:
     """Concatenate the sounds of recordings at one gain.
 
     Parameters
     ----------
     recordings : sequence of Recording
-    rate : int
-        Sampling rate of the result [Hz].
     gap : float
         Silence between two of them [s].
-    fade : float
-        Length of the fades of each [s].
 
     Returns
     -------
     samples : ndarray, shape (n_samples,)
-        As `audible` gives them.
+        As `audible` gives them, at `RATE`.
     times : list of tuple of float
         Where each begins and ends [s].
 
@@ -290,9 +289,9 @@ def joined(
     times: list[tuple[float, float]] = []
     start = 0
     for recording in recordings:
-        sound = audible(recording, rate, fade=fade)
-        times.append((start / rate, (start + sound.size) / rate))
-        pieces += [sound, np.zeros(round(gap * rate))]
+        sound = audible(recording, RATE)
+        times.append((start / RATE, (start + sound.size) / RATE))
+        pieces += [sound, np.zeros(round(gap * RATE))]
         start += sound.size + pieces[-1].size
     return np.concatenate(pieces[:-1]), times
 

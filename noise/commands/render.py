@@ -1,35 +1,46 @@
-"""``bushing-noise render``: recordings or conditions into audible WAV files."""
+"""``bushing-noise render``: recordings or conditions into audible WAV files.
+
+Rig files and conditions in quotes are simulated. They take missing options from the call, so that
+two designs are compared at the same condition with the same random numbers. Invalid inputs are
+refused before the first simulation.
+"""
 
 from __future__ import annotations
 
-import math
-from argparse import ArgumentTypeError, Namespace
-from collections.abc import Mapping
+import re
+import shlex
+from argparse import ArgumentParser, ArgumentTypeError, Namespace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
+from models.recording import Recording
 from noise.base.files import check_target
 from noise.base.progress import counted, note, report, say, track
-from noise.commands.condition import CONDITION
+from noise.commands.condition import CONDITION, run_arguments, stated_options, with_notes
 from noise.commands.options import (
     CALIBRATION,
     OneOf,
     Option,
+    add_options,
     band,
     check_folder,
+    full_scale_of,
     number,
-    one_of,
     refuse,
 )
 
 if TYPE_CHECKING:
-    from models.recording import Recording
-    from noise.audio.render import FullScale, Measured, Part
-    from noise.commands.render_sources import Source
-
+    from noise.audio.render import Measured, Part
+    from noise.recordings.interpretation import PascalPerFullScale
 
 _LOWEST, _NARROWEST = 1.0, 1.01  # lower end [Hz], and upper over lower end, for stable filters
+
+_ALTERNATIVES = {"speed": "oscillate", "oscillate": "speed"}
+"""Options that replace each other."""
 
 
 def _band(text: str) -> tuple[float, float]:
@@ -48,9 +59,6 @@ OPTIONS = (
     Option("--out AUDIO.wav|FOLDER", Path, required=True),
     Option("--ab"),
     Option("--gap S", number(least=0.0, most=60.0), 0.5),
-    Option("--rate 44100|48000", one_of(44100, 48000), 48000),
-    Option("--bits 16|24|32", one_of(16, 24, 32), 24),
-    Option("--fade S", number(least=0.0, most=60.0), 0.010),
     OneOf(
         Option("--pascal-per-full-scale PA", number(above=0.0, most=1e9)),
         Option("--match-loudness"),
@@ -63,11 +71,9 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Render the sounds."""
-    from noise.commands.render_sources import sources_of
-
     if options.ab and options.match_loudness:
         raise ParameterError("--ab plays all parts at the same gain; leave --match-loudness out")
-    sources = sources_of(options)
+    sources = _sources(options)
     if options.ab and len(sources) < 2:
         raise ParameterError("--ab puts two or more inputs behind one another; give a second one")
     folder = _folder(options, sources)
@@ -77,12 +83,162 @@ def run(options: Namespace) -> int:
     return _render(options, files, folder)
 
 
+@dataclass(frozen=True)
+class _Source:
+    """Sound source.
+
+    Parameters
+    ----------
+    name : str
+        Name of the sound; for a recording its relative path without suffix.
+    make : callable
+        ``make(name)`` reads or simulates the pressure channel.
+    path : Path, optional
+        Path of a recording.
+    notes : tuple of str
+        Notes to print before the simulation.
+    """
+
+    name: str
+    make: Callable[[str], Recording]
+    path: Path | None = None
+    notes: tuple[str, ...] = ()
+
+
+def _sources(options: Namespace) -> list[_Source]:
+    """Return the sound sources of the call with unique names, and print their notes."""
+    condition = ["--" + name.replace("_", "-") for name in stated_options(options)]
+    simulated = [
+        text for text in options.inputs if _is_condition(text) or text.lower().endswith(".toml")
+    ]
+    recorded = [text for text in options.inputs if text not in simulated]
+    if not options.inputs and not condition:
+        raise ParameterError(
+            "render needs a recording, or a condition such as --speed 5 to simulate"
+        )
+    if not recorded and (options.full_scale is not None or options.calibrator is not None):
+        option = "--calibrator" if options.full_scale is None else "--full-scale"
+        raise ParameterError(f"{option} is the calibration of a recording; none is given")
+    if "" in options.inputs:
+        raise ParameterError("one INPUT is empty; give a recording, a folder, or a condition")
+    if recorded and condition and not simulated:
+        raise ParameterError(
+            f"{condition[0]} describes a run to simulate, but {recorded[0]} is already recorded; "
+            "give one or the other"
+        )
+    full_scale = full_scale_of(options)
+    sources: list[_Source] = []
+    for text in options.inputs:
+        if text in simulated:
+            sources.append(_simulated(text, options))
+        else:
+            sources += _recorded(Path(text), full_scale)
+    if not options.inputs:
+        sources.append(_source(options.out.name.removesuffix(".wav"), options))
+    taken: set[str] = set()
+    for index, source in enumerate(sources):
+        name, number = source.name, 2
+        while name.casefold() in taken:
+            name, number = f"{source.name}-{number}", number + 1
+        taken.add(name.casefold())
+        sources[index] = replace(source, name=name)
+    _print_notes([source for source in sources if source.path is None])
+    return sources
+
+
+def _print_notes(sources: Sequence[_Source]) -> None:
+    """Print each note once; notes that do not apply to all runs name their runs."""
+    names_by_note: dict[str, list[str]] = {}
+    for source in sources:
+        for text in source.notes:
+            names_by_note.setdefault(text, []).append(source.name)
+    for text, names in names_by_note.items():
+        note(text if len(names) == len(sources) else f"{', '.join(names)}: {text}")
+
+
+def _is_condition(text: str) -> bool:
+    """Whether an input is a condition in quotes."""
+    return text.lstrip().startswith("-")
+
+
+def _recorded(path: Path, full_scale: PascalPerFullScale | None) -> list[_Source]:
+    """Return the sources of a recording or a folder."""
+    from noise.recordings import find_recordings
+
+    recordings = find_recordings(path)
+    if not recordings:
+        raise ParameterError(f"{path}: there are no recordings in it")
+    return [
+        _Source(str(Path(name).with_suffix("")), partial(_read, file, full_scale), file)
+        for file, name in recordings
+    ]
+
+
+def _read(path: Path, full_scale: PascalPerFullScale | None, _: str) -> Recording:
+    """Read the pressure of a recording."""
+    from noise.audio.sound import pressure_recording
+    from noise.recordings.files import open_blocks
+
+    with open_blocks(path, full_scale=full_scale) as recording:
+        return pressure_recording(recording)
+
+
+class _ConditionParser(ArgumentParser):
+    """Parser of a condition in quotes, which is its ``prog``."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise an error of parsing as ParameterError."""
+        raise ParameterError(f"condition {self.prog!r}: {message.removeprefix('argument ')}")
+
+
+def _simulated(text: str, options: Namespace) -> _Source:
+    """Return the source of a rig file or a condition."""
+    if not _is_condition(text):
+        if options.rig is not None:
+            raise ParameterError(f"--rig {options.rig} and {text} are both rig files; give one")
+        return _source(Path(text).stem, _over(options, {"rig": Path(text)}))
+    parser = _ConditionParser(prog=text, add_help=False, allow_abbrev=False)
+    add_options(parser, [CONDITION])
+    try:
+        words = shlex.split(text)
+    except ValueError as error:
+        raise ParameterError(f"condition {text!r}: {error}") from None
+    values = stated_options(parser.parse_args(words))
+    return _source(re.sub(r"[^\w.]+", "-", text).strip("-."), _over(options, values))
+
+
+def _over(options: Namespace, values: Mapping[str, Any]) -> Namespace:
+    """Return the options of a condition, with some values replaced."""
+    names = [row.attribute for row in CONDITION.rows]
+    merged = {name: getattr(options, name) for name in (*names, "seed")}
+    merged |= {_ALTERNATIVES[name]: None for name in values if name in _ALTERNATIVES}
+    return Namespace(**(merged | dict(values)))
+
+
+def _source(name: str, options: Namespace) -> _Source:
+    """Return the source of a simulated run."""
+    from noise.audio.sound import RATE
+
+    # At the rate of the sound: the rate of the rig would cut a creak off at 15 kHz.
+    arguments, notes = run_arguments(options, RATE)
+
+    @cache
+    def simulated(name: str) -> Recording:
+        from noise.audio.sound import pressure_recording
+        from sim.run import simulate
+
+        run = with_notes(simulate(**arguments), notes, arguments, name)
+        return pressure_recording(replace(run, name=name))
+
+    return _Source(name, simulated, notes=notes)
+
+
 class _File(NamedTuple):
     """Output file with its name and its sound sources."""
 
     name: str
     target: Path
-    sources: list[Source]
+    sources: list[_Source]
 
 
 def _recordings(file: _File, band: tuple[float, float] | None) -> list[Recording]:
@@ -93,7 +249,7 @@ def _recordings(file: _File, band: tuple[float, float] | None) -> list[Recording
     return recordings if band is None else [pressure_recording(one, band) for one in recordings]
 
 
-def _folder(options: Namespace, sources: list[Source]) -> Path | None:
+def _folder(options: Namespace, sources: list[_Source]) -> Path | None:
     """Return the output folder of a set; None for a single file."""
     out: Path = options.out
     several = len(sources) > 1 or any(Path(text).is_dir() for text in options.inputs)
@@ -108,7 +264,7 @@ def _folder(options: Namespace, sources: list[Source]) -> Path | None:
     return out
 
 
-def _files(options: Namespace, sources: list[Source], folder: Path | None) -> list[_File]:
+def _files(options: Namespace, sources: list[_Source], folder: Path | None) -> list[_File]:
     """Return the output files with their sources."""
     from noise.audio.audio_file import audio_path
 
@@ -118,7 +274,7 @@ def _files(options: Namespace, sources: list[Source], folder: Path | None) -> li
     return [_File(target.stem if options.ab else sources[0].name, target, sources)]
 
 
-def _check_overwrite(out: Path, sources: list[Source], files: list[_File]) -> None:
+def _check_overwrite(out: Path, sources: list[_Source], files: list[_File]) -> None:
     """Refuse to overwrite an input or its sidecar."""
     inputs = [source.path for source in sources if source.path is not None]
     stems = {path.resolve().with_suffix("") for path in inputs}
@@ -136,11 +292,10 @@ def _render(options: Namespace, files: list[_File], folder: Path | None) -> int:
     measured: dict[str, Measured] = {}
     noise_names: dict[str, list[str]] = {}
     refused: dict[str, str] = {}
-    shape = {"rate": options.rate, "gap": options.gap, "fade": options.fade}
     for file in track(files, "measuring", unit="file"):
         try:
             recordings = _recordings(file, options.band)
-            sound = measure(recordings, **shape, match=options.match_loudness)
+            sound = measure(recordings, gap=options.gap, match=options.match_loudness)
         except (BushingNoiseError, MemoryError) as error:
             if folder is None and not isinstance(error, RecordingError):
                 raise
@@ -154,27 +309,26 @@ def _render(options: Namespace, files: list[_File], folder: Path | None) -> int:
     scales = full_scales(
         measured, pascal=options.pascal_per_full_scale, matched=options.match_loudness
     )
-    _notes(measured)
-    faint = _note_faint(measured, scales)
+    unknown = [of.name for of in measured.values() if not of.calibrated]
+    if unknown:
+        more = f" and {counted(len(unknown) - 1, 'other')}" if len(unknown) > 1 else ""
+        note(
+            f"{unknown[0]}{more}: not calibrated, so how loud it was is not known; levels are in "
+            "dBFS only (--calibrator or --full-scale gives a calibration)"
+        )
     rows: list[dict[str, object]] = []
-    for index, (name, target, _) in enumerate(files):
+    for file in files:
+        name, target = file.name, file.target
         if name not in measured:
             rows.append({"file": target.name, "error": refused[name]})
             continue
         sound, scale = measured[name], scales[name]
         written, summary = render(
-            target,
-            _recordings(files[index], options.band),
-            sound,
-            scale,
-            **shape,
-            bits=options.bits,
-            seed=(options.seed, index),
-            note=faint.get(name),
+            target, _recordings(file, options.band), sound, scale, gap=options.gap
         )
         file_name = target.name if folder is None else target.relative_to(folder).as_posix()
         rows += [
-            {"file": file_name, **row, "filter": _filter_note(part), "note": faint.get(name)}
+            {"file": file_name, **row, "filter": _filter_note(part)}
             for row, part in zip(written, sound.parts, strict=True)
         ]
         calibration = f"full scale is {scale.value:.4g} Pa; " * sound.calibrated
@@ -185,7 +339,7 @@ def _render(options: Namespace, files: list[_File], folder: Path | None) -> int:
             say(f"{label}: {noise_name}{part.assessment.words(scale.value)}")
         report(target, target.with_suffix(".json"))
     if folder is not None:
-        write_table(folder / "levels.csv", ("file", *COLUMNS, "filter", "note", "error"), rows)
+        write_table(folder / "levels.csv", ("file", *COLUMNS, "filter", "error"), rows)
         report(folder / "levels.csv")
     return 1 if refused else 0
 
@@ -207,46 +361,3 @@ def _filter_note(part: Part) -> str | None:
     """Return the note on the filter of a part."""
     last = part.about.notes[-1] if part.about.notes else ""
     return last.removeprefix("filtered: ") if last.startswith("filtered: ") else None
-
-
-def _notes(measured: Mapping[str, Measured]) -> None:
-    """Print notes on missing calibrations."""
-    unknown = [of.name for of in measured.values() if not of.calibrated]
-    if unknown:
-        more = f" and {counted(len(unknown) - 1, 'other')}" if len(unknown) > 1 else ""
-        note(
-            f"{unknown[0]}{more}: not calibrated, so how loud it was is not known; levels are in "
-            "dBFS only (--calibrator or --full-scale gives a calibration)"
-        )
-
-
-_LEAST_AUDIBLE = -48.0
-"""Level in the file of a barely audible sound [dBFS(A)]: speech at -23 LUFS is played like a talker
-at 1 m (60 dB(A), ISO 9921), with the background noise of a quiet office, 35 dB(A)."""
-
-_MAX_NAMES = 4
-"""Number of sounds that a note names."""
-
-
-def _note_faint(
-    measured: Mapping[str, Measured], scales: Mapping[str, FullScale]
-) -> dict[str, str]:
-    """Print and return notes on sounds that are nearly inaudible in their files."""
-    faint: dict[str, str] = {}
-    for name, sound in measured.items():
-        value = scales[name].value
-        in_file = max(part.assessment.in_file(value).level_af_max for part in sound.parts)
-        if math.isfinite(in_file) and in_file < _LEAST_AUDIBLE:
-            in_air = max(part.assessment.levels.level_af_max for part in sound.parts)
-            at = f"{in_air:.1f} dB(A) at the microphone, " * sound.calibrated
-            faint[name] = f"{name} ({at}{in_file:.1f} dBFS(A) in the file)"
-    if not faint:
-        return {}
-    scale = scales[next(iter(faint))]
-    room = f", unless playback is calibrated to {scale.value:g} Pa" * (scale.gain == "calibrated")
-    lead = (
-        f"nearly inaudible (below {_LEAST_AUDIBLE:g} dBFS(A)) where the volume suits speech{room}"
-    )
-    more = f" and {len(faint) - _MAX_NAMES} more" * (len(faint) > _MAX_NAMES)
-    note(f"{lead}: {', '.join([*faint.values()][:_MAX_NAMES])}{more}")
-    return {name: f"{lead}: {words}" for name, words in faint.items()}

@@ -195,7 +195,6 @@ def wav_bytes(
     bits: int,
     *,
     description: str = "",
-    dither: np.random.Generator | None = None,
 ) -> bytes:
     """Encode a mono sound as a WAV file.
 
@@ -209,14 +208,6 @@ def wav_bytes(
         One of `BITS`.
     description : str
         Text of the ``bext`` chunk, which is omitted if empty.
-    dither : numpy.random.Generator, optional
-        If given, integer samples are rounded with triangular dither of two steps' width, so that
-        the rounding of quiet sounds gives noise in place of distortion.
-
-    References
-    ----------
-    S. P. Lipshitz, R. A. Wannamaker and J. Vanderkooy, Quantization and dither: a theoretical
-    survey, J. Audio Eng. Soc. 40 (1992) 355-375.
 
     Examples
     --------
@@ -226,7 +217,7 @@ def wav_bytes(
     header = _header(fractions.size, rate, bits, description=description)
     if bits == 32:
         return header + fractions.astype("<f4").tobytes()
-    samples = integers(fractions, bits, dither)
+    samples = integers(fractions, bits, None)
     return header + samples + bytes(len(samples) % 2)
 
 
@@ -256,6 +247,14 @@ def integers(
     fractions: NDArray[np.float64], bits: int, dither: np.random.Generator | None
 ) -> bytes:
     r"""Return samples, shape (n,), as rounded and dithered little-endian integers.
+
+    Triangular dither of two steps' width makes noise of what rounding of quiet sounds would
+    distort.
+
+    References
+    ----------
+    S. P. Lipshitz, R. A. Wannamaker and J. Vanderkooy, Quantization and dither: a theoretical
+    survey, J. Audio Eng. Soc. 40 (1992) 355-375.
 
     Examples
     --------

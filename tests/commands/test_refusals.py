@@ -122,8 +122,6 @@ RENDER = [
     ("runs --ab --match-loudness --out s.wav", "--match-loudness"),
     ("runs --match-loudness --pascal-per-full-scale 2 --out s", "not allowed with"),
     ("runs/a.wav --gap -1 --out s.wav", "--gap"),
-    ("runs/a.wav --rate 96000 --out s.wav", "--rate"),
-    ("runs/a.wav --bits 8 --out s.wav", "--bits"),
     ("runs/a.wav --pascal-per-full-scale 0 --out s.wav", "--pascal-per-full-scale"),
     ("runs/a.wav --pascal-per-full-scale 1e300 --out s.wav", "at most 1e+09"),
     ("runs/a.wav --pascal-per-full-scale 0.1 --out s.wav", "would clip"),

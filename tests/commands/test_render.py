@@ -47,17 +47,12 @@ def sidecar(path):
     return json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize(
-    ("rate", "bits", "subtype"),
-    [("44100", "16", "PCM_16"), ("48000", "24", "PCM_24"), ("48000", "32", "FLOAT")],
-)
-def test_one_pascal_stays_94_decibels_there_and_back(tmp_path, rate, bits, subtype):
+def test_one_pascal_stays_94_decibels_there_and_back(tmp_path):
     pressure_file(tmp_path / "pascal", tone(rate=30e3, seconds=2.0), 30e3)
     out = tmp_path / "sound.wav"
-    given = ["--rate", rate, "--bits", bits, "--pascal-per-full-scale", "4"]
-    render(tmp_path / "pascal.wav", "--out", out, *given)
+    render(tmp_path / "pascal.wav", "--out", out, "--pascal-per-full-scale", "4")
     info = soundfile.info(out)
-    assert (str(info.samplerate), info.subtype) == (rate, subtype)
+    assert (info.samplerate, info.subtype) == (48_000, "PCM_24")
     (part,) = sidecar(out)["parts"]
     for level in ("level_db", "level_dba", "l_afmax_dba"):
         assert part[level] == pytest.approx(PASCAL_DB, abs=0.05)
@@ -102,7 +97,7 @@ def test_one_gain_keeps_how_loud_the_sounds_of_a_set_are_and_a_bad_file_is_a_row
 
 def test_matched_sounds_are_equally_loud_and_their_peaks_hold_the_limit(runs, tmp_path):
     out = tmp_path / "set"
-    render(runs, "--match-loudness", "--bits", "16", "--out", out)
+    render(runs, "--match-loudness", "--out", out)
     rows = table(out)
     sounds = {name: soundfile.read(out / name)[0] for name in rows}
     loudnesses = [loudness(samples, 48000) for samples in sounds.values()]
@@ -150,27 +145,6 @@ def test_what_would_clip_is_refused_with_the_level_that_would_not(runs, tmp_path
     assert not out.exists()
     render(*given, line.split()[-1])
     assert np.abs(soundfile.read(out)[0]).max() > 0.99
-
-
-def test_a_calibrated_set_says_what_of_it_can_hardly_be_heard(tmp_path, capsys):
-    pressure_file(tmp_path / "faint" / "squawk", tone(rms=0.03, seconds=2.0))  # near a rig's
-    pressure_file(tmp_path / "faint" / "loud", tone(rms=3.0, seconds=2.0))
-    out = tmp_path / "set"
-    render(tmp_path / "faint", "--pascal-per-full-scale", "20", "--out", out)
-    err = capsys.readouterr().err.splitlines()
-    (line,) = [line for line in err if "nearly inaudible" in line]
-    in_air = 20 * np.log10(0.03 / 2e-5)
-    in_file = 20 * np.log10(soundfile.read(out / "squawk.wav")[0].std())
-    levels = re.search(r"squawk \((.*) dB\(A\) at the microphone, (.*) dBFS\(A\) in the file", line)
-    assert [float(level) for level in levels.groups()] == pytest.approx([in_air, in_file], abs=0.2)
-    assert "loud (" not in line
-    rows = table(out)
-    assert (
-        "nearly inaudible"
-        in rows["squawk.wav"]["note"]
-        == sidecar(out / "squawk")["render"]["note"]
-    )
-    assert rows["loud.wav"]["note"] == ""
 
 
 def test_rig_files_conditions_and_recordings_are_heard_back_to_back_at_one_gain(tmp_path):
