@@ -125,11 +125,13 @@ def _check_overwrite(out: Path) -> None:
     wav = out if out.suffix.lower() == ".wav" else out.with_name(f"{out.name}.wav")
     if not wav.exists():
         return
+    from noise.recordings.sidecar import GENERATOR
+
     try:
         sidecar = json.loads(wav.with_suffix(".json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         sidecar = {}
-    if not isinstance(sidecar, dict) or "wav_crc32" not in sidecar:
+    if not isinstance(sidecar, dict) or not GENERATOR.items() <= sidecar.items():
         raise ParameterError(
             f"--out {out}: {wav.name} is there and was not written by this program; give another "
             "name, or --force to replace it"

@@ -21,7 +21,7 @@ from models.units import CHANNEL_UNITS, quantity_of_unit
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.files import MIN_SAMPLES
 from noise.recordings.formats import check_rate, formats
-from noise.recordings.formats.time_axis import even_step, whole_rate
+from noise.recordings.formats.logged import even_step, whole_rate
 
 RESPONSES = ("acceleration", "pressure")
 """Default channels of the response, in order of preference."""

@@ -7,18 +7,13 @@ same unit are equivalent. A JSON file of another program, without any key of a s
 
 ``"support_stiffness_Nm_rad": null`` is the clamp bolted to the baseplate; elsewhere null is the
 same as a missing key. Directions are normalised.
-
-``wav_crc32`` is the checksum of the WAV file. The sidecar is renamed into place before the samples,
-so a program killed in between leaves a new sidecar beside old samples; the checksum detects that.
 """
 
 import json
 import math
-import zlib
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from pathlib import Path
 from reprlib import repr as show
 from typing import Annotated, Any, TypeVar
@@ -48,8 +43,10 @@ _QUANTITIES = {
     "interference": replace(CONDITION["interference"], low=0.0, closed=True),
     "support_stiffness": replace(CONDITION["support_stiffness"], infinite=""),
 }
-_CHECKSUM = "wav_crc32"
-_KEYS = ("channels", "conditions", "calibrated", "notes", _CHECKSUM)
+GENERATOR = {"generator": "bushing-noise"}
+"""Entry of the sidecars that this program writes."""
+
+_KEYS = ("channels", "conditions", "calibrated", "notes", *GENERATOR)
 
 
 def _name(value: Any, key: str, where: str) -> str:
@@ -170,8 +167,6 @@ class Sidecar:
     condition : Condition
     calibrated : bool, optional
         None if not stated.
-    checksum : str
-        CRC-32 of the WAV file; empty if not stated.
     note : str
         Note for the user.
     """
@@ -181,7 +176,6 @@ class Sidecar:
         default_factory=Condition
     )
     calibrated: Annotated[bool | None, Flag("calibrated")] = None
-    checksum: Annotated[str, Text(_CHECKSUM)] = ""
     note: str = ""
 
 
@@ -210,7 +204,7 @@ def sidecar_of(recording: Path) -> Sidecar:
     Raises
     ------
     RecordingError
-        The sidecar cannot be read, holds invalid values, or belongs to other samples.
+        The sidecar cannot be read, or holds invalid values.
 
     Examples
     --------
@@ -221,24 +215,7 @@ def sidecar_of(recording: Path) -> Sidecar:
     if path is None:
         return Sidecar()
     with reading(path, "sidecar", error=RecordingError, largest=LARGEST_JSON):
-        sidecar = parse_sidecar(path.read_bytes(), str(path))
-    if sidecar.checksum and sidecar.checksum != _checksum(recording, recording.stat().st_mtime_ns):
-        raise RecordingError(
-            f"{path}: was written with other samples than those of {recording.name} (an "
-            f"interrupted call, or {recording.name} was changed); write both again, or remove "
-            f"{_CHECKSUM} if the sidecar is right"
-        )
-    return sidecar
-
-
-@lru_cache(maxsize=64)
-def _checksum(recording: Path, _modified: int) -> str:
-    """Return the CRC-32 of a file; the modification time is part of the cache key."""
-    checksum = 0
-    with recording.open("rb") as file:
-        while block := file.read(1 << 20):
-            checksum = zlib.crc32(block, checksum)
-    return f"{checksum:08x}"
+        return parse_sidecar(path.read_bytes(), str(path))
 
 
 def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
@@ -283,15 +260,9 @@ def _is_sidecar(content: Any) -> bool:
     """Whether a JSON file has a key or a value of a sidecar."""
     if not isinstance(content, dict):
         return False
-    entries = content.get("channels")
-    listed = entries if isinstance(entries, list) else []
-    names = [one.get("name") if isinstance(one, dict) else one for one in listed]
-    conditions = content.get("conditions")
-    return (
-        all(key in _KEYS for key in content)
-        or any(str(name).partition("_")[0] in CHANNEL_UNITS for name in names)
-        or (isinstance(conditions, dict) and any(_stem(key) != key for key in conditions))
-        or isinstance(content.get("calibrated"), bool)
+    kinds = {"channels": list, "conditions": dict, "calibrated": bool}
+    return all(key in _KEYS for key in content) or any(
+        isinstance(content.get(key), kind) for key, kind in kinds.items()
     )
 
 
@@ -308,14 +279,12 @@ def _spelling(unit: str) -> str:
     return unit.replace("²", "2").translate({ord(sign): None for sign in " ^·*"})
 
 
-def sidecar_text(recording: Recording, checksum: str = "") -> str:
+def sidecar_text(recording: Recording) -> str:
     """Return the text of the sidecar for a recording with floating-point samples.
 
     Parameters
     ----------
     recording : Recording
-    checksum : str, optional
-        CRC-32 of the WAV file as eight hexadecimal digits.
 
     Returns
     -------
@@ -346,11 +315,10 @@ def sidecar_text(recording: Recording, checksum: str = "") -> str:
         "channels": [*map(table_of, channels)],
         "conditions": conditions,
         "calibrated": recording.calibrated,
+        **GENERATOR,
     }
     if recording.notes:
         content["notes"] = list(recording.notes)
-    if checksum:
-        content[_CHECKSUM] = checksum
     text = json.dumps(content, indent=1, default=float) + "\n"
     try:
         parse_sidecar(text, f"recording {recording.name!r}")

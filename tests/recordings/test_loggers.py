@@ -139,7 +139,7 @@ def test_what_does_not_stand_over_time_is_refused(name, tmp_path):
     assert_refused(NO_TIME, name, tmp_path)
 
 
-# --- where channels begin: the same sample at the same time -------------------------------------
+# --- where channels begin: together, or refused -------------------------------------------------
 
 LATE = 96  # samples: 2 ms
 A, B = X[: N - LATE], X[LATE:]  # of one signal, the second channel begins 2 ms late
@@ -171,12 +171,8 @@ STARTS = {
 
 
 @pytest.mark.parametrize("name", STARTS)
-def test_channels_are_aligned_by_their_start(name, tmp_path):
-    run = read_recording(STARTS[name](tmp_path))
-    assert run.samples.shape == (2, N - 2 * LATE)
-    np.testing.assert_allclose(run.samples[0], X[LATE : N - LATE], atol=1e-9)
-    np.testing.assert_allclose(run.samples[1], run.samples[0], atol=1e-9)
-    assert any("begin up to 2 ms apart" in note for note in run.notes)
+def test_channels_that_do_not_begin_together_are_refused(name, tmp_path):
+    assert "begins 0.002 s after another" in refusal(STARTS[name](tmp_path))
 
 
 def begins(*late, n=N):
@@ -189,10 +185,8 @@ def begins(*late, n=N):
 
 TOGETHER = "channels of a recording must be sampled together"
 APART = {
-    "between samples": (begins(0.0, 10.4 / RATE), "'a' is sampled 0.40 steps apart from 'b'"),
-    "a third as long": (begins(0.0, 0.0, n=N // 3), "('a' 4800 from 0 s, 'b' 1600 from 0 s)"),
-    "one after the other": (begins(0.0, 1.0), "have 0 samples in common"),
-    "a start that is not stated": (begins(0.0, 0.1, None), "when channel 'c' begins"),
+    "between samples": (begins(0.0, 0.4 / RATE), "'b' begins 8.33333e-06 s after another"),
+    "a third as long": (begins(0.0, 0.0, n=N // 3), "have between 1600 and 4800 samples"),
     "uff lengths": (of(uff, (X, "Pa"), (X[:900], "Pa")), TOGETHER),
     **{
         f"rates in {ending}": (
@@ -207,14 +201,14 @@ APART = {
 
 
 @pytest.mark.parametrize("name", APART)
-def test_channels_that_cannot_be_aligned_are_refused(name, tmp_path):
+def test_channels_that_were_not_sampled_together_are_refused(name, tmp_path):
     assert_refused(APART, name, tmp_path)
 
 
 def test_a_few_samples_more_are_cut_with_a_note(tmp_path):
     run = read_recording(begins(0.0, 0.0, n=N - 3)(tmp_path))
     assert run.samples.shape == (2, N - 3)
-    assert "cut to the 4797 samples in common" in run.notes[0]
+    assert "between 4797 and 4800 samples; they are cut to the shortest" in run.notes[0]
 
 
 # --- the value: 1 Pa rms, or refused ------------------------------------------------------------

@@ -23,8 +23,14 @@ from numpy.typing import NDArray
 from models.errors import RecordingError
 from models.units import split_unit
 from noise.recordings.formats import Format
-from noise.recordings.formats.logged import CONDITIONS, PACKING, LoggedChannel, factor_and_offset
-from noise.recordings.formats.time_axis import Axis, is_time
+from noise.recordings.formats.logged import (
+    CONDITIONS,
+    PACKING,
+    Axis,
+    LoggedChannel,
+    factor_and_offset,
+    is_time,
+)
 
 _RATES = ("rate_Hz", "rate", "fs", "sampling_rate", "sample_rate", "sampling_frequency")
 _STEPS = ("dt", "sampling_interval")

@@ -7,8 +7,8 @@ with a note, or the file is refused. Nothing is ignored.
 - The axis must be time, in any unit, with even steps.
 - The unit determines the kind of a channel; without a unit its name does, if it is a known one. A
   sidecar that names the channels takes precedence.
-- Channels that start at different times are aligned by whole samples and cut to their common part.
-  Other differences are refused, because resampling would add delays that look like those of a rig.
+- Channels must begin together and have one sampling rate, because resampling or shifting would add
+  delays that look like those of a rig. They are cut to the shortest.
 
 Only the selected channels are read, one at a time.
 """
@@ -18,8 +18,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,17 +29,23 @@ from numpy.typing import NDArray
 from models.condition import CONDITION, Condition
 from models.errors import RecordingError, naming
 from models.recording import Channel
-from models.units import CHANNEL_UNITS, kind_of_unit, split_unit
-from noise.recordings.formats import RawRecording, check_rate
-from noise.recordings.formats.time_axis import SAME_RATE, Axis, start_and_rate
-from noise.recordings.sidecar import Sidecar, read_condition, sidecar_of
+from models.units import CHANNEL_UNITS, kind_of_unit, quantity_of_unit, split_unit
+from noise.recordings.formats import RawRecording
+from noise.recordings.sidecar import read_condition, sidecar_of
 
 CONDITIONS = (*(one.key for one in CONDITION.values()), "material")
 """Properties of a file that state its operating condition, with the keys of a sidecar."""
 
+SAME_RATE = 1e-6
+"""Relative tolerance of equal sampling rates [-]."""
+
 _SHIFT = 0.1  # tolerance of the offset between the samples of channels [steps]
-_COMMON = 0.5  # smallest common part of the channels, relative to the longest
+_COMMON = 0.5  # smallest length of a channel, relative to the longest
+_JITTER = 0.05  # tolerance of a time stamp [steps]
+_CONTRADICTION = 1e-3  # relative difference of two stated rates that contradict each other
 _MAX_NAMES = 3  # number of skipped channels that a note names
+_TIME = re.compile(r"time|zeit|temps|tiempo|tempo|timestamps?|t", re.IGNORECASE)
+_KNOWN_NAME = re.compile(rf"({'|'.join(CHANNEL_UNITS)})(_([2-9]|[1-9]\d{{1,3}}))?")
 _UNCLEAR = {
     "gain": 1.0, "sensitivity": 1.0, "calibration": 1.0, "calibration_factor": 1.0, "factor": 1.0,
     "scale": 1.0, "offset": 0.0,
@@ -47,7 +55,32 @@ _UNCLEAR = {
 PACKING = ("scale_factor", "add_offset", *_UNCLEAR)
 """Attributes of packed numbers."""
 
-_KNOWN_NAME = re.compile(rf"({'|'.join(CHANNEL_UNITS)})(_([2-9]|[1-9]\d{{1,3}}))?")
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Axis:
+    """Axis of a channel as stated in one place of a file.
+
+    Parameters
+    ----------
+    start, step : float, optional
+        Position of the first sample, and step between samples [unit].
+    times : callable, optional
+        Function that reads the position of each sample [unit].
+    unit, quantity : str, optional
+        Such as "ms" and "time".
+    """
+
+    start: float | None = None
+    step: float | None = None
+    times: Callable[[], NDArray[np.generic]] | None = None
+    unit: str | None = None
+    quantity: str | None = None
+
+    @cached_property
+    def even(self) -> tuple[float, float]:
+        """First time stamp and step [unit]; cached, as many channels may share an axis."""
+        assert self.times is not None
+        return even_step(self.times())
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -81,31 +114,14 @@ class LoggedChannel:
     problem: str = ""
 
 
-@dataclass(frozen=True, eq=False)
-class Row:
-    """Channel of a recording with its source in the logger file.
-
-    Parameters
-    ----------
-    logged : LoggedChannel
-    kind : str
-        Kind of channel; empty if only a sidecar can state it.
-    value : float
-        Unit of the file [SI unit].
-    start : float or None
-        Time of the first sample [s].
-    rate : float
-        Sampling rate [Hz].
-    first : int
-        Index of the first sample of the recording.
-    """
+class _Row(NamedTuple):
+    """Channel on a time axis: kind (empty if unknown), unit in SI, start [s] and rate [Hz]."""
 
     logged: LoggedChannel
     kind: str
     value: float
     start: float | None
     rate: float
-    first: int = 0
 
     def samples(self, n: int) -> NDArray[np.float64]:
         """Read the samples, shape (n,) [SI unit of the channel]."""
@@ -115,7 +131,7 @@ class Row:
                 f"channel {self.logged.name!r} is truncated; {self.logged.n_samples} samples are "
                 f"announced, {len(stored)} can be read"
             )
-        samples = np.array(stored[self.first : self.first + n], dtype=np.float64)
+        samples = np.array(stored[:n], dtype=np.float64)
         factor, offset = factor_and_offset(self.logged.packing)
         with np.errstate(over="ignore", invalid="ignore"):  # infinite samples are refused later
             samples *= self.value * factor
@@ -152,7 +168,6 @@ def convert(
     Examples
     --------
     >>> import tempfile
-    >>> from noise.recordings.formats.time_axis import Axis
     >>> clock = Axis(start=0.0, step=0.02, unit="ms")
     >>> arm = LoggedChannel(
     ...     name="Arm 1", n_samples=400, values=lambda: np.ones(400), axes=[clock], unit="N mm"
@@ -167,50 +182,46 @@ def convert(
     """
     if not logged:
         raise RecordingError(f"{path}: holds no channel of numbers")
-    on_time: list[Row] = []
-    left_out: list[tuple[bool, str]] = []
+    on_time: list[_Row] = []
+    left_out: list[str] = []
     for channel in logged:
         try:
-            kind, value = _kind(channel)
-            start, rate = start_and_rate(channel.axes)
+            on_time.append(_Row(channel, *_kind(channel), *start_and_rate(channel.axes)))
         except RecordingError as error:
-            # Channels with a known unit or name come first in the note.
-            known = bool(kind_of_unit(_unit(channel)) or _known_name(channel.name))
-            left_out.append((not known, f"{channel.name!r} {error}"))
-        else:
-            on_time.append(Row(channel, kind, value, start, rate))
-    sidecar = sidecar_of(path)
-    rows = _selected(sidecar, on_time)
+            left_out.append(f"{channel.name!r} {error}")
+    stated = sidecar_of(path).channels
+    known = [row for row in on_time if row.kind]
+    number = len(known if stated is None else stated)
+    # A sidecar that names more channels than have a known unit means those of one sampling rate.
+    alike = [row for row in on_time if row.rate == (known or on_time)[0].rate]
+    rows = alike if len(known) != number and len(alike) == number else known
     left_out += [
-        (True, f"{row.logged.name!r} {_unit_problem(row.logged)}")
-        for row in on_time
-        if row not in rows
+        f"{row.logged.name!r} {_unit_problem(row.logged)}" for row in on_time if row not in rows
     ]
-    reasons = [reason for _, reason in sorted(left_out, key=lambda one: one[0])]
+    reasons = "; ".join(left_out[:_MAX_NAMES])
+    if len(left_out) > _MAX_NAMES:
+        reasons += f"; and {len(left_out) - _MAX_NAMES} more"
     if not rows:
         raise RecordingError(
-            f"{path}: channel {_listed(reasons)}; expected samples over time in one of "
+            f"{path}: channel {reasons}; expected samples over time in one of "
             f"{', '.join(CHANNEL_UNITS.values())}, or a sidecar that names the channels"
         )
-    notes = []
-    if reasons:
-        notes.append(f"left out: {_listed(reasons)}; name them in a sidecar to use them")
-    if sidecar.channels is not None and len(rows) == len(sidecar.channels):
+    notes = [f"left out: {reasons}; name them in a sidecar to use them"] if reasons else []
+    if stated is None or len(rows) != len(stated):
+        channels = _channels(rows)
+    else:
+        channels = tuple(one.channel for one in stated)
         rows = [
             _renamed(row, one.channel, one.unit or "", notes)
-            for row, one in zip(rows, sidecar.channels, strict=True)
+            for row, one in zip(rows, stated, strict=True)
         ]
-        channels = tuple(one.channel for one in sidecar.channels)
-    else:
-        channels = _channels(rows)
     notes += [
         f"channel {row.logged.name!r} {unclear}, which is not applied: its samples are assumed to "
         "be in its unit"
         for row in rows
         if (unclear := _unclear(row.logged))
     ]
-    rows, n_samples = _aligned(path, rows, notes)
-
+    n_samples = _common_length(path, rows, notes)
     with naming(f"{path}: "), target.open("wb") as file:
         for row in rows:
             row.samples(n_samples).tofile(file)
@@ -231,60 +242,32 @@ def _unreadable(first: int, last: int) -> NDArray[np.float64]:
     raise NotImplementedError
 
 
-def _listed(reasons: Sequence[str]) -> str:
-    """Return the first reasons as text."""
-    more = len(reasons) - _MAX_NAMES
-    return "; ".join(reasons[:_MAX_NAMES]) + (f"; and {more} more" if more > 0 else "")
-
-
-def _aligned(path: Path, rows: list[Row], notes: list[str]) -> tuple[list[Row], int]:
-    """Align channels by their start; return them with their common number of samples."""
-    rate, longest = rows[0].rate, max(row.logged.n_samples for row in rows)
-    check_rate(rate, str(path))
+def _common_length(path: Path, rows: Sequence[_Row], notes: list[str]) -> int:
+    """Return the length of the shortest channel; refuse channels that were not sampled together."""
+    first, together = rows[0], "channels of a recording must be sampled together"
+    starts = [row.start for row in rows if row.start is not None]
     for row in rows:
-        if not math.isclose(row.rate, rate, rel_tol=SAME_RATE):
+        if not math.isclose(row.rate, first.rate, rel_tol=SAME_RATE):
             raise RecordingError(
                 f"{path}: channel {row.logged.name!r} is sampled at {row.rate:.10g} Hz, "
-                f"{rows[0].logged.name!r} at {rate:.10g} Hz; channels of a recording must be "
-                "sampled together"
+                f"{first.logged.name!r} at {first.rate:.10g} Hz; {together}"
             )
-    stated = [row.start for row in rows if row.start is not None]
-    if 0 < len(stated) < len(rows) and max(stated) > min(stated):
-        silent = next(row.logged.name for row in rows if row.start is None)
+        if row.start is not None and (row.start - min(starts)) * first.rate > _SHIFT:
+            raise RecordingError(
+                f"{path}: channel {row.logged.name!r} begins {row.start - min(starts):.6g} s after "
+                f"another; {together}"
+            )
+    lengths = [row.logged.n_samples for row in rows]
+    shortest, longest = min(lengths), max(lengths)
+    if shortest < _COMMON * longest:
         raise RecordingError(
-            f"{path}: does not state when channel {silent!r} begins, and others begin "
-            f"{max(stated) - min(stated):.6g} s apart"
+            f"{path}: channels have between {shortest} and {longest} samples; {together}"
         )
-    begins = [max(stated, default=0.0) if row.start is None else row.start for row in rows]
-    shifts = [(max(begins) - begin) * rate for begin in begins]
-    fractions = [abs(shift - round(shift)) for shift in shifts]
-    if max(fractions) > _SHIFT:
-        one = rows[int(np.argmax(fractions))]
-        raise RecordingError(
-            f"{path}: channel {one.logged.name!r} is sampled {max(fractions):.2f} steps apart from "
-            f"{rows[int(np.argmin(shifts))].logged.name!r}; channels of a recording must be "
-            "sampled together"
-        )
-    aligned = [
-        replace(row, rate=rate, first=round(shift)) for row, shift in zip(rows, shifts, strict=True)
-    ]
-    common = min(row.logged.n_samples - row.first for row in aligned)
-    if common < _COMMON * longest:
-        counts = ", ".join(
-            f"{row.logged.name!r} {row.logged.n_samples} from {begin - min(begins):.6g} s"
-            for row, begin in zip(aligned, begins, strict=True)
-        )
-        raise RecordingError(
-            f"{path}: channels have {max(common, 0)} samples in common ({counts}); channels of a "
-            "recording must be sampled together"
-        )
-    if common < longest:
+    if shortest < longest:
         notes.append(
-            f"channels begin up to {(max(begins) - min(begins)) * 1e3:.6g} ms apart and have "
-            f"between {min(row.logged.n_samples for row in aligned)} and {longest} samples; they "
-            f"are aligned by their start and cut to the {common} samples in common"
+            f"channels have between {shortest} and {longest} samples; they are cut to the shortest"
         )
-    return aligned, common
+    return shortest
 
 
 # --- the value -----------------------------------------------------------------------------------
@@ -362,23 +345,7 @@ def _numbers(packing: Mapping[str, object]) -> dict[str, float]:
     }
 
 
-def _selected(sidecar: Sidecar, on_time: list[Row]) -> list[Row]:
-    """Return the rows that match a sidecar in number, or those of a known kind."""
-    known = [row for row in on_time if row.kind]
-    first = (known or on_time)[:1]
-    alike = [row for row in on_time if any(_alike(row, one) for one in first)]
-    count = len(known if sidecar.channels is None else sidecar.channels)
-    matches = (rows for rows in (known, on_time, alike) if len(rows) == count)
-    return next(matches, known)  # `noise.recordings.interpretation` refuses a wrong number
-
-
-def _alike(one: Row, other: Row) -> bool:
-    """Whether two rows have the same length and sampling rate."""
-    same_length = one.logged.n_samples == other.logged.n_samples
-    return same_length and math.isclose(one.rate, other.rate, rel_tol=SAME_RATE)
-
-
-def _renamed(row: Row, channel: Channel, unit: str, notes: list[str]) -> Row:
+def _renamed(row: _Row, channel: Channel, unit: str, notes: list[str]) -> _Row:
     """Return a row with the kind of a sidecar's channel; samples are then in its unit as stored."""
     if row.kind == channel.kind and (not unit or row.value == 1.0):
         return row
@@ -387,10 +354,10 @@ def _renamed(row: Row, channel: Channel, unit: str, notes: list[str]) -> Row:
             f"the sidecar's {channel.name} in {unit or channel.unit} stands for "
             f"{row.logged.unit!r} of channel {row.logged.name!r}"
         )
-    return replace(row, kind=channel.kind, value=1.0)
+    return row._replace(kind=channel.kind, value=1.0)
 
 
-def _channels(rows: Sequence[Row]) -> tuple[Channel, ...]:
+def _channels(rows: Sequence[_Row]) -> tuple[Channel, ...]:
     """Return channels with known names; others get the next free number of their kind."""
     names: list[str] = []
     for row in rows:
@@ -400,6 +367,116 @@ def _channels(rows: Sequence[Row]) -> tuple[Channel, ...]:
         numbered = (row.kind if n == 1 else f"{row.kind}_{n}" for n in range(1, len(rows) + 2))
         names[i] = names[i] or next(name for name in numbered if name not in names)
     return tuple(map(Channel, names))
+
+
+# --- the axis ------------------------------------------------------------------------------------
+
+
+def is_time(name: str, unit: str | None) -> bool:
+    """Whether a channel holds time stamps, judged by name and unit.
+
+    Examples
+    --------
+    >>> is_time("Time (ms)", None), is_time("t", "s"), is_time("T", "degC")
+    (True, True, False)
+    """
+    named = _TIME.fullmatch(split_unit(name)[0].strip()) is not None
+    return named and (not unit or _time_unit(unit) is not None)
+
+
+def _time_unit(unit: str) -> float | None:
+    """Return a unit of time in seconds, as "ms" or "hours since 2024-01-01"; None for others."""
+    quantity, factor = quantity_of_unit(unit.partition(" since ")[0]) or ("", 0.0)
+    return factor if quantity == "time" else None
+
+
+def start_and_rate(axes: Sequence[Axis]) -> tuple[float | None, float]:
+    """Return start [s] and sampling rate [Hz] of a channel from its stated axes.
+
+    Parameters
+    ----------
+    axes : sequence of Axis
+        The last one with a start determines the start.
+
+    Raises
+    ------
+    RecordingError
+        An axis is not time, or the axes state no rate or contradict each other.
+    """
+    start, rates = None, []
+    for axis in axes:
+        second = _second(axis)
+        if axis.times is not None:
+            first, step = axis.even
+            start = second * first
+            rates.append(1.0 / (second * step))
+        elif axis.start is not None:
+            start = second * axis.start
+        if axis.step is not None:
+            if not 0.0 < axis.step < math.inf:
+                raise RecordingError(f"has a step in time of {axis.step:g}")
+            rates.append(1.0 / (second * axis.step))
+    if not rates:
+        raise RecordingError("states no sampling rate")
+    if max(rates) - min(rates) > _CONTRADICTION * max(rates):
+        both = " and ".join(f"{rate:.6g}" for rate in rates)
+        raise RecordingError(f"states two sampling rates, {both} Hz")
+    return start, whole_rate(rates[0])
+
+
+def _second(axis: Axis) -> float:
+    """Return the unit of a time axis [s]; refuse other axes."""
+    if axis.unit:
+        second = _time_unit(axis.unit)
+        if second is None:
+            quantity = f"of {axis.quantity} " if axis.quantity else ""
+            raise RecordingError(f"has an axis {quantity}in {axis.unit!r}, expected time")
+        return second
+    words = re.split(r"[\W_]+", axis.quantity or "time")
+    if not any(_TIME.fullmatch(word) for word in words):
+        raise RecordingError(f"has an axis of {axis.quantity!r}, expected time")
+    return 1.0
+
+
+def even_step(times: NDArray[np.generic], jitter: float = _JITTER) -> tuple[float, float]:
+    """Return the first of evenly spaced time stamps and their step.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n,)
+        [any unit]
+    jitter : float
+        Largest deviation of a time stamp [steps].
+
+    Raises
+    ------
+    RecordingError
+        A time stamp deviates by more.
+
+    Examples
+    --------
+    >>> t = 0.5 + np.arange(480) / 48e3
+    >>> start, step = even_step(t)
+    >>> start, round(1.0 / step)
+    (0.5, 48000)
+    """
+    n = times.size
+    if n < 2:
+        raise RecordingError(f"has {n} time stamps, expected at least 2")
+    start, step = float(times[0]), (float(times[-1]) - float(times[0])) / (n - 1)
+    if not 0.0 < step < math.inf:
+        raise RecordingError("has a time that does not rise")
+    off = np.abs(np.asarray(times, dtype=np.float64) - (start + step * np.arange(n)))
+    if not off.max() <= jitter * step:
+        at = int(np.argmax(~(off <= jitter * step)))
+        raise RecordingError(f"has a time that does not rise evenly (sample {at})")
+    return start, step
+
+
+def whole_rate(rate: float, same: float = SAME_RATE) -> float:
+    """Round a sampling rate [Hz] to a close whole number: loggers store steps with few digits."""
+    whole = float(round(rate))
+    return whole if abs(whole - rate) <= same * rate else rate
 
 
 # --- the condition -------------------------------------------------------------------------------

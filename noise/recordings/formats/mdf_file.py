@@ -19,14 +19,11 @@ from numpy.typing import NDArray
 
 from models.errors import RecordingError
 from noise.recordings.formats import Format
-from noise.recordings.formats.logged import LoggedChannel
-from noise.recordings.formats.time_axis import Axis
+from noise.recordings.formats.logged import Axis, LoggedChannel
 
 _HEAD = 64  # bytes before the first block
 _UNFINISHED = slice(60, 64)  # flags in the head of a file that was not finalised
 _FIXED_LENGTH = 0  # type of a channel with plain values
-_VIRTUAL = (3, 6)  # types of channels without bytes in a record
-_HAS_MARK = 1 << 1  # flag of a channel with an invalidation bit in each record
 _NUMBERS = range(6)  # data types: integers and floating-point values, both byte orders
 _TO_TEXT = (7, 8, 9, 10)  # conversions from value or text to text
 _QUANTITIES = ("", "time", "angle", "distance", "index")  # of a master channel
@@ -39,7 +36,7 @@ def open_mdf(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, obj
     Raises
     ------
     RecordingError
-        The file has another version or is unfinished, or a channel is outside its records.
+        The file has another version or is unfinished.
     """
     from asammdf import MDF
 
@@ -48,7 +45,7 @@ def open_mdf(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, obj
     # Given a path, the library maps the file into memory and fails on parts of large files.
     with path.open("rb") as stream, MDF(stream) as file:
         groups = range(len(file.groups))
-        logged = [channel for group in groups for channel in _group(path, file, group)]
+        logged = [channel for group in groups for channel in _group(file, group)]
         comment = ET.fromstring(file.header.comment)
         yield logged, {e.attrib["name"]: e.text or "" for e in comment.iter("e")}
 
@@ -76,7 +73,7 @@ def _check_head(path: Path) -> None:
         raise RecordingError(f"{path}: was not finished by the program that wrote it")
 
 
-def _group(path: Path, file: Any, group: int) -> list[LoggedChannel]:
+def _group(file: Any, group: int) -> list[LoggedChannel]:
     """Return the numeric channels of a group."""
     block = file.groups[group]
     n, master = int(block.channel_group.cycles_nr), file.masters_db.get(group)
@@ -85,10 +82,7 @@ def _group(path: Path, file: Any, group: int) -> list[LoggedChannel]:
         return []
     axes = []
     if master is not None:
-        _check_place(path, block.channel_group, block.channels[master])
         axes = [_axis(file, group, block.channels[master])]
-    for index in plain:
-        _check_place(path, block.channel_group, block.channels[index])
     return [_channel(file, group, index, axes) for index in plain]
 
 
@@ -130,19 +124,6 @@ def _channel(file: Any, group: int, index: int, axes: list[Axis]) -> LoggedChann
 def _unit(channel: Any) -> str:
     """Return the unit of a channel, which its conversion may state."""
     return str(channel.unit or getattr(channel.conversion, "unit", "") or "")
-
-
-def _check_place(path: Path, group: Any, channel: Any) -> None:
-    """Refuse a channel outside the records of its group, which the library would still read."""
-    where = f"{path}: channel {str(channel.name)!r}"
-    end = int(channel.byte_offset) + (int(channel.bit_offset) + int(channel.bit_count) + 7) // 8
-    if channel.channel_type not in _VIRTUAL and end > int(group.samples_byte_nr):
-        raise RecordingError(
-            f"{where} ends at byte {end} of a record of {int(group.samples_byte_nr)} bytes"
-        )
-    marked = int(channel.flags) & _HAS_MARK
-    if marked and int(channel.pos_invalidation_bit) >= 8 * int(group.invalidation_bytes_nr):
-        raise RecordingError(f"{where} has its mark of validity outside the record")
 
 
 def _is_number(channel: Any) -> bool:

@@ -19,11 +19,8 @@ import numpy as np
 from models.errors import RecordingError
 from models.units import split_unit
 from noise.recordings.formats import Format
-from noise.recordings.formats.logged import LoggedChannel
-from noise.recordings.formats.time_axis import Axis, is_time
+from noise.recordings.formats.logged import Axis, LoggedChannel, is_time
 
-_BIG_ENDIAN = 1 << 6  # flag in the table of contents, which is little-endian
-_VERSIONS = (4712, 4713)
 _UNSET_STEPS = (0.0, 1.0)  # default steps that LabVIEW writes
 _UNITS = ("unit_string", "NI_UnitDescription", "unit", "units")
 _UNSET_BEGIN = np.datetime64("1904-01-01")
@@ -42,15 +39,14 @@ def open_tdms(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, ob
     Raises
     ------
     RecordingError
-        The file is truncated or of another version, or a channel has an unknown scale.
+        The file is truncated, or a channel has an unknown scale.
     """
     from nptdms import TdmsFile
 
-    _check_head(path)
     with path.open("rb") as stream, TdmsFile.open(stream) as file:
         if file.file_status.incomplete_final_segment:
             raise RecordingError(f"{path}: is truncated; its last segment goes on")
-        groups = [[c for c in g.channels() if _holds(path, c, "iufM")] for g in file.groups()]
+        groups = [[c for c in g.channels() if _holds(path, c)] for g in file.groups()]
         begins = {_begin(channel) for group in groups for channel in group}
         logged: list[LoggedChannel] = []
         for group in groups:
@@ -66,23 +62,9 @@ def open_tdms(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, ob
 FORMAT = Format("TDMS", (".tdms",), channels=open_tdms, library="nptdms", extra="tdms")
 
 
-def _check_head(path: Path) -> None:
-    """Refuse other files and versions."""
-    with path.open("rb") as file:
-        tag, contents, version = file.read(4), file.read(4), file.read(4)
-    if tag != b"TDSm":
-        raise RecordingError(f"{path}: is no TDMS file; 'TDSm' expected")
-    big = int.from_bytes(contents, "little") & _BIG_ENDIAN
-    number = int.from_bytes(version, "big" if big else "little")
-    if number not in _VERSIONS:
-        raise RecordingError(f"{path}: is of TDMS version {number}, expected 4712 or 4713")
-
-
-def _holds(path: Path, channel: Any, kinds: str) -> bool:
-    """Whether a channel holds values of some dtype kinds; refuse an unknown scale."""
-    if not len(channel) or channel.data_type is None:
-        return False
-    if np.dtype(channel.dtype).kind not in kinds:
+def _holds(path: Path, channel: Any) -> bool:
+    """Whether a channel holds numbers or times; refuse an unknown scale."""
+    if not len(channel) or channel.data_type is None or channel.dtype.kind not in "iufM":
         return False
     for key, value in channel.properties.items():
         if key.endswith(_SCALE_TYPE) and value not in _SCALES:

@@ -16,8 +16,7 @@ from models.transfer_functions.uff import (
     read_uff_functions,
 )  # fmt: skip
 from noise.recordings.formats import Format
-from noise.recordings.formats.logged import LoggedChannel
-from noise.recordings.formats.time_axis import Axis
+from noise.recordings.formats.logged import Axis, LoggedChannel
 
 
 @contextmanager
