@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from models.rig import LawSpec, Rig
-from sim.contact import CRITICAL
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, Effect
 from sim.friction import friction_law
@@ -33,8 +32,7 @@ def can_act(active: ActiveEffect, friction: LawSpec) -> bool:
     >>> can_act(creep, LawSpec("coulomb")), can_act(creep, LawSpec("contact_with_memory"))
     (True, False)
     """
-    law, entry = friction_law(friction.name), active.effect.changes_only
-    return law.torque is None or entry is None or (entry == CRITICAL and law.reads_critical)
+    return friction_law(friction.name).torque is None or not active.effect.of_true_stick
 
 
 def constant_version(rig: Rig, library: Mapping[str, Effect] = EFFECTS) -> Rig:

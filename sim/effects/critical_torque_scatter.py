@@ -104,7 +104,6 @@ EFFECT = Effect(
     },
     strength="scatter",
     contact=_contact,
-    changes_only=CRITICAL,
     pack=_pack,
     n_states=2,
     irregular=True,

@@ -74,9 +74,9 @@ class Effect:
         of all parameters in order, followed by the index of the form among `forms`.
     n_states : int
         Number of inner states of `contact`, zero at the start.
-    changes_only : int, optional
-        The only entry of the contact (``CREEP`` or ``CRITICAL`` of `sim.contact`) that `contact`
-        changes, if there is one: with a law that does not read it the effect cannot act.
+    of_true_stick : bool
+        Whether `contact` changes the creep of true stick alone, which laws with an inner state do
+        not read.
     force : callable, optional
         ``force(motion, form, values)`` returns the force of impacts in the anchors' joint [N].
     chain : callable, optional
@@ -98,7 +98,7 @@ class Effect:
     contact: Any = None
     pack: PackFunction | None = None
     n_states: int = 0
-    changes_only: int | None = None
+    of_true_stick: bool = False
     force: ForceFunction | None = None
     chain: ChainFunction | None = None
     sensors: SensorFunction | None = None

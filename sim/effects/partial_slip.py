@@ -60,6 +60,6 @@ EFFECT = Effect(
     },
     strength="share",
     contact=_contact,
-    changes_only=CREEP,
+    of_true_stick=True,
 )
 """Gradual release of the contact during stick."""

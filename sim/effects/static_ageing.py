@@ -56,7 +56,6 @@ EFFECT = Effect(
     },
     strength="share",
     contact=_contact,
-    changes_only=CRITICAL,
     n_states=1,
 )
 """Critical torque that grows with the time of stick."""

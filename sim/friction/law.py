@@ -35,8 +35,6 @@ class FrictionLaw:
         values in order. The torques of the fit are in the contact, changed by effects.
     rest : tuple of float
         Inner state of the contact after a long rest [rad or s, by the law]; by default none.
-    reads_critical : bool
-        Whether `torque` reads the critical torque.
     tolerance : float
         Relative error of a solver step in twist, speed and inner state [-]. The default suits the
         most chaotic laws; where neighbouring motions diverge slowly, a larger one is as good.
@@ -50,7 +48,6 @@ class FrictionLaw:
     torque: Any = None
     pack: Callable[[Mapping[str, float]], NDArray[np.float64]] | None = None
     rest: tuple[float, ...] = ()
-    reads_critical: bool = True
     tolerance: float = 1e-8
     master_speeds: tuple[str, ...] = ()
 

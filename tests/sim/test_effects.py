@@ -82,11 +82,9 @@ def test_what_an_effect_does_not_have_is_refused_by_name(name):
             EFFECTS[name].active(given)
 
 
-@pytest.mark.parametrize("law", ["lugre", "viscous", "coulomb"])
+@pytest.mark.parametrize("law", ["lugre", "coulomb"])
 @pytest.mark.parametrize("name", [name for name in EFFECTS if EFFECTS[name].contact is not None])
 def test_an_effect_acts_where_the_law_reads_what_it_changes(name, law):
-    """Creep is of true stick alone, and a viscous law does not know the critical torque."""
-    idle = {"lugre": {"partial_slip"}, "coulomb": set()}.get(
-        law, {"partial_slip", "critical_torque_scatter", "static_ageing"}
-    )
+    """Creep is of true stick alone."""
+    idle = {"partial_slip"} if law == "lugre" else set()
     assert can_act(EFFECTS[name].active({}), LawSpec(law)) == (name not in idle)

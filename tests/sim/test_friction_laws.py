@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 from numba import float64, int64, njit
-from scipy.optimize import brentq
 
 from models.rig_file import load_material_rig
 from sim.contact import CRITICAL, KINETIC, N_CONTACT, address_of, call_law_at
@@ -21,7 +20,6 @@ STEP = 5e-6
 
 STRIBECK = {
     "stribeck_exponential": lambda x: np.exp(-abs(x)),
-    "stribeck_gaussian": lambda x: np.exp(-(x**2)),
     "stribeck_lorentzian": lambda x: 1.0 / (1.0 + x**2),
 }
 NAMES = tuple(name for name in LAWS if name not in {"coulomb", "lugre"})
@@ -80,25 +78,10 @@ def expected_torque(name, v, given):
         f, s = STRIBECK[name], p["second_share"]
         fade = (1.0 - s) * f(v / p["first_speed"]) + s * f(v / p["second_speed"])
         return T_KIN + drop * fade
-    if name == "viscous":
-        return T_KIN * (1.0 + v / p["doubling_speed"])
-    if name == "maxwell_slip":
-        return T_KIN + drop * math.exp(-v / p["stribeck_speed"])
     if name == "master_curve":
         decades = math.log10(v / p["peak_speed"]) / p["width"]
         floor, peak = p["floor_share"] * T_KIN, p["peak_share"] * T_CRIT
         return floor + (peak - floor) * math.exp(-0.5 * decades**2)
-    if name == "bond_population":
-        stiffness = p["bond_stiffness_per_torque"] * T_KIN
-
-        def rupture(u):
-            t_s = p["bonding_time"] * math.exp(T_CRIT / (stiffness * p["rupture_stretch"]))
-            return math.exp(u / p["rupture_stretch"]) / t_s
-
-        u = brentq(lambda u: u * rupture(u) - v, 0.0, 0.1)
-        n = 1.0 / (1.0 + rupture(u) * p["bonding_time"])
-        rubbing = (1.0 - n) * p["rubbing_share"] * T_KIN
-        return n * stiffness * u + rubbing + p["viscous_share_per_speed"] * T_KIN * v
     age = p["renewal_angle"] / v
     if name == "contact_with_memory":
         age += p["renewal_angle_per_torque"] * T_KIN / v
@@ -111,11 +94,8 @@ def expected_torque(name, v, given):
 
 
 UNUSUAL = {
-    "bond_population": {"bonding_time": 1e-3, "rupture_stretch": 4e-4, "rubbing_share": 0.5},
     "master_curve": {"peak_speed": 0.3, "peak_share": 1.3, "floor_share": 0.7},
-    "maxwell_slip": {"spread": 0.8, "stribeck_speed": 4.0},
     "rate_and_state": {"direct_effect": 0.02, "ageing_time": 1e-3},
-    "viscous": {"doubling_speed": 30.0},
     "ageing": {"renewal_angle": 2e-3},
     "contact_with_memory": {"renewal_angle_per_torque": 2e-5, "weakening_share": 0.02},
 } | {name: {"second_share": 0.4, "second_speed": 12.0} for name in STRIBECK}

@@ -52,7 +52,7 @@ def test_any_law_rubs_less_far_from_the_peak_of_friction(name):
 
 def test_the_torque_of_a_smooth_law_is_on_the_bell():
     rubber = TemperatureDependence(23.0, -20.0, friction_peak=1.0)
-    rig = replace(RIG, friction=LawSpec("viscous", {"doubling_speed": 1e9}), effects=(),
+    rig = replace(RIG, friction=LawSpec("lugre", {"stribeck_speed": 1e-4}), effects=(),
                   temperature=rubber)  # fmt: skip
     floor, shift = rubber.friction_floor, rubber.log_shift(60.0)
 

@@ -53,7 +53,7 @@ def test_first_slips_agree_with_a_general_solver(interference, stiffness, speed,
     interference=st.sampled_from([0.178e-3, 0.279e-3, 0.381e-3]),
     stiffness=st.floats(1500.0, 6000.0),
     speed=st.floats(-12.0, 12.0).filter(lambda v: abs(v) > 0.5),
-    name=st.sampled_from(["contact_with_memory", "bond_population", "lugre", "ageing"]),
+    name=st.sampled_from(["contact_with_memory", "rate_and_state", "lugre", "ageing"]),
 )
 def test_the_work_of_friction_is_what_is_stored_and_what_is_damped(
     interference, stiffness, speed, name

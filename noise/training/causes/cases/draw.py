@@ -281,9 +281,7 @@ def _without_effect(rig: Rig) -> set[str]:
     nothing = set()
     if rig.friction.name != "coulomb":
         nothing.add("partial_slip")  # such a contact creeps anyway
-    if rig.friction.name == "viscous" or all(
-        fit.critical_torque <= fit.kinetic_torque for fit in rig.fits
-    ):
+    if all(fit.critical_torque <= fit.kinetic_torque for fit in rig.fits):
         nothing |= {"critical_torque_scatter", "static_ageing"}  # nothing breaks
     return nothing
 

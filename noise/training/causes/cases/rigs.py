@@ -126,8 +126,8 @@ def draw_law(name: str, rng: Rng) -> LawSpec:
     Examples
     --------
     >>> import numpy as np
-    >>> sorted(draw_law("maxwell_slip", np.random.default_rng(0)).parameters)[-2:]
-    ['spread', 'stribeck_speed']
+    >>> sorted(draw_law("lugre", np.random.default_rng(0)).parameters)[-2:]
+    ['stribeck_speed', 'viscous_share_per_speed']
     """
     ranges = {key: spec for key, spec in _TABLE["laws"][name].items() if key != "share"}
     return LawSpec(name, draw_numbers(ranges, rng))
