@@ -1,4 +1,3 @@
-# mypy: allow-untyped-decorators
 """Data acquisition: anti-alias filter, sampling, noise and converter.
 
 A signal passes, as in a laboratory,
@@ -24,11 +23,9 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
-from scipy.signal import butter, firwin, sosfilt, sosfilt_zi, upfirdn
+from scipy.signal import butter, firwin, resample_poly, sosfilt, sosfilt_zi, upfirdn
 
-from models.compilation import COMPILED
 from models.sensors import Sensor, Sensors
 from models.show import short_repr
 
@@ -56,9 +53,6 @@ _FILTER_ORDER = 8
 
 _FILTER_HALF_LENGTH = 10
 """Half length of the linear-phase anti-alias filter, in output samples."""
-
-_AT_ONCE = 512
-"""Output values filtered together, so that their inputs stay in the processor's cache."""
 
 
 @short_repr
@@ -162,7 +156,10 @@ def decimate_sensed(
     >>> decimate_sensed(np.full(9, 2.0), 3, 9e3, Sensor(antialias=1e3)).round(9)
     array([2., 2., 2.])
     """
-    return decimate(AnalogueFilter(sensor.antialias, rate)(signal), factor)
+    if sensor.antialias is not None and sensor.antialias < 0.5 * rate:
+        sections, settled = _analogue_filter(sensor.antialias, rate)
+        signal, _ = sosfilt(sections, signal, zi=settled * signal[0])
+    return decimate(signal, factor)
 
 
 def digitise(
@@ -203,24 +200,8 @@ def digitise(
 
 
 @lru_cache(maxsize=16)
-def analogue_filter(
-    corner: float | None, rate: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    """Return the low-pass filter of a corner [Hz] at a rate [Hz], and its steady state.
-
-    Returns
-    -------
-    tuple of (ndarray, shape (4, 6), ndarray, shape (4, 2)) or None
-        Second-order sections [-], and their state at a constant value of one; None if the corner is
-        too high to have an effect.
-
-    Examples
-    --------
-    >>> analogue_filter(12e3, 90e3)[0].shape, analogue_filter(50e3, 90e3)
-    ((4, 6), None)
-    """
-    if corner is None or corner >= 0.5 * rate:
-        return None
+def _analogue_filter(corner: float, rate: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the sections of the low-pass filter of a corner, and their state at a value of one."""
     sections = np.asarray(butter(_FILTER_ORDER, corner, fs=rate, output="sos"), np.float64)
     return sections, np.asarray(sosfilt_zi(sections), np.float64)
 
@@ -249,99 +230,17 @@ def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
     """
     if factor == 1 or signal.size == 1:
         return signal
-    taps = anti_alias_filter(factor)
-    before, n, n_out = taps.size // 2, signal.size, -(-signal.size // factor)
-    slope = (signal[-1] - signal[0]) / max(n - 1, 1)
-    extended = np.empty(factor * (n_out + -(-taps.size // factor)))
-    after = extended.size - before - n
-    extended[:before] = signal[0] + np.arange(-before, 0) * slope
-    extended[before : before + n] = signal
-    extended[before + n :] = signal[-1] + np.arange(1, after + 1) * slope
-    decimated = np.empty(n_out)
-    _filter_phases(np.ascontiguousarray(extended.reshape(-1, factor).T), taps, decimated)
-    return decimated
-
-
-@njit(cache=True, **COMPILED)
-def _filter_phases(
-    phases: NDArray[np.float64], taps: NDArray[np.float64], values: NDArray[np.float64]
-) -> None:
-    """Filter a signal whose samples are split by phase, one row per phase.
-
-    The sum runs tap by tap over many values at once, in the order of `scipy.signal.resample_poly`
-    and equal to it to the last bit.
-    """
-    for first in range(0, values.size, _AT_ONCE):
-        chunk = values[first : first + _AT_ONCE]
-        chunk[:] = 0.0
-        for i in range(taps.size):
-            start = first + i // phases.shape[0]
-            source = phases[i % phases.shape[0], start : start + chunk.size]
-            tap = taps[taps.size - 1 - i]
-            for k in range(chunk.size):
-                chunk[k] += tap * source[k]
+    taps = _anti_alias_filter(factor)
+    return np.asarray(resample_poly(signal, 1, factor, window=taps, padtype="line"))
 
 
 @lru_cache(maxsize=8)
-def anti_alias_filter(factor: int) -> NDArray[np.float64]:
-    """Return the linear-phase low-pass filter of a decimation.
-
-    Parameters
-    ----------
-    factor : int
-        Above 1.
-
-    Returns
-    -------
-    ndarray, shape (20 * factor + 1,)
-        The default design of `scipy.signal.resample_poly`.
-
-    Examples
-    --------
-    >>> anti_alias_filter(3).size, round(float(anti_alias_filter(3).sum()), 9)
-    (61, 1.0)
-    """
+def _anti_alias_filter(factor: int) -> NDArray[np.float64]:
+    """Return the default filter of `resample_poly`, shape (20 factor + 1,)."""
     size = 2 * _FILTER_HALF_LENGTH * factor + 1
     taps = np.asarray(firwin(size, 1.0 / factor, window=("kaiser", 5.0)), np.float64)
     taps.flags.writeable = False  # shared by all callers
     return taps
-
-
-class AnalogueFilter:
-    """Block-wise analogue anti-alias filter of a sensor.
-
-    Parameters
-    ----------
-    corner : float, optional
-        [Hz]; without a corner, signals pass unchanged.
-    rate : float
-        Rate of the signal [Hz].
-    skip : int
-        Samples at the start that pass unchanged; the filter starts settled at the one after.
-
-    Examples
-    --------
-    >>> low = AnalogueFilter(1e3, 90e3, skip=2)
-    >>> [low(np.array(block)).round(9).tolist() for block in ([3.0], [4.0, 5.0], [5.0])]
-    [[3.0], [4.0, 5.0], [5.0]]
-    """
-
-    def __init__(self, corner: float | None, rate: float, skip: int = 0) -> None:
-        self._filter, self._skip = analogue_filter(corner, rate), skip
-        self._state: NDArray[np.float64] | None = None
-
-    def __call__(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the next samples, as many as `block` has."""
-        if self._filter is None:
-            return block
-        before, rest = block[: self._skip], block[self._skip :]
-        self._skip -= before.size
-        if not rest.size:
-            return before
-        sections, settled = self._filter
-        state = settled * rest[0] if self._state is None else self._state
-        passed, self._state = sosfilt(sections, rest, zi=state)
-        return np.concatenate([before, passed])
 
 
 class Decimation:
@@ -366,7 +265,7 @@ class Decimation:
 
     def __init__(self, factor: int, skip: int = 0) -> None:
         self._factor, self._skip = factor, skip
-        self._filter = anti_alias_filter(factor) if factor > 1 else np.ones(1)
+        self._filter = _anti_alias_filter(factor) if factor > 1 else np.ones(1)
         self._half = self._filter.size // 2
         self._pending: NDArray[np.float64] | None = None
 

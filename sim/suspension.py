@@ -1,24 +1,38 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any
 # ruff: noqa: ANN001
-"""Simulation of a stabilizer bar in its two bushings: motion, loads and recording.
+r"""Stabilizer bar in two bushings, with its links: the car's model of Recommendation 7.
 
-The drive is the travel of the wheels, expressed as the angle of an arm. Each bushing is the lumped
-model of `sim.solvers.contact_rates`, whose shaft is the bar at its place; its friction torque acts
-back on the bar. Links load the bushings, and where the load lifts the bar off a part of a bushing,
-its torques rise (`torque_gain`). Only friction laws with an inner state are supported, since
-constant torques would need event location at each contact. Steps are those of
+The bar turns in two bushings on the body; an arm at each end is linked to a wheel. In torsion it is
+a chain of inertias and springs,
+
+.. math::
+    k = G J / l, \qquad J_i = \rho J l, \qquad J = \pi (d^4 - d_i^4) / 32
+
+for each piece of length l, with an arm's inertia at either end, where the link exerts the force k_L
+(s - r theta) on the arm r; s is the travel of the wheel, expressed as the angle s / r of the arm.
+
+Links also load the bar in bending. By the statics of a beam of length B on two supports of spacing
+w, with forces F_l and F_r at its ends, the left bushing carries F_l (1/2 + B / 2w) +
+F_r (1/2 - B / 2w), so wheels in opposite directions load a bushing with B / w times the force of a
+link. Where the load lifts the bar off a part of a bushing, its torques rise (`torque_gain`).
+
+Each bushing is the lumped model of `sim.solvers.contact_rates`, whose shaft is the bar at its
+place; its friction torque acts back on the bar. Only friction laws with an inner state are
+supported, since constant torques would need event location at each contact. Steps are those of
 `sim.solvers.tsitouras` with error control.
 
 The torque of each bushing excites clamp, beams and plate as on the rig, at its own place on the
 plate. Each bushing has an accelerometer, and one microphone records the sum. The brackets are
 coupled through the bar only.
+
+Limits: wheels that move together do not twist the bar, which is then the rig twice.
 """
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -27,7 +41,7 @@ from numpy.typing import NDArray
 from models.compilation import PART
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from models.suspension import Suspension, TorsionChain, torsion_chain
+from models.suspension import WHEELS, Suspension
 from sim.acquisition import Acquisition
 from sim.analysis.regime import never_slips
 from sim.bushing import lumped_bushing
@@ -47,6 +61,9 @@ from sim.solvers.tsitouras import ERROR, NODES, factor_of_step, fill_between, fi
 LONGEST_SUSPENSION_RUN = 20.0
 """Longest run [s], since the whole motion is in memory."""
 
+_PIECES = 12
+"""Approximate number of pieces of the bar; its first mode between fixed arms is then 0.3 % low."""
+
 _STRONGEST = 1e9
 """Shear strength beyond that of any spring steel: 1.7 GPa in tension over sqrt(3) [Pa]."""
 
@@ -65,8 +82,84 @@ _GRACE = 2e-3
 _NEWTON_STEPS = 12
 
 
-@dataclass(frozen=True, eq=False)
-class SuspensionMotion:
+class TorsionChain(NamedTuple):
+    """Bar in torsion as a chain of inertias with springs between them and links to the travel.
+
+    Parameters
+    ----------
+    inertia : ndarray, shape (n,)
+        [kg m2]; an infinite inertia keeps its speed.
+    stiffness, damping : ndarray, shape (n - 1,)
+        Between neighbours [Nm/rad], [Nm s/rad].
+    link_stiffness, link_damping : ndarray, shape (n,)
+        Between the travel and each inertia [Nm/rad], [Nm s/rad].
+    travel, start : ndarray, shape (n,)
+        Travel at each inertia, and its initial speed, over those of the drive [-].
+    bushings : ndarray of int, shape (n_bushings,)
+        Inertias at the bushings.
+    load : ndarray, shape (n_bushings, n)
+        Normal force on each bushing per torque of each link [N/Nm].
+    """
+
+    inertia: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    damping: NDArray[np.float64]
+    link_stiffness: NDArray[np.float64]
+    link_damping: NDArray[np.float64]
+    travel: NDArray[np.float64]
+    start: NDArray[np.float64]
+    bushings: NDArray[np.int64]
+    load: NDArray[np.float64]
+
+
+def torsion_chain(car: Suspension) -> TorsionChain:
+    """Return the torsion chain of a suspension, from the left arm to the right one.
+
+    Examples
+    --------
+    >>> from models.suspension import SHIPPED, load_suspension
+    >>> chain = torsion_chain(load_suspension(SHIPPED))
+    >>> chain.bushings, chain.load[:, [0, -1]].round(3)
+    (array([ 2, 10]), array([[ 5., -1.],
+           [-1.,  5.]]))
+    """
+    length, spacing = car.bar_length, car.spacing
+    overhang = 0.5 * (length - spacing)
+    spans = (overhang, spacing, overhang)
+    counts = [max(1, round(_PIECES * span / length)) for span in spans]
+    lengths = np.repeat([s / n for s, n in zip(spans, counts, strict=True)], counts)
+    polar_moment = (
+        math.pi / 32.0 * (car.bar_diameter**4 - (car.bar_diameter - 2.0 * car.bar_wall) ** 4)
+    )
+    stiffness = car.shear_modulus * polar_moment / lengths
+    inertia = np.zeros(lengths.size + 1)
+    inertia[:-1] += 0.5 * car.density * polar_moment * lengths
+    inertia[1:] += 0.5 * car.density * polar_moment * lengths
+    inertia[[0, -1]] += car.arm_inertia
+    # Stiffness-proportional: 2 zeta / omega of the bar's own first mode, sqrt(G / rho) pi / length.
+    first = math.pi / length * math.sqrt(car.shear_modulus / car.density)
+    ends, travel = np.zeros((2, inertia.size))
+    ends[[0, -1]] = car.arm_length**2
+    travel[[0, -1]] = left, right = WHEELS[car.wheels]
+    place = np.concatenate([[0.0], np.cumsum(lengths)]) / length
+    lever = 0.5 * length / spacing
+    load = np.zeros((2, inertia.size))
+    load[:, 0] = 0.5 + lever, 0.5 - lever
+    load[:, -1] = 0.5 - lever, 0.5 + lever
+    return TorsionChain(
+        inertia=inertia,
+        stiffness=stiffness,
+        damping=2.0 * car.damping_ratio / first * stiffness,
+        link_stiffness=car.link_stiffness * ends,
+        link_damping=car.link_damping * ends,
+        travel=travel,
+        start=left + (right - left) * place,
+        bushings=np.array([counts[0], counts[0] + counts[1]]),
+        load=load / car.arm_length,
+    )
+
+
+class SuspensionMotion(NamedTuple):
     """Motion of bar and bushings over time.
 
     Parameters
@@ -84,26 +177,6 @@ class SuspensionMotion:
     angle: NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class SuspensionRun:
-    """Result of a simulated run of a suspension.
-
-    Parameters
-    ----------
-    recording : Recording
-        ``torque``, ``acceleration`` and ``angle`` of the left bushing, ``torque_2`` and so on of
-        the right one; ``pressure`` of both together.
-    motion : SuspensionMotion
-        Motion from rest at the rate of the computation.
-    remarks : tuple of str
-        Notes for the user, one line each.
-    """
-
-    recording: Recording
-    motion: SuspensionMotion
-    remarks: tuple[str, ...]
-
-
 def run_suspension(
     suspension: Suspension,
     shaft: ShaftMotion | float,
@@ -115,7 +188,7 @@ def run_suspension(
     acquisition: Acquisition,
     library: Mapping[str, Effect] | None = None,
     rng: np.random.Generator | None = None,
-) -> SuspensionRun:
+) -> Recording:
     """Simulate one run of a suspension.
 
     Parameters
@@ -128,7 +201,9 @@ def run_suspension(
 
     Returns
     -------
-    SuspensionRun
+    Recording
+        ``torque``, ``acceleration`` and ``angle`` of the left bushing, ``torque_2`` and so on of
+        the right one; ``pressure`` of both together. Its notes are for the user.
 
     Raises
     ------
@@ -137,12 +212,11 @@ def run_suspension(
 
     Examples
     --------
-    >>> from models.suspension import load_suspension, suspension_file
+    >>> from models.suspension import SHIPPED, load_suspension
     >>> from sim.shaft import Oscillation
-    >>> run = run_suspension(load_suspension(suspension_file()), Oscillation(0.1, 2.0),
-    ...     interference=0.279e-3, support_stiffness=2214.0, temperature=23.0, seconds=0.1,
-    ...     acquisition=Acquisition(30e3))
-    >>> run.recording.channel_names
+    >>> run = run_suspension(load_suspension(SHIPPED), Oscillation(0.1, 2.0), interference=0.279e-3,
+    ...     support_stiffness=2214.0, temperature=23.0, seconds=0.1, acquisition=Acquisition(30e3))
+    >>> run.channel_names
     ('torque', 'acceleration', 'pressure', 'angle', 'torque_2', 'acceleration_2', 'angle_2')
     """
     if seconds > LONGEST_SUSPENSION_RUN:
@@ -155,46 +229,43 @@ def run_suspension(
     drive = shaft_motion(shaft)
     setting = Setting(suspension.rig, drive, interference, support_stiffness, temperature)
     plan = plan_run(setting, seconds=seconds, rate=acquisition.rate, library=library)
-    suspension = replace(suspension, rig=plan.rig)  # at the temperature
-    motion = _simulated(suspension, plan, effect_rng)
+    speed = plan.shaft.speed(np.arange(plan.n_settling + plan.n_recorded) / plan.rate)
+    for active in plan.effects:
+        speed = active.apply_drive(speed, plan.rate, effect_rng)
+    chain, preload = torsion_chain(suspension), suspension.preload(interference)
+    _refuse_twist(suspension, chain, speed, plan.rate)
+    with unusual_values_first(plan.rig):
+        motion = solve_chain(chain, plan, speed, preload, effect_rng)
     plate, (across, _) = plan.rig.plate, plan.rig.plate.clamp_position
     rigs = [
         replace(plan.rig, plate=replace(plate, clamp_position=(across, along)))
-        for along in suspension.positions
+        for along in (-0.5 * suspension.spacing, 0.5 * suspension.spacing)
     ]
     signals, _ = record_motions(plan, motion.bushings, rigs, acquisition, noise_rng, effect_rng)
     microphone = plan.rig.microphone.position
-    recording = Recording(
+    return Recording(
         samples=np.stack(list(signals.values())),
         rate=acquisition.rate,
         channels=tuple(
             Channel(name, position=microphone if name == "pressure" else None) for name in signals
         ),
         condition=replace(plan.condition, speed=None),
+        notes=_notes(motion, preload),
     )
-    return SuspensionRun(recording, motion, _remarks(suspension, motion, interference))
 
 
-def _simulated(suspension: Suspension, plan: Plan, rng: np.random.Generator) -> SuspensionMotion:
-    """Simulate bar and bushings from rest; raise if the bar's shear stress exceeds any strength."""
-    bar, rate = suspension.bar, plan.rate
-    speed = plan.shaft.speed(np.arange(plan.n_settling + plan.n_recorded) / rate)
-    for active in plan.effects:
-        speed = active.apply_drive(speed, rate, rng)
-    chain = torsion_chain(
-        bar, suspension.spacing, suspension.link_stiffness, suspension.link_damping,
-        suspension.wheels,
-    )  # fmt: skip
+def _refuse_twist(
+    car: Suspension, chain: TorsionChain, speed: NDArray[np.float64], rate: float
+) -> None:
+    """Raise if the bar's shear stress exceeds any strength."""
     twist = abs(chain.travel[0] - chain.travel[-1]) * float(np.abs(_integral(speed, rate)).max())
-    stress = 0.5 * bar.shear_modulus * bar.diameter * twist / bar.length
+    stress = 0.5 * car.shear_modulus * car.bar_diameter * twist / car.bar_length
     if stress > _STRONGEST:
         raise ParameterError(
             f"suspension: the wheels' travel twists the bar by {math.degrees(twist):.3g} degrees, "
             f"a shear stress of {stress / 1e6:.0f} MPa where steel bears {_STRONGEST / 1e6:.0f}; "
             'let it swing less (--oscillate), or the wheels go together (wheels = "together")'
         )
-    with unusual_values_first(plan.rig):
-        return solve_chain(chain, plan, speed, suspension.preload(plan.interference), rng)
 
 
 def solve_chain(
@@ -291,28 +362,18 @@ def solve_chain(
     )  # fmt: skip
 
 
-def _remarks(
-    suspension: Suspension, motion: SuspensionMotion, interference: float
-) -> tuple[str, ...]:
-    load, preload = float(np.abs(motion.load).max()), suspension.preload(interference)
+def _notes(motion: SuspensionMotion, preload: float) -> tuple[str, ...]:
+    load = float(np.abs(motion.load).max())
     gain = torque_gain(load / preload)
     lifted = (
         f"lifts the bar off a part of it and raises its torque up to {gain:.3g} times"
         if gain > 1.0
         else "is carried by the contact pressure and leaves its torque as it is"
     )
-    sleeve = suspension.rig.sleeve
-    assert sleeve is not None  # checked by `Suspension`
-    torque = suspension.rig.fit(interference).kinetic_torque
-    coefficient = torque / (2.0 * np.pi * sleeve.inner_radius * preload)
-    pressure = suspension.contact_pressure(interference)
     return (
         "torque, acceleration and angle are of the left bushing, those with _2 of the right "
         "one; the pressure is of both",
         f"the links load a bushing with up to {load:.0f} N, which {lifted}",
-        f"the contact pressure is taken to be {pressure / 1e6:.3g} MPa, which with the "
-        f"kinetic torque is a friction coefficient of {coefficient:.3g}; where "
-        "that is not believed, friction_coefficient under [suspension] gives the pressure",
         *(
             f"{side} bushing: its contact holds from first to last"
             for side, own in zip(("left", "right"), motion.bushings, strict=True)

@@ -19,6 +19,7 @@ from noise.commands.options import Option, whole_number
 
 if TYPE_CHECKING:
     from models.recording import Recording
+    from models.suspension import Suspension
     from sim.run import Run
 
 
@@ -41,11 +42,12 @@ def run(options: Namespace) -> int:
     """Simulate; write recording, picture and sound power, or print the summary."""
     _check(options)
     if options.rig is not None:
-        from models.suspension import suspension_file
+        from models.suspension import load_suspension
 
-        suspension = suspension_file(options.rig)
-        if suspension is not None:
-            return _run_suspension(options, suspension)
+        with naming("--rig: "):
+            car = load_suspension(options.rig)
+        if car is not None:
+            return _run_suspension(options, car)
     arguments, notes = run_arguments(options, options.rate)
     note(*notes)
     from sim.run import simulate
@@ -66,27 +68,23 @@ def run(options: Namespace) -> int:
     return 0
 
 
-def _run_suspension(options: Namespace, path: Path) -> int:
+def _run_suspension(options: Namespace, car: Suspension) -> int:
     """Simulate a car's stabilizer bar in two bushings."""
     for option, value in (("--plot", options.plot), ("--sound-power", options.sound_power)):
         if value is not None:
             raise ParameterError(
                 f"{option} is for the rig only; --rig {options.rig} is a suspension"
             )
-    from models.suspension import load_suspension
-
-    with naming("--rig: "):
-        car = load_suspension(path)
     arguments, notes = run_arguments(options, options.rate, rig=car.rig)
     from noise.base.remarks import clipping_remarks
     from sim.suspension import run_suspension
 
     car = replace(car, rig=arguments.pop("rig"))
-    suspension_run = run_suspension(car, **arguments)
+    recording = run_suspension(car, **arguments)
     sensors = arguments["acquisition"].over(car.rig.sensors).sensors
-    notes += (*suspension_run.remarks, *clipping_remarks(suspension_run.recording, sensors))
+    notes += (*recording.notes, *clipping_remarks(recording, sensors))
     note(*notes)
-    _write_or_print(options.out, replace(suspension_run.recording, notes=notes))
+    _write_or_print(options.out, replace(recording, notes=notes))
     return 0
 
 

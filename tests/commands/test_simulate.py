@@ -11,7 +11,7 @@ import pytest
 from models.condition import FIXED
 from models.errors import ParameterError
 from models.sensors import Sensors
-from models.suspension import load_suspension, suspension_file
+from models.suspension import SHIPPED, load_suspension
 from noise.cli import main
 from noise.recordings import read_recording
 from sim.shaft import ConstantSpeed, LoggedSpeed, Oscillation, SpeedRamp
@@ -217,7 +217,7 @@ def test_the_shipped_suspension_is_recorded_with_both_bushings(tmp_path, capsys)
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
-        ("bar_wall_mm = 2", "bar_wall_mm = 20", "wall = 0.02 m must be above 0 and at most"),
+        ("bar_wall_mm = 2", "bar_wall_mm = 20", "wall = 0.02 m must be at most half"),
         ("arm_length_mm = 250", "arm_lenght_mm = 250", "did you mean 'arm_length_mm'"),
         ("arm_length_mm = 250", "", "arm_length_mm is missing"),
         ("bushing_spacing_mm = 600", "bushing_spacing_mm = 890", "does not lie on the plate"),
@@ -227,7 +227,7 @@ def test_the_shipped_suspension_is_recorded_with_both_bushings(tmp_path, capsys)
 )
 def test_what_a_suspension_file_says_wrongly_is_named(tmp_path, old, new, says):
     path = tmp_path / "car.toml"
-    text = suspension_file().read_text(encoding="utf-8").replace("width_m = 0.90", "width_m = 0.85")
+    text = SHIPPED.read_text(encoding="utf-8").replace("width_m = 0.90", "width_m = 0.85")
     assert old in text
     path.write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(ParameterError, match=says) as refused:
