@@ -3,35 +3,38 @@
 Whatever is not the case's effect is drawn alike for all classes, recording by recording: scatter
 of the rig, gains, coloured noise, drift and the recorder's clock. The recordings without an effect
 need not be kept: `run_case` makes them again, to the bit, when told what to leave off.
+
+A start is how the shaft comes to its speed: a factor of the speed over the time since the recording
+began; before it the factor is that of its first instant. The rig settles beforehand unless it
+starts from rest.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, replace
+import struct
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.signal import resample_poly
 
 from .benches import CHANNELS, KINDS, NOISE
-from .design import Design, design_of
-from .files import rig_text, support_name, write_npz, write_wav
+from .design import Design
 from .laws import LAWS, contact_of
 from .rig import plain, turn
-from .starts import SETTLING, STARTS
 from .structure import Structure, draw_structure
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from .design import Condition
 
 __all__ = [
-    "CHANNELS", "NOISE", "Case", "answer_of", "responses_of", "run_case", "sampled",
-    "structures_of", "without_effects", "write_case",
+    "CHANNELS", "NOISE", "SETTLING", "STARTS", "Case", "answer_of", "responses_of", "rig_text",
+    "run_case", "sampled", "structures_of", "support_name", "write_case", "write_npz", "write_wav",
 ]  # fmt: skip
 
 _LEAST_RATE = 75e3
@@ -132,14 +135,12 @@ def run_case(
     return Case(design, recordings, responses_of(design, structures), answer_of(design))
 
 
-def responses_of(design: Design, structures: dict[float, Structure], again: int = 0):
-    """Measure the structures of a case; `again` numbers further measurements of the same."""
+def responses_of(design: Design, structures: dict[float, Structure]):
+    """Measure the structures of a case."""
     first = {c.support: c for c in reversed(design.conditions)}
     poor = design.bench.responses == "poor"
     return {
-        kb: structures[kb].measured(
-            design.nominal(first[kb]), design.stream(10, i + len(structures) * again), poor=poor
-        )
+        kb: structures[kb].measured(design.nominal(first[kb]), design.stream(10, i), poor=poor)
         for i, kb in enumerate(sorted(structures))
     }
 
@@ -162,24 +163,7 @@ def answer_of(design: Design) -> dict:
             for form, strength in design.forms
         ],
         "offsets": design.offsets,
-        "repeats": _repeats(design),
-        "rig_of_each_recording": {
-            f"run{k + 1:02d}": asdict(design.true(c, k)) for k, c in enumerate(design.conditions)
-        },
     }
-
-
-def _repeats(design: Design) -> list[list[str]]:
-    by_condition: dict[Condition, list[str]] = {}
-    for k, condition in enumerate(design.conditions):
-        by_condition.setdefault(condition, []).append(f"run{k + 1:02d}")
-    return [names for names in by_condition.values() if len(names) > 1]
-
-
-def without_effects(answer: dict, names: frozenset[str] | None = None) -> Case:
-    """Make a case again with effects off (all, or those named): the truth's own closed gap."""
-    design = design_of(answer)
-    return run_case(design, names or frozenset(form.effect for form, _ in design.forms))
 
 
 def write_case(case: Case, data: Path, answers: Path | None) -> None:
@@ -210,3 +194,111 @@ def write_case(case: Case, data: Path, answers: Path | None) -> None:
     if answers is not None:
         answers.parent.mkdir(parents=True, exist_ok=True)
         answers.write_text(json.dumps(case.answer, indent=1) + "\n", encoding="utf-8")
+
+
+def support_name(support: float) -> str:
+    """How files and tables call a support."""
+    return "fixed" if support < 0.0 else f"{support:.0f}"
+
+
+def write_wav(path: Path, samples: np.ndarray, rate: int) -> None:
+    """Write channels by time as 32-bit float; common writers stamp such files with the time."""
+    channels, n = samples.shape
+    body = np.ascontiguousarray(samples.T, dtype="<f4").tobytes()
+    form = struct.pack("<HHIIHHH", 3, channels, rate, 4 * channels * rate, 4 * channels, 32, 0)
+    chunks = b"fmt " + struct.pack("<I", len(form)) + form
+    chunks += b"fact" + struct.pack("<II", 4, n)
+    chunks += b"data" + struct.pack("<I", len(body)) + body
+    path.write_bytes(b"RIFF" + struct.pack("<I", 4 + len(chunks)) + b"WAVE" + chunks)
+
+
+def write_npz(path: Path, content: dict) -> None:
+    """Write a measured response."""
+    np.savez(path, **content)
+
+
+def rig_text(design: Design) -> str:
+    """Return the rig file of a case: what its user believes of the rig."""
+    lines = [
+        'name = "bench"',
+        'material = "fluorocarbon"',
+        f"elastomer_inertia_kgm2 = {design.inertias[0]:.6g}",
+        f"clamp_inertia_kgm2 = {design.inertias[1]:.6g}",
+        f"effects = [{', '.join(chr(34) + one.text + chr(34) for one in design.bench.listed)}]",
+        f"friction = {{ {_friction(design)} }}",
+    ]
+    by_support = {support_name(kb): c for kb, c in design.damping.items()}
+    damping = ", ".join(f'"{name}" = {c:.5g}' for name, c in by_support.items())
+    for fit, (stiffness, critical, kinetic) in sorted(design.fits.items()):
+        lines += [
+            "", "[[fit]]", f"interference_mm = {fit:g}",
+            f"elastomer_stiffness_Nm_rad = {stiffness:.6g}", f"critical_torque_Nm = {critical:.6g}",
+            f"kinetic_torque_Nm = {kinetic:.6g}", f"damping_Nms_rad = {{ {damping} }}",
+        ]  # fmt: skip
+    measured = sorted({c.support for c in design.conditions})
+    for support in measured if design.bench.responses != "none" else ():
+        name = support_name(support)
+        lines += [
+            "", "[[measured_response]]",
+            f"support_stiffness_Nm_rad = {name if support > 0.0 else chr(34) + name + chr(34)}",
+            f'torque_to_acceleration = "torque_to_acceleration_{name}.npz"',
+            f'torque_to_pressure = "torque_to_pressure_{name}.npz"',
+        ]  # fmt: skip
+    if design.bench.stated:
+        lines += ["", "[sensors]", *_sensors(design)]
+    return "\n".join(lines) + "\n"
+
+
+def _friction(design: Design) -> str:
+    """Law and numbers of the friction, as a rig file's table has them."""
+    stated = LAWS[design.bench.law.name]
+    numbers = [f"{stated.keys[key]} = {x:g}" for key, x in design.bench.law.values.items()]
+    return ", ".join([f'law = "{stated.named}"', *numbers])
+
+
+def _sensors(design: Design) -> list[str]:
+    """Noise and converter of the sensors, as their maker states them."""
+    bench = design.bench
+    noise = ", ".join(f"{name} = {bench.noise[name]:.3g}" for name in NOISE)
+    lines = [f"noise = {{ {noise} }}"]
+    if bench.bits:
+        ranges = ", ".join(f"{name} = {bench.range_of(name):g}" for name in NOISE)
+        bits = ", ".join(f"{name} = {bits}" for name, bits in bench.bits.items())
+        lines += [f"range = {{ {ranges} }}", f"bits = {{ {bits} }}"]
+    return lines
+
+
+SETTLING = 0.35
+"""Of a rig before its recording, unless this starts from rest [s]."""
+
+
+def settled(rng, seconds):
+    """Turn evenly throughout."""
+    return np.ones_like
+
+
+def _rest(rng, seconds):
+    ramp = rng.uniform(0.005, 0.06)
+    return lambda t: np.minimum(t / ramp, 1.0)
+
+
+def _run_up(rng, seconds):
+    low, ramp = rng.uniform(0.3, 0.7), rng.uniform(0.2, 0.5) * seconds
+
+    def course(t):
+        x = np.minimum(t / ramp, 1.0)
+        return low + (1.0 - low) * x * x * (3.0 - 2.0 * x)
+
+    return course
+
+
+def _swing(rng, seconds):
+    depth, frequency = rng.uniform(0.15, 0.4), rng.uniform(4.0, 15.0)
+    decay = rng.uniform(0.03, 0.12) * seconds
+    return lambda t: 1.0 + depth * np.exp(-t / decay) * np.sin(2.0 * np.pi * frequency * t)
+
+
+STARTS: dict[str, Callable] = {
+    "settled": settled, "rest": _rest, "run_up": _run_up, "swing": _swing,
+}  # fmt: skip
+"""By name: a drive that is switched on, one that is run up, one whose controller swings in."""

@@ -18,7 +18,7 @@ from .laws import LAWS
 from .rig import FIXED, Parameters
 
 __all__ = [
-    "BLOCKS", "CLASSES", "OFFSET_KEYS", "Condition", "Design", "design_of", "draw_design", "stream",
+    "BLOCKS", "CLASSES", "OFFSET_KEYS", "Condition", "Design", "draw_design", "stream",
 ]  # fmt: skip
 
 CLASSES = (
@@ -225,9 +225,3 @@ def draw_design(
         seed, index, kept_for, case, fits, damping, inertias, conditions, rate, rate_error, seconds,
         tuple(forms), offsets, block, bench,
     )  # fmt: skip
-
-
-def design_of(answer: dict) -> Design:
-    """Draw the design of an answer again."""
-    where = (answer["seed"], answer["index"], answer["set"], answer["block"])
-    return draw_design(*where, answer.get("bench", "quiet"))

@@ -10,15 +10,12 @@ import pytest
 from models.rig_file import load_rig
 from noise.diagnosis.case import read_case
 from noise.recordings.files import read_recording
-from tests.blind.__main__ import main
 from tests.blind.benches import BITS, KINDS, NOISE, Bench, draw_bench
-from tests.blind.cases import run_case, write_case
+from tests.blind.cases import STARTS, rig_text, run_case, write_case
 from tests.blind.design import BLOCKS, draw_design
-from tests.blind.effects import DEVELOPMENT, FORMS, SEALED, STRANGERS
-from tests.blind.files import rig_text
+from tests.blind.effects import DEVELOPMENT, FORMS, SEALED
 from tests.blind.gap import gaps_of, null_gap
 from tests.blind.laws import CONSTANT, LAWS, draw_law
-from tests.blind.starts import STARTS
 from tests.helpers.small_rigs import gap_of_case
 
 
@@ -109,14 +106,6 @@ def test_a_block_of_a_kind_holds_its_quotas_sealed_or_not():
                 assert {form.kept_for for form, _ in design.forms} <= {kept_for}
 
 
-def test_strangers_of_the_sealed_set_are_of_kinds_that_development_never_sees():
-    kinds = {kept: {k for k, form in FORMS.items() if form.kept_for == kept}
-             for kept in (DEVELOPMENT, SEALED)}  # fmt: skip
-    seen = {kept: {effect for effect, _ in kinds[kept]} & set(STRANGERS) for kept in kinds}
-    assert not seen[DEVELOPMENT] & seen[SEALED]
-    assert len(seen[SEALED]) >= 8
-
-
 def test_kinds_of_bench_share_no_chance_and_sizes_reach_a_factor_of_three():
     inertias = {draw_design(1, 0, DEVELOPMENT, "kind", kind).inertias for kind in KINDS}
     assert len(inertias) == len(KINDS)
@@ -124,10 +113,3 @@ def test_kinds_of_bench_share_no_chance_and_sizes_reach_a_factor_of_three():
     factors = np.array([list(draw_bench("sizes", rng).sizes.values()) for _ in range(300)])
     assert factors.max() == pytest.approx(3.0, rel=0.05)
     assert factors.min() == pytest.approx(1.0 / 3.0, rel=0.05)
-
-
-def test_seeds_of_the_sealed_set_are_its_own(tmp_path):
-    with pytest.raises(SystemExit, match="seeds from 1000 on are of the sealed set alone"):
-        main(["generate", "--seed", "1001", "--out", str(tmp_path / "a")])
-    with pytest.raises(SystemExit, match="seeds from 1000 on are of the sealed set alone"):
-        main(["score", "--sealed", "--seed", "1", "--out", str(tmp_path / "a")])

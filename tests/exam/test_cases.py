@@ -14,11 +14,9 @@ from noise.recordings.files import read_recording
 from tests.blind.benches import KINDS
 from tests.blind.cases import (
     Case,
-    answer_of,
     responses_of,
     run_case,
     structures_of,
-    without_effects,
     write_case,
 )
 from tests.blind.design import CLASSES, Condition, draw_design
@@ -73,15 +71,6 @@ def _difference(a, b, channel):
     return np.std(a[channel] - b[channel]) / np.std(b[channel])
 
 
-def test_strength_goes_to_nothing_smoothly(nothing):
-    for key in sorted(set(FORMS) - {("clipping", "wrapped_converter")}):
-        if FORMS[key].effect.startswith("stranger_") or FORMS[key].stage in ("drive", "friction"):
-            continue  # chaotic in phase: a slip later is another signal
-        weak = run_case(_design(forms=((FORMS[key], 1e-5),), conditions=(SLOW,))).recordings
-        for channel in range(3):
-            assert _difference(weak[0], nothing[0], channel) < 0.01, key
-
-
 def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path):
     index = next(i for i in range(20) if draw_design(1, i, SEALED).kind == "pair")
     for name, seed in (("a", 1), ("b", 1), ("c", 2)):
@@ -111,15 +100,6 @@ def test_a_user_can_read_what_is_handed_out(tmp_path):
     )
 
 
-def test_without_its_effects_a_case_is_the_null_with_the_same_scatter():
-    index = next(i for i in range(40) if draw_design(3, i, DEVELOPMENT).kind == "one")
-    design = draw_design(3, index, DEVELOPMENT)
-    case = without_effects(answer_of(design))
-    plain = run_case(replace(design, forms=(), kind="none"))
-    for a, b in zip(case.recordings, plain.recordings, strict=True):
-        assert a.tobytes() == b.tobytes()
-
-
 @pytest.mark.parametrize("kept_for", [DEVELOPMENT, SEALED])
 def test_classes_have_their_shares_and_causes_come_evenly(kept_for):
     designs = [draw_design(7, i, kept_for) for i in range(840)]
@@ -145,13 +125,6 @@ def test_a_rig_never_breaks_loose_below_what_it_slides_at():
         for k, condition in enumerate(design.conditions):
             true = design.true(condition, k)
             assert true.critical_torque > true.kinetic_torque
-
-
-def test_two_development_seeds_and_the_sealed_set_share_no_rig():
-    rigs = [
-        draw_design(s, 0, k).inertias for s, k in ((1, DEVELOPMENT), (2, DEVELOPMENT), (1, SEALED))
-    ]
-    assert len(set(rigs)) == 3
 
 
 def test_nothing_but_the_samples_knows_the_class():

@@ -13,10 +13,18 @@ from sim.motion import simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
 from tests.blind import kernel
-from tests.blind.cases import NOISE, Case, responses_of, run_case, structures_of, write_case
+from tests.blind.cases import (
+    NOISE,
+    Case,
+    responses_of,
+    run_case,
+    structures_of,
+    support_name,
+    write_case,
+    write_npz,
+)
 from tests.blind.design import Condition, Design, draw_design
 from tests.blind.effects import CAUSES, DEVELOPMENT, FORMS, STRANGERS
-from tests.blind.files import support_name, write_npz
 from tests.blind.rig import FIXED, Parameters, plain, turn
 from tests.blind.structure import accelerance, draw_structure, filtered
 from tests.helpers.small_rigs import gap_of_case

@@ -13,7 +13,7 @@ from models.rig_file import load_rig
 from noise.cli import main
 from noise.identification import law_fit
 from noise.identification.law_model import CANDIDATES
-from tests.blind.identify.rigs import make_rig, write_rig
+from tests.blind.identify import make_rig, write_rig
 
 
 @pytest.fixture(scope="module", autouse=True)

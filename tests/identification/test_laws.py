@@ -12,8 +12,7 @@ from noise.identification.bushing_fit import Known
 from noise.identification.identify import identify
 from noise.identification.law_fit import left_out, starts
 from noise.identification.law_model import CANDIDATES, LawModel, Subject
-from tests.blind.identify.laws import LAWS
-from tests.blind.identify.rigs import make_rig, write_rig
+from tests.blind.identify import LAWS, make_rig, write_rig
 
 BASE = load_material_rig("fluorocarbon-thesis")
 

@@ -16,7 +16,7 @@ from noise.pages.review import review
 from noise.pages.screening import write_screening
 from noise.screening.design import Design, Use
 from noise.screening.screen import screen
-from tests.blind.identify.rigs import make_rig, write_rig
+from tests.blind.identify import make_rig, write_rig
 from tests.helpers.browser import OpenedPage, accessibility_errors
 from tests.helpers.made_diagnoses import KINDS
 from tests.helpers.made_reviews import write_campaign

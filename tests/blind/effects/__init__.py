@@ -2,17 +2,7 @@
 
 from __future__ import annotations
 
-from . import (
-    drive,
-    elastomer,
-    foreign,
-    friction,
-    measurement,
-    radiation,
-    sensor_faults,
-    strangers,
-    structure,
-)
+from . import drive, foreign, friction, measurement, strangers, structure
 from .foreign import FOREIGN
 from .form import DEVELOPMENT, FORMS, SEALED, Form
 
@@ -20,10 +10,7 @@ __all__ = [
     "CAUSES", "DEVELOPMENT", "FOREIGN", "FORMS", "SEALED", "STRANGERS", "Form", "forms_of",
 ]  # fmt: skip
 
-_MODULES = (
-    drive, friction, elastomer, structure, radiation, measurement, sensor_faults, strangers,
-    foreign,
-)  # fmt: skip
+_MODULES = (drive, friction, structure, measurement, strangers, foreign)
 
 STRANGERS = tuple(sorted({f.effect for f in FORMS.values() if f.effect.startswith("stranger_")}))
 CAUSES = tuple(sorted({f.effect for f in FORMS.values()} - set(STRANGERS)))

@@ -12,11 +12,11 @@ from scipy.special import erf
 
 from .. import contact, kernel
 from ..structure import filtered
-from .elastomer import _branches
+from .drive import _branches
 from .form import DEVELOPMENT, SEALED, form, noise_in_band
 from .friction import _AGE, _RATIO, _SLIDING, _aged
-from .radiation import _tail, _through
-from .sensor_faults import _each, _one_or_two
+from .measurement import _each, _one_or_two
+from .structure import _tail, _through
 
 FOREIGN = {DEVELOPMENT: "foreign development", SEALED: "foreign sealed"}
 _NEW, _KEPT = FOREIGN[DEVELOPMENT], FOREIGN[SEALED]
