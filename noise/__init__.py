@@ -18,7 +18,7 @@ Label: `label`, `LabelTable`, `label_recording`, `file_label`, `Segment`, `Segme
 `train_inference`.
 
 Screen: `screen`, `Screening`, `load_design`, `Design`, `Use`, `Swinging`, `sweep`, `Sweep`,
-`plot_screen`, `robustness`, `Robustness`, `critical_speeds`, `critical_damping`.
+`plot_screen`, `critical_speeds`, `critical_damping`.
 
 Diagnose: `diagnose`, `Diagnosis`.
 
@@ -63,7 +63,6 @@ _EXPORTS = {
     "noise.recordings.calibrator": ("read_calibrator",),
     "noise.recordings": ("find_recordings", "read_recording", "write_recording"),
     "noise.screening.design": ("Design", "Swinging", "Use", "load_design"),
-    "noise.screening.parts": ("Robustness", "robustness"),
     "noise.screening.screen": ("Screening", "screen"),
     "noise.pages.review": ("Review", "review"),
     "sim.acquisition": ("Acquisition",),

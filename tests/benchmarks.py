@@ -30,8 +30,7 @@ import soundfile
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from noise.cli import main
-from noise.screening.axis_values import spread
-from noise.screening.design import Use
+from noise.screening.design import Use, spread
 from noise.screening.screen import screen
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS

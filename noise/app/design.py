@@ -24,7 +24,7 @@ from noise.app.design_controls import (
 )
 from noise.base.files import atomic
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
-from noise.screening.provenance import fits_remark
+from noise.screening.grid import fits_remark
 from sim.effects import EFFECTS
 from sim.plan import Setting
 from sim.temperature import at_temperature

@@ -18,11 +18,10 @@ from noise.base.labels import LABEL_LOOKS, MAP_LABELS, NAMED, PERSISTS
 from noise.pages.maps import ConditionMap, areas_of, axis_of
 from noise.pages.page import map_html
 from noise.screening.advice import advise
-from noise.screening.batches import batch_evaluator
 from noise.screening.design import Design as Screened, Use
 from noise.screening.grid import shared_grid
 from noise.screening.mapping import BEYOND, SIMULATED, DesignMap, map_design
-from noise.screening.point import PointResult, evaluate_point
+from noise.screening.point import PointResult, batch_evaluator, evaluate_point
 from noise.screening.vibration import Condition
 
 

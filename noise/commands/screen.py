@@ -128,14 +128,13 @@ def _change(options: Namespace) -> Callable[[Rig], Rig] | None:
 
 def _use(options: Namespace) -> Use:
     """Return the conditions that the options state."""
-    from noise.screening import axis_values as axes
-    from noise.screening.design import Use
+    from noise.screening import design as axes
 
     fits = axes.axis_values(options.interference, "--interference")
     if fits and fits[-1] > 10.0:
         raise ParameterError(f"--interference is {fits[-1]:g} mm; it must be at most 10")
     stiffness = axes.axis_values(options.support_stiffness, "--support-stiffness", axes.SUPPORT)
-    return Use(
+    return axes.Use(
         speed=axes.axis_values(options.speed, "--speed", axes.SPEED),
         interference=tuple(1e-3 * fit for fit in fits),
         support_stiffness=stiffness,
@@ -146,8 +145,7 @@ def _use(options: Namespace) -> Use:
 
 def _swinging(text: str) -> Swinging:
     """Parse amplitude [degree] and frequencies [Hz] of an oscillation."""
-    from noise.screening.axis_values import FREQUENCY, axis_values
-    from noise.screening.design import Swinging
+    from noise.screening.design import FREQUENCY, Swinging, axis_values
 
     degrees, comma, frequency = text.partition(",")
     if not comma:
@@ -164,7 +162,6 @@ def _write(options: Namespace, screening: Screening, progress: Steps) -> list[Pa
     from noise.pages.screening import write_screening
     from noise.pictures.figure import write_picture
     from noise.pictures.maps import plot_screen
-    from noise.screening.design import copy_design_file
     from noise.screening.tables import screening_tables
 
     folder = options.out
@@ -173,11 +170,6 @@ def _write(options: Namespace, screening: Screening, progress: Steps) -> list[Pa
     for name, (columns, rows) in screening_tables(screening).items():
         write_table(folder / name, columns, rows)
         written.append(folder / name)
-    for name, path in screening.files:
-        try:
-            written.append(copy_design_file(name, path, folder / "designs"))
-        except ParameterError as error:
-            say(str(error))
     single = len(screening.maps) == 1
     for index, mapped in enumerate(screening.maps, start=1):
         path = folder / ("map.png" if single else f"map-{index}.png")

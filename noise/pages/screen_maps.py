@@ -354,9 +354,9 @@ def _map(
 ) -> ConditionMap:
     """Lay out the map of a design with its spots and a note."""
     design, grid = place.maps[own], place.maps[own].grid
-    label, level, regime, note = (
+    label, level, regime = (
         getattr(design, name)[place.temperature, place.support]
-        for name in ("label", "level", "regime", "note")
+        for name in ("label", "level", "regime")
     )
     height = min(MAP_SIZE[1], _LEAST_HEIGHT + _ROW_HEIGHT * len(grid.interference))
     across = axis_of(grid.speed)
@@ -381,14 +381,9 @@ def _map(
                 ", ".join(words), keys[own], tuple(mates.get(name, "") for name in names),
             )
         )  # fmt: skip
-    counts = Counter(part for text in note.flat for part in str(text).split("; ") if part)
-    notes = [
-        f"{part[0].upper()}{part[1:]}: {'all' if n == note.size else n} points."
-        for part, n in counts.most_common()
-    ]
     return ConditionMap(
         design.design, across, up, areas_of(label, across, up, height), tuple(spots),
-        " ".join(notes + [f"No sounds: {silent}."] * bool(silent)),
+        f"No sounds: {silent}." if silent else "",
         "Largest speed" if grid.frequency else "Speed", height, names.index(design.design),
         areas_of(steps, across, up, height),
     )  # fmt: skip

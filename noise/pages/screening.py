@@ -18,13 +18,14 @@ from noise.screening.environments import environment, in_environment
 from noise.screening.standing import SHARED, Standing
 from noise.screening.summary import (
     MARGIN_RULE,
-    conditions_lines,
+    conditions_words,
     detail_lines,
+    margin_is_bound,
+    percent,
     ranking_words,
     standing_place,
     use_head,
 )
-from noise.screening.words import margin_is_bound, percent
 
 if TYPE_CHECKING:
     from noise.screening.grid import Grid
@@ -70,7 +71,7 @@ def _row(one: Standing, screening: Screening) -> list[b.Cell | str]:
         "" if one.rank is None else f"{one.mean_loudness:.3g} sone",
         loudest,
         _margin(one, screening.map_of(one).grid),
-        b.Cell(use_head(one), items=tuple(details)),
+        b.Cell(use_head(one, screening), items=tuple(details)),
     ]
 
 
@@ -139,8 +140,6 @@ def write_screening(
         *screening.refused,
         *((f"{name}, in part", reason) for name, reason in screening.failed),
     ]
-    first, *lines = conditions_lines(screening)
-    compared_at = [f"Compared: {first}.", *(f"{line[0].upper()}{line[1:]}." for line in lines)]
     html = page_html(
         "screening",
         _title(screening),
@@ -153,7 +152,7 @@ def write_screening(
             b.Section(
                 "Ranking",
                 [
-                    b.Text(" ".join([*compared_at, f"{MARGIN_RULE}."]), "soft"),
+                    b.Text(f"Compared: {conditions_words(screening)}. {MARGIN_RULE}.", "soft"),
                     b.Table(RANKING, ranking_rows(screening), head=1, style="ranking"),
                 ],
             ),
@@ -162,7 +161,7 @@ def write_screening(
                 [b.Text(_SOUNDS if clips else "", "soft aloud"), b.Other("designs", compared)],
             ),
         ],
-        footer=f"Screened in {screening.seconds + screening.statistics_seconds:.1f} s. Labels are "
+        footer=f"Screened in {screening.seconds:.1f} s. Labels are "
         "those of bushing-noise label, levels without room and microphone.",
         entries=entries,
         clips=clips,

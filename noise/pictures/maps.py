@@ -3,8 +3,7 @@
 Dark lines are where stick begins and ends as the speed rises, white ones where steady sliding turns
 unstable and stable, so that what stability alone would have told stands beside what simulation
 found: a noise on the stable side of a white line is one that stick or a running vibration drives.
-Below the labels is how loud they are. A row is a fit, and a star marks one whose data are not the
-design's own. A panel in which nothing is heard says so.
+Below the labels is how loud they are. A row is a fit. A panel in which nothing is heard says so.
 """
 
 from __future__ import annotations
@@ -39,9 +38,7 @@ _LEVELS = 40.0, 100.0
 _QUIET = "#eef2f5"
 
 _FITS = "Interference [mm]"
-_STAR = "*"
 
-_FITTED: dict[str, Any] = {"color": "#222222", "linewidth": 1.2, "linestyle": ":"}
 _HATCHED: dict[str, Any] = {"fill": False, "linewidth": 0.0, "hatch": "///"}
 _DARK: dict[str, Any] = {"color": "#222222", "linewidth": 1.6}
 _WHITE: dict[str, Any] = {
@@ -137,8 +134,7 @@ def plot_screen(mapped: DesignMap, *, temperature: int = 0) -> Figure:
         images = []
         for k in range(n):
             above, below = axes[:, k]
-            star = _star(mapped, np.s_[:, k], "damping")
-            above.set_title(support_words(grid.support_stiffness[k]) + star)
+            above.set_title(support_words(grid.support_stiffness[k]))
             _draw_labels(above, mapped, temperature, k)
             below.set_facecolor(_QUIET)
             level = np.where(
@@ -163,7 +159,7 @@ def plot_screen(mapped: DesignMap, *, temperature: int = 0) -> Figure:
         bar = figure.colorbar(images[0], ax=axes[1, :].tolist(), pad=0.01, aspect=12)
         bar.set_label("Level [dB(A)]")
         figure.legend(
-            handles=_handles(mapped, *axes[0]),
+            handles=_handles(*axes[0]),
             loc="outside lower center",
             ncols=8,
             columnspacing=1.3,
@@ -198,7 +194,7 @@ def plot_map(
         axes.set_title(
             f"{mapped.design}, {mapped.environment}, {grid.temperature[temperature]:g} °C, {where}"
         )
-        axes.legend(handles=_handles(mapped, axes), fontsize="small")
+        axes.legend(handles=_handles(axes), fontsize="small")
     return axes
 
 
@@ -220,9 +216,6 @@ def _draw_labels(axes: Axes, mapped: DesignMap, temperature: int, support: int) 
         axes.add_patch(Rectangle((x[column], y[row]), *size, **_HATCHED))
     axes.grid(visible=False)
     _say_quiet(axes, mapped, temperature, support)
-    beyond = _beyond(mapped)
-    if beyond is not None:
-        axes.axvline(beyond, **_FITTED)
     for name, row, where in boundary_lines(mapped, support=support, temperature=temperature):
         axes.plot([where, where], [row - 0.5, row + 0.5], label=name, **LINES[name])
 
@@ -234,13 +227,7 @@ def _speed_words(mapped: DesignMap) -> str:
 def _name_fits(axes: Axes, mapped: DesignMap) -> None:
     fits = mapped.grid.interference
     rows = range(0, len(fits), math.ceil(len(fits) / _NAMED_ROWS))
-    words = [f"{1e3 * fits[i]:.3g}{_star(mapped, np.s_[:, :, i], 'fit')}" for i in rows]
-    axes.set_yticks(list(rows), words)
-
-
-def _star(mapped: DesignMap, at: tuple[slice | int, ...], what: str) -> str:
-    """Return a star if data are substituted at all points of a part of a map."""
-    return _STAR if all(what in str(note) for note in mapped.note[at].flat) else ""
+    axes.set_yticks(list(rows), [f"{1e3 * fits[i]:.3g}" for i in rows])
 
 
 def _say_quiet(axes: Axes, mapped: DesignMap, temperature: int, support: int) -> None:
@@ -248,7 +235,7 @@ def _say_quiet(axes: Axes, mapped: DesignMap, temperature: int, support: int) ->
         axes.text(0.5, 0.5, "quiet", transform=axes.transAxes, ha="center", va="center")
 
 
-def _handles(mapped: DesignMap, *panels: Axes) -> list[Patch | Line2D]:
+def _handles(*panels: Axes) -> list[Patch | Line2D]:
     """Return the legend handles, with the lines that the panels have."""
     drawn = {line.get_label() for panel in panels for line in panel.get_lines()}
     return [
@@ -262,22 +249,7 @@ def _handles(mapped: DesignMap, *panels: Axes) -> list[Patch | Line2D]:
             for label in _SIMULATED[::-1]
         ),
         *(Line2D([], [], **look, label=name) for name, look in LINES.items() if name in drawn),
-        *([] if _beyond(mapped) is None else [Line2D([], [], **_FITTED, label="fastest fitted")]),
-        *_star_handle(mapped),
     ]
-
-
-def _beyond(mapped: DesignMap) -> float | None:
-    """Return the speed beyond the fitted range [rad/s], None if there is none."""
-    fast = ["faster" in str(note) for note in mapped.note[0, 0, 0]]
-    return _edges(np.array(mapped.grid.speed))[fast.index(True)] if any(fast) else None
-
-
-def _star_handle(mapped: DesignMap) -> list[Line2D]:
-    if not mapped.substituted.any():
-        return []
-    words = "data interpolated or held"
-    return [Line2D([], [], linestyle="none", marker="$*$", color="#222222", label=words)]
 
 
 def _edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:

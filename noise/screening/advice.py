@@ -21,8 +21,9 @@ from models.errors import ParameterError
 from models.rig import Rig
 from noise.base.labels import PERSISTS
 from noise.batch.work import one_thread
+from noise.screening.design import PARAMETERS
 from noise.screening.environments import FIT_PARAMETERS
-from noise.screening.tolerances import PARAMETERS, nominal_values
+from noise.screening.parts import nominal_values
 from noise.screening.vibration import (
     BREAKS_OUT,
     Condition,
@@ -49,7 +50,7 @@ class Offer:
     Parameters
     ----------
     name : str
-        Of `noise.screening.tolerances.PARAMETERS`.
+        Of `noise.screening.design.PARAMETERS`.
     nominal : float
         Value as it is, in the unit of `PARAMETERS`, such as [Nm].
     percent : int

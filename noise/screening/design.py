@@ -16,35 +16,33 @@ taken from the rig: its fits, its supports.
     speed_rad_s = 5
     [tolerances]
     elastomer_stiffness = 0.05                # relative standard deviation
-    interference = { absolute = 0.01 }        # the same in mm
     kinetic_torque = { low = 7.5, high = 8.5 }
+
+The values along an axis of a map, in such a file and in options, are a number, a list, or a range
+``LOW..HIGH`` with as many points as asked for, ``LOW..HIGH/N``. A range without them has those of a
+map that shows a boundary where it is: a speed every eighth of a radian a second, seventeen fits.
+
+A tolerance is a relative standard deviation, or limits between which all values are equally likely,
+in the unit of the design file. Parameters of the rig's effects can vary as well, each under the
+name of its effect: ``slip_pulse.amplitude = 0.1``.
 """
 
 from __future__ import annotations
 
-import json
 import math
-import re
-import shutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from models.condition import FIXED
 from models.errors import BushingNoiseError, ParameterError
 from models.foreign_file import refusing
-from models.rig import Rig
-from models.rig_file import base_name, load_material_rig, material_names, read_toml, rig_from
+from models.rig import LawSpec, Rig
+from models.rig_file import load_material_rig, material_names, read_toml, rig_from
 from models.schema import as_table, as_text, number, refuse_unknown
 from models.show import short_repr
-from noise.screening.axis_values import (
-    FREQUENCY,
-    SPEED,
-    SUPPORT,
-    TEMPERATURE,
-    axis_values,
-)
-from noise.screening.tolerances import Tolerance, read_tolerances
+from models.units import ABSOLUTE_ZERO
 
 _USE_KEYS = {
     "name",
@@ -55,6 +53,37 @@ _USE_KEYS = {
     "oscillation",
     "heard",
 }
+
+PARAMETERS = {
+    "elastomer_stiffness": "Nm/rad",
+    "damping": "Nm s/rad",
+    "critical_torque": "Nm",
+    "kinetic_torque": "Nm",
+    "elastomer_inertia": "kg m2",
+    "support_stiffness": "Nm/rad",
+    "interference": "mm",
+}
+"""Parameters that can vary, with their units in a design file; those of effects vary as well."""
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Tolerance of one parameter.
+
+    Parameters
+    ----------
+    name : str
+        One of `PARAMETERS`, or ``EFFECT.PARAMETER``.
+    spread : float, optional
+        Relative standard deviation [-]; None where there are limits.
+    low, high : float
+        Limits, in the unit of `PARAMETERS`.
+    """
+
+    name: str
+    spread: float | None
+    low: float = 0.0
+    high: float = math.inf
 
 
 @short_repr
@@ -240,7 +269,7 @@ def _swinging(given: object, where: str) -> Swinging | None:
 
 def load_designs(
     designs: Sequence[str | Path | Design], change: Callable[[Rig], Rig] | None = None
-) -> tuple[dict[str, Design], list[tuple[str, str]], list[tuple[str, Path]]]:
+) -> tuple[dict[str, Design], list[tuple[str, str]]]:
     """Load designs, and collect the reasons for those that are refused.
 
     Parameters
@@ -256,8 +285,6 @@ def load_designs(
         Designs by name; a number distinguishes two of one name.
     list of (str, str)
         Those that are refused, and why.
-    list of (str, Path)
-        Names of designs, and the files that they are as they stand in.
 
     Raises
     ------
@@ -266,13 +293,12 @@ def load_designs(
 
     Examples
     --------
-    >>> loaded, refused, files = load_designs(["PDMS", "PDMS", "cheese"])
-    >>> list(loaded), [name for name, _ in refused], files
-    (['PDMS', 'PDMS (2)'], ['cheese'], [])
+    >>> loaded, refused = load_designs(["PDMS", "PDMS", "cheese"])
+    >>> list(loaded), [name for name, _ in refused]
+    (['PDMS', 'PDMS (2)'], ['cheese'])
     """
     loaded: dict[str, Design] = {}
     refused: list[tuple[str, str]] = []
-    files: list[tuple[str, Path]] = []
     for one in designs:
         try:
             design = one if isinstance(one, Design) else load_design(one)
@@ -281,107 +307,240 @@ def load_designs(
         except BushingNoiseError as error:
             refused.append((one.name if isinstance(one, Design) else str(one), str(error)))
             continue
-        design = _with_name_of_its_own(design, set(loaded))
-        loaded[design.name] = design
-        if change is None and not isinstance(one, Design) and Path(one).is_file():
-            files.append((design.name, Path(one)))
+        name, n = design.name, 2
+        while name in loaded:
+            name, n = f"{design.name} ({n})", n + 1
+        loaded[name] = replace(design, name=name)
     if not loaded:
         raise ParameterError(refused[0][1])
-    return loaded, refused, files
+    return loaded, refused
 
 
-def _with_name_of_its_own(design: Design, taken: set[str]) -> Design:
-    """Return the design with a number behind its name where the name is taken."""
-    name, number = design.name, 2
-    while name in taken:
-        name, number = f"{design.name} ({number})", number + 1
-    return replace(design, name=name)
+# --- tolerances ----------------------------------------------------------------------------------
 
 
-def copy_design_file(name: str, source: Path, folder: Path) -> Path:
-    """Copy a design's file to ``folder/NAME.toml``, with the responses that it names.
-
-    Responses named by a path of the file's own folder go with it. One named by a way out of that
-    folder would not be found from the copy, which is refused. A base out of that folder, or with
-    such a base of its own, is named by the copy from where it lies.
+def read_tolerances(
+    given: object, where: str, effects: Sequence[LawSpec] = ()
+) -> tuple[Tolerance, ...]:
+    """Read the table ``[tolerances]``.
 
     Parameters
     ----------
-    name : str
-        Name of the design in the screening.
-    source, folder : Path
-
-    Returns
-    -------
-    Path
-        The copy.
+    given : object
+        Content of the table.
+    where : str
+        Name of the file in messages.
+    effects : sequence of LawSpec
+        Of the rig, the parameters of which can vary where it states them.
 
     Raises
     ------
     ParameterError
-        The name is none of a file, or the copy is no design; the message says so.
+        A name that cannot vary, or an entry that is none; the message names it.
 
     Examples
     --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as made:
-    ...     source = Path(made) / "mine.toml"
-    ...     size = source.write_text('material = "PDMS"', encoding="utf-8")
-    ...     copy_design_file("soft", source, Path(made) / "designs").name
-    'soft.toml'
+    >>> read_tolerances({"damping": 0.1}, "design")
+    (Tolerance(name='damping', spread=0.1, low=0.0, high=inf),)
     """
-    target = folder / f"{name}.toml"
-    where = f"design {source}: cannot be copied to {target}"
-    if Path(name).name != name:
-        raise ParameterError(f"{where}: the design's name is none of a file")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for path in _named_files(source):
-            if not path.is_absolute() and ".." not in path.parts:
-                (folder / path).parent.mkdir(parents=True, exist_ok=True)
-                _copied(source.parent / path, folder / path)
-        if (base := _base_elsewhere(source)) is None:
-            _copied(source, target)
+    table, where = as_table(given, "tolerances", where), f"{where}, tolerances"
+    stated = {
+        spec.name: {key for key, value in spec.parameters.items() if not isinstance(value, str)}
+        for spec in effects
+    }
+    refuse_unknown(table, set(PARAMETERS) | set(stated), where)
+    tolerances = []
+    for name, entry in table.items():
+        if name in PARAMETERS:
+            tolerances.append(_tolerance(name, entry, where))
+            continue
+        inner = as_table(entry, name, where)
+        refuse_unknown(inner, stated[name], f"{where}, {name}")
+        tolerances += [_tolerance(f"{name}.{key}", value, where) for key, value in inner.items()]
+    return tuple(tolerances)
+
+
+def _tolerance(name: str, entry: object, where: str) -> Tolerance:
+    if not isinstance(entry, Mapping):
+        return Tolerance(name, number({name: entry}, name, where, closed=True))
+    inside = f"{where}, {name}"
+    refuse_unknown(entry, {"low", "high"}, inside)
+    if set(entry) != {"low", "high"}:
+        raise ParameterError(f"{inside}: give a number, or low and high")
+    low, high = (number(entry, key, inside) for key in ("low", "high"))
+    if not low < high:
+        raise ParameterError(f"{inside}: low = {low:g} is not below high = {high:g}")
+    return Tolerance(name, None, low, high)
+
+
+# --- values along an axis ------------------------------------------------------------------------
+
+
+MOST_POINTS = 2000
+"""Along one axis."""
+
+SPEED_STEP = 0.125
+"""Of a range of speeds without points of its own [rad/s]."""
+
+
+@dataclass(frozen=True)
+class AxisRule:
+    """Allowed values of an axis.
+
+    Parameters
+    ----------
+    step : float, optional
+        Step of a range without a number of points, in the unit of the axis, such as [rad/s].
+    points : int
+        Number of points of a range without one, where there is no step.
+    low : float
+        Lower limit, in the unit of the axis, such as [rad/s].
+    open_low : bool
+        Whether `low` itself is not allowed.
+    fixed : bool
+        Whether ``fixed`` is a value.
+    """
+
+    step: float | None = None
+    points: int = 17
+    low: float = 0.0
+    open_low: bool = True
+    fixed: bool = False
+
+
+POSITIVE = AxisRule()
+SPEED = AxisRule(step=SPEED_STEP)
+FREQUENCY = AxisRule(step=0.25)
+SUPPORT = AxisRule(fixed=True)
+TEMPERATURE = AxisRule(points=3, low=ABSOLUTE_ZERO, open_low=False)
+
+
+def spread(low: float, high: float, points: int) -> tuple[float, ...]:
+    """Return evenly spaced values, rounded to ten digits.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends, in the unit of the axis, such as [rad/s].
+    points : int
+        2 or more.
+
+    Examples
+    --------
+    >>> spread(0.25, 1.0, 4)
+    (0.25, 0.5, 0.75, 1.0)
+    """
+    if points == 1:
+        return (low,)
+    step = (high - low) / (points - 1)
+    return tuple(float(f"{low + i * step:.10g}") for i in range(points))
+
+
+def axis_values(given: object, what: str, rule: AxisRule = POSITIVE) -> tuple[float, ...]:
+    """Parse an axis: a number, ``5``, ``0.178,0.279``, ``0.25..13``, ``0.25..13/52``, or a list.
+
+    Parameters
+    ----------
+    given : object
+        Value of an option or a key of a design file; None has no values.
+    what : str
+        Name of the axis in messages, such as ``--speed``.
+    rule : AxisRule
+
+    Returns
+    -------
+    tuple of float
+        Rising, each once, in the unit of the axis, such as [rad/s].
+
+    Raises
+    ------
+    ParameterError
+        It is none of these, or a value is out of range.
+
+    Examples
+    --------
+    >>> axis_values("1..2/3", "--speed"), axis_values("fixed,2214", "-k", SUPPORT)
+    ((1.0, 1.5, 2.0), (2214.0, inf))
+    >>> axis_values([0.178, 0.279], "interference_mm"), axis_values("1..2/2", "speed_rad_s")
+    ((0.178, 0.279), (1.0, 2.0))
+    """
+    if given is None:
+        return ()
+    values: list[float] = []
+    for item in given if isinstance(given, list) else [given]:
+        if isinstance(item, str):
+            for part in item.split(","):
+                values += _part_values(part, what, item, rule)
+        elif isinstance(item, int | float) and not isinstance(item, bool):
+            values.append(float(item))
         else:
-            named = f"base = {json.dumps(base_name(base, folder), ensure_ascii=False)}"
-            text = source.read_text(encoding="utf-8")
-            target.write_text(_BASE.sub(lambda _: named, text, count=1), encoding="utf-8")
-        load_design(target)
-    except OSError as error:
-        raise ParameterError(f"{where}: {error.strerror or error}") from None
-    except BushingNoiseError as error:
-        target.unlink(missing_ok=True)
-        raise ParameterError(f"{where}: {error}") from None
-    return target
+            raise ParameterError(f"{what} = {given!r}: give numbers, or a range such as '0.25..13'")
+    return _checked(values, what, str(given), rule)
 
 
-_BASE = re.compile(r"""^base\s*=\s*(?:"[^"]*"|'[^']*')""", re.MULTILINE)
-"""Line that names the base of a file."""
+def _part_values(part: str, what: str, whole: str, rule: AxisRule) -> tuple[float, ...]:
+    """Parse the text between two commas: a number or a range."""
+    first, dots, rest = part.partition("..")
+    if not dots:
+        return (_value(part, what, whole, fixed=rule.fixed),)
+    last, slash, count = rest.partition("/")
+    start, end = _value(first, what, whole), _value(last, what, whole)
+    if not start < end:
+        raise ParameterError(f"{what} is {whole!r}: a range rises, as 0.25..13 does")
+    if slash and not (count.strip().isdecimal() and 2 <= int(count) <= MOST_POINTS):
+        raise ParameterError(
+            f"{what} is {whole!r}: the points of a range are a whole number from 2 to "
+            f"{MOST_POINTS}, as in 0.25..13/52"
+        )
+    n = int(count) if slash else rule.points
+    if rule.step is not None and not slash:
+        n = min(MOST_POINTS, round((end - start) / rule.step) + 1)
+    return spread(start, end, max(2, n))
 
 
-def _base_elsewhere(source: Path) -> Path | None:
-    """Return the base of a file if its path, or that of its own base, leaves the folder."""
-    named = Path(read_toml(source, f"design {source}").get("base", ""))
-    base = source.parent / named
-    if named.is_absolute() or not base.is_file():
-        return None
-    return base if ".." in named.parts or _base_elsewhere(base) is not None else None
+def axis_words(values: Sequence[float], most: int = 4) -> str:
+    """Return the values of an axis as text, or only its ends and number above `most` values.
+
+    Parameters
+    ----------
+    values : sequence of float
+        In the unit of the axis, such as [rad/s].
+    most : int
+
+    Examples
+    --------
+    >>> axis_words([2214.0, FIXED]), axis_words([0.25, 0.5, 0.75], most=2)
+    ('2214 and fixed', '0.25 to 0.75 (3 values)')
+    """
+    texts = ["fixed" if math.isinf(value) else f"{value:.4g}" for value in values]
+    if len(texts) > most:
+        return f"{texts[0]} to {texts[-1]} ({len(texts)} values)"
+    return " and ".join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)
 
 
-def _copied(source: Path, target: Path) -> None:
-    if not (target.exists() and source.samefile(target)):
-        shutil.copyfile(source, target)
+def _value(text: str, what: str, whole: str, *, fixed: bool = False) -> float:
+    if fixed and text.strip().lower() == "fixed":
+        return FIXED
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        word = ", or fixed" if fixed else ""
+        raise ParameterError(
+            f"{what} is {whole!r}, expected numbers such as 5, 1,2.5,5 or 0.25..13/52{word}"
+        )
+    return value
 
 
-def _named_files(source: Path) -> list[Path]:
-    content = read_toml(source, f"design {source}")
-    paths = [
-        Path(value)
-        for table in content.get("measured_response", [])
-        for key, value in table.items()
-        if key.startswith("torque_to_") and isinstance(value, str)
-    ]
-    base = Path(content.get("base", ""))
-    if base.suffix and (source.parent / base).is_file() and _base_elsewhere(source) is None:
-        paths += [base, *(base.parent / named for named in _named_files(source.parent / base))]
-    return paths
+def _checked(numbers: list[float], what: str, text: str, rule: AxisRule) -> tuple[float, ...]:
+    values = sorted(set(numbers))
+    if not values:
+        raise ParameterError(f"{what} is empty; give at least one value")
+    low = rule.low
+    if not (values[0] > low if rule.open_low else values[0] >= low) or math.isnan(values[-1]):
+        bound = "above" if rule.open_low else "at least"
+        raise ParameterError(f"{what} is {text!r}; values must be {bound} {low:g}")
+    if len(values) > MOST_POINTS:
+        raise ParameterError(f"{what} has {len(values)} values; at most {MOST_POINTS} are mapped")
+    return tuple(values)

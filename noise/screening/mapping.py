@@ -17,7 +17,7 @@ where the properties of the nearest fit are held so is the row of that fit; the 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -29,9 +29,8 @@ from scipy.spatial import cKDTree
 from models.rig import Rig
 from models.show import short_repr
 from noise.base.labels import PERSISTS
-from noise.screening.batches import Evaluator
 from noise.screening.grid import Grid
-from noise.screening.provenance import point_notes, rows_of
+from noise.screening.point import Evaluator
 from noise.screening.vibration import Condition
 from sim.analysis.regime import Regime
 from sim.analysis.stability import sliding_growth
@@ -87,11 +86,6 @@ class DesignMap:
         Of `HOW`.
     growth : ndarray, shape of the grid
         Growth rate of a small vibration about steady sliding [1/s]; NaN for a swinging shaft.
-    note : ndarray of str, shape of the grid
-        Data that are not the design's own, by `noise.screening.provenance.point_notes`: data
-        interpolated or held, a speed beyond those fitted; empty where nothing is.
-    substituted : ndarray of bool, shape of the grid
-        Where such data stand in.
     open : int
         Points beside a boundary that were left to their nearest neighbour.
     """
@@ -108,8 +102,6 @@ class DesignMap:
     level_max: NDArray[np.float64]
     how: NDArray[np.str_]
     growth: NDArray[np.float64]
-    note: NDArray[np.object_]
-    substituted: NDArray[np.bool_]
     open: int
 
     def count(self, how: str) -> int:
@@ -135,7 +127,7 @@ def map_design(
         In its environment.
     grid : Grid
     evaluate : callable
-        Of `noise.screening.batches.batch_evaluator`.
+        Of `noise.screening.point.batch_evaluator`.
     design, environment : str
         Names.
     most : int, optional
@@ -154,7 +146,7 @@ def map_design(
     """
     known_by = (
         np.arange(grid.shape[0]) if rig.temperature else np.zeros(grid.shape[0], dtype=int),
-        np.array(rows_of(rig, grid.interference)),
+        known_rows(rig, grid.interference),
     )
     temperature, interference = (
         np.array(axis)[np.unique(known)]
@@ -200,7 +192,6 @@ def map_design(
         ),
     )
     code = refined.codes.reshape(shape)
-    note, substituted = point_notes(rig, grid)
     kind = code // len(REGIMES)
     sound = np.array(LABELS)[kind % len(LABELS)]
     physics = interpolated(values[0], refined, nearest=1).reshape(shape).astype(int)
@@ -222,11 +213,33 @@ def map_design(
             REFINED,
         ),
         growth=growth,
-        note=note,
-        substituted=substituted,
         open=refined.open,
     )
     return _copied(mapped, *known_by)
+
+
+def known_rows(rig: Rig, interference: Sequence[float]) -> NDArray[np.int64]:
+    """Return for each row of a map the row that has its results: itself, or that of a held fit.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : sequence of float
+        Rising [m].
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> fits = [0.127e-3, 0.178e-3, 0.254e-3, 0.3e-3, 0.5e-3, 0.6e-3]
+    >>> known_rows(load_material_rig("PDMS"), fits).tolist()
+    [2, 2, 2, 3, 4, 4]
+    """
+    low, high = rig.interference_range
+    fits = np.array(interference)
+    rows = np.arange(fits.size)
+    rows[fits <= low] = rows[fits <= low].max(initial=-1)
+    rows[fits >= high] = rows[fits >= high].min(initial=fits.size)
+    return rows
 
 
 def _stride(values: NDArray[np.float64], apart: float) -> int:

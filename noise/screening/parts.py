@@ -1,13 +1,9 @@
-"""Tolerance analysis: probability that a part is noisy in use, and Sobol' indices.
+"""Parts within tolerances: how they vary, and the probability that one is noisy in its use.
 
 Parts are drawn as scrambled Sobol' points. A part is noisy if anywhere among the speeds of its use
 a vibration lasts that is heard, whether it breaks out or only persists: it is tried where the
 nominal design is loudest, where its own sliding is least stable, and at the ends of the use. The
 interval of that probability is that of Clopper and Pearson, which covers at least what it states.
-
-Which tolerance matters is told by Sobol' indices of the largest growth of a vibration over the use
-(`scipy.stats.sobol_indices` and its bootstrap). A constant kinetic torque has no such growth, and
-gets none.
 
 A file that states no tolerances gets those of `ASSUMED`, and the answer says so.
 """
@@ -15,7 +11,7 @@ A file that states no tolerances gets those of `ASSUMED`, and the answer says so
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -24,25 +20,24 @@ from joblib import Parallel, delayed
 from numpy.typing import NDArray
 from scipy import stats
 
-from models.rig import Rig
-from models.show import short_repr
+from models.errors import ParameterError
+from models.rig import LawSpec, Rig, damping_at
 from noise.batch.work import one_thread
-from noise.screening.design import Design
-from noise.screening.grid import shared_grid
+from noise.screening.design import Design, Tolerance
+from noise.screening.environments import FIT_PARAMETERS, scaled_fit
 from noise.screening.point import is_noisy
-from noise.screening.tolerances import Tolerance, nominal_values, varied
 from noise.screening.vibration import Condition
 from sim.analysis.stability import growth_of_parts
-from sim.friction import friction_law
+from sim.effects import EFFECTS
 from sim.temperature import at_temperature
 
 ASSUMED = (
-    Tolerance("elastomer_stiffness", "relative", 0.05),
-    Tolerance("damping", "relative", 0.1),
-    Tolerance("critical_torque", "relative", 0.05),
-    Tolerance("kinetic_torque", "relative", 0.05),
-    Tolerance("support_stiffness", "relative", 0.03),
-    Tolerance("interference", "relative", 0.03),
+    Tolerance("elastomer_stiffness", 0.05),
+    Tolerance("damping", 0.1),
+    Tolerance("critical_torque", 0.05),
+    Tolerance("kinetic_torque", 0.05),
+    Tolerance("support_stiffness", 0.03),
+    Tolerance("interference", 0.03),
 )
 """Tolerances where a design states none: orders of magnitude for moulded rubber, no source."""
 
@@ -50,106 +45,165 @@ _SPEEDS = 9
 """Number of speeds of use at which the growth rate is computed."""
 
 _PARTS = 64
-_INDICES = 128
-"""Sample size of the Sobol' indices, to be multiplied by the number of tolerances plus two."""
+
+_WIDEST_NORMAL = 1.0 / 6.0
+"""Relative standard deviation from which on a normal distribution is taken as lognormal."""
+
+_NARROWEST = 1e-300
+"""Standard deviation of a constant; `scipy.stats` does not take 0."""
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """An estimate and its 95 % confidence interval [-]."""
+def factor_of(tolerance: Tolerance, nominal: float) -> Any:
+    """Return the distribution of the factor on a nominal value.
 
-    value: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
-class Sensitivity:
-    """Sobol' indices of one tolerance for the growth rate of vibration.
+    A normal distribution so wide that it would reach to zero is taken as lognormal.
 
     Parameters
     ----------
-    name : str
-        Of the parameter.
-    first, total : Estimate
-        Sobol' indices: the share of the variance that goes when the parameter no longer scatters,
-        and the share that stays when it alone does [-].
-    """
+    tolerance : Tolerance
+    nominal : float
+        In the unit of `noise.screening.design.PARAMETERS`, such as [Nm].
 
-    name: str
-    first: Estimate
-    total: Estimate
-
-
-@short_repr
-@dataclass(frozen=True, eq=False)
-class Robustness:
-    """Results of the tolerance analysis of a design.
-
-    Parameters
-    ----------
-    design : str
-    at : Condition
-        Fit, support and temperature that the parts scatter about; the nominal design's loudest.
-    noisy : Estimate
-        Probability that a part is noisy anywhere in its use [-].
-    sensitivities : tuple of Sensitivity
-        What matters most first; empty where friction has no slope.
-    assumed : bool
-        Whether the tolerances are `ASSUMED` rather than the design's own.
+    Returns
+    -------
+    rv_frozen
+        Distribution of `scipy.stats`; its median is 1 unless there are limits.
 
     Examples
     --------
-    >>> from noise.screening.design import load_design
-    >>> design = load_design("fluorocarbon-thesis")
-    >>> found = robustness(design, np.random.default_rng(0), parts=4)
-    >>> found.noisy.value, found.assumed
-    (1.0, True)
+    >>> factor_of(Tolerance("damping", None, 0.08, 0.12), 0.1).ppf([0.0, 0.5, 1.0])
+    array([0.8, 1. , 1.2])
+    """
+    if tolerance.spread is None:
+        low, high = (round(limit / nominal, 12) for limit in (tolerance.low, tolerance.high))
+        return stats.uniform(low, high - low)
+    if tolerance.spread < _WIDEST_NORMAL:
+        return stats.norm(1.0, max(tolerance.spread, _NARROWEST))
+    return stats.lognorm(math.sqrt(math.log1p(tolerance.spread**2)))
+
+
+def nominal_values(rig: Rig, at: Condition) -> dict[str, float]:
+    """Return the nominal values of all parameters that can vary, in the units of `PARAMETERS`.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> nominal_values(rig, Condition(5.0, 0.279e-3, 2214.0))["critical_torque"]
+    10.7
+    """
+    fit = rig.fit(at.interference)
+    return {
+        "elastomer_stiffness": fit.elastomer_stiffness,
+        "damping": damping_at(fit, at.support_stiffness),
+        "critical_torque": fit.critical_torque,
+        "kinetic_torque": fit.kinetic_torque,
+        "support_stiffness": at.support_stiffness,
+        "interference": 1e3 * at.interference,
+        "elastomer_inertia": rig.elastomer_inertia,
+        **{
+            f"{spec.name}.{key}": value
+            for spec in rig.effects
+            for key, value in spec.parameters.items()
+            if not isinstance(value, str)
+        },
+    }
+
+
+def varied(rig: Rig, at: Condition, factors: Mapping[str, float]) -> tuple[Rig, Condition]:
+    """Return rig and condition with parameters changed.
+
+    Parameters
+    ----------
+    rig : Rig
+    at : Condition
+    factors : mapping of str to float
+        By the names of `nominal_values` [-]. A critical torque is at least the kinetic one. A
+        parameter of an effect goes no farther than the effect has it.
+
+    Raises
+    ------
+    ParameterError
+        A factor is not positive and finite.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> rig, _ = varied(rig, Condition(5.0, 0.279e-3, 2214.0), {"kinetic_torque": 1.1})
+    >>> round(rig.fit(0.279e-3).kinetic_torque, 6)
+    8.8
+    """
+    for name, factor in factors.items():
+        if not 0.0 < factor < math.inf:
+            raise ParameterError(f"the factor {factor:g} on {name} must be above 0 and finite")
+    if any(name in factors for name in FIT_PARAMETERS):
+        rig = replace(rig, fits=tuple(scaled_fit(fit, factors) for fit in rig.fits))
+    rig = replace(
+        rig,
+        elastomer_inertia=rig.elastomer_inertia * factors.get("elastomer_inertia", 1.0),
+        effects=tuple(_scaled_effect(spec, factors) for spec in rig.effects),
+    )
+    at = replace(
+        at,
+        interference=at.interference * factors.get("interference", 1.0),
+        support_stiffness=at.support_stiffness * factors.get("support_stiffness", 1.0),
+    )
+    return rig, at
+
+
+def _scaled_effect(spec: LawSpec, factors: Mapping[str, float]) -> LawSpec:
+    known = EFFECTS[spec.name].parameters if spec.name in EFFECTS else {}
+    scaled: dict[str, float | str] = {}
+    for key, value in spec.parameters.items():
+        factor = factors.get(f"{spec.name}.{key}")
+        scaled[key] = value
+        if factor is not None and not isinstance(value, str):
+            scaled[key] = value * factor
+            if key in known:
+                scaled[key] = min(max(value * factor, known[key].low), known[key].high)
+    return replace(spec, parameters=scaled)
+
+
+@dataclass(frozen=True)
+class NoisyParts:
+    """Probability that a part is noisy anywhere in its use, and its 95 % confidence interval.
+
+    Parameters
+    ----------
+    probability, low, high : float
+        [-]
+    assumed : bool
+        Whether the tolerances are `ASSUMED` rather than the design's own.
     """
 
-    design: str
-    at: Condition
-    noisy: Estimate
-    sensitivities: tuple[Sensitivity, ...]
+    probability: float
+    low: float
+    high: float
     assumed: bool
 
 
-def middle_of_use(design: Design) -> Condition:
-    """Return the condition in the middle of a design's use.
-
-    Examples
-    --------
-    >>> from noise.screening.design import load_design
-    >>> middle_of_use(load_design("fluorocarbon")).support_stiffness
-    3745.0
-    """
-    grid = shared_grid([design])
-    fit, support, temperature = (
-        axis[(len(axis) - 1) // 2]
-        for axis in (grid.interference, grid.support_stiffness, grid.temperature)
-    )
-    return Condition(0.5 * sum(grid.use), fit, support, temperature)
-
-
-def robustness(
+def noisy_parts(
     design: Design,
+    at: Condition,
+    use: tuple[float, float],
     rng: np.random.Generator,
     *,
-    at: Condition | None = None,
     parts: int = _PARTS,
     workers: int = -1,
-) -> Robustness:
-    """Analyse the tolerances of a design.
+) -> NoisyParts:
+    """Return the probability that a part of a design is noisy anywhere in its use.
 
     Parameters
     ----------
     design : Design
         Its rig in its environment.
+    at : Condition
+        That the parts scatter about, with the speed at which the nominal design is loudest.
+    use : (float, float)
+        Slowest and fastest speed of use [rad/s].
     rng : numpy.random.Generator
         Of the parts.
-    at : Condition
-        That the parts scatter about, with the speed at which the nominal design is loudest; by
-        default the middle of its use.
     parts : int
         A power of two.
     workers : int
@@ -157,7 +211,7 @@ def robustness(
 
     Returns
     -------
-    Robustness
+    NoisyParts
 
     Raises
     ------
@@ -167,81 +221,42 @@ def robustness(
     Examples
     --------
     >>> from models.rig_file import load_material_rig
-    >>> from noise.screening.design import Use
-    >>> use = Use(speed=(1.0,), interference=(0.279e-3,), support_stiffness=(2214.0,))
-    >>> quiet = Design("PDMS", load_material_rig("PDMS"), use)
-    >>> robustness(quiet, np.random.default_rng(0), parts=4, workers=1).noisy.value
+    >>> quiet, at = Design("PDMS", load_material_rig("PDMS")), Condition(1.0, 0.279e-3, 2214.0)
+    >>> rng = np.random.default_rng(0)
+    >>> noisy_parts(quiet, at, (0.5, 1.0), rng, parts=4, workers=1).probability
     0.0
     """
-    at = at or middle_of_use(design)
-    use = shared_grid([design]).use
     speeds = np.linspace(max(use[0], 0.02 * use[1]), use[1], _SPEEDS)
     nominal = nominal_values(design.rig, at)
-    spread = {one.name: one.factor(nominal[one.name]) for one in design.tolerances or ASSUMED}
-    sampled = stats.qmc.Sobol(len(spread), rng=rng).random(parts)
+    tolerances = design.tolerances or ASSUMED
+    sampled = stats.qmc.Sobol(len(tolerances), rng=rng).random(parts)
     factors = np.column_stack(
-        [one.ppf(column) for one, column in zip(spread.values(), sampled.T, strict=True)]
+        [
+            factor_of(one, nominal[one.name]).ppf(column)
+            for one, column in zip(tolerances, sampled.T, strict=True)
+        ]
+    )
+    names = [one.name for one in tolerances]
+    drawn = [varied(design.rig, at, dict(zip(names, row, strict=True))) for row in factors.tolist()]
+    growth: NDArray[np.float64] = growth_of_parts(
+        [
+            (at_temperature(rig, own.temperature), own.interference, own.support_stiffness)
+            for rig, own in drawn
+        ],
+        speeds,
     )
 
-    def part(row: NDArray[np.float64]) -> tuple[Rig, Condition]:
-        return varied(design.rig, at, dict(zip(spread, row.tolist(), strict=True)))
+    def noisy(rig: Rig, own: Condition, worst: float) -> bool:
+        tested = dict.fromkeys([own.speed, worst, float(speeds[0]), float(speeds[-1])])
+        return is_noisy(rig, [replace(own, speed=speed) for speed in tested])
 
-    def growth(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the growth of each row of factors at each speed, (n_rows, n_speeds) [1/s]."""
-        return growth_of_parts(
-            [
-                (at_temperature(rig, own.temperature), own.interference, own.support_stiffness)
-                for rig, own in map(part, rows)
-            ],
-            speeds,
-        )
-
-    def noisy(row: NDArray[np.float64], worst: float) -> bool:
-        rig, own = part(row)
-        speeds_tested = dict.fromkeys([own.speed, worst, float(speeds[0]), float(speeds[-1])])
-        return is_noisy(rig, [replace(own, speed=speed) for speed in speeds_tested])
-
-    worst = speeds[growth(factors).argmax(axis=1)].tolist()
+    worst = speeds[growth.argmax(axis=1)].tolist()
     with one_thread():
         results = Parallel(n_jobs=workers, prefer="threads")(
-            delayed(noisy)(row, speed) for row, speed in zip(factors, worst, strict=True)
+            delayed(noisy)(*part, speed) for part, speed in zip(drawn, worst, strict=True)
         )
     k = int(sum(results))
     interval = stats.binomtest(k, parts).proportion_ci(0.95, method="exact")
-    sensitivities: tuple[Sensitivity, ...] = ()
-    if friction_law(design.rig.friction.name).torque is not None:
-        sensitivities = _sensitivities(lambda rows: growth(rows.T).max(axis=1), spread, rng)
-    return Robustness(
-        design=design.name,
-        at=at,
-        noisy=Estimate(k / parts, float(interval.low), float(interval.high)),
-        sensitivities=sensitivities,
-        assumed=not design.tolerances,
+    return NoisyParts(
+        k / parts, float(interval.low), float(interval.high), assumed=not design.tolerances
     )
-
-
-def _sensitivities(
-    output: Callable[[NDArray[np.float64]], NDArray[np.float64]],
-    spread: dict[str, Any],
-    rng: np.random.Generator,
-) -> tuple[Sensitivity, ...]:
-    """Return the Sobol' indices of an output, the largest total index first."""
-    if len(spread) < 2:
-        one = Estimate(1.0, 1.0, 1.0)
-        return tuple(Sensitivity(name, one, one) for name in spread)
-    sobol = stats.sobol_indices(func=output, n=_INDICES, dists=list(spread.values()), rng=rng)
-    drawn = sobol.bootstrap(n_resamples=200)
-    indices = [
-        Sensitivity(
-            name,
-            *(
-                Estimate(*(0.0 if math.isnan(x) else float(x) for x in (value[i], low[i], high[i])))
-                for value, (low, high) in (
-                    (sobol.first_order, drawn.first_order.confidence_interval),
-                    (sobol.total_order, drawn.total_order.confidence_interval),
-                )
-            ),
-        )
-        for i, name in enumerate(spread)
-    ]
-    return tuple(sorted(indices, key=lambda index: -index.total.value))

@@ -1,4 +1,4 @@
-"""Evaluation of one point of a map: its vibration, regime, noise and level.
+"""Evaluation of points of a map: their vibration, regime, noise and level.
 
 Whether a vibration dies, persists or breaks out is told by `noise.screening.vibration`. What sounds
 has the name that `noise.labels` gives a recording of it, by the classifier that ships. The name by
@@ -9,16 +9,23 @@ and has no name, it may still grow, or swell and fade, and more of it is heard.
 A bar on the road swings: it runs from one turning on, a whole cycle is heard, and names and regimes
 are those of the two intervals in which it moves at half its peak speed or more, whichever is
 livelier. Every turning sticks, which by itself is neither regime nor noise.
+
+A batch is points of one rig in one environment, evaluated on all cores. It is cut into rows that
+differ in speed alone, which are independent, so that the numbers are the same whoever simulates
+them.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import astuple, dataclass, fields, replace
 from functools import lru_cache
 
 import numpy as np
+from joblib import Parallel, delayed, hash as digest
 from numpy.typing import NDArray
 
 from features.kernels.level_meter import WeightedLevels, weighted_levels
@@ -29,6 +36,8 @@ from models.radiation.rig_response import impulse_responses
 from models.recording import Recording
 from models.rig import Rig, damping_at
 from noise.base.labels import PERSISTS
+from noise.batch.journal import Journal
+from noise.batch.work import one_thread
 from noise.classifier import load_classifier
 from noise.labels.segments import file_label, label_recording
 from noise.noise_definition import LEAST_LEVEL, NoiseCriteria, noise_criteria
@@ -375,3 +384,80 @@ def _loudest_interval(
     """Return the noise criteria of the loudest interval, and that interval."""
     criteria = [(noise_criteria(one, pressure, pulse_pressure), one) for one in intervals]
     return max(criteria, key=lambda one: one[0].audible)
+
+
+# --- batches of points ---------------------------------------------------------------------------
+
+Evaluator = Callable[[Rig, Sequence[Condition]], list[PointResult]]
+"""Returns what is known of each point of a rig."""
+
+
+@contextmanager
+def batch_evaluator(
+    *, workers: int = -1, advance: Callable[[int], None] = lambda _: None
+) -> Iterator[Evaluator]:
+    """Yield a function that simulates batches.
+
+    Parameters
+    ----------
+    workers : int
+        Threads; -1 is one a core.
+    advance : callable
+        Is called with the number of points that were simulated since.
+
+    Yields
+    ------
+    callable
+        From a rig and conditions to a list of `PointResult`.
+
+    Raises
+    ------
+    ParameterError
+        A condition cannot be simulated.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> with batch_evaluator() as evaluate:
+    ...     [result] = evaluate(load_material_rig("PDMS"), [Condition(1.0, 3e-4, 2e3)])
+    >>> result.label
+    'none'
+    """
+
+    def evaluate(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
+        rows = _rows(points)
+        work = Parallel(n_jobs=workers, prefer="threads", batch_size=1, return_as="generator")
+        results: dict[Condition, PointResult] = {}
+        with one_thread():
+            of_rows = work(delayed(evaluate_row)(rig, row) for row in rows)
+            for row, known in zip(rows, of_rows, strict=True):
+                results |= zip(row, known, strict=True)
+                advance(len(row))
+        return [results[at] for at in points]
+
+    yield evaluate
+
+
+def _rows(points: Sequence[Condition]) -> list[list[Condition]]:
+    """Group points by row, which the structure follows; swings one by one."""
+
+    def row(at: Condition) -> tuple[float, ...]:
+        own = at.speed if at.frequency else 0.0
+        return at.support_stiffness, at.interference, at.temperature, own
+
+    ordered = sorted(points, key=lambda at: (row(at), at.speed))
+    return [list(of_row) for _, of_row in itertools.groupby(ordered, row)]
+
+
+def keeping(evaluate: Evaluator, lines: Journal) -> Evaluator:
+    """Return an evaluator that reads what is in a journal, and adds what it simulates."""
+
+    def journaled(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
+        key = digest((rig, tuple(points)))
+        if (stored := lines.get(key)) is not None:
+            return [PointResult(Regime(regime), *values) for regime, *values in stored]
+        results = evaluate(rig, points)
+        lines.add(key, *([one.regime.value, *astuple(one)[1:]] for one in results))
+        return results
+
+    return journaled

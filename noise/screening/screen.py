@@ -21,7 +21,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,24 +31,21 @@ from models.show import short_repr
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.batch.journal import Journal
 from noise.screening.advice import advise
-from noise.screening.batches import batch_evaluator, keeping
 from noise.screening.design import Design, Swinging, Use, load_designs
 from noise.screening.environments import DRY, environment, in_environment
-from noise.screening.grid import Grid, shared_grid, shared_motions
+from noise.screening.grid import Grid, fits_remark, shared_grid, shared_motions
 from noise.screening.mapping import SIMULATED, DesignMap, map_design
-from noise.screening.parts import robustness
-from noise.screening.provenance import fits_remark
+from noise.screening.parts import noisy_parts
+from noise.screening.point import batch_evaluator, keeping
 from noise.screening.standing import (
     CriticalPoint,
     Standing,
     condition_at,
     critical_points,
     ranked,
-    refuse_unlike,
     standing_of,
 )
 from noise.screening.vibration import Condition
-from noise.screening.words import advice_words
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import never_slips
 from sim.effects import EFFECTS
@@ -56,8 +53,6 @@ from sim.effects import EFFECTS
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from pandas import DataFrame
-
-T = TypeVar("T")
 
 DEFAULT_SIMULATIONS = 500
 """Of a map, more or less."""
@@ -92,10 +87,8 @@ class Screening:
         The designs ranked, the quietest first; one for each map.
     refused : tuple of (str, str)
         Designs that could not be screened, and why.
-    files : tuple of (str, Path)
-        Files that designs were read from, by the names that the screen calls them.
-    seconds, statistics_seconds : float
-        How long the maps took, and advice and tolerances [s].
+    seconds : float
+        How long it took [s].
 
     Examples
     --------
@@ -111,15 +104,7 @@ class Screening:
     critical: tuple[CriticalPoint, ...]
     standings: tuple[Standing, ...]
     refused: tuple[tuple[str, str], ...]
-    files: tuple[tuple[str, Path], ...]
     seconds: float
-    statistics_seconds: float
-
-    @property
-    def conditions(self) -> tuple[Grid, ...]:
-        """Conditions that all designs are compared over, one for each environment and motion."""
-        first = self.maps[0].design
-        return tuple(mapped.grid for mapped in self.maps if mapped.design == first)
 
     def map_of(self, one: Standing) -> DesignMap:
         """Return the map that a standing is of."""
@@ -154,11 +139,6 @@ class Screening:
         -------
         matplotlib.axes.Axes
 
-        Raises
-        ------
-        ParameterError
-            There is no such map, support or temperature.
-
         Examples
         --------
         >>> from matplotlib.figure import Figure
@@ -170,10 +150,7 @@ class Screening:
         """
         from noise.pictures.maps import plot_map
 
-        mapped = _chosen("map", number, self.maps)
-        _chosen("support", support, mapped.grid.support_stiffness)
-        _chosen("temperature", temperature, mapped.grid.temperature)
-        return plot_map(mapped, ax, support=support, temperature=temperature)
+        return plot_map(self.maps[number], ax, support=support, temperature=temperature)
 
     def to_pandas(self, table: str = "designs") -> DataFrame:
         """Return one of the tables that ``bushing-noise screen --out`` writes, as a data frame.
@@ -181,8 +158,7 @@ class Screening:
         Parameters
         ----------
         table : str
-            ``designs``, ``map``, ``critical_speeds``; ``advice`` where something is noisy, and
-            ``sensitivities`` where tolerances were looked at.
+            ``designs``, ``map``, ``critical_speeds``; ``advice`` where something is noisy.
 
         Returns
         -------
@@ -201,12 +177,6 @@ class Screening:
             there = ", ".join(name.removesuffix(".csv") for name in tables)
             raise ParameterError(f"there is no table {table!r}; there are {there}")
         return data_frame(*tables[f"{table}.csv"])
-
-
-def _chosen(what: str, index: int, among: Sequence[T]) -> T:
-    if not 0 <= index < len(among):
-        raise ParameterError(f"there is no {what} {index}; there are 0 to {len(among) - 1}")
-    return among[index]
 
 
 def screen(
@@ -272,7 +242,7 @@ def screen(
     if not designs:
         raise ParameterError("there is no design to screen")
     names = list(dict.fromkeys(environment(name).name for name in environments))
-    loaded, refused, files = load_designs(designs, change)
+    loaded, refused = load_designs(designs, change)
     motions = shared_motions(list(loaded.values()), given)
     grids = {
         (name, swinging): shared_grid(list(loaded.values()), given, where=name, swinging=swinging)
@@ -308,8 +278,6 @@ def screen(
                 maps, notes = maps + of_design, notes | own
     if not maps:
         raise ParameterError(refused[0][1])
-    mapped = time.perf_counter()
-    refuse_unlike(maps)
     critical = [critical_points(one) for one in maps]
     standings: list[Standing] = []
     rng = rng or np.random.default_rng(0)
@@ -338,9 +306,7 @@ def screen(
         critical=tuple(itertools.chain(*critical)),
         standings=ranked(standings),
         refused=tuple(refused),
-        files=tuple(file for file in files if file[0] in screened),
-        seconds=mapped - started,
-        statistics_seconds=time.perf_counter() - mapped,
+        seconds=time.perf_counter() - started,
     )
 
 
@@ -380,27 +346,23 @@ def _advised(standing: Standing, mapped: DesignMap, rig: Rig, workers: int) -> S
     """Add the changes that end the loudest noise."""
     assert standing.loudest is not None
     others = _other_noisy(mapped, standing.loudest)
-    offers = advise(rig, standing.loudest, list(others), workers=workers)
-    words = advice_words(standing.loudest_label, standing.loudest, offers, others)
-    return replace(standing, offers=offers, advice=words)
+    return replace(standing, offers=advise(rig, standing.loudest, others, workers=workers))
 
 
 def _with_parts(
     standing: Standing, mapped: DesignMap, design: Design, rng: np.random.Generator, workers: int
 ) -> Standing:
     """Add what tolerances do."""
-    grid, (slowest, fastest) = mapped.grid, mapped.grid.use
-    speeds = slowest or 0.02 * fastest, fastest
-    use = Use(speeds, grid.interference, grid.support_stiffness, grid.temperature)
-    parts = robustness(replace(design, use=use), rng, at=standing.loudest, workers=workers)
-    return replace(standing, robustness=parts)
+    grid = mapped.grid
+    axes = grid.interference, grid.support_stiffness, grid.temperature
+    middle = (axis[(len(axis) - 1) // 2] for axis in axes)
+    at = standing.loudest or Condition(0.5 * sum(grid.use), *middle)
+    parts = noisy_parts(design, at, grid.use, rng, workers=workers)
+    return replace(standing, parts=parts)
 
 
-def _other_noisy(mapped: DesignMap, loudest: Condition) -> dict[Condition, str]:
-    """Choose some simulated noisy conditions of use from all over the map, the loudest first.
-
-    The values are what is heard at each.
-    """
+def _other_noisy(mapped: DesignMap, loudest: Condition) -> list[Condition]:
+    """Choose some simulated noisy conditions of use from all over the map, the loudest first."""
     sound, how, level = (
         each[..., mapped.grid.used] for each in (mapped.sound, mapped.how, mapped.level)
     )
@@ -408,10 +370,8 @@ def _other_noisy(mapped: DesignMap, loudest: Condition) -> dict[Condition, str]:
     noisy = [at for at in noisy if condition_at(mapped.grid, at) != loudest]
     if len(noisy) > _ELSEWHERE:
         noisy = [noisy[i] for i in np.linspace(0, len(noisy) - 1, _ELSEWHERE).astype(int)]
-    return {
-        condition_at(mapped.grid, at): f"{sound[tuple(at)]}, {level[tuple(at)]:.0f} dB(A)"
-        for at in sorted(noisy, key=lambda at: -level[tuple(at)])
-    }
+    noisy.sort(key=lambda at: -level[tuple(at)])
+    return [condition_at(mapped.grid, at) for at in noisy]
 
 
 _MOST_TWIST = 2.0

@@ -11,8 +11,7 @@ of a constant kinetic torque it says nothing.
 Designs are ranked by one number, the mean loudness of their use: a condition counts 2 to the power
 of (L_AFmax - 40 dB) / 10, Stevens' rule that ten decibels are twice as loud, and nothing where
 there is no noise; a vibration that only persists counts as what is heard of it. The worst of a
-design's environments and motions counts, and the larger margin decides between equals. All maps are
-over the same points, or are refused.
+design's environments and motions counts, and the larger margin decides between equals.
 """
 
 from __future__ import annotations
@@ -25,15 +24,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.errors import ParameterError
 from models.show import short_repr
 from noise.base.labels import PERSISTS
 from noise.screening.advice import Offer
 from noise.screening.grid import Grid
 from noise.screening.mapping import DesignMap
-from noise.screening.parts import Robustness
+from noise.screening.parts import NoisyParts
 from noise.screening.vibration import Condition
-from noise.screening.words import use_words
 from sim.analysis.regime import Regime
 
 _CRITICAL_SPEEDS = "v_crit1", "v_crit2", "v_crit2_high"
@@ -180,12 +177,10 @@ class Standing:
         Smallest likewise [rad/s].
     offers : tuple of Offer
         Changes that end the loudest noise of use, and those that do not.
-    robustness : Robustness, optional
-        Tolerance analysis, where there is one.
+    parts : NoisyParts, optional
+        Of its parts within tolerances, where they were looked at.
     never_slips : str
         Why the contact never slips; empty where it does.
-    words, advice : str
-        Sentences on where it is noisy and on changes.
     notes : tuple of str
         Remarks on its data.
     failed : tuple of str
@@ -209,10 +204,8 @@ class Standing:
     margin_v_crit2: float
     margin_stability: float
     offers: tuple[Offer, ...] = ()
-    robustness: Robustness | None = None
+    parts: NoisyParts | None = None
     never_slips: str = ""
-    words: str = ""
-    advice: str = ""
     notes: tuple[str, ...] = ()
     failed: tuple[str, ...] = ()
 
@@ -282,7 +275,6 @@ def standing_of(
         loudest_level_max=float(level_max[loudest]) if any_noise else nothing,
         **numbers,
         never_slips=never_slips,
-        words=use_words(mapped, never_slips),
     )
 
 
@@ -324,24 +316,3 @@ def ranked(standings: Sequence[Standing]) -> tuple[Standing, ...]:
     ranks = {name: 1 + order.index(key) for name, key in keys.items()}
     standings = [replace(one, rank=ranks.get(one.design)) for one in standings]
     return tuple(sorted(standings, key=lambda one: (one.rank or math.inf, one.design)))
-
-
-def refuse_unlike(maps: Sequence[DesignMap]) -> None:
-    """Refuse maps of which not all designs have the same points.
-
-    Raises
-    ------
-    ParameterError
-        They have not; a rank would then be a matter of where was looked.
-    """
-    points: dict[str, set[tuple[str, str, Grid]]] = {}
-    for mapped in maps:
-        where = mapped.environment, mapped.motion, mapped.grid
-        points.setdefault(mapped.design, set()).add(where)
-    first = next(iter(points), "")
-    for name in points:
-        if points[name] != points[first]:
-            raise ParameterError(
-                f"designs {first} and {name} are not mapped over the same points, and cannot be "
-                "ranked"
-            )

@@ -1,21 +1,34 @@
-"""Summary of a screen in lines, for terminal and page: where noisy, what to change, how sure."""
+"""Sentences on screened designs, for terminal and page: where noisy, what to change, how sure."""
 
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from noise.base.labels import PERSISTS
+from noise.screening.advice import Offer
+from noise.screening.design import axis_words
+from noise.screening.grid import Grid
 from noise.screening.mapping import BEYOND, REFINED, SIMULATED, UNCHANGED, DesignMap
-from noise.screening.parts import Robustness
-from noise.screening.provenance import RULE, within_fits
-from noise.screening.words import critical_words, limit_words, margin_words
+from noise.screening.vibration import Condition
 
 if TYPE_CHECKING:
     from noise.screening.screen import Screening
-    from noise.screening.standing import Standing
+    from noise.screening.standing import CriticalPoint, Standing
+
+_NOISES = {
+    "creak": "creak", "squawk": "squawk", "squeal": "squeal",
+    PERSISTS: "quiet from rest, but a vibration that runs goes on,",
+}  # fmt: skip
+"""Labels of a map but ``none``, in sentences."""
+
+_MOST_CRITICAL = 4
+"""Largest number of lines on critical speeds, of the smallest margins."""
 
 RANKING_RULE = (
     "Rank 1 has the lowest mean loudness of its use, in which 40 dB(A) counts 1 sone, 10 dB more "
@@ -37,48 +50,264 @@ _HOW = {
 }
 
 
-def sure_words(one: Standing, mapped: DesignMap) -> list[str]:
-    """Return phrases on how the results of a design were obtained and how exact they are.
+# --- one design ----------------------------------------------------------------------------------
+
+
+def use_words(mapped: DesignMap) -> tuple[str, list[str]]:
+    """Return whether a design is quiet over its use, and phrases on each of its noises.
+
+    Examples
+    --------
+    >>> from noise.screening.design import Use
+    >>> from noise.screening.screen import screen
+    >>> use = Use(speed=(2.0, 12.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
+    >>> use_words(screen(["PDMS"], use).maps[0])
+    ('quiet in its use, all 2 conditions', [])
+    """
+    label = mapped.label[..., mapped.grid.used]
+    shares = {name: float(np.mean(label == name)) for name in _NOISES}
+    noises = sorted((name for name in shares if shares[name]), key=lambda name: -shares[name])
+    if not noises:
+        return f"quiet in its use, all {label.size} conditions", []
+    noisy = sum(share for name, share in shares.items() if name != PERSISTS)
+    head = f"noisy at {percent(noisy)} of its use" if noisy else "quiet from rest in its use"
+    return head, [
+        f"{_NOISES[name]} at {percent(shares[name])}, {_range_words(mapped, name)}"
+        for name in noises
+    ]
+
+
+def percent(share: float) -> str:
+    """Return a share as text.
+
+    Examples
+    --------
+    >>> percent(0.5), percent(0.001)
+    ('50%', '< 1%')
+    """
+    return "< 1%" if 0.0 < share < 0.005 else f"{share:.0%}"
+
+
+def _range_words(mapped: DesignMap, name: str) -> str:
+    """Return the speeds of use between which a noise occurs, and where, if not everywhere."""
+    grid = mapped.grid
+    where = np.nonzero(mapped.label[..., grid.used] == name)
+    temperatures, supports, fits, columns = (np.unique(axis).tolist() for axis in where)
+    speed = np.array(grid.speed)[grid.used][columns]
+    words = [f"between {speed[0]:.5g} and {speed[-1]:.5g} rad/s"]
+    if speed.size == 1:
+        words = [f"at {speed[0]:.5g} rad/s"]
+    if len(fits) < len(grid.interference):
+        words.append(f"at {axis_words([1e3 * grid.interference[i] for i in fits])} mm")
+    if len(supports) < len(grid.support_stiffness):
+        words.append(f"at {axis_words([grid.support_stiffness[k] for k in supports])} Nm/rad")
+    if len(temperatures) < len(grid.temperature):
+        words.append(f"at {axis_words([grid.temperature[t] for t in temperatures])} °C")
+    return ", ".join(words)
+
+
+def condition_words(at: Condition | CriticalPoint) -> str:
+    """Return interference and support of a condition as text.
+
+    Examples
+    --------
+    >>> condition_words(Condition(5.0, 0.279e-3, math.inf))
+    '0.279 mm, the clamp fixed'
+    """
+    support = "the clamp fixed"
+    if math.isfinite(at.support_stiffness):
+        support = f"{at.support_stiffness:.4g} Nm/rad"
+    return f"{1e3 * at.interference:.3g} mm, {support}"
+
+
+def margin_words(one: Standing, grid: Grid) -> str:
+    """Return a sentence on the last vibration and the margin of the use; empty for a swing.
 
     Parameters
     ----------
     one : Standing
-    mapped : DesignMap
-        Its map.
+    grid : Grid
+        Of its map.
+
+    Examples
+    --------
+    >>> from noise.screening.design import Use
+    >>> from noise.screening.screen import screen
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,)))
+    >>> margin_words(found.standings[0], found.maps[0].grid)
+    'nothing vibrates at any speed of the map'
     """
-    count, total = mapped.count(SIMULATED), mapped.label.size
-    texts = [f"{count} of {total} points were simulated"]
-    steps = [b - a for a, b in pairwise(mapped.grid.speed)]
-    if steps and mapped.open:
-        texts.append(
-            f"{mapped.open} lie between simulated points that differ and are as the nearest, so "
-            "boundaries there are coarser than the map"
-        )
-    elif steps and (mapped.label != "none").any():
-        texts.append(f"speeds at which a noise begins or ends are known to {max(steps):.3g} rad/s")
-    if any(offer.ends for offer in one.offers):
-        texts.append(
-            "each change was run from rest, from the running noise, and with 2 % less of it"
-        )
-    return texts + (_parts_words(one.robustness) if one.robustness else [])
+    margin, last, use = one.margin_v_crit2, one.v_crit2, grid.use
+    if math.isnan(margin):
+        return ""
+    if margin == math.inf:
+        return "nothing vibrates at any speed of the map"
+    text = f"the last vibration ends between {last:.3g} and {one.v_crit2_high:.3g} rad/s (V_crit2)"
+    if math.isinf(last):
+        text = f"vibration does not end within the map, up to {grid.speed[-1]:.3g} rad/s (V_crit2)"
+    if margin_is_bound(margin, grid):
+        text += f"; the margin is at least {margin:.3g} rad/s"
+    if margin > 0.0:
+        return f"{text}; every speed of use is at least {margin:.3g} rad/s from what vibrates"
+    if margin == 0.0:
+        return f"{text}, where the use begins"
+    if -margin > use[1] - use[0]:  # where they are equal, an end of the use is quiet
+        return f"{text}; at the worst fit and support all speeds of use vibrate"
+    return (
+        f"{text}; at the worst fit and support the speeds of use would have to move by "
+        f"{-margin:.3g} rad/s to be quiet"
+    )
 
 
-def _parts_words(parts: Robustness) -> list[str]:
-    """Return phrases on the probability of a noisy part and on the most important tolerance."""
-    noisy = parts.noisy
-    assumed = " within assumed tolerances" if parts.assumed else " within its tolerances"
+def margin_is_bound(margin: float, grid: Grid) -> bool:
+    """Return whether a margin is a lower bound, as the vibration does not end within the map.
+
+    A use that would leave a vibration by a shorter way, to slower speeds, has its exact margin.
+
+    Parameters
+    ----------
+    margin : float
+        To what vibrates [rad/s].
+    grid : Grid
+    """
+    return margin < grid.use[0] - grid.speed[-1]
+
+
+def critical_words(points: Sequence[CriticalPoint], grid: Grid) -> list[str]:
+    """Return phrases on where stick and vibration end, those of the smallest margins first.
+
+    Parameters
+    ----------
+    points : sequence of CriticalPoint
+        Of one map; none for a swing.
+    grid : Grid
+        Of the map.
+
+    Returns
+    -------
+    list of str
+        None where nothing vibrates at any fit, support and temperature.
+    """
+    vibrating = sorted((one for one in points if one.v_crit2), key=lambda one: one.margin_v_crit2)
+    several = len(grid.temperature) > 1
     texts = [
-        f"a part{assumed} is noisy somewhere in its use with a probability of {noisy.value:.0%} "
-        f"({noisy.low:.0%} to {noisy.high:.0%})"
+        f"{condition_words(one)}{f', {one.temperature:g} °C' * several}: {_ends_words(one, grid)}"
+        for one in vibrating[:_MOST_CRITICAL]
     ]
-    if parts.sensitivities and parts.sensitivities[0].total.value > 0.0:
-        most = parts.sensitivities[0]
-        share = min(1.0, most.total.value)
-        texts.append(
-            f"the tolerance of {most.name.replace('_', ' ')} matters most: {share:.0%} of the "
-            "scatter of the vibration's growth"
+    more = len(vibrating) > _MOST_CRITICAL
+    return texts + ["critical_speeds.csv has those of the larger margins"] * more
+
+
+def _ends_words(one: CriticalPoint, grid: Grid) -> str:
+    """Return where stick and vibration end at one fit, support and temperature, as text."""
+    fastest = f"within the map (up to {grid.speed[-1]:.3g} rad/s)"
+    if math.isinf(one.v_crit1):
+        return f"neither stick (V_crit1) nor vibration (V_crit2) ends {fastest}"
+    stick = f"stick ends at {one.v_crit1:.3g} to {one.v_crit1_high:.3g} rad/s (V_crit1)"
+    ends = f"vibration at {one.v_crit2:.3g} to {one.v_crit2_high:.3g} rad/s (V_crit2)"
+    if not one.v_crit1:
+        stick, ends = "nothing sticks", ends.replace("vibration", "vibration ends")
+    if math.isinf(one.v_crit2):
+        ends = f"vibration (V_crit2) does not end {fastest}"
+    return f"{stick} and {ends}"
+
+
+# --- advice --------------------------------------------------------------------------------------
+
+
+def advice_words(
+    noise: str, at: Condition, offers: Sequence[Offer], left: str = "", most: int = 3
+) -> str:
+    """Return sentences on the changes that silence the loudest point, and on what they leave.
+
+    Parameters
+    ----------
+    noise : str
+        Noise at the loudest point.
+    at : Condition
+        The loudest point.
+    offers : sequence of Offer
+        Of `noise.screening.advice.advise`.
+    left : str
+        Noise of the unchanged design where the first change leaves it, such as ``creak,
+        85 dB(A)``.
+    most : int
+        Changes that are named.
+
+    Examples
+    --------
+    >>> at, other = Condition(5.0, 0.279e-3, 2214.0), Condition(9.0, 0.381e-3, 2214.0)
+    >>> offers = [Offer("critical_torque", 10.7, -20, True, "", None, 2, 6, other)]
+    >>> advice_words("squawk", at, offers, "creak, 85 dB(A)")
+    'no single change that was tried quiets the whole use. The loudest point (squawk at 5 rad/s, ...
+    """
+    where = f"the loudest point ({noise} at {at.speed:.5g} rad/s, {condition_words(at)})"
+    ending = [one for one in offers if one.ends]
+    if not ending:
+        return f"no single change that was tried silences {where}" if offers else ""
+    best, shown = ending[0], ending[:most]
+    others = " (in brackets: other noisy points silenced, of those tried)" * bool(best.elsewhere)
+    changes = "; ".join(
+        f"{one.words} ({one.quiet_elsewhere} of {one.elsewhere})" if others else one.words
+        for one in shown
+    )
+    by = "by" if len(ending) == 1 else "by any one of these"
+    text = f"{where} falls silent {by}{others}: {changes}"
+    text += f"; advice.csv has {len(ending) - len(shown)} more" * (len(ending) > len(shown))
+    if best.left is None:
+        return text
+    rest = "The other noisy point that was tried stays noisy with the first"
+    if best.elsewhere > 1:
+        rest = (
+            f"Of the {best.elsewhere} other noisy points tried, the loudest that stays noisy with "
+            "the first"
         )
+    return (
+        f"no single change that was tried quiets the whole use. {text[0].upper()}{text[1:]}. "
+        f"{rest}: {best.left.speed:.5g} rad/s, {condition_words(best.left)} (before the change "
+        f"{left})"
+    )
+
+
+def limit_words(offers: Sequence[Offer], noise: str, most: int = 2) -> list[str]:
+    """Return sentences on changes that do not end the noise.
+
+    Parameters
+    ----------
+    offers : sequence of Offer
+    noise : str
+        Its name.
+    most : int
+        Of those that reach a limit, that are named.
+
+    Examples
+    --------
+    >>> limit_words([Offer("damping", 0.1, 200, False, from_rest=150)], "squawk")
+    ['damping +150 % to 0.25 Nm s/rad is quiet from rest only: the squawk persists once started']
+    >>> limit_words([Offer("critical_torque", 10.0, -20, False, "too small")], "squawk")
+    ['critical torque -20 % to 8 Nm reaches the limit, and the squawk goes on (too small)']
+    """
+    end = {one.name for one in offers if one.ends}  # in the other direction
+    texts = [
+        f"{replace(one, percent=one.from_rest).words} is quiet from rest only: the {noise} "
+        f"persists once started{f' ({one.limit})' if one.limit else ''}"
+        for one in offers
+        if one.from_rest is not None and not one.ends
+    ]
+    limited = [one for one in offers if one.limit and one.from_rest is None and one.name not in end]
+    for one in limited[:most]:
+        name = one.name.replace("_", " ")
+        texts.append(
+            f"{one.words} reaches the limit, and the {noise} goes on ({one.limit})"
+            if one.percent
+            else f"{name} alone does not end it ({one.limit})"
+        )
+    if len(limited) > most:
+        texts.append(f"advice.csv has {len(limited) - most} more that reach a limit")
     return texts
+
+
+# --- all of a screen -----------------------------------------------------------------------------
 
 
 def detail_lines(one: Standing, screening: Screening) -> list[str]:
@@ -96,20 +325,65 @@ def detail_lines(one: Standing, screening: Screening) -> list[str]:
         for point in screening.critical
         if (point.design, point.environment, "steady") == (one.design, one.environment, one.motion)
     ]
-    where = "" if one.never_slips else one.words.partition(": ")[2]
-    lines = [f"where: {text}" for text in where.split("; ") if text]
+    ranges = [] if one.never_slips else use_words(mapped)[1]
+    lines = [f"where: {text}" for text in ranges]
     if one.loudest is not None:
         lines.append(
             f"heard: up to {one.loudest_level:.0f} dB(A) ({one.loudest_label}); mean loudness "
             f"{one.mean_loudness:.3g} sone"
         )
-        lines += [f"what to change: {text}" for text in [one.advice] if text]
+        left = next((_noise_at(mapped, offer.left) for offer in one.offers if offer.left), "")
+        advice = advice_words(one.loudest_label, one.loudest, one.offers, left)
+        lines += [f"what to change: {text}" for text in [advice] if text]
         lines += [f"limits: {text}" for text in limit_words(one.offers, one.loudest_label)]
     lines += [f"critical speeds: {text}" for text in critical_words(points, mapped.grid)]
     lines += [f"margin: {text}" for text in [margin_words(one, mapped.grid)] if text]
-    lines.append(f"how sure: {'; '.join(sure_words(one, mapped))}")
+    lines.append(f"how sure: {'; '.join(_sure_words(one, mapped))}")
     lines += [f"failed: {why}" for why in one.failed]
     return [*lines, *(f"note: {note}" for note in one.notes if note != one.never_slips)]
+
+
+def _noise_at(mapped: DesignMap, at: Condition) -> str:
+    """Return noise and level at a point of a map."""
+    grid = mapped.grid
+    where = (
+        grid.temperature.index(at.temperature), grid.support_stiffness.index(at.support_stiffness),
+        grid.interference.index(at.interference), grid.speed.index(at.speed),
+    )  # fmt: skip
+    return f"{mapped.sound[where]}, {mapped.level[where]:.0f} dB(A)"
+
+
+def _sure_words(one: Standing, mapped: DesignMap) -> list[str]:
+    """Return phrases on how the results of a design were obtained and how exact they are."""
+    count, total = mapped.count(SIMULATED), mapped.label.size
+    texts = [f"{count} of {total} points were simulated"]
+    steps = [b - a for a, b in pairwise(mapped.grid.speed)]
+    if steps and mapped.open:
+        texts.append(
+            f"{mapped.open} lie between simulated points that differ and are as the nearest, so "
+            "boundaries there are coarser than the map"
+        )
+    elif steps and (mapped.label != "none").any():
+        texts.append(f"speeds at which a noise begins or ends are known to {max(steps):.3g} rad/s")
+    if any(offer.ends for offer in one.offers):
+        texts.append(
+            "each change was run from rest, from the running noise, and with 2 % less of it"
+        )
+    if one.parts is not None:
+        assumed = "assumed" if one.parts.assumed else "its"
+        texts.append(
+            f"a part within {assumed} tolerances is noisy somewhere in its use with a probability "
+            f"of {one.parts.probability:.0%} ({one.parts.low:.0%} to {one.parts.high:.0%})"
+        )
+    return texts
+
+
+def use_head(one: Standing, screening: Screening) -> str:
+    """Return in a few words whether a design is quiet in its use; `detail_lines` has the rest."""
+    mapped = screening.map_of(one)
+    if one.never_slips:
+        return f"{one.never_slips}; quiet" if mapped.grid.frequency else one.never_slips
+    return use_words(mapped)[0]
 
 
 def summary_lines(screening: Screening) -> list[str]:
@@ -130,26 +404,19 @@ def summary_lines(screening: Screening) -> list[str]:
             why = one.never_slips or "with the shaft turning it never slips"
             lines.append(f"-. {head}: no rank; {why}")
         else:
-            details = detail_lines(one, screening)
-            lines.append(f"{one.rank}. {head}: {use_head(one)}")
-            lines += [f"   {line}" for line in details]
+            lines.append(f"{one.rank}. {head}: {use_head(one, screening)}")
+            lines += [f"   {line}" for line in detail_lines(one, screening)]
     if len(screening.designs) > 1:
         lines.append(RANKING_RULE)
-    lines += conditions_lines(screening)
     maps = screening.maps
     counts = {words: sum(mapped.count(how) for mapped in maps) for how, words in _HOW.items()}
     how = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
     points = sum(mapped.label.size for mapped in maps)
     return [
         *lines,
-        f"{points} points in {screening.seconds:.1f} s: {how}",
-        f"advice and tolerances in {screening.statistics_seconds:.1f} s",
+        conditions_words(screening),
+        f"{points} points, advice and tolerances in {screening.seconds:.1f} s: {how}",
     ]
-
-
-def use_head(one: Standing) -> str:
-    """Return the first part of the words of a standing; `detail_lines` has the ranges."""
-    return one.words if one.never_slips else one.words.partition(": ")[0]
 
 
 def standing_place(one: Standing) -> str:
@@ -178,42 +445,20 @@ def ranking_words(standings: Sequence[Standing]) -> str:
     return f"Lowest mean loudness, {loudness:.3g} sone: {names}. {RANKING_RULE}."
 
 
-def conditions_lines(screening: Screening) -> list[str]:
-    """Return lines on the conditions of the comparison and on data that are not the designs' own.
+def conditions_words(screening: Screening) -> str:
+    """Return a phrase on the conditions of the comparison.
 
     Examples
     --------
     >>> from noise.screening.design import Use
     >>> from noise.screening.screen import screen
     >>> use = Use(speed=(1.0, 5.0), interference=(0.3e-3,), support_stiffness=(2214.0,))
-    >>> for line in conditions_lines(screen(["PDMS"], use)):
-    ...     print(line)
-    each design at 2 points: speed 1 and 5 rad/s; interference 0.3 mm; support 2214 Nm/rad; ...
-    not from a design's own data: 2 of PDMS; where a design has no data of its own, stiffness, ...
+    >>> conditions_words(screen(["PDMS"], use))
+    'each design at 2 points: speed 1 and 5 rad/s; interference 0.3 mm; support 2214 Nm/rad; ...
     """
-    axes = dict.fromkeys(words for grid in screening.conditions for words in grid.words)
-    n_points = sum(math.prod(grid.shape) for grid in screening.conditions)
+    first = screening.maps[0].design
+    grids = [mapped.grid for mapped in screening.maps if mapped.design == first]
+    axes = dict.fromkeys(words for grid in grids for words in grid.words)
+    n_points = sum(math.prod(grid.shape) for grid in grids)
     same = "the same " if len(screening.designs) > 1 else ""
-    lines = [f"each design at {same}{n_points} points: {'; '.join(axes)}"]
-    counts: Counter[str] = Counter()
-    for mapped in screening.maps:
-        counts[mapped.design] += int(mapped.substituted.sum())
-    if stand_in := [f"{count} of {name}" for name, count in counts.items() if count]:
-        lines.append(f"not from a design's own data: {', '.join(stand_in)}; {RULE}")
-        lines += [text for text in [_fair(screening)] if text]
-    return lines
-
-
-def _fair(screening: Screening) -> str:
-    """Return a remark on the interferences at which all designs have data; empty if all."""
-    fits = sorted({fit for grid in screening.conditions for fit in grid.interference})
-    own = [fit for fit in fits if all(within_fits(one.rig, fit) for one in screening.designs)]
-    if len(screening.designs) == 1 or own == fits:
-        return ""
-    if not own:
-        return "the fits of all designs have no interference in common: ranks are of unlike data"
-    named = ",".join(f"{1e3 * fit:.4g}" for fit in own)
-    return (
-        "a torque held at a larger interference is too small, and flatters; "
-        f"--interference {named} compares within the fits of all"
-    )
+    return f"each design at {same}{n_points} points: {'; '.join(axes)}"

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from noise.base.labels import PERSISTS
+from noise.screening.design import PARAMETERS
 from noise.screening.standing import SHARED
-from noise.screening.tolerances import PARAMETERS
 
 if TYPE_CHECKING:
     from noise.screening.screen import Screening
@@ -20,7 +20,7 @@ Table = tuple[tuple[str, ...], list[dict[str, object]]]
 
 
 def screening_tables(screening: Screening) -> dict[str, Table]:
-    """Return all tables of a screening; the last two only where they have rows.
+    """Return all tables of a screening; the last only where it has rows.
 
     Returns
     -------
@@ -28,7 +28,7 @@ def screening_tables(screening: Screening) -> dict[str, Table]:
         Columns and rows by the name of the file: ``map.csv`` with a row a point,
         ``critical_speeds.csv`` with one a temperature, fit and support, ``designs.csv`` with the
         quietest first and those refused last, ``advice.csv`` of changes and whether they end the
-        loudest noise of use, and ``sensitivities.csv`` of Sobol' indices with a row a tolerance.
+        loudest noise of use.
 
     Examples
     --------
@@ -50,10 +50,6 @@ def screening_tables(screening: Screening) -> dict[str, Table]:
     offers = [(one, offer) for one in screening.standings for offer in one.offers]
     if offers:
         tables["advice.csv"] = _table(_ADVICE, offers)
-    robust = [(one, one.robustness) for one in screening.standings if one.robustness is not None]
-    if robust:
-        sensitivities = ((*both, index) for both in robust for index in both[1].sensitivities)
-        tables["sensitivities.csv"] = _table(_SENSITIVITIES, sensitivities)
     return tables
 
 
@@ -74,22 +70,6 @@ def _loudest(axis: str, scale: float = 1.0) -> Callable[..., object]:
         return None if one.loudest is None else _short(scale * getattr(one.loudest, axis))
 
     return cell
-
-
-def _bounds(name: str, estimate: Callable[..., Any]) -> Columns:
-    """Return the columns of an estimate and of the ends of its interval."""
-
-    def cell(attribute: str) -> Callable[..., object]:
-        def rounded(*item: object) -> float | None:
-            result = estimate(*item)
-            return None if result is None else round(getattr(result, attribute), 4)
-
-        return rounded
-
-    return {
-        f"{name}{ending}": cell(attribute)
-        for ending, attribute in {"": "value", "_low": "low", "_high": "high"}.items()
-    }
 
 
 def _speeds(*names: str) -> Columns:
@@ -117,7 +97,6 @@ _MAP: Columns = {
     "level_dba": lambda mapped, at: round(float(mapped.level[at]), 2),
     "l_afmax_dba": lambda mapped, at: round(float(mapped.level_max[at]), 2),
     "how": lambda mapped, at: str(mapped.how[at]),
-    "note": lambda mapped, at: mapped.note[at] or None,
 }
 
 _MARGINS = "margin_v_crit1", "margin_v_crit2", "margin_stability"
@@ -143,12 +122,10 @@ _DESIGNS: Columns = {
     "loudest_interference_mm": _loudest("interference", 1e3),
     "loudest_support_stiffness_Nm_rad": _loudest("support_stiffness"),
     **_speeds("v_crit1", "v_crit2", "v_crit2_high", *_MARGINS),
-    "tolerances": lambda one: (
-        None if one.robustness is None else "assumed" if one.robustness.assumed else "stated"
-    ),
-    **_bounds("p_noisy_part", lambda one: one.robustness and one.robustness.noisy),
-    "words": lambda one: one.words,
-    "advice": lambda one: one.advice or None,
+    "tolerances": lambda one: one.parts and ("assumed" if one.parts.assumed else "stated"),
+    "p_noisy_part": lambda one: one.parts and round(one.parts.probability, 4),
+    "p_noisy_part_low": lambda one: one.parts and round(one.parts.low, 4),
+    "p_noisy_part_high": lambda one: one.parts and round(one.parts.high, 4),
     "notes": lambda one: "; ".join(one.notes) or None,
     "error": lambda one: "; ".join(filter(None, (one.never_slips, *one.failed))) or None,
 }
@@ -169,12 +146,4 @@ _ADVICE: Columns = {
     "quiet_elsewhere": lambda _, offer: offer.quiet_elsewhere if offer.ends else None,
     "elsewhere": lambda _, offer: offer.elsewhere if offer.ends else None,
     "limit": lambda _, offer: offer.limit or None,
-}
-
-_SENSITIVITIES: Columns = {
-    **_OF_DESIGN,
-    "tolerances": lambda _, robust, __: "assumed" if robust.assumed else "stated",
-    "parameter": lambda *item: item[-1].name,
-    **_bounds("first", lambda *item: item[-1].first),
-    **_bounds("total", lambda *item: item[-1].total),
 }

@@ -40,7 +40,6 @@ SCREEN_TABLES = (
     tables._CRITICAL,
     tables._DESIGNS,
     tables._ADVICE,
-    tables._SENSITIVITIES,
 )
 
 DEAR = ("diagnose", "identify", "screen", "thesis", "train")

@@ -71,7 +71,6 @@ def renamed(found, names):
             part: tuple(replace(one, design=known[one.design]) for one in getattr(found, part))
             for part in ("maps", "critical", "standings")
         },
-        files=(),
     )
 
 

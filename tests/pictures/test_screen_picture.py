@@ -96,13 +96,9 @@ def test_each_line_of_a_map_is_what_it_is_called_on_both_of_its_sides():
             assert changes == sum(n.startswith(name) and r == row for n, r, _ in lines)
 
 
-def test_what_is_quiet_and_what_is_not_its_own_is_said(found):
+def test_what_is_quiet_is_named(found):
     told = [
         [text.get_text() for panel in plot_screen(one).axes for text in panel.texts]
         for one in found.maps
     ]
     assert told == [[], ["quiet"] * 4]
-    figure = plot_screen(found.maps[0])
-    assert [panel.get_title("left") for panel in figure.axes[:2]] == ["2214 Nm/rad", "3000 Nm/rad*"]
-    named = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert named[-2:] == ["fastest fitted", "data interpolated or held"]

@@ -7,8 +7,7 @@ import pytest
 
 from models.errors import ParameterError
 from noise.cli import main
-from noise.screening.design import load_design
-from noise.screening.parts import robustness
+from noise.screening.parts import noisy_parts
 from noise.screening.standing import SHARED
 from tests.helpers.quick_screens import no_advice
 
@@ -61,7 +60,7 @@ def test_maps_margins_ranking_and_pictures_are_written(tmp_path, capsys):
     advice = rows(out / "advice.csv")
     assert {row["design"] for row in advice} == {"fluorocarbon-thesis"}
     assert {row["ends_noise"] for row in advice} <= {"True", "False", "true", "false"}
-    assert "6 points in " in printed
+    assert "6 points, " in printed
     assert "6 simulated" in printed
 
 
@@ -102,9 +101,8 @@ kinetic_torque = 0.05
 
 @pytest.fixture
 def few(monkeypatch):
-    """Few parts, also of the indices, which take a tenth of the time, and no advice."""
-    monkeypatch.setattr("noise.screening.parts._INDICES", 16)
-    monkeypatch.setattr("noise.screening.screen.robustness", partial(robustness, parts=8))
+    """Few parts, and no advice."""
+    monkeypatch.setattr("noise.screening.screen.noisy_parts", partial(noisy_parts, parts=8))
     with no_advice():
         yield
 
@@ -121,7 +119,6 @@ def test_a_design_with_tolerances_tells_what_its_parts_do(tmp_path, capsys, few)
     low, value, high = (float(mine[f"p_noisy_part{end}"]) for end in ("_low", "", "_high"))
     assert low <= value <= high
     assert "how sure: " in capsys.readouterr().out
-    assert load_design(out / "designs" / "mine.toml").tolerances == load_design(given).tolerances
 
 
 def test_tolerances_can_be_assumed_or_left_out(tmp_path, few):
@@ -132,8 +129,6 @@ def test_tolerances_can_be_assumed_or_left_out(tmp_path, few):
     one = ["PDMS", "--speed", "1,9", "--interference", "0.279", "--support-stiffness", "2214"]
     assert main(["screen", *one, "--tolerances", "--out", str(tmp_path), *MUTE]) == 0
     assert rows(tmp_path / "designs.csv")[0]["tolerances"] == "assumed"
-    scattering = {row["parameter"] for row in rows(tmp_path / "sensitivities.csv")}
-    assert scattering >= {"damping", "kinetic_torque"}
 
 
 def test_what_fails_is_told_and_loses_nothing_else(tmp_path, capsys, monkeypatch):

@@ -7,11 +7,10 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.screening.axis_values import axis_values
-from noise.screening.design import load_design
+from noise.screening.design import axis_values, load_design, read_tolerances
 from noise.screening.environments import environment, environment_names, in_environment
-from noise.screening.parts import middle_of_use
-from noise.screening.tolerances import nominal_values, read_tolerances, varied
+from noise.screening.parts import factor_of, nominal_values, varied
+from noise.screening.vibration import Condition
 
 DESIGN = """\
 name = "rig"
@@ -33,9 +32,8 @@ temperature_C = [-10, 23]
 oscillation = { amplitude_deg = 15, frequency_hz = "1..2/3" }
 [tolerances]
 elastomer_stiffness = 0.05
-interference = { absolute = 0.01 }
+interference = 0.04
 kinetic_torque = { low = 7.5, high = 8.5 }
-temperature = { low = -20, high = 60 }
 """
 
 
@@ -55,7 +53,7 @@ def test_a_design_file_says_rig_use_and_tolerances(tmp_path):
     assert design.use.swinging.frequency == (1.0, 1.5, 2.0)
     assert design.use.swinging.peak_speed[0] == pytest.approx(2 * math.pi * math.radians(15))
     assert [t.name for t in design.tolerances] == [
-        "elastomer_stiffness", "interference", "kinetic_torque", "temperature",
+        "elastomer_stiffness", "interference", "kinetic_torque",
     ]  # fmt: skip
 
 
@@ -74,7 +72,7 @@ def test_a_design_file_says_rig_use_and_tolerances(tmp_path):
         (("amplitude_deg = 15, ", ""), "amplitude_deg is missing"),
         (("elastomer_stiffness = 0.05", "stiffness = 0.05"), "unknown key 'stiffness'"),
         (("elastomer_stiffness = 0.05", 'elastomer_stiffness = "5 %"'), "must be a number"),
-        (("absolute = 0.01", "absolute = 0.01, relative = 0.1"), "give a number, or one of"),
+        (("low = 7.5, high = 8.5", "low = 7.5"), "give a number, or low and high"),
         (("low = 7.5, high = 8.5", "low = 8.5, high = 7.5"), "is not below high"),
         (("critical_torque_Nm = 10.7", "critical_torque_Nm = 7.0"), "is below kinetic_torque"),
     ],
@@ -101,26 +99,21 @@ def test_a_range_has_its_ends_and_as_many_points_as_asked(low, wide, points):
 
 
 def test_tolerances_become_factors_on_the_nominal_value():
-    found = read_tolerances(
-        {"damping": 0.1, "interference": {"absolute": 0.01}, "temperature": {"low": 0, "high": 50}},
-        "design",
+    damping, fit = read_tolerances(
+        {"damping": 0.1, "interference": {"low": 0.2, "high": 0.3}}, "design"
     )
-    damping, fit, temperature = found
-    assert damping.factor(0.1).stats() == pytest.approx((1.0, 0.1**2))
-    assert fit.factor(0.25).stats() == pytest.approx((1.0, 0.04**2))
-    low, high = temperature.factor(23.0).support()
-    assert (low * 296.15, high * 296.15) == pytest.approx((273.15, 323.15))
+    assert factor_of(damping, 0.1).stats() == pytest.approx((1.0, 0.1**2))
+    assert factor_of(fit, 0.25).support() == pytest.approx((0.8, 1.2))
 
 
 def test_a_varied_design_changes_what_is_named_and_nothing_else():
     design = load_design("fluorocarbon-thesis")
-    point = middle_of_use(design)
+    point = Condition(5.0, 0.279e-3, 3745.0)
     before = nominal_values(design.rig, point)
-    factors = {"elastomer_stiffness": 1.1, "interference": 0.9, "temperature": 1.1}
+    factors = {"elastomer_stiffness": 1.1, "interference": 0.9}
     rig, moved = varied(design.rig, point, factors)
     assert rig.fit(0.279e-3).elastomer_stiffness == pytest.approx(665.0 * 1.1)
     assert moved.interference == pytest.approx(0.9 * point.interference)
-    assert moved.temperature == pytest.approx(1.1 * 296.15 - 273.15)
     assert rig.fit(0.279e-3).damping == design.rig.fit(0.279e-3).damping
     assert (moved.speed, moved.support_stiffness) == (point.speed, point.support_stiffness)
     assert before["critical_torque"] == 10.7
@@ -129,15 +122,15 @@ def test_a_varied_design_changes_what_is_named_and_nothing_else():
 
 def test_a_critical_torque_is_never_below_the_kinetic_one():
     design = load_design("fluorocarbon-thesis")
-    rig, _ = varied(design.rig, middle_of_use(design), {"critical_torque": 0.5})
+    rig, _ = varied(design.rig, Condition(5.0, 0.279e-3, 3745.0), {"critical_torque": 0.5})
     assert all(fit.critical_torque == fit.kinetic_torque for fit in rig.fits)
 
 
-@pytest.mark.parametrize("factors", [{"colour": 1.0}, {"damping": 0.0}, {"damping": math.nan}])
+@pytest.mark.parametrize("factors", [{"damping": 0.0}, {"damping": math.nan}])
 def test_a_factor_that_cannot_be_used_is_refused(factors):
     design = load_design("PDMS")
     with pytest.raises(ParameterError):
-        varied(design.rig, middle_of_use(design), factors)
+        varied(design.rig, Condition(5.0, 0.279e-3, 3745.0), factors)
 
 
 @pytest.mark.parametrize("name", [n for n in environment_names() if n != "dry"])
@@ -156,3 +149,14 @@ def test_what_a_material_says_of_temperature_stands_in_for_the_factors_of_cold_a
     rig = load_design("fluorocarbon").rig
     assert in_environment(rig, environment(name)) is rig
     assert in_environment(rig, environment("wet")) is not rig
+
+
+def test_a_changed_design_has_the_use_and_the_tolerances_of_its_base(tmp_path):
+    (tmp_path / "one.toml").write_text(
+        'base = "fluorocarbon"\n[design]\nname = "one"\ninterference_mm = [0.279]\n'
+        "[tolerances]\nelastomer_stiffness = 0.05\n"
+    )
+    (tmp_path / "two.toml").write_text('base = "one.toml"\n[change]\ndamping = "x2"\n')
+    one, two = (load_design(tmp_path / f"{name}.toml") for name in ("one", "two"))
+    assert (two.name, two.use, two.tolerances) == ("two", one.use, one.tolerances)
+    assert two.use.interference == pytest.approx((0.279e-3,))

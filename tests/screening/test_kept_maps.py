@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from models.rig_file import load_material_rig
-from noise.screening.batches import keeping
 from noise.screening.design import Design, Use
 from noise.screening.grid import shared_grid
 from noise.screening.mapping import map_design
+from noise.screening.point import keeping
 from tests.helpers.kept import staying_results
 from tests.helpers.quick_screens import judged_by_speed
 

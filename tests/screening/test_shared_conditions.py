@@ -6,17 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, example, given, settings, strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 
-from models.errors import ParameterError
-from models.rig import Fit, damping_at
+from models.rig import Fit
 from models.rig_file import load_material_rig
 from noise.screening.design import Design, Swinging, Use
 from noise.screening.grid import shared_grid
+from noise.screening.mapping import known_rows
 from noise.screening.point import evaluate_point
-from noise.screening.provenance import point_notes, rows_of
 from noise.screening.screen import screen
-from noise.screening.standing import refuse_unlike
 from noise.screening.summary import summary_lines
 from noise.screening.tables import screening_tables
 from noise.screening.vibration import Condition
@@ -112,15 +110,6 @@ def test_what_one_was_asked_all_are(designs, asked):
         assert list(axis_values) == sorted(set(axis_values))
 
 
-def test_maps_over_other_points_are_not_ranked(quick):
-    found = quick_screen(["PDMS", "fluorocarbon"], Use(speed=(1.0, 9.0)))
-    refuse_unlike(found.maps)
-    one, other = found.maps
-    fewer = replace(other, grid=replace(other.grid, support_stiffness=(2214.0,)))
-    with pytest.raises(ParameterError, match="not mapped over the same points"):
-        refuse_unlike((one, fewer))
-
-
 SINGLE = Design(
     "one damping",
     replace(THESIS, fits=(Fit(0.279e-3, 665.0, 10.7, 8.0, {2214.0: 0.105}),)),
@@ -132,42 +121,15 @@ def test_a_design_of_one_damping_meets_the_supports_of_the_others(quick):
     found = quick_screen([SINGLE, "fluorocarbon-thesis"], Use(speed=(1.0, 5.0, 9.0)))
     own = next(one for one in found.maps if one.design == SINGLE.name)
     assert own.grid.support_stiffness == (2214.0, 3745.0, math.inf)
-    note = own.note[0, 1, 0, 0]
-    assert "damping of 2214 Nm/rad held" in note
-    assert "fit of 0.279 mm held" in note
-    assert own.note[0, 0, 1, 0] == ""
-    assert own.substituted.sum() == 24
-    told = "\n".join(summary_lines(found))
-    assert "24 of one damping" in told
-    assert "--interference 0.279 compares within the fits of all" in told
-    _, rows = screening_tables(found)["map.csv"]
-    assert [row["note"] for row in rows if row["design"] != SINGLE.name] == [None] * 27
-
-
-@given(support=SUPPORT, interference=rounded(0.1e-3, 0.5e-3))
-@example(support=200.0, interference=0.3626e-3)  # damping of 2214 Nm/rad to the last digit
-def test_notes_say_what_the_rule_does(support, interference):
-    use = Use(speed=(5.0,), interference=(interference,), support_stiffness=(support,))
-    note = point_notes(THESIS, shared_grid([Design("", THESIS)], use))[0].item()
-    fit = THESIS.fit(interference)
-    given_fits = {each.interference for each in THESIS.fits}
-    near = any(math.isclose(interference, each, rel_tol=0.01) for each in given_fits)
-    assert ("of 0.178 mm held" in note) == (interference < 0.178e-3 and not near)
-    assert ("interpolated between fits" in note) == (
-        0.178e-3 < interference < 0.381e-3 and not near
-    )
-    ends = sorted((damping_at(fit, 2214.0), damping_at(fit, 3745.0)))
-    if "damping interpolated between 2214 Nm/rad and 3745 Nm/rad" in note:
-        assert ends[0] <= damping_at(fit, support) <= ends[1]
-    if "damping of 2214 Nm/rad held" in note:
-        assert damping_at(fit, support) == damping_at(fit, 2214.0)
+    of_fits = "fits are given for 0.279 mm; for 0.178 and 0.381 mm the nearest is held"
+    assert f"   note: {of_fits}" in summary_lines(found)
 
 
 def test_a_fit_that_is_held_makes_the_same_noise_and_is_not_simulated_twice():
     fits = (0.1e-3, 0.178e-3, 0.5e-3, 0.6e-3)
     use = Use(speed=(2.0, 8.0), interference=fits, support_stiffness=(2214.0,))
     (found,) = quick_screen(["fluorocarbon"], use).maps
-    assert rows_of(FLUOROCARBON, fits) == [1, 1, 2, 2]
+    assert known_rows(FLUOROCARBON, fits).tolist() == [1, 1, 2, 2]
     assert found.count("simulated") == 4
     assert (found.how[0, 0, (0, 3)] == "unchanged").all()
     for row, interference in enumerate(fits):

@@ -18,9 +18,9 @@ import pytest
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
 from noise.screening.advice import advise, changed
-from noise.screening.batches import batch_evaluator
 from noise.screening.grid import Grid
 from noise.screening.mapping import map_design
+from noise.screening.point import batch_evaluator
 from noise.screening.vibration import Condition
 from tests.screening.long_runs import label_after, vibrates_after
 

@@ -8,8 +8,8 @@ import pytest
 from models.rig_file import load_material_rig
 from noise.screening.advice import Offer, advise, changed
 from noise.screening.point import evaluate_point
+from noise.screening.summary import advice_words, limit_words
 from noise.screening.vibration import Condition, vibration_at
-from noise.screening.words import advice_words, limit_words
 from tests.screening.long_runs import vibrates_after
 
 FLUOROCARBON = load_material_rig("fluorocarbon")
@@ -69,7 +69,7 @@ def test_where_nothing_vibrates_there_is_nothing_to_advise():
 def test_what_no_single_change_quiets_is_said_with_what_is_left_worst():
     worst = replace(AT, speed=8.0, interference=0.381e-3)
     some = Offer("damping", 0.1, 50, True, quiet_elsewhere=2, elsewhere=3, left=worst)
-    words = advice_words("squawk", AT, [some], {worst: "creak, 88 dB(A)"})
+    words = advice_words("squawk", AT, [some], "creak, 88 dB(A)")
     assert words.startswith("no single change that was tried quiets the whole use. ")
     assert words.endswith(
         "Of the 3 other noisy points tried, the loudest that stays noisy with the first: 8 rad/s, "
@@ -77,6 +77,6 @@ def test_what_no_single_change_quiets_is_said_with_what_is_left_worst():
     )
     assert "damping +50 % to 0.15 Nm s/rad (2 of 3)" in words
     every = replace(some, quiet_elsewhere=3, left=None)
-    assert "no single change" not in advice_words("squawk", AT, [every], {})
-    none = advice_words("squawk", AT, [replace(some, ends=False)], {})
+    assert "no single change" not in advice_words("squawk", AT, [every])
+    none = advice_words("squawk", AT, [replace(some, ends=False)])
     assert none.startswith("no single change that was tried silences the loudest point (squawk at ")
