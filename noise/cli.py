@@ -16,11 +16,13 @@ import re
 import sys
 import traceback
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
 from models.errors import BushingNoiseError, RecordingError
+from models.schema import did_you_mean
 from noise.base.progress import discard, note, say, set_verbosity
 from noise.commands import COMMANDS, load_command
 from noise.commands.options import COMMON, add_options, help_of, option_names
@@ -129,8 +131,16 @@ def _run(arguments: list[str]) -> int:
         parser.print_help(sys.stderr)
         return _USAGE_ERROR
     command = arguments[0]
+    if command == "--version":
+        from importlib.metadata import PackageNotFoundError, version
+
+        installed = "(run from its source, not installed)"
+        with suppress(PackageNotFoundError):
+            installed = version(_NAME)
+        sys.stdout.write(f"{_NAME} {installed}\n")
+        return 0
     if not command.startswith("-") and command not in COMMANDS:
-        advice = _did_you_mean(command, COMMANDS)
+        advice = did_you_mean(command, COMMANDS)
         return _failed(f"there is no command {command!r}{advice} (see {_NAME} --help)")
     try:
         options, unknown = parser.parse_known_args(_with_negative_values(arguments))
@@ -138,7 +148,7 @@ def _run(arguments: list[str]) -> int:
         return stop.code if isinstance(stop.code, int) else 0
     if unknown:
         known = ["--help", *option_names([*load_command(options.command).OPTIONS, *COMMON])]
-        advice = _did_you_mean(unknown[0].partition("=")[0], known)
+        advice = did_you_mean(unknown[0].partition("=")[0], known)
         see = f"see {_NAME} {options.command} --help"
         return _failed(f"unrecognized: {' '.join(unknown)}{advice} ({see})")
     set_verbosity(quiet=options.quiet, verbose=options.verbose)
@@ -146,13 +156,6 @@ def _run(arguments: list[str]) -> int:
         return load_command(options.command).run(options)
     finally:
         set_verbosity()
-
-
-def _did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return a hint to a similar word; imports its library only after an error."""
-    from models.schema import did_you_mean
-
-    return did_you_mean(word, known)
 
 
 def _failed(message: str, code: int = _USAGE_ERROR) -> int:
@@ -172,21 +175,6 @@ class _Parser(argparse.ArgumentParser):
         raise SystemExit(_USAGE_ERROR)
 
 
-class _Version(argparse.Action):
-    """Action of ``--version``, which looks the version up only when called."""
-
-    def __call__(self, *_: object) -> None:
-        """Print the installed version and exit."""
-        from importlib.metadata import PackageNotFoundError, version
-
-        try:
-            installed = version(_NAME)
-        except PackageNotFoundError:
-            installed = "(run from its source, not installed)"
-        sys.stdout.write(f"{_NAME} {installed}\n")
-        raise SystemExit(0)
-
-
 def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     """Return a parser of all commands, with options only for those among the arguments."""
     parser = _Parser(
@@ -198,7 +186,7 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
         "on, for a defect or a full disk.",
         allow_abbrev=False,
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and stop")
+    parser.add_argument("--version", action="store_true", help="print the version and stop")
     commands = parser.add_subparsers(
         dest="command", metavar="COMMAND", required=True, title="commands"
     )

@@ -7,7 +7,7 @@ without effect. Commands print them and write them into sidecars.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from models.condition import CONDITION
@@ -82,21 +82,12 @@ def _speed_remark(rig: Rig, speeds: Sequence[float]) -> str:
 def _support_remark(rig: Rig, supports: Sequence[float]) -> str:
     """Return a remark on support stiffnesses [Nm/rad] without a damping of their own."""
     known = sorted({support for fit in rig.fits for support in fit.damping})
-    if len(known) == 1:  # one damping for every support
-        return ""
     other = [k for k in supports if not any(math.isclose(k, one, rel_tol=0.01) for one in known)]
-    if not other:
+    if len(known) == 1 or not other:  # one damping for every support
         return ""
-    outside = [k for k in other if not known[0] <= k <= known[-1]]
-    if not outside:
-        how = "it is interpolated between these"
-    elif outside == other:
-        how = "that of the nearest is used"
-    else:
-        how = "it is interpolated, or held beyond"
     return (
         f"damping is given for supports of {', '.join(map(_stiffness, known))}; for "
-        f"{', '.join(map(_stiffness, other))} Nm/rad {how}"
+        f"{', '.join(map(_stiffness, other))} Nm/rad it is interpolated, or held beyond these"
     )
 
 
@@ -182,32 +173,6 @@ def effect_remarks(rig: Rig, library: Mapping[str, Effect]) -> list[str]:
         for active in activated(rig.effects, library)
         if not can_act(active, rig.friction)
     ]
-
-
-def constant_remark(rigs: Iterable[Rig], what: str) -> str:
-    """Return a remark on results for which random effects of the rigs are left out.
-
-    Parameters
-    ----------
-    rigs : iterable of Rig
-    what : str
-        Name of the results, in the plural.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> constant_remark([load_material_rig("natural-rubber")], "critical speeds")
-    'critical speeds are computed without critical_torque_scatter, which varies slips at random'
-    >>> constant_remark([load_material_rig("PDMS")], "critical speeds")
-    ''
-    """
-    from sim.rig_effects import irregular_effects
-
-    left_out = dict.fromkeys(spec.name for rig in rigs for spec in irregular_effects(rig))
-    if not left_out:
-        return ""
-    verb = "varies" if len(left_out) == 1 else "vary"
-    return f"{what} are computed without {' and '.join(left_out)}, which {verb} slips at random"
 
 
 def sensor_remarks(sensors: Sensors, rate: float) -> list[str]:

@@ -53,7 +53,7 @@ def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
         for effect in _defined(path):
             where = f"--effects {path}: effect {str(effect.name)[:40]!r}"
             with _error_location(f"{where} is not a valid Effect"):
-                checked = _checked_effect(effect, path)
+                checked = _checked_effect(effect, where)
             if effect.name in EFFECTS or effect.name in own:
                 other = "a shipped effect" if effect.name in EFFECTS else "defined in another file"
                 raise ParameterError(f"{where} is {other} as well; choose a new name")
@@ -90,66 +90,60 @@ def _error_location(where: str) -> Iterator[None]:
         raise ParameterError(f"{where}: {type(error).__name__}: {one_line(error)}") from error
 
 
-def _checked_effect(effect: Effect, path: Path) -> Effect:
-    """Check the declaration of an effect and wrap its functions with `_checked`."""
+def _checked_effect(effect: Effect, where: str) -> Effect:
+    """Check an effect and wrap its functions with `_checked`."""
+    from numba.extending import is_jitted
+
+    from sim.contact import HOOK_SIGNATURE
     from sim.effects.effect import Stage
 
-    where = f"--effects {path}: effect {effect.name!r}"
-    if not (effect.name.strip() and effect.forms):
-        raise ValueError("name or forms is empty")
     Stage(effect.stage)
     effect.active({})
-    hooks = {name: getattr(effect, name) for name in _HOOKS}
-    for name, function in hooks.items():
-        if function is not None and not callable(function):
-            raise TypeError(f"{name} = {function!r} is no function")
     if effect.strength not in effect.parameters:
         raise ValueError(f"strength = {effect.strength!r} is none of its parameters")
-    if not any(hooks[name] for name in ("drive", "contact", "force", "sensors")):
+    if not any((effect.drive, effect.contact, effect.force, effect.sensors)):
         raise ValueError("needs one of drive, contact, force and sensors")
     if effect.contact is not None:
-        _compile(effect.contact)
+        if not is_jitted(effect.contact):
+            raise ValueError(
+                "contact is not compiled; write @numba.njit(sim.contact.HOOK_SIGNATURE) above it"
+            )
+        if HOOK_SIGNATURE.args not in effect.contact.signatures:
+            with _error_location("contact cannot be compiled by HOOK_SIGNATURE"):
+                effect.contact.compile(HOOK_SIGNATURE)
+    expected: dict[str, Callable[[Any], Any]] = {
+        "drive": lambda speed: speed,
+        "force": lambda motion: motion.torque,
+        "sensors": lambda signals: signals,
+        "pack": lambda _: None,
+    }
     checked: dict[str, Any] = {
-        name: _checked(hooks[name], f"{where}: {name}", path, like)
-        for name, like in _HOOKS.items()
-        if like is not None and hooks[name] is not None
+        name: _checked(getattr(effect, name), f"{where}: {name}", like)
+        for name, like in expected.items()
+        if getattr(effect, name) is not None
     }
     return replace(effect, **checked)
 
 
-_HOOKS: dict[str, Callable[[Any], Any] | None] = {
-    "drive": lambda angle: angle,
-    "force": lambda motion: motion.torque,
-    "sensors": lambda signals: signals,
-    "pack": lambda _: None,
-    "contact": None,
-    "chain": None,
-}
-"""Functions of an effect; each value maps the first argument to an array of the result's shape."""
-
-
-def _compile(contact: Any) -> None:
-    """Compile a contact hook and check its signature."""
-    from numba.extending import is_jitted
-
-    from sim.contact import HOOK_SIGNATURE
-
-    if not is_jitted(contact):
-        raise ValueError(
-            "contact is not compiled; write @numba.njit(sim.contact.HOOK_SIGNATURE) above it"
-        )
-    if HOOK_SIGNATURE.args in contact.signatures:
-        return
-    if contact.signatures:
-        raise ValueError("contact has another signature than HOOK_SIGNATURE")
-    with _error_location("contact cannot be compiled"):
-        contact.compile(HOOK_SIGNATURE)
-
-
 def _checked(
-    function: Callable[..., Any], where: str, path: Path, like: Callable[[Any], Any]
+    function: Callable[..., Any], where: str, expected: Callable[[Any], Any]
 ) -> Callable[..., Any]:
-    """Wrap a function of an effect: locate its errors and check the shape of its result."""
+    """Wrap a function: locate its errors and check its result.
+
+    ``expected(first)`` makes an array, or a dict of arrays, of the result's shape from the first
+    argument; None is any length.
+    """
+    import numpy as np
+
+    def check(result: Any, like: Any, what: str) -> None:
+        shape = (getattr(result if like is None else like, "size", 0),)
+        if not isinstance(result, np.ndarray) or result.shape != shape:
+            actual = getattr(result, "shape", type(result).__name__)
+            raise ParameterError(
+                f"{where} must return an array of shape {shape}, not {actual}{what}"
+            )
+        if result.dtype != np.float64 or not np.isfinite(result).all():
+            raise ParameterError(f"{where} must return finite numbers of type float64{what}")
 
     @wraps(function)
     def checked(first: Any, *others: object) -> Any:
@@ -159,33 +153,21 @@ def _checked(
             raise
         except Exception as error:
             frames = traceback.extract_tb(error.__traceback__)
-            frame = [*frames, *(one for one in frames if Path(one.filename).name == path.name)][-1]
+            own = [one for one in frames if Path(one.filename).name in where]
+            frame = [*frames, *own][-1]
             place = f"{Path(frame.filename).name}, line {frame.lineno}"
             raise ParameterError(
                 f"{where}: {type(error).__name__}: {one_line(error)} ({place})"
             ) from error
-        if wrong := _problem(result, like(first)):
-            raise ParameterError(f"{where} {wrong}")
+        like = expected(first)
+        if not isinstance(like, dict):
+            check(result, like, "")
+        elif not isinstance(result, dict) or list(result) != list(like):
+            names = ", ".join(like)
+            raise ParameterError(f"{where} must return a dict of the signals it was given: {names}")
+        else:
+            for name, signal in like.items():
+                check(result[name], signal, f" for {name!r}")
         return result
 
     return checked
-
-
-def _problem(result: Any, like: Any) -> str:
-    """Return what is wrong with a result; empty if it has the shape and type of `like`."""
-    import numpy as np
-
-    if isinstance(like, dict):
-        if not isinstance(result, dict) or list(result) != list(like):
-            return f"must return a dict of the signals it was given: {', '.join(like)}"
-        problems = {name: _problem(result[name], signal) for name, signal in like.items()}
-        return next(
-            (f"{problem} for {name!r}" for name, problem in problems.items() if problem), ""
-        )
-    shape = (getattr(result if like is None else like, "size", 0),)
-    if not isinstance(result, np.ndarray) or result.shape != shape:
-        actual = getattr(result, "shape", type(result).__name__)
-        return f"must return an array of shape {shape}, not {actual}"
-    if result.dtype != np.float64 or not np.isfinite(result).all():
-        return "must return finite numbers of type float64"
-    return ""

@@ -22,7 +22,6 @@ from models.condition import FIXED
 from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from models.structure.beams import beam_structure
-from noise.base.remarks import constant_remark
 from noise.thesis.listing import STEP, ListingRun, run_listing
 from sim.analysis.critical_damping import critical_damping, largest_sticking, with_damping
 from sim.analysis.critical_speeds import SPEEDS, CriticalSpeeds, critical_speeds
@@ -30,7 +29,7 @@ from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import LEAST_SUDDEN, Slips, find_slips, motion_slips
 from sim.bushing import lumped_bushing
 from sim.motion import Motion, simulate_motion
-from sim.rig_effects import constant_version
+from sim.rig_effects import constant_version, irregular_effects
 from sim.run import Run, simulate
 from sim.shaft import ConstantSpeed
 
@@ -112,8 +111,13 @@ def constant_note() -> str:
     >>> constant_note()
     'numbers of the calibrated materials are computed without critical_torque_scatter, which ...'
     """
-    materials = map(load_material_rig, material_names())
-    return constant_remark(materials, "numbers of the calibrated materials")
+    rigs = map(load_material_rig, material_names())
+    left_out = dict.fromkeys(spec.name for rig in rigs for spec in irregular_effects(rig))
+    names = " and ".join(left_out)
+    return (
+        f"numbers of the calibrated materials are computed without {names}, which varies slips at "
+        "random"
+    )
 
 
 @lru_cache(maxsize=4)

@@ -124,7 +124,7 @@ def test_a_rig_file_names_its_material_fit_and_effects_itself(call, tmp_path):
         (("--temperature", "95"), "WLF holds up to 80, 100 K above its glass transition"),
         (("--temperature", "80", "--material", "fluorocarbon-thesis"),
          "temperature 80 degree Celsius is recorded and changes nothing"),
-        (("--support-stiffness", "3000"), "for 3000 Nm/rad it is interpolated between these"),
+        (("--support-stiffness", "3000"), "for 3000 Nm/rad it is interpolated, or held beyond"),
         (("--support-stiffness", "3e5"), "support_stiffness_Nm_rad = 300000 is outside the usual"),
         (("--change", "critical_torque=x1000"), "outside the usual 0.3 to 500 Nm (is it in Nmm?)"),
         (("--change", "critical_torque=x9999"), "nothing slips in this run"),
