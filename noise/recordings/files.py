@@ -21,7 +21,6 @@ from models.errors import RecordingError
 from models.foreign_file import reading, refusing
 from models.recording import Recording
 from noise.base.progress import note
-from noise.recordings.folders import why_not_read
 from noise.recordings.formats import RawRecording, check_rate, formats
 from noise.recordings.formats.isolated import open_isolated
 from noise.recordings.interpretation import Metadata, PascalPerFullScale, check_finite, interpret
@@ -151,8 +150,10 @@ def open_raw(path: Path) -> Iterator[RawRecording]:
                 raise RecordingError(f"{path}: is empty (0 bytes)")
             file_format = formats().get(path.suffix.lower())
             if file_format is None:
-                known = f"has no ending of a recording; known are {', '.join(formats())}"
-                raise RecordingError(f"{path}: {why_not_read(path.name) or known}")
+                raise RecordingError(
+                    f"{path}: has no ending of a recording; known are {', '.join(formats())}; "
+                    "convert others, as by ffmpeg"
+                )
             raw = stack.enter_context((file_format.open or open_isolated)(path))
             check_rate(raw.rate, str(path))
             if raw.n_samples > _DENSEST * path.stat().st_size:

@@ -1,37 +1,31 @@
 """Recursive search of folders for recordings, by the same rules for all commands.
 
-Hidden files are skipped. Links to folders are followed after all real folders, so that a recording
-has the name of its real path, and each folder is searched once. A folder that disappears during the
-search counts as empty. Unreadable folders and paths that are no files (broken links, pipes,
-devices) are skipped, with one note per reason.
+Hidden files are skipped, links to folders are followed, and each folder is searched once. A folder
+that disappears during the search counts as empty. Unreadable folders and paths that are no files
+(broken links, pipes, devices) are skipped, with one note per reason.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from contextlib import suppress
-from itertools import chain
 from pathlib import Path
 
 from models.errors import ParameterError
-from models.foreign_file import check_plain_file
 from noise.base.progress import note, readable
 from noise.recordings.formats import formats
 
 _MAX_NAMES = 3
 """Number of skipped files that a note names."""
 
-_CONVERT = "convert to WAV or FLAC, as by: ffmpeg -i {name} {stem}.wav"
-_EXPORT = "export as WAV, or a format that is read, from the program that wrote it"
-_OTHERS = {
-    **dict.fromkeys(
-        (".3gp", ".aac", ".ac3", ".amr", ".ape", ".au", ".caf", ".dsf", ".m4a", ".m4b", ".mka",
-         ".mkv", ".mov", ".mp2", ".mp4", ".snd", ".w64", ".webm", ".wma", ".wv"), _CONVERT
-    ),
-    **dict.fromkeys((".ats", ".d7d", ".dxd", ".hdf", ".mat", ".pti", ".sie", ".tdm"), _EXPORT),
-}  # fmt: skip
-"""Suffixes of unsupported recordings -> advice."""
+_NOT_READ = "recordings of this format are not read; convert to WAV or FLAC, as by ffmpeg"
+
+_OTHERS = (
+    *(".3gp", ".aac", ".ac3", ".amr", ".ape", ".ats", ".au", ".caf", ".d7d", ".dsf", ".dxd"),
+    *(".hdf", ".m4a", ".m4b", ".mat", ".mka", ".mkv", ".mov", ".mp2", ".mp4", ".pti", ".sie"),
+    *(".snd", ".tdm", ".w64", ".webm", ".wma", ".wv"),
+)
+"""Suffixes of unsupported recordings."""
 
 
 def files_below(
@@ -67,7 +61,7 @@ def files_below(
     """
     os.scandir(folder).close()  # raises if the folder itself is missing
     visited: set[tuple[int, int]] = set()
-    files: list[Path] = []
+    files: list[tuple[Path, str]] = []
 
     def leave_out(path: Path, reason: str) -> None:
         if left_out is not None:
@@ -77,27 +71,22 @@ def files_below(
         if not isinstance(error, FileNotFoundError):  # it disappeared
             leave_out(Path(error.filename), "cannot be read")
 
-    waiting = [folder]
-    while waiting:
-        links: list[Path] = []
-        for place, folders, names in chain(*(os.walk(top, onerror=unreadable) for top in waiting)):
-            here, n_before = Path(place), len(visited)
-            with suppress(OSError):
-                status = here.stat()
-                visited.add((status.st_dev, status.st_ino))
-            if len(visited) == n_before:  # it disappeared, or was searched already
-                folders.clear()
-                continue
-            folders[:] = [name for name in folders if not name.startswith(".")]
-            links += [here / name for name in folders if os.path.islink(here / name)]  # noqa: PTH114
-            for path in (here / name for name in sorted(names) if not name.startswith(".")):
-                if is_file(path):
-                    files.append(path)
-                else:
-                    leave_out(path, _skip_reason(path))
-        waiting = sorted(links)
-    named = ((path, path.relative_to(folder).as_posix()) for path in files)
-    return sorted(named, key=lambda entry: entry[1])
+    for place, folders, names in os.walk(folder, onerror=unreadable, followlinks=True):
+        try:
+            status = os.stat(place)  # noqa: PTH116
+        except OSError:  # it disappeared
+            continue
+        if (status.st_dev, status.st_ino) in visited:
+            folders.clear()
+            continue
+        visited.add((status.st_dev, status.st_ino))
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        for path in (Path(place, name) for name in sorted(names) if not name.startswith(".")):
+            if is_file(path):
+                files.append((path, path.relative_to(folder).as_posix()))
+            else:
+                leave_out(path, "is no file, or links to nothing")
+    return sorted(files, key=lambda entry: entry[1])
 
 
 def is_file(path: Path) -> bool:
@@ -112,17 +101,6 @@ def is_file(path: Path) -> bool:
         return path.is_file()
     except OSError:
         return False
-
-
-def _skip_reason(path: Path) -> str:
-    """Return why a path is not a readable file, without opening it."""
-    if os.path.islink(path) and not os.path.exists(path):  # noqa: PTH110, PTH114  # never raise
-        return "links to nothing"
-    try:
-        check_plain_file(path, where="")
-    except ParameterError as error:
-        return str(error).removeprefix(": ")
-    return "cannot be read"
 
 
 def find_recordings(
@@ -163,13 +141,14 @@ def find_recordings(
         try:
             if path.is_dir():
                 left_out: dict[str, list[str]] = {}
-                files = files_below(path, left_out)
-                _note_left_out(path, left_out, [name for _, name in files])
-                recordings += [
-                    (file, readable(name))
-                    for file, name in files
-                    if file.suffix.lower() in formats()
-                ]
+                for file, name in files_below(path, left_out):
+                    if file.suffix.lower() in formats():
+                        recordings.append((file, readable(name)))
+                    elif file.suffix.lower() in _OTHERS:
+                        left_out.setdefault(_NOT_READ, []).append(name)
+                for reason, skipped in left_out.items():
+                    more = f" and {len(skipped) - _MAX_NAMES} more" * (len(skipped) > _MAX_NAMES)
+                    note(f"{path}: left out {', '.join(skipped[:_MAX_NAMES])}{more}: {reason}")
             elif path.exists():
                 recordings.append((path, readable(path.name)))
             else:
@@ -177,34 +156,3 @@ def find_recordings(
         except OSError as error:
             raise ParameterError(f"{path}: cannot be read ({error.strerror or error})") from error
     return recordings
-
-
-def _note_left_out(folder: Path, left_out: dict[str, list[str]], names: list[str]) -> None:
-    """Print a note per reason on the skipped files of a folder."""
-    unsupported: dict[str, list[str]] = {}
-    for name in names:
-        if advice := _advice(Path(name)):
-            unsupported.setdefault(advice, []).append(name)
-    by_reason = left_out | {why_not_read(same[0]): same for same in unsupported.values()}
-    for reason, skipped in by_reason.items():
-        more = f" and {len(skipped) - _MAX_NAMES} more" * (len(skipped) > _MAX_NAMES)
-        note(f"{folder}: left out {', '.join(skipped[:_MAX_NAMES])}{more}: {reason}")
-
-
-def why_not_read(name: str) -> str:
-    """Return a message with advice for a recording of an unsupported format, else an empty text.
-
-    Examples
-    --------
-    >>> why_not_read("memo.m4a")
-    'not read; convert to WAV or FLAC, as by: ffmpeg -i memo.m4a memo.wav'
-    """
-    path = Path(name)
-    advice = _advice(path).format(name=path.name, stem=path.stem)
-    return f"not read; {advice}" if advice else ""
-
-
-def _advice(path: Path) -> str:
-    """Return the advice for an unsupported format as a template; empty for other files."""
-    ending = path.suffix.lower()
-    return "" if ending in formats() else _OTHERS.get(ending, "")
