@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 from features.prepared import ACOUSTIC_KINDS, prepare
-from features.table import feature_names, features_of
+from features.table import KINDS, feature_names, features_of
 from features.windows.blocks import FRAME_RATE, MARGIN, RATE, Block, block_length, resampled_block
 from features.windows.table import (
     HOP,
@@ -35,8 +35,6 @@ FEATURE_NAMES = (
     *(f"torque_{name}" for name in feature_names("torque")),
 )
 """Names of the features of a window; features of missing kinds of channel are NaN."""
-
-_KINDS = (*ACOUSTIC_KINDS, "torque")
 
 _LEAST_RATE = 1000.0
 """Minimum sampling rate of a recording to be described [Hz]."""
@@ -92,7 +90,7 @@ class WindowFeatures:
 
 def has_window_channel(blocks: RecordingBlocks) -> bool:
     """Whether a recording has a channel with window features, at a sufficient sampling rate."""
-    return blocks.rate >= _LEAST_RATE and any(blocks.first(kind) is not None for kind in _KINDS)
+    return blocks.rate >= _LEAST_RATE and any(blocks.first(kind) is not None for kind in KINDS)
 
 
 def tracks(blocks: RecordingBlocks, *, per_track: bool) -> Iterator[tuple[str, RecordingBlocks]]:
@@ -138,96 +136,50 @@ def window_features(
     >>> found.features.shape == (3, len(FEATURE_NAMES)), found.frames.shape[0]
     (True, 97)
     """
-    pages = [page._replace(features=reduced(page.features)) for page in WindowPages(blocks)]
-    # Frames in two pages are taken from the later page.
-    starts = [page.first * FRAMES_A_HOP for page in pages]
-    ends = [*starts[1:], starts[-1] + len(pages[-1].frames)]
-    frames = [
-        page.frames[: end - start] for page, start, end in zip(pages, starts, ends, strict=True)
-    ]
-    return WindowFeatures(
-        np.concatenate([page.features for page in pages]),
-        np.concatenate([page.level for page in pages]),
-        np.concatenate(frames),
-    )
+    resampled = _Resampled(blocks)
+    features, levels, frames = [], [], []
+    a_page = round(_BLOCKS_A_PAGE * resampled.useful / HOP)
+    for first in range(0, resampled.n_windows, a_page):
+        windows = min(a_page, resampled.n_windows - first)
+        tables = {row: resampled.table(row, first, windows) for row in resampled.rows}
+        missing = np.full((windows, len(WINDOW_NAMES)), np.nan, dtype=np.float32)
+        parts = [
+            missing if (row := blocks.first(kind)) is None else tables[row].features
+            for kind in ACOUSTIC_KINDS
+        ]
+        of_page = np.concatenate(
+            [*parts, _torque(blocks, first, windows)], axis=1, dtype=np.float32
+        )
+        of_page[~np.isfinite(of_page)] = np.nan
+        features.append(reduced(of_page))
+        levels.append(tables[resampled.main].level)
+        # Frames in two pages are taken from the later page.
+        last = first + windows == resampled.n_windows
+        frames.append(tables[resampled.main].frames[: None if last else windows * FRAMES_A_HOP])
+    return WindowFeatures(np.concatenate(features), np.concatenate(levels), np.concatenate(frames))
 
 
-class Page(NamedTuple):
-    """Page of windows of a recording.
-
-    Parameters
-    ----------
-    first : int
-        First window.
-    features, level, frames : ndarray
-        As in `WindowFeatures`; frames from the start of the first to the end of the last window.
-    """
-
-    first: int
-    features: NDArray[Any]
-    level: NDArray[np.float32]
-    frames: NDArray[np.float32]
-
-
-class WindowPages:
-    """Iterator of the windows of a recording, page by page.
-
-    Parameters
-    ----------
-    blocks : RecordingBlocks
-        As in `window_features`.
-
-    Examples
-    --------
-    >>> from models.recording import Channel, Recording
-    >>> from models.blocks import RecordingBlocks
-    >>> hiss = np.random.default_rng(0).normal(size=(1, 480_000))
-    >>> pages = WindowPages(RecordingBlocks.of(Recording(hiss, 48e3, (Channel("pressure"),))))
-    >>> pages.count, sum(len(page.features) for page in pages)
-    (39, 39)
-    """
-
-    count: int
-    """Number of windows."""
+class _Resampled:
+    """Channels of a recording at the common rate, of which pages of windows are described."""
 
     def __init__(self, blocks: RecordingBlocks) -> None:
-        rows = {kind: blocks.first(kind) for kind in _KINDS}
-        self._channels = {kind: row for kind, row in rows.items() if row is not None}
-        self._main = next(iter(self._channels.values()))
-        acoustic = [row for kind, row in self._channels.items() if kind in ACOUSTIC_KINDS]
-        self._blocks, self._rows = blocks, sorted({self._main, *acoustic})
-        rate = blocks.rate
-        self._useful = block_length(blocks.n_samples / rate)
-        self._n = max(1, round(blocks.n_samples * RATE / rate))
-        self._limit = min(WORKING_LIMIT, USABLE_SHARE * rate)
+        rows = {kind: row for kind in KINDS if (row := blocks.first(kind)) is not None}
+        self.main = next(iter(rows.values()))
+        self.rows = sorted({self.main, *(rows[kind] for kind in ACOUSTIC_KINDS if kind in rows)})
+        self.useful = block_length(blocks.n_samples / blocks.rate)
+        self._blocks, self._n = blocks, max(1, round(blocks.n_samples * RATE / blocks.rate))
+        self.n_windows = window_count(self._n)
+        self._limit = min(WORKING_LIMIT, USABLE_SHARE * blocks.rate)
         self._resampled: dict[int, dict[int, Block]] = {}
-        self.count = window_count(self._n)
 
-    def __iter__(self) -> Iterator[Page]:
-        a_page = round(_BLOCKS_A_PAGE * self._useful / HOP)
-        for first in range(0, self.count, a_page):
-            windows = min(a_page, self.count - first)
-            own = self._table(self._main, first, windows)
-            parts = []
-            for row in map(self._channels.get, ACOUSTIC_KINDS):
-                if row is None:
-                    parts.append(np.full((windows, len(WINDOW_NAMES)), np.nan, dtype=np.float32))
-                else:
-                    table = own if row == self._main else self._table(row, first, windows)
-                    parts.append(table.features)
-            parts.append(_torque(self._blocks, self._channels.get("torque"), first, windows))
-            features = np.concatenate(parts, axis=1, dtype=np.float32)
-            features[~np.isfinite(features)] = np.nan
-            yield Page(first, features, own.level, own.frames)
-
-    def _table(self, row: int, first: int, windows: int) -> WindowTable:
+    def table(self, row: int, first: int, windows: int) -> WindowTable:
         """Return the features of one page of a channel."""
-        number = round(first * HOP) // self._useful
-        start = number * self._useful * RATE
+        number = round(first * HOP) // self.useful
+        start = number * self.useful * RATE
         size = min(self._n - start, round(((windows - 1) * HOP + LENGTH) * RATE))
         held = [
             self._block(i)[row]
-            for i in range(number, number + math.ceil(size / (self._useful * RATE)))
+            for i in range(number, number + math.ceil(size / (self.useful * RATE)))
         ]
         scale = max(block.scale for block in held)
         shares = [np.float32(block.scale / scale if scale > 0.0 else 0.0) for block in held]
@@ -251,12 +203,12 @@ class WindowPages:
             for old in [old for old in self._resampled if old < number - _BLOCKS_A_PAGE]:
                 del self._resampled[old]
             rate, n = self._blocks.rate, self._blocks.n_samples
-            start = round((number * self._useful - MARGIN) * rate)
-            length = round((self._useful + 2.0 * MARGIN) * rate)
+            start = round((number * self.useful - MARGIN) * rate)
+            length = round((self.useful + 2.0 * MARGIN) * rate)
             held = self._blocks.read(max(start, 0), min(start + length, n))
             self._resampled[number] = {
-                row: resampled_block(self._framed(held[row], start, length), rate, self._useful)
-                for row in self._rows
+                row: resampled_block(self._framed(held[row], start, length), rate, self.useful)
+                for row in self.rows
             }
         return self._resampled[number]
 
@@ -277,11 +229,9 @@ class WindowPages:
         return whole
 
 
-def _torque(
-    blocks: RecordingBlocks, row: int | None, first: int, windows: int
-) -> NDArray[np.float32]:
+def _torque(blocks: RecordingBlocks, first: int, windows: int) -> NDArray[np.float32]:
     """Return the features of the torque in the windows of a page."""
-    features = features_of("torque")
+    features, row = features_of("torque"), blocks.first("torque")
     out = np.full((windows, len(features)), np.nan, dtype=np.float32)
     if row is None:
         return out
