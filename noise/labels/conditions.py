@@ -1,39 +1,25 @@
 """Conditions map: counts of labels by speed, interference and support stiffness.
 
-Logged speeds scatter and ramps cover ranges, so speeds are binned in steps of a round width,
-without the sign of the rotation. Interferences and supports are few in most campaigns; values
-within 5 % are one group, and many values are binned too. An unknown condition is a bin of its own,
-so that the map shows how much of the data has none. Inferred conditions count as unknown: a number
-from a wide interval would look like a measurement, and conditions inferred from the noise cannot
-show at which conditions the noise occurs.
+Logged values scatter and ramps cover ranges, so values within 5 % of the smallest are one group, or
+within as much more as leaves few groups. Speeds have no sign. An unknown condition is a bin of its
+own, so that the map shows how much of the data has none. Inferred conditions count as unknown: a
+number from a wide interval would look like a measurement, and conditions inferred from the noise
+cannot show at which conditions the noise occurs.
 """
 
 from __future__ import annotations
 
-import math
-import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from noise.base.labels import LABELS
 
-if TYPE_CHECKING:
-    Grouping = Callable[[float], "Range"]
+_WIDTH = 1.05
+"""Ratio of the largest to the smallest value of a group, unless there are too many groups."""
 
-
-_NEAR = 1.02
-"""Maximum ratio of neighbouring values in a group."""
-
-_WIDEST = 1.05
-"""Maximum ratio of the largest to the smallest value of a group."""
-
-_FINEST = 0.04
-"""Minimum step width, as a share of the largest value."""
-
-_MOST_SPEEDS, _MOST_FITS, _MOST_SUPPORTS = 15, 8, 6
-
-_AXES = ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad")
+_AXES = {"speed_rad_s": 15, "interference_mm": 8, "support_stiffness_Nm_rad": 6}
+"""Columns of a condition, and about the most groups of each."""
 
 MAP_COLUMNS = (
     "material",
@@ -107,22 +93,17 @@ def conditions_map(rows: Iterable[Mapping[str, object]]) -> list[Place]:
     ...         row | {"file": "b.wav", "speed_rad_s": -5.0, "label": "squawk"}]
     >>> place, = conditions_map(rows)
     >>> place.label, place.segments["squawk"], place.speed, place.support_stiffness
-    ('squawk', 2, Range(low=4.9, high=5.1, middle=5.0), None)
+    ('squawk', 2, Range(low=4.98, high=5.0, middle=4.99), None)
     """
     labelled = [row for row in rows if row.get("label") in LABELS]
-    speeds, fits, supports = ([_logged(row, axis) for row in labelled] for axis in _AXES)
-    of_speed = _steps([abs(v) for v in speeds if v is not None], _MOST_SPEEDS)
-    of_fit = _groups([v for v in fits if v is not None], _MOST_FITS)
-    of_support = _groups([v for v in supports if v is not None], _MOST_SUPPORTS, _factor)
-    places: dict[tuple[str | None, *tuple[Range | None, ...]], Place] = {}
-    for row, speed, fit, support in zip(labelled, speeds, fits, supports, strict=True):
+    groups = {
+        axis: _groups([_logged(row, axis) for row in labelled], _AXES[axis]) for axis in _AXES
+    }
+    places: dict[tuple[object, ...], Place] = {}
+    for row in labelled:
         material = row.get("material")
         name = None if material is None else str(material)
-        where = (
-            None if speed is None else of_speed(abs(speed)),
-            None if fit is None else of_fit(fit),
-            None if support is None else of_support(support),
-        )
+        where = [group.get(_logged(row, axis)) for axis, group in groups.items()]
         place = places.setdefault((name, *where), Place(name, *where))
         label = str(row["label"])
         place.segments[label] += 1
@@ -150,63 +131,27 @@ def map_rows(places: Sequence[Place]) -> list[dict[str, object]]:
     return rows
 
 
-def _groups(values: Sequence[float], most: int, otherwise: Grouping | None = None) -> Grouping:
-    """Return a function from a value to its group, or to its step if there are too many groups."""
-    groups: list[list[float]] = []
-    for value in sorted(set(values)):
-        if groups and value < _NEAR * groups[-1][-1]:
-            groups[-1].append(value)
-        else:
-            groups.append([value])
-    if len(groups) > most or any(group[-1] > _WIDEST * group[0] for group in groups):
-        return otherwise or _steps(values, most)
-    ranges = {
-        value: Range(group[0], group[-1], sum(group) / len(group))
-        for group in groups
-        for value in group
-    }
-    return ranges.__getitem__
-
-
-def _steps(values: Sequence[float], most: int) -> Grouping:
-    """Return a function from a value to its step; there are about `most` steps of a round width."""
-    if not values:
-        return _itself
-    highest = max(values)
-    width = _round_up(max((highest - min(values)) / (most - 1), _FINEST * highest))
-
-    def step(value: float) -> Range:
-        middle = round(value / width) * width
-        return Range(max(0.0, middle - width / 2.0), middle + width / 2.0, middle)
-
-    return step if width else _itself
-
-
-def _factor(value: float) -> Range:
-    """Return the range of a value on a scale of 1, 2, 5, 10."""
-    if math.isinf(value) or value <= 0.0:
-        return _itself(value)
-    high = _round_up(value)
-    low = _round_up(high / 2.51)
-    return Range(low, high, math.sqrt(low) * math.sqrt(high))
-
-
-def _itself(value: float) -> Range:
-    return Range(value, value, value)
-
-
-def _round_up(value: float) -> float:
-    """Return the smallest of 1, 2, 5 times a power of ten that is not below a value."""
-    if value <= 0.0:
-        return 0.0
-    if value < sys.float_info.min:  # subnormal numbers have no such power of ten
-        return value
-    decade = 10.0 ** math.floor(math.log10(value) + 1e-9)
-    return next(step * decade for step in (1, 2, 5, 10) if value <= step * decade * (1 + 1e-9))
+def _groups(values: Sequence[float | None], most: int) -> dict[float | None, Range]:
+    """Return the group of each value that is known."""
+    ordered = sorted({value for value in values if value is not None})
+    width = _WIDTH
+    while True:
+        groups: list[list[float]] = []
+        for value in ordered:
+            if groups and value <= width * groups[-1][0]:
+                groups[-1].append(value)
+            else:
+                groups.append([value])
+        if len(groups) <= most:
+            break
+        width *= width
+    ranges = [Range(group[0], group[-1], sum(group) / len(group)) for group in groups]
+    return {value: span for group, span in zip(groups, ranges, strict=True) for value in group}
 
 
 def _logged(row: Mapping[str, object], axis: str) -> float | None:
-    return None if row.get(f"{axis}_source") == "inferred" else _number(row.get(axis))
+    value = None if row.get(f"{axis}_source") == "inferred" else _number(row.get(axis))
+    return value if value is None or axis != "speed_rad_s" else abs(value)
 
 
 def _number(value: object) -> float | None:

@@ -58,7 +58,7 @@ def test_labels_are_linked_to_conditions_with_a_map_and_label_tracks(runs, capsy
     reason = "is damaged or no sound file (Format not recognised)"
     assert rows[1]["error"] == f"{Path('runs/b.wav')}: {reason}"
     (place,) = csv_rows("map.csv")
-    assert (place["speed_rad_s_from"], place["recordings"]) == ("4.9", "2")
+    assert (place["speed_rad_s_from"], place["recordings"]) == ("5.0", "2")
 
 
 @pytest.mark.parametrize(("ending", "again"), [(".csv", []), (".parquet", ["--fresh"])])
