@@ -384,7 +384,6 @@ def changed_rig_text(
     tolerances: Mapping[str, float],
     notes: Sequence[str] = (),
     friction: LawSpec | None = None,
-    condition: Mapping[str, str | float] | None = None,
 ) -> str:
     """Return the text of a rig file of the differences from another rig.
 
@@ -402,8 +401,6 @@ def changed_rig_text(
         Lines of comment at the top.
     friction : LawSpec, optional
         Friction law, if it differs from that of the base.
-    condition : mapping of str to str or float, optional
-        Initial condition of the app, entries of ``[design.heard]`` [unit of the key].
 
     Returns
     -------
@@ -426,7 +423,6 @@ def changed_rig_text(
         "friction": {} if friction is None else {"law": friction.name, **friction.parameters},
         "change": _nested(changes),
         "tolerances": _nested(tolerances),
-        "design": {"heard": condition} if condition else {},
     }
     content: dict[str, Any] = {"base": base, "effects": [str(spec) for spec in effects]}
     content |= {name: table for name, table in tables.items() if table}

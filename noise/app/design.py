@@ -17,7 +17,6 @@ from models.rig_file import changed_rig_text
 from noise.app.design_controls import (
     Base,
     base_of,
-    condition_table,
     motion_of,
     motion_options,
     read_values,
@@ -77,21 +76,8 @@ class Design:
         notes = [f"bushing-noise simulate --rig {name} {self.options}"]
         return changed_rig_text(
             self.base.named_in(folder), self.changes, self.rig.effects, {}, notes,
-            friction=self.friction, condition=condition_table(self.base.controls, self.values),
+            friction=self.friction,
         )  # fmt: skip
-
-    @property
-    def words(self) -> str:
-        """Differences from the base and motion of the shaft, in words."""
-        own = [str(spec) for spec in self.base.rig.effects]
-        effects = [str(spec) for spec in self.rig.effects]
-        changed = [f"{key} {_amount(value)}" for key, value in self.changes.items()]
-        changed += [] if self.friction is None else [f"law {self.friction}"]
-        changed += [f"effect {spec}" for spec in effects if spec not in own]
-        named = {spec.name for spec in self.rig.effects}
-        changed += [f"no {spec.name}" for spec in self.base.rig.effects if spec.name not in named]
-        of_base = f"with {', '.join(changed)}" if changed else "unchanged"
-        return f"{self.base.name} {of_base} ({self.options})"
 
     def facts(self) -> dict[str, str]:
         """Return the resulting quantities of the bushing with units, by short name."""
@@ -135,10 +121,6 @@ class Design:
                 "here, but in what is saved"
             )
         return [text for text in notes if text]
-
-
-def _amount(value: str | float) -> str:
-    return value if isinstance(value, str) else f"{value:g}"
 
 
 def design_of(stated: object, bases: dict[str, Base]) -> Design:

@@ -1,6 +1,6 @@
-"""Noise map of a design over speed and interference, and changes that end a noise.
+"""Noise map of a design over speed and interference.
 
-Both use the code of ``bushing-noise screen`` at few points. They take seconds, so they run in a
+It uses the code of ``bushing-noise screen`` at few points. It takes seconds, so it is computed in a
 separate process.
 """
 
@@ -14,14 +14,13 @@ import numpy as np
 
 from models.rig import Rig
 from noise.app.worker_process import report_share
-from noise.base.labels import LABEL_LOOKS, MAP_LABELS, NAMED, PERSISTS
+from noise.base.labels import LABEL_LOOKS, MAP_LABELS, PERSISTS
 from noise.pages.maps import ConditionMap, areas_of, axis_of
 from noise.pages.page import map_html
-from noise.screening.advice import advise
 from noise.screening.design import Design as Screened, Use
 from noise.screening.grid import shared_grid
 from noise.screening.mapping import BEYOND, SIMULATED, DesignMap, map_design
-from noise.screening.point import PointResult, batch_evaluator, evaluate_point
+from noise.screening.point import PointResult, batch_evaluator
 from noise.screening.vibration import Condition
 
 
@@ -32,14 +31,6 @@ class ChartRequest(NamedTuple):
     support_stiffness: float
     temperature: float
     detail: int = 2
-
-
-class SuggestionRequest(NamedTuple):
-    """Request of advice: chart, interference [m], speed [rad/s]."""
-
-    chart: ChartRequest
-    interference: float
-    speed: float
 
 
 _DETAIL = (2.0, 2, 0), (0.5, 3, 30), (0.25, 5, 100)
@@ -118,22 +109,3 @@ def _spacing(design_map: DesignMap) -> str:
         widest = max(widest, float(np.diff(speed[at])[across].max(initial=0.0)))
     apart = [f"{widest:.2g} rad/s"]
     return " and ".join(apart + ([f"{np.diff(fit).max():.2g} mm"] if fit.size > 1 else []))
-
-
-def suggestions_of(request: SuggestionRequest) -> dict[str, object]:
-    """Return the noise at a condition and the smallest changes that end it.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> from noise.app.design_chart import ChartRequest, SuggestionRequest
-    >>> chart = ChartRequest(load_material_rig("PDMS"), 2214.0, 23.0)
-    >>> suggestions_of(SuggestionRequest(chart, 0.279e-3, 5.0))
-    {'noise': 'none', 'speed_rad_s': 5.0, 'changes': []}
-    """
-    chart = request.chart
-    at = Condition(request.speed, request.interference, chart.support_stiffness, chart.temperature)
-    point = evaluate_point(chart.rig, at)
-    offers = advise(chart.rig, at, workers=1) if point.label in NAMED else ()
-    changes = [{"name": one.name, "factor": one.factor} for one in offers if one.ends]
-    return {"noise": point.label, "speed_rad_s": request.speed, "changes": changes}

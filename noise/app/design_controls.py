@@ -1,27 +1,17 @@
 """Controls of a design: adjustable quantities with their bounds, for page and server.
 
 Friction laws and effects come from their registries, so new ones appear without changes here. A
-base is a shipped material or an opened rig file. The condition of a design is saved in its rig
-file and restored when the file is opened::
-
-    [design.heard]
-    motion = "run_up"                  # or "constant" with speed_rad_s, or "swing"
-    run_up.start_rad_s = 0
-    run_up.end_rad_s = 12
-    run_up.seconds = 6
-    interference_mm = 0.279
-    support_stiffness_Nm_rad = 2214    # or "fixed"
-    temperature_C = 23
+base is a shipped material or an opened rig file.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +19,7 @@ from numpy.typing import NDArray
 from models.condition import CONDITION
 from models.errors import ParameterError
 from models.rig import Rig
-from models.rig_file import base_name, load_material_rig, material_names, read_toml, rig_from
-from models.schema import as_table, refuse_unknown
+from models.rig_file import base_name, load_material_rig, load_rig, material_names
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 from sim.friction import LAWS, friction_law
@@ -102,80 +91,6 @@ def motion_options(values: Mapping[str, float | bool | str]) -> str:
     if values["motion"] == "swing":
         return f"--oscillate {values['swing.degrees']:g},{values['swing.hz']:g}"
     return f"--speed {values['speed']:g}"
-
-
-_SUPPORT = "support_stiffness_Nm_rad"
-_NAMES = {
-    "motion": "motion",
-    "speed": "speed_rad_s",
-    "run_up.start": "run_up.start_rad_s",
-    "run_up.end": "run_up.end_rad_s",
-    "run_up.seconds": "run_up.seconds",
-    "swing.degrees": "swing.amplitude_deg",
-    "swing.hz": "swing.frequency_hz",
-    "interference": "interference_mm",
-    "support": _SUPPORT,
-    "temperature": "temperature_C",
-}
-"""Key in the rig file of each control."""
-
-
-def condition_table(
-    controls: Iterable[Control], values: Mapping[str, float | bool | str]
-) -> dict[str, str | float]:
-    """Return the entries of ``[design.heard]`` for control values.
-
-    Examples
-    --------
-    >>> from noise.app.design_controls import Base
-    >>> controls = Base("PDMS").controls
-    >>> condition_table(controls, {one.key: one.value for one in controls})
-    {'motion': 'constant', 'speed_rad_s': 5.0, 'interference_mm': 0.279,
-     'support_stiffness_Nm_rad': 2214.0, 'temperature_C': 23.0}
-    """
-    table: dict[str, str | float] = {}
-    for one in controls:
-        if not one.condition or (one.only and values[one.only[0]] != one.only[1]):
-            continue
-        if one.key != "fixed":
-            table[_NAMES[one.key]] = values[one.key]
-        elif values["fixed"]:
-            table[_SUPPORT] = "fixed"
-    return table
-
-
-def condition_values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """Return the control values in ``[design.heard]`` of a rig file.
-
-    Parameters
-    ----------
-    content : mapping
-        Content of the whole file.
-    where : str
-        Name of the file in error messages.
-
-    Raises
-    ------
-    ParameterError
-        An entry is not a table, or a key is unknown.
-
-    Examples
-    --------
-    >>> condition_values({"design": {"heard": {"support_stiffness_Nm_rad": "fixed"}}}, "rig.toml")
-    {'fixed': True}
-    """
-    design = as_table(content.get("design", {}), "design", where)
-    where = f"{where}, design"
-    stated: dict[str, Any] = {}
-    for name, value in as_table(design.get("heard", {}), "heard", where).items():
-        inner = value if isinstance(value, Mapping) else {}
-        stated |= {f"{name}.{key}": one for key, one in inner.items()} or {name: value}
-    refuse_unknown(stated, set(_NAMES.values()), f"{where}.heard")
-    values = {key: stated[name] for key, name in _NAMES.items() if name in stated}
-    if values.get("support") == "fixed":
-        del values["support"]
-        values["fixed"] = True
-    return values
 
 
 MOTIONS = {"constant": "constant speed", "run_up": "run-up", "swing": "swing"}
@@ -272,19 +187,8 @@ class Control:
         return float(f"{stated:.6g}")  # as a rig file writes it
 
 
-def controls_of(rig: Rig, condition: Mapping[str, object] | None = None) -> list[Control]:
+def controls_of(rig: Rig) -> list[Control]:
     """Return all controls of a rig.
-
-    Parameters
-    ----------
-    rig : Rig
-    condition : mapping of str to float, bool or str, optional
-        Values of the condition that differ from the defaults [unit of each].
-
-    Raises
-    ------
-    ParameterError
-        A value of `condition` is invalid.
 
     Examples
     --------
@@ -293,11 +197,7 @@ def controls_of(rig: Rig, condition: Mapping[str, object] | None = None) -> list
     >>> keys[:3], "law.lugre.stribeck_speed" in keys, "effect.slip_pulse.amplitude" in keys
     (['motion', 'speed', 'run_up.start'], True, True)
     """
-    stated = condition or {}
-    conditions = [
-        replace(one, condition=True, value=one.read(stated.get(one.key, one.value)))
-        for one in (*_motion(rig), *_condition(rig))
-    ]
+    conditions = [replace(one, condition=True) for one in (*_motion(rig), *_condition(rig))]
     return [*conditions, *_bushing(rig), *_law(rig), *_effects(rig)]
 
 
@@ -456,34 +356,15 @@ class Base:
     name: str
     file: Path | None = None
 
-    @property
-    def _where(self) -> str:
-        return f"rig file {self.file}"
-
-    @cached_property
-    def _content(self) -> dict[str, Any]:
-        return {} if self.file is None else read_toml(self.file, self._where)
-
     @cached_property
     def rig(self) -> Rig:
         """Rig, read once."""
-        if self.file is None:
-            return load_material_rig(self.name)
-        return rig_from(self._content, self.file.parent, self._where)
+        return load_material_rig(self.name) if self.file is None else load_rig(self.file)
 
     @cached_property
     def controls(self) -> list[Control]:
-        """Controls, with the condition saved in the file."""
-        condition = condition_values(self._content, self._where)
-        try:
-            return controls_of(self.rig, condition)
-        except ParameterError as error:
-            raise ParameterError(f"{self._where}, design.heard: {error}") from None
-
-    @property
-    def has_condition(self) -> bool:
-        """Whether the file has a saved condition."""
-        return bool(condition_values(self._content, self._where))
+        """Controls with the values of the rig."""
+        return controls_of(self.rig)
 
     def named_in(self, folder: Path) -> str:
         """Return the entry ``base`` of a rig file in a folder."""

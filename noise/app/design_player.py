@@ -105,9 +105,6 @@ class Pace:
     (0.0, 0.0)
     >>> round(pace.early(2, 101.005), 3)
     0.015
-    >>> pace.sooner(0.01)
-    >>> round(pace.early(2, 101.005), 3)
-    0.005
     """
 
     def __init__(self, step: float) -> None:
@@ -125,11 +122,6 @@ class Pace:
         if self._begun is None or now - self._begun - since > _BEHIND:
             self._begun = now - since
         return max(0.0, self._begun + since - now)
-
-    def sooner(self, seconds: float) -> None:
-        """Shift the schedule of the following blocks forward by a time [s]."""
-        if self._begun is not None:
-            self._begun -= seconds
 
 
 BLOCK = 960
@@ -190,11 +182,6 @@ class Player:
         """Change the setting from the next block on."""
         if run := self._runs.get(number):
             run.change = serial, setting
-
-    def sooner(self, number: int, seconds: float) -> None:
-        """Shift the schedule of a run forward by a time [s]."""
-        if run := self._runs.get(number):
-            run.pace.sooner(seconds)
 
     def due(self, now: float) -> tuple[float, int] | None:
         """Return the time until the next block is due [s] and its run; None without runs."""

@@ -50,9 +50,6 @@ _MOST_RUNS = 4
 _UNREAD = 5 * _METER
 """Unread blocks after which a stream is abandoned."""
 
-_SOONEST = 2.0
-"""Maximum shift of the schedule in one request [s]."""
-
 
 @dataclass(eq=False)
 class _Stream:
@@ -160,19 +157,6 @@ class LiveSounds:
         number, serial, design = self.started(request)
         self._known(number)
         self._tell("change", number, serial, design.setting)
-
-    def pace(self, request: dict[str, Any]) -> None:
-        """Shift the schedule of a run: ``{"run": number, "sooner": seconds}``.
-
-        Raises
-        ------
-        ParameterError
-            The request is invalid.
-        """
-        run = _whole(request, "run")
-        seconds = number(request, "sooner", -_SOONEST, _SOONEST)
-        self._known(run)
-        self._tell("sooner", run, float(seconds))
 
     def levels(self, number: int) -> dict[str, object]:
         """Return the levels [dB re 20 uPa] and the noise of the last second of a run.

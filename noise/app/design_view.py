@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
 from models.errors import ParameterError
 from noise.app.design import design_of, save_rig
-from noise.app.design_chart import ChartRequest, SuggestionRequest
+from noise.app.design_chart import ChartRequest
 from noise.app.design_controls import base_of, bases_of
 from noise.app.design_player import BLOCK, RATE, TORQUE_STEP
 from noise.app.design_sound import LiveSounds
@@ -23,15 +22,11 @@ if TYPE_CHECKING:
     from starlette.routing import BaseRoute
 
     from noise.app.opened import Opened
-    from sim.plan import Setting
 
 
 _CHARTS = "noise.app.design_chart"
 _NICE = 2
 """Whoever listens goes first, but whoever waits for a map is served on a busy machine, too."""
-
-_SLOWEST, _FASTEST = 0.05, 200.0
-"""Range of speeds of advice [rad/s]."""
 
 
 def routes(opened: Opened) -> list[BaseRoute]:
@@ -41,18 +36,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
     charts: WorkerProcess[ChartRequest, dict[str, object]] = WorkerProcess(
         f"{_CHARTS}:chart_of", _NICE
     )
-    suggestions: WorkerProcess[SuggestionRequest, dict[str, object]] = WorkerProcess(
-        f"{_CHARTS}:suggestions_of", _NICE
-    )
-    for one in (sounds, charts, suggestions):
+    for one in (sounds, charts):
         opened.leaving.callback(one.stop)
 
     def listed(_: Request) -> Response:
         sounds.get_ready()
-        named = [
-            {"id": key, "name": base.name, "heard": base.has_condition}
-            for key, base in bases.items()
-        ]
+        named = [{"id": key, "name": base.name} for key, base in bases.items()]
         about = {"bases": named, "rate": RATE, "block": BLOCK, "torque_step": TORQUE_STEP}
         return JSONResponse(about)
 
@@ -68,10 +57,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
         sounds.change(request)
         return JSONResponse({})
 
-    def paced(_: Request, request: dict[str, Any]) -> Response:
-        sounds.pace(request)
-        return JSONResponse({})
-
     def facts_of(_: Request, request: dict[str, Any]) -> Response:
         design = design_of(request, bases)
         facts = {"facts": design.facts(), "remarks": design.remarks(), "options": design.options}
@@ -84,16 +69,13 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return JSONResponse(sounds.levels(int(run)))
 
     def charted(_: Request, request: dict[str, Any]) -> Response:
-        question = _chart(design_of(request, bases).setting)
-        detail = int(number(request, "detail", 0, 2, 2, whole=True))
-        return _waited(charts, question._replace(detail=detail))
-
-    def helped(_: Request, request: dict[str, Any]) -> Response:
         setting = design_of(request, bases).setting
-        at_first = float(setting.shaft.speed(np.zeros(1))[0])
-        speed = max(abs(number(request, "speed", -_FASTEST, _FASTEST, at_first)), _SLOWEST)
-        question = SuggestionRequest(_chart(setting), setting.interference, speed)
-        return _waited(suggestions, question)
+        detail = int(number(request, "detail", 0, 2, 2, whole=True))
+        question = ChartRequest(setting.rig, setting.support_stiffness, setting.temperature, detail)
+        answer = charts.answer_to(question)  # the page polls until the result is known
+        result, error = answer or (None, "")
+        known, share = answer is not None, charts.share_of(question)
+        return JSONResponse({"known": known, "found": result, "error": error, "share": share})
 
     def saved(_: Request, request: dict[str, Any]) -> Response:
         return JSONResponse(save_rig(request, bases, opened.folder))
@@ -103,22 +85,8 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/design/controls", controls),
         Route("/api/design/sound", body(sound), methods=["POST"]),
         Route("/api/design/change", body(changed), methods=["POST"]),
-        Route("/api/design/pace", body(paced), methods=["POST"]),
         Route("/api/design/facts", body(facts_of), methods=["POST"]),
         Route("/api/design/levels", levels),
         Route("/api/design/chart", body(charted), methods=["POST"]),
-        Route("/api/design/helps", body(helped), methods=["POST"]),
         Route("/api/design/rig", body(saved), methods=["POST"]),
     ]
-
-
-def _chart(setting: Setting) -> ChartRequest:
-    return ChartRequest(setting.rig, setting.support_stiffness, setting.temperature)
-
-
-def _waited(process: WorkerProcess[Any, dict[str, object]], question: object) -> Response:
-    """Return the result or the share that is done; the page polls until the result is known."""
-    answer = process.answer_to(question)
-    result, error = answer or (None, "")
-    known, share = answer is not None, process.share_of(question)
-    return JSONResponse({"known": known, "found": result, "error": error, "share": share})

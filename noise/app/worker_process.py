@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
-import time
+from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
@@ -22,9 +22,6 @@ from typing import Any, Generic, TypeVar
 from models.errors import BushingNoiseError
 from noise.base.processes import Worker
 from noise.batch.work import one_thread
-
-_REST = 0.5
-"""Maximum pause between answers [s]; a pause is as long as the last answer took."""
 
 _LOADED = ("noise.app.design_sound", "noise.app.design_chart", "noise.labels.segments")
 """Modules that are loaded before a process starts."""
@@ -146,25 +143,18 @@ def report_share(share: float) -> None:
 
 
 @cache
-def _answers(answer: str, nice: int) -> list[Any]:
-    """Set the niceness, import the function, and store the end of the next pause [s]."""
+def _function(answer: str, nice: int) -> Callable[[object], Any]:
+    """Set the niceness and import the function, once per process."""
     with suppress(AttributeError, OSError):
         os.nice(nice)
-    with suppress(AttributeError, OSError):  # on Linux: nothing that waits for it is woken late
-        os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
     module, _, name = answer.partition(":")
-    return [getattr(import_module(module), name), 0.0]
+    function: Callable[[object], Any] = getattr(import_module(module), name)
+    return function
 
 
 def _answered(answer: str, nice: int, question: object) -> tuple[Any, str]:
-    known = _answers(answer, nice)
-    time.sleep(max(0.0, known[1] - time.perf_counter()))
-    began = time.perf_counter()
     with one_thread():
         try:
-            return known[0](question), ""
+            return _function(answer, nice)(question), ""
         except BushingNoiseError as error:
             return None, str(error)
-        finally:
-            ended = time.perf_counter()
-            known[1] = ended + min(_REST, ended - began)

@@ -9,29 +9,17 @@ from models.errors import ParameterError
 from noise.base.files import atomic, check_target
 from noise.base.progress import report, say, track
 from noise.base.tables import TABLE_ENDINGS, check_table_path, write_table
-from noise.commands.options import Option, check_folder
+from noise.commands.options import Option
 
 _PAGE_ENDING = ".md"
 
 
-OPTIONS = (
-    Option("--out TABLE", Path),
-    Option("--plots FOLDER", Path),
-)
+OPTIONS = (Option("--out TABLE", Path),)
 
 
 def run(options: Namespace) -> int:
-    """Write the table, draw the figures, or both."""
-    check_folder(options.plots, "--plots", file="figure-5.3.png")
-    if options.out is not None or options.plots is None:
-        _write_table(options.out)
-    if options.plots is not None:
-        _draw(options.plots)
-    return 0
-
-
-def _write_table(out: Path | None) -> None:
     """Compute and write the table, and print a summary of its verdicts."""
+    out: Path | None = options.out
     is_page = out is not None and out.suffix.lower() == _PAGE_ENDING
     if out is not None:
         if is_page and out.is_dir():
@@ -63,15 +51,4 @@ def _write_table(out: Path | None) -> None:
     say(constant_note())
     if out is not None:
         report(out)
-
-
-def _draw(folder: Path) -> None:
-    """Draw the figures."""
-    say("preparing")
-    from noise.pictures.figure import write_picture
-    from noise.pictures.thesis import N_PICTURES, thesis_pictures
-
-    for name, figure in track(thesis_pictures(), "drawing", total=N_PICTURES, unit="picture"):
-        path = folder / f"{name}.png"
-        write_picture(path, figure)
-        report(path)
+    return 0

@@ -12,8 +12,6 @@ taken from the rig: its fits, its supports.
     support_stiffness_Nm_rad = [2214, 3745, "fixed"]
     temperature_C = 23
     oscillation = { amplitude_deg = 15, frequency_hz = "0.5..4" }
-    [design.heard]                     # where the app begins; no map is of it
-    speed_rad_s = 5
     [tolerances]
     elastomer_stiffness = 0.05                # relative standard deviation
     kinetic_torque = { low = 7.5, high = 8.5 }
@@ -51,7 +49,6 @@ _USE_KEYS = {
     "support_stiffness_Nm_rad",
     "temperature_C",
     "oscillation",
-    "heard",
 }
 
 PARAMETERS = {

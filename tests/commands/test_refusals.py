@@ -206,7 +206,7 @@ CALLS = {
     ],
     "demo": [("--out file.txt", "is a file; name a folder")],
     "open": [("--port many", "--port"), ("nowhere.wav --no-browser", "nowhere.wav")],
-    "thesis": [("--out t.ods", "this table ends in"), ("--plots file.txt", "file.txt")],
+    "thesis": [("--out t.ods", "this table ends in")],
     "imitate": [("--speed 5", "simulate")],
 }
 

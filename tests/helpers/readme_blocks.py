@@ -27,7 +27,7 @@ PAGES = [
 ]
 """Reference pages, each with blocks that run from an empty folder of its own."""
 
-OUTPUTS = ("--out", "--plot", "--plots", "--map", "--modes", "--sound-power")
+OUTPUTS = ("--out", "--plot", "--map", "--modes", "--sound-power")
 
 
 class Block(NamedTuple):

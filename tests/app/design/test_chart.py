@@ -1,4 +1,4 @@
-"""Maps and advice of the design view as the page asks for them: coarse first, then finer."""
+"""Maps of the design view as the page asks for them: coarse first, then finer."""
 
 from __future__ import annotations
 
@@ -19,14 +19,12 @@ def answered(app, path, body):
     return answer
 
 
-def test_a_map_and_advice_come_from_processes_beside_the_sound(app):
+def test_a_map_comes_from_a_process_beside_the_sound(app):
     coarse = answered(app, "chart", DESIGN | {"detail": 0})
     assert (coarse["error"], coarse["found"]["legend"]) == ("", "Quiet everywhere")
     assert re.fullmatch(r"2 rad/s and [\d.]+ mm", coarse["found"]["spacing"])
     low, high = re.search(r'data-speed="([\d.]+) ([\d.]+)"', coarse["found"]["html"]).groups()
     assert float(low) < 2.0 < 10.0 < float(high)
-    advice = answered(app, "helps", DESIGN)
-    assert advice["found"] == {"noise": "none", "speed_rad_s": 5.0, "changes": []}
 
 
 def test_a_detail_that_there_is_not_is_refused(app):

@@ -60,48 +60,6 @@ def test_a_file_of_the_users_is_a_base_and_is_never_written_over(tmp_path):
     assert mine.read_text(encoding="utf-8") == before
 
 
-HEARD = [
-    {"speed": -7.25, "interference": 0.3, "support": 3745.0},
-    {"motion": "run_up", "run_up.start": 2.0, "run_up.seconds": 3.5, "temperature": 60.0},
-    {"motion": "swing", "swing.degrees": 9.0, "swing.hz": 3.0, "fixed": True},
-]
-
-
-@pytest.mark.parametrize("condition", HEARD)
-def test_a_rig_that_is_opened_again_begins_at_the_condition_it_was_saved_at(condition, tmp_path):
-    values = {**condition, "change.damping": 1.5}
-    save_rig({"base": "fluorocarbon", "values": values, "name": "mine"}, MATERIALS, tmp_path)
-    bases = bases_of(open_paths([tmp_path / "mine.toml"]))
-    opened = {one.key: one.value for one in bases["rig 0"].controls}
-    assert {key: opened[key] for key in condition} == condition
-    again = design({}, "rig 0", bases)
-    assert again.options == design(values).options
-    save_rig({"base": "rig 0", "values": {}, "name": "copy"}, bases, tmp_path)
-    copy = bases_of(open_paths([tmp_path / "copy.toml"]))
-    assert design({}, "rig 0", copy).options == again.options
-
-
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("design = 3", "design must be a table"),
-        ("design.heard = 5", "heard must be a table"),
-        ("design.heard.speed = 5", "did you mean 'speed_rad_s'"),
-        ("design.heard.run_up.start_rad = 5", "did you mean 'run_up.start_rad_s'"),
-        ("design.heard.speed_rad_s = 1e9", "Speed 1000000000.0: must be a number from -200 to 200"),
-        ("design.heard.support_stiffness_Nm_rad = 'loose'", "Support stiffness loose: must be"),
-        ("design.heard.motion = 'jumps'", "must be one of constant"),
-    ],
-)
-def test_a_condition_that_cannot_be_is_told_where_the_rig_is_opened(text, told, tmp_path):
-    path = tmp_path / "mine.toml"
-    path.write_text(f'base = "PDMS"\n{text}\n', encoding="utf-8")
-    with pytest.raises(ParameterError, match=told) as caught:
-        bases_of(open_paths([path]))
-    assert str(caught.value).startswith(f"rig file {path}")
-    assert "\n" not in str(caught.value)
-
-
 @pytest.mark.parametrize("name", ["../out", "", "a/b", ".hidden", "x" * 90, None, "a\nb", "c\\d"])
 def test_names_that_lead_elsewhere_are_refused(name, tmp_path):
     with pytest.raises(ParameterError, match="name: must begin"):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import time
 import urllib.request
 from dataclasses import replace
@@ -120,12 +119,6 @@ def test_changes_that_cannot_be_are_refused_in_a_line(said):
     with pytest.raises(ParameterError) as caught:
         LiveSounds(BASES).change(said)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("sooner", [None, "a", True, math.nan, math.inf, 9.0])
-def test_paces_that_cannot_be_are_refused_in_a_line(sooner):
-    with pytest.raises(ParameterError, match="sooner"):
-        LiveSounds(BASES).pace({"run": 1, "sooner": sooner})
 
 
 def streamed(app, number, n, design=PLAIN):

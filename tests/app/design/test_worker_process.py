@@ -1,18 +1,11 @@
-"""What is computed beside the sound: maps, suggestions, sets."""
+"""What is computed beside the sound: answers to the newest question."""
 
 from __future__ import annotations
 
 import time
 
-import pytest
-
-from noise.app.design import design_of
-from noise.app.design_chart import ChartRequest, SuggestionRequest, suggestions_of
-from noise.app.design_controls import bases_of
-from noise.app.opened import open_paths
 from noise.app.worker_process import WorkerProcess, report_share
 
-BASES = bases_of(open_paths([]))
 PATIENCE = 120.0
 
 
@@ -22,12 +15,6 @@ def waited(found):
         assert time.monotonic() < end
         time.sleep(0.05)
     return known
-
-
-def suggested(values):
-    of = design_of({"base": "fluorocarbon", "values": values}, BASES).setting
-    chart = ChartRequest(of.rig, of.support_stiffness, of.temperature)
-    return suggestions_of(SuggestionRequest(chart, of.interference, values["speed"]))
 
 
 def test_only_the_newest_question_is_answered_and_each_once():
@@ -59,16 +46,3 @@ def test_the_share_that_is_done_is_known_while_it_is_computed():
         assert beside.share_of(1.0) == 0.0
     finally:
         beside.stop()
-
-
-@pytest.mark.slow
-def test_the_change_that_is_suggested_ends_the_noise():
-    values = {"speed": 5.0}
-    found = suggested(values)
-    assert found["noise"] == "squawk"
-    names = [one["name"] for one in found["changes"]]
-    assert "damping" in names
-    more = found["changes"][names.index("damping")]["factor"]
-    quiet = suggested({**values, "change.damping": more * 1.02})
-    assert quiet["noise"] == "none"
-    assert quiet["changes"] == []

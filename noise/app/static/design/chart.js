@@ -1,11 +1,10 @@
-// Noise map over speed and interference with the current point, and advice on ending the noise.
+// Noise map over speed and interference with the current point.
 import { api } from "../api.js";
 import { made } from "../dom.js";
 
 const AGAIN = 500, AFTER = 1000; // ms
 const DETAILS = 3; // maps, from coarse to fine
 const LEAST_SHARE = 0.1; // share of the work from which the time left is estimated
-const QUESTION = "What would end the noise?";
 
 export class Chart {
   constructor(panel, design) {
@@ -13,10 +12,7 @@ export class Chart {
     this.box = made("div", { className: "chart" });
     this.said = made("p", { className: "soft" });
     this.progress = made("progress", { max: 1, ariaLabel: "Map", hidden: true });
-    this.ask = made("button", { type: "button", textContent: QUESTION, onclick: () => this.help() });
-    this.helps = made("ul", { className: "helps" });
-    panel.append(made("section", { className: "shown" }, made("h2", { textContent: "Map" }), this.box, this.progress, this.said),
-      made("section", {}, made("h2", { textContent: "What to change" }), made("div", { className: "tools" }, this.ask), this.helps));
+    panel.append(made("section", { className: "shown" }, made("h2", { textContent: "Map" }), this.box, this.progress, this.said));
   }
 
   // Update the map after a change of the design.
@@ -24,7 +20,6 @@ export class Chart {
     clearTimeout(this.later);
     this.following = null;
     this.box.classList.toggle("old", this.box.hasChildNodes());
-    this.helps.replaceChildren();
     this.progress.hidden = true;
     this.said.textContent = this.box.hasChildNodes() ? "Map of the previous design; it updates after the last change." : "Map follows after the last change.";
     this.later = setTimeout(() => this.#follow(), AFTER);
@@ -71,35 +66,6 @@ export class Chart {
     };
     here.hidden = false;
     Object.assign(here.style, { left: share("speed"), bottom: share("interference") });
-  }
-
-  async help() {
-    const stated = this.design.stated(), mine = this.helping = {}, { speed: heard, controls: { values } } = this.design;
-    const about = values.get("motion") === "constant" || !heard ? stated : { ...stated, speed: Number(heard.toFixed(2)) };
-    const wanted = () => mine === this.helping && JSON.stringify(stated) === JSON.stringify(this.design.stated());
-    this.ask.disabled = true;
-    const answer = await asked("design/helps", about, wanted, (since, share) => {
-      this.ask.textContent = `Searching: ${left(since, share)}`;
-    });
-    this.ask.disabled = false;
-    this.ask.textContent = QUESTION;
-    if (!answer) return;
-    this.helps.replaceChildren(...(answer.found ? this.#offers(answer.found, stated) : [made("li", { textContent: answer.error })]));
-  }
-
-  #offers({ noise, speed_rad_s: speed, changes }, stated) {
-    const at = `at a constant ${Number(speed.toPrecision(3))} rad/s`, { declared, values } = this.design.controls;
-    if (!changes.length) {
-      const isNoise = ["creak", "squawk", "squeal"].includes(noise);
-      return [made("li", { textContent: isNoise ? `No single change of a plausible size ends the ${noise} ${at}.` : `There is no noise to end ${at}.` })];
-    }
-    return changes.map(({ name, factor }) => {
-      const key = { support_stiffness: "support", interference: "interference" }[name] ?? `change.${name}`;
-      const percent = 100 * (factor - 1), value = Number((values.get(key) * factor).toPrecision(4));
-      const textContent = `${declared.get(key).label} ${percent > 0 ? "+" : "−"}${Math.abs(percent).toFixed(1)} %`;
-      const press = made("button", { type: "button", textContent, onclick: () => this.design.put({ ...stated, values: { ...stated.values, [key]: value } }) });
-      return made("li", {}, press, ` ends the ${noise} ${at}`);
-    });
   }
 }
 

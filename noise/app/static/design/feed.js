@@ -10,7 +10,6 @@ self.onmessage = ({ data }) => {
   if (data.start) {
     ({ address, run, fullScale } = data.start);
     port = data.port;
-    port.onmessage = ({ data: sooner }) => { post("pace", { run, sooner }).catch(() => {}); };
     listen(data.design);
   } else if (data.design) {
     waiting = data.design;

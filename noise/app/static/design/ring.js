@@ -1,9 +1,6 @@
 // Audio worklet that plays blocks of pressure at one gain from a small buffer.
-const FIRST = 0.12; // delay before playing, when the load is highest [s]
-const LOW = 0.006, AIM = 0.014, HIGH = 0.02; // buffer on arrival of a block: bounds and target of the schedule [s]
-const CALM = 2; // time above the bound before the schedule is delayed [s]
-const PATIENCE = 0.25; // minimum time between requests [s]
-const FULL = 0.5; // buffer of a suspended page [s]
+const FIRST = 0.08; // buffer when playback begins [s]; after a block that was late it is twice as long
+const FULL = 0.5; // buffer of a suspended page, of which only the newest blocks are played [s]
 const RAMP = 240; // samples of a gain change
 
 class Ring extends AudioWorkletProcessor {
@@ -14,13 +11,11 @@ class Ring extends AudioWorkletProcessor {
     this.at = 0; // position in the first block
     this.gain = 0;
     this.aim = 0;
+    this.first = FIRST;
     this.begins = Infinity; // start of playback
     this.playing = false;
     this.stopped = false;
     this.serial = -1;
-    this.least = Infinity; // smallest buffer since the last check
-    this.calm = 0; // time of the next check
-    this.asked = 0;
     this.port.onmessage = ({ data }) => this.told(data);
   }
 
@@ -33,36 +28,13 @@ class Ring extends AudioWorkletProcessor {
     if (data.stop) this.stopped = true;
   }
 
-  get reserve() { return (this.blocks.length * this.block - this.at) / sampleRate; }
-
   take(block) {
-    const reserve = this.reserve;
     this.blocks.push(block);
     this.aim = block.gain;
-    if (this.playing) this.look(reserve);
-    else if (this.begins === Infinity) this.begins = currentTime + FIRST;
-  }
-
-  // Request a shift of the schedule if the buffer is too small, or too large for long.
-  look(reserve) {
-    this.least = Math.min(this.least, reserve);
-    if (currentTime < this.asked + PATIENCE && reserve < FULL) return;
-    if (reserve < LOW || reserve > FULL) this.ask(AIM - reserve);
-    else if (currentTime > this.calm) {
-      if (this.least > HIGH) this.ask(AIM - this.least);
-      this.afresh();
-    }
-  }
-
-  ask(sooner) {
-    this.asked = currentTime;
-    this.feed.postMessage(sooner);
-    this.afresh();
-  }
-
-  afresh() {
-    this.least = Infinity;
-    this.calm = currentTime + CALM;
+    if (this.begins === Infinity) this.begins = currentTime + this.first;
+    if (this.blocks.length * this.block <= FULL * sampleRate) return;
+    this.blocks.splice(0, this.blocks.length - Math.ceil((this.first * sampleRate) / this.block));
+    this.at = 0;
   }
 
   process(_, [[output]]) {
@@ -70,11 +42,15 @@ class Ring extends AudioWorkletProcessor {
     if (!this.playing && currentTime >= this.begins) {
       this.playing = true;
       this.gain = this.aim;
-      this.afresh();
     }
     while (this.playing && first < output.length) {
       const block = this.blocks[0];
-      if (!block) break; // the block is late
+      if (!block) { // it is late
+        this.playing = false;
+        this.begins = Infinity;
+        this.first = Math.min(2 * this.first, FULL / 2);
+        break;
+      }
       if (this.at === 0 && block.serial !== this.serial) {
         this.serial = block.serial;
         this.port.postMessage(block.serial);

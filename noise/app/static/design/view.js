@@ -121,10 +121,7 @@ export async function mount(panel) {
     if (!await take(base.value)) return;
     controls.put(condition);
     changed();
-    const { name, heard } = baseOf(shown), texts = [];
-    if (dropped) texts.push(`Dropped with ${left.name}: ${dropped}.`);
-    if (heard && controls.words((one) => one.condition)) texts.push(`Motion and condition stay as they are; “Reset to base” takes those that ${name} was saved with.`);
-    notice.textContent = texts.join(" ");
+    notice.textContent = dropped ? `Dropped with ${left.name}: ${dropped}.` : "";
   }
   design.put = put;
   design.choose = choose;
