@@ -250,7 +250,7 @@ class TemperatureDependence:
         alpha: exponent of the rate [-].
     friction_peak : float, optional
         v_p: speed of highest friction at the reference temperature [rad/s]; without one the torques
-        do not change, unless the friction law is itself a master curve.
+        do not change.
     friction_width : float
         w: decades from the peak to 0.61 of its height [-].
     friction_floor : float

@@ -13,14 +13,10 @@ FIXED = math.inf
 
 _SAME = 1e-3  # relative difference
 
-
-LENGTH_SLIPS = ((1e3, "metres"), (1e-3, "micrometres"))
-STIFFNESS_SLIPS = ((1e-3, "Nmm/rad"), (180.0 / math.pi, "Nm/degree"), (1e3, "kNm/rad"))
-
 # Up to 19.75 rad/s at the rig (5.1.3); a bar that swings by 30 degrees at 6 Hz reaches 20.
 _SPEED = Quantity("speed_rad_s", 1.0, "rad/s", -1e6, 1e6, (-25.0, 25.0))
 # 0.127 to 0.381 mm at the rig (3.1.3); strains of rubber of 1 to 30 %.
-_FIT = Quantity("interference_mm", 1e-3, "mm", 1e-6, 10.0, (0.02, 3.0), LENGTH_SLIPS, 0.279)
+_FIT = Quantity("interference_mm", 1e-3, "mm", 1e-6, 10.0, (0.02, 3.0), 0.279)
 # 2214 and 3745 Nm/rad at the rig (Table 3.2).
 _SUPPORT = Quantity(
     "support_stiffness_Nm_rad",
@@ -29,7 +25,6 @@ _SUPPORT = Quantity(
     1e-3,
     1e12,
     (1e3, 2e5),
-    STIFFNESS_SLIPS,
     2214.0,
     infinite="fixed",
 )

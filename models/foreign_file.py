@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 LARGEST_TEXT = 1 << 30
 """Largest text table, which is read line by line [byte]."""
 
-LARGEST_TOML = 2 << 20
-"""Largest TOML file, whose parser takes about a second per megabyte [byte]."""
+LARGEST_TOML = 1 << 17
+"""Largest TOML file, whose parser takes quadratic time for dotted keys [byte]."""
 
 LARGEST_JSON = 64 << 20
 """Largest JSON file, which is read as a whole [byte]."""

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from models.bench import Beams, Microphone, Plate
 from models.bushing import HARDNESS, Sleeve, TemperatureDependence, shore_modulus
-from models.condition import LENGTH_SLIPS, STIFFNESS_SLIPS
 from models.errors import ParameterError
 from models.schema import (
     Entry,
@@ -37,9 +36,6 @@ if TYPE_CHECKING:
 
 _STIFFNESS, _DAMPING = "elastomer_stiffness_Nm_rad", "damping_Nms_rad"
 _ELASTOMER = "elastomer_inertia_kgm2"
-_TORQUE_SLIPS = ((1e-3, "Nmm"), (1e3, "kNm"))
-_DAMPING_SLIPS = ((1e-3, "Nmm s/rad"), (180.0 / math.pi, "Nm s/degree"))
-_INERTIA_SLIPS = ((1e-4, "kg cm2"), (1e-6, "kg mm2"))
 
 
 @dataclass(frozen=True)
@@ -201,24 +197,22 @@ class Fit:
 
     interference: Annotated[
         float,  # 0.127 to 0.381 at the rig (3.1.3); strains of rubber of 1 to 30 %
-        Quantity("interference_mm", 1e-3, "mm", 1e-6, 100.0, (0.02, 3.0), LENGTH_SLIPS),
+        Quantity("interference_mm", 1e-3, "mm", 1e-6, 100.0, (0.02, 3.0)),
     ]
     elastomer_stiffness: Annotated[
         float,  # 430 to 1011 at the rig (Table 5.3); rings of 10 to 50 mm, G = 0.4 to 6 MPa
-        Quantity(_STIFFNESS, 1.0, "Nm/rad", 1e-3, 1e8, (20.0, 2e4), STIFFNESS_SLIPS),
+        Quantity(_STIFFNESS, 1.0, "Nm/rad", 1e-3, 1e8, (20.0, 2e4)),
     ]
     critical_torque: Annotated[
         float,  # 5 to 40 at the rig (Appendix F); friction 0.1 to 2 at 0.1 to 5 MPa
-        Quantity("critical_torque_Nm", 1.0, "Nm", 1e-6, 1e7, (0.3, 500.0), _TORQUE_SLIPS),
+        Quantity("critical_torque_Nm", 1.0, "Nm", 1e-6, 1e7, (0.3, 500.0)),
     ]
     kinetic_torque: Annotated[
-        float, Quantity("kinetic_torque_Nm", 1.0, "Nm", 1e-6, 1e7, (0.2, 500.0), _TORQUE_SLIPS)
+        float, Quantity("kinetic_torque_Nm", 1.0, "Nm", 1e-6, 1e7, (0.2, 500.0))
     ]
     damping: Annotated[
         Mapping[float, float],  # 0.08 to 0.24 at the rig (Table 5.5)
-        _BySupport(
-            _DAMPING, Quantity(_DAMPING, 1.0, "Nm s/rad", 1e-9, 1e3, (2e-3, 1.5), _DAMPING_SLIPS)
-        ),
+        _BySupport(_DAMPING, Quantity(_DAMPING, 1.0, "Nm s/rad", 1e-9, 1e3, (2e-3, 1.5))),
     ]
 
     def __post_init__(self) -> None:
@@ -296,11 +290,11 @@ class Rig:
     material: Annotated[str, Text("material")]
     elastomer_inertia: Annotated[
         float,  # 1.5e-5 at the rig (Appendix F); 5 g at 10 mm to 2 kg at 50 mm
-        Quantity(_ELASTOMER, 1.0, "kg m2", 1e-12, 1e3, (5e-7, 5e-3), _INERTIA_SLIPS),
+        Quantity(_ELASTOMER, 1.0, "kg m2", 1e-12, 1e3, (5e-7, 5e-3)),
     ]
     clamp_inertia: Annotated[
         float,  # 8.3e-4 at the rig (Appendix F); 50 g at 20 mm to 50 kg at 100 mm
-        Quantity("clamp_inertia_kgm2", 1.0, "kg m2", 1e-12, 1e4, (2e-5, 0.5), _INERTIA_SLIPS),
+        Quantity("clamp_inertia_kgm2", 1.0, "kg m2", 1e-12, 1e4, (2e-5, 0.5)),
     ]
     fits: Annotated[tuple[Fit, ...], ReadBy("fit", _fits, lambda fits: [*map(table_of, fits)])]
     friction: Annotated[LawSpec, _Law("friction")]

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 import os
-import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -25,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 from models.bench import refuse_plate
 from models.change import changed_rig
 from models.errors import ParameterError
-from models.foreign_file import LARGEST_TOML, ExcessError, reading, refusing
+from models.foreign_file import LARGEST_TOML, reading, refusing
 from models.rig import LawSpec, Rig
 from models.schema import (
     as_table,
@@ -46,9 +45,6 @@ _DATA = resources.files("models") / "data"
 
 _APART = {"base", "change", "measured_response", "design", "tolerances", "sensors"}
 """Keys that are not fields of `Rig`."""
-
-_MOST_DOTS = 200
-"""Most dots in a TOML key: the time to parse it grows with their square."""
 
 _PLAIN_BUSHING = {
     "elastomer_damping_share": 0.5,
@@ -165,13 +161,7 @@ def read_toml(path: Path, where: str) -> dict[str, Any]:
         If the file cannot be read or is not valid TOML.
     """
     with reading(path, "valid TOML file", where=where, largest=LARGEST_TOML):
-        text = path.read_text(encoding="utf-8")
-        for line in text.splitlines():
-            if line.count(".") > _MOST_DOTS and not line.lstrip().startswith("#"):
-                parts = re.split(r"[=,{}\[\]]", line)
-                if max(part.count(".") for part in parts) > _MOST_DOTS:
-                    raise ExcessError(f"has a key of more than {_MOST_DOTS} parts")
-        return tomllib.loads(text)
+        return tomllib.loads(path.read_text(encoding="utf-8"))
 
 
 def rig_from(content: Mapping[str, Any], folder: Path, where: str) -> Rig:

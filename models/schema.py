@@ -211,8 +211,6 @@ class Quantity(Entry):
     usual : tuple of float
         Range outside of which a value is used with a remark [`unit`]: from bushings of wipers to
         spring eyes of lorries.
-    slips : tuple of (float, str)
-        Factors from a mistaken unit to the right one, and the mistaken unit.
     default : float
         Default value [`unit`].
     closed : bool, optional
@@ -222,9 +220,9 @@ class Quantity(Entry):
 
     Examples
     --------
-    >>> wall = Quantity("wall_mm", 1e-3, "mm", usual=(1.0, 30.0), slips=((1e3, "metres"),))
+    >>> wall = Quantity("wall_mm", 1e-3, "mm", usual=(1.0, 30.0))
     >>> wall.read(4.5, "rig"), wall.remark(0.0045)
-    (0.0045000000000000005, 'wall_mm = 0.0045 is outside the usual 1 to 30 mm (is it in metres?)')
+    (0.0045000000000000005, 'wall_mm = 0.0045 is outside the usual 1 to 30 mm')
     >>> wall.read("thick", "rig, sleeve")
     Traceback (most recent call last):
     models.errors.ParameterError: rig, sleeve: wall_mm = 'thick' must be a number above 0 mm
@@ -235,7 +233,6 @@ class Quantity(Entry):
     low: float = 0.0
     high: float = math.inf
     usual: tuple[float, float] = (-math.inf, math.inf)
-    slips: tuple[tuple[float, str], ...] = ()
     default: float = math.nan
     closed: bool | None = None
     infinite: str = ""
@@ -289,14 +286,7 @@ class Quantity(Entry):
         if not outside:
             return ""
         named = f"{outside[0]:g}" + (f" to {outside[-1]:g}" if len(outside) > 1 else "")
-        units = (
-            unit
-            for factor, unit in self.slips
-            if all(low <= factor * value <= high for value in outside)
-        )
-        unit = next(units, "")
-        hint = f" (is it in {unit}?)" if unit else ""
-        return f"{self.key} = {named} is outside the usual {low:g} to {high:g} {self.unit}{hint}"
+        return f"{self.key} = {named} is outside the usual {low:g} to {high:g} {self.unit}"
 
 
 def number(table: Mapping[str, Any], key: str, where: str, **bounds: Any) -> float:

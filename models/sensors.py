@@ -33,7 +33,7 @@ _USUAL = {  # full scale, of the rig (Appendices B to E) and of the field; most 
 """Usual range and highest usual noise; the noise is ten steps of the rig's 12 bits (3.1.2)."""
 
 # Below half of 30 kHz at the rig (3.1.2); slips repeat above 100 Hz.
-_ANTIALIAS = Quantity("antialias_hz", 1.0, "Hz", 1.0, 1e9, (500.0, 1e5), ((1e3, "kHz"),))
+_ANTIALIAS = Quantity("antialias_hz", 1.0, "Hz", 1.0, 1e9, (500.0, 1e5))
 SENSOR_QUANTITIES = {
     kind: {
         "full_scale": Quantity(f"range.{kind}", 1.0, unit, 1e-9, 1e12, _USUAL[kind][:2]),

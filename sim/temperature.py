@@ -3,7 +3,7 @@
 """Temperature dependence of a rig's stiffness, damping and friction, by `models.bushing`.
 
 A simulated condition calls `at_temperature` once. Friction changes through an effect on the
-contact, so it works with any law; a law that is itself a master curve has its speeds shifted.
+contact, so it works with any law.
 """
 
 import math
@@ -13,13 +13,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from models.bushing import TemperatureDependence
 from models.rig import Fit, LawSpec, Rig
 from sim.contact import CRITICAL, KINETIC, SLIDING_SPEED
 from sim.effects.effect import Effect, Stage, Values
-from sim.friction import friction_law
 from sim.friction.shared import FASTEST
-from sim.parameters import Parameter, resolve
+from sim.parameters import Parameter
 
 _SLOWEST = 0.25
 """Speed below which the bell's factor is constant [rad/s]: the slowest of the measurements (5.1.2).
@@ -110,13 +108,20 @@ def at_temperature(rig: Rig, temperature: float | None) -> Rig:
     share, softer = rig.elastomer_damping_share, depends.damping_factor(temperature)
     damping = share * softer + 1.0 - share
     stiffness = depends.stiffness_factor(temperature)
-    friction, shifts = _friction(rig, depends, temperature)
+    shift, effects = depends.log_shift(temperature), rig.effects
+    if depends.friction_peak is not None and shift != 0.0:
+        values = {
+            "log_shift": shift,
+            "peak": depends.friction_peak,
+            "width": depends.friction_width,
+            "floor": depends.friction_floor,
+        }
+        effects = (*effects, LawSpec(FRICTION_SHIFT.name, values))
     return replace(
         rig,
         fits=tuple(_scaled(fit, stiffness, damping) for fit in rig.fits),
         elastomer_damping_share=share * softer / damping,
-        friction=friction,
-        effects=(*rig.effects, *shifts),
+        effects=effects,
         temperature=None,
     )
 
@@ -127,28 +132,3 @@ def _scaled(fit: Fit, stiffness: float, damping: float) -> Fit:
         elastomer_stiffness=stiffness * fit.elastomer_stiffness,
         damping={support: damping * value for support, value in fit.damping.items()},
     )
-
-
-def _friction(
-    rig: Rig, depends: TemperatureDependence, temperature: float
-) -> tuple[LawSpec, tuple[LawSpec, ...]]:
-    """Return the friction law at a temperature, and the effect on its torques if it needs one."""
-    shift, law = depends.log_shift(temperature), friction_law(rig.friction.name)
-    if law.master_speeds:
-        values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
-        moved = {name: _within_range(values[name] * 10.0**-shift, law.parameters[name])
-                 for name in law.master_speeds}  # fmt: skip
-        return LawSpec(law.name, {**rig.friction.parameters, **moved}), ()
-    if depends.friction_peak is None or shift == 0.0:
-        return rig.friction, ()
-    values = {
-        "log_shift": shift,
-        "peak": depends.friction_peak,
-        "width": depends.friction_width,
-        "floor": depends.friction_floor,
-    }
-    return rig.friction, (LawSpec(FRICTION_SHIFT.name, values),)
-
-
-def _within_range(value: float, parameter: Parameter) -> float:
-    return min(max(value, parameter.low), parameter.high)

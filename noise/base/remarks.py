@@ -165,13 +165,15 @@ def effect_remarks(rig: Rig, library: Mapping[str, Effect]) -> list[str]:
     []
     """
     from sim.effects.effect import activated
-    from sim.rig_effects import can_act
+    from sim.friction import friction_law
 
+    if friction_law(rig.friction.name).torque is None:
+        return []
     return [
         f"effect {active.effect.name} cannot act on friction law {rig.friction.name} and changes "
         "nothing"
         for active in activated(rig.effects, library)
-        if not can_act(active, rig.friction)
+        if active.effect.of_true_stick
     ]
 
 

@@ -48,8 +48,8 @@ from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.gap import KINDS, Gap
 from noise.diagnosis.simulated.model_runs import Model
 from sim.acquisition import THESIS_CONVERTER, Acquisition
+from sim.effects import constant_version
 from sim.effects.effect import Effect
-from sim.rig_effects import constant_version
 
 _WIDTHS = (0.02, 0.05, 0.1, 0.15)
 """Distances from an end, over the span [-]: the lower an amplifier cuts, the wider its filter's

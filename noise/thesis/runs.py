@@ -28,8 +28,8 @@ from sim.analysis.critical_speeds import SPEEDS, CriticalSpeeds, critical_speeds
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import LEAST_SUDDEN, Slips, find_slips, motion_slips
 from sim.bushing import lumped_bushing
+from sim.effects import constant_version, irregular_effects
 from sim.motion import Motion, simulate_motion
-from sim.rig_effects import constant_version, irregular_effects
 from sim.run import Run, simulate
 from sim.shaft import ConstantSpeed
 

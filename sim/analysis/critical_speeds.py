@@ -7,7 +7,7 @@ stick-slip occurs", 5.1.1), V_crit2 the last at which the torque oscillates, isl
 measured and simulated rigs alike. The first torsional mode decays slowly: after 0.2 s a decaying
 oscillation is not yet distinct from a lasting one. The search starts at the highest speed, so
 speeds below both critical speeds cost nothing. All runs use the rig's constant version
-(`sim.rig_effects`).
+(`sim.effects.constant_version`).
 """
 
 import math
@@ -18,9 +18,9 @@ from itertools import pairwise
 from models.errors import ParameterError
 from models.rig import Rig
 from sim.analysis.regime import Regime, friction_regime
+from sim.effects import constant_version
 from sim.motion import Motion, simulate_motion
 from sim.plan import REGIME_RATE
-from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
 
 SPEEDS = tuple(0.25 * i for i in range(1, 53))

@@ -164,7 +164,7 @@ def motion_slips(motion: Motion) -> Slips:
     Examples
     --------
     >>> from models.rig_file import load_material_rig
-    >>> from sim.rig_effects import constant_version
+    >>> from sim.effects import constant_version
     >>> from sim.run import simulate
     >>> rig = constant_version(load_material_rig("fluorocarbon"))
     >>> slips = motion_slips(simulate(rig, 2.5).motion)

@@ -51,13 +51,12 @@ from sim.contact import (
     call_hook_at,
     call_law_at,
 )  # fmt: skip
-from sim.effects import EFFECTS
+from sim.effects import EFFECTS, constant_version
 from sim.effects.effect import activated
 from sim.friction import friction_law
 from sim.friction.law import FrictionLaw
 from sim.motion import contact_hooks
 from sim.parameters import resolve
-from sim.rig_effects import constant_version
 from sim.solvers.contact_solver import Hook
 from sim.temperature import FRICTION_SHIFT
 

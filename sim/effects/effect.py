@@ -86,7 +86,7 @@ class Effect:
         ``sensors(signals, rate, form, values, rng)`` returns changed signals by channel name.
     irregular : bool
         Whether it only makes slips differ at random, so that the rig has a version without it
-        (`sim.rig_effects.constant_version`).
+        (`sim.effects.constant_version`).
     """
 
     name: str

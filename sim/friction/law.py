@@ -6,7 +6,7 @@ the bushing's surface, v = shaft speed - interface speed; the torque acts on the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -29,33 +29,27 @@ class FrictionLaw:
     torque : compiled function, optional
         ``torque(sliding_speed, coefficients, contact, state, state_rates)`` by
         `sim.contact.LAW_SIGNATURE`: returns the torque [Nm] and fills the rates of the inner state.
-        ``None`` for the law with true stick, where the solver computes the holding torque.
-    pack : callable, optional
-        ``pack(values)`` returns the coefficients that `torque` reads; by default the parameters'
-        values in order. The torques of the fit are in the contact, changed by effects.
+        Coefficients are the parameters' values in order; the torques of the fit are in the contact,
+        changed by effects. ``None`` for the law with true stick, where the solver computes the
+        holding torque.
     rest : tuple of float
         Inner state of the contact after a long rest [rad or s, by the law]; by default none.
     tolerance : float
         Relative error of a solver step in twist, speed and inner state [-]. The default suits the
         most chaotic laws; where neighbouring motions diverge slowly, a larger one is as good.
-    master_speeds : tuple of str
-        Parameters that are speeds of a master curve, which a temperature shifts; by default none:
-        the temperature then acts on the torques.
     """
 
     name: str
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
     torque: Any = None
-    pack: Callable[[Mapping[str, float]], NDArray[np.float64]] | None = None
     rest: tuple[float, ...] = ()
     tolerance: float = 1e-8
-    master_speeds: tuple[str, ...] = ()
 
     def coefficients(self, values: Mapping[str, float]) -> NDArray[np.float64]:
         """Return the coefficients of `torque` for parameter values, shape (n,), units by law."""
         import numpy as np
 
-        return np.array(list(values.values()) or [0.0]) if self.pack is None else self.pack(values)
+        return np.array(list(values.values()) or [0.0])
 
     def state(self) -> NDArray[np.float64]:
         """Return the inner state after a long rest, shape (n_states,), units by law."""

@@ -118,7 +118,7 @@ def test_a_rig_file_names_its_material_fit_and_effects_itself(call, tmp_path):
     ("given", "cause"),
     [
         (("--interference", "0.1"), "those of 0.178 mm are used"),
-        (("--interference", "0.000279"), "outside the usual 0.02 to 3 mm (is it in metres?)"),
+        (("--interference", "0.000279"), "outside the usual 0.02 to 3 mm"),
         (("--effect", "partial_slip"), "effect partial_slip cannot act on friction law contact"),
         (("--temperature", "5"), "at 23, shifted by WLF; that is assumed, not measured"),
         (("--temperature", "95"), "WLF holds up to 80, 100 K above its glass transition"),
@@ -126,7 +126,7 @@ def test_a_rig_file_names_its_material_fit_and_effects_itself(call, tmp_path):
          "temperature 80 degree Celsius is recorded and changes nothing"),
         (("--support-stiffness", "3000"), "for 3000 Nm/rad it is interpolated, or held beyond"),
         (("--support-stiffness", "3e5"), "support_stiffness_Nm_rad = 300000 is outside the usual"),
-        (("--change", "critical_torque=x1000"), "outside the usual 0.3 to 500 Nm (is it in Nmm?)"),
+        (("--change", "critical_torque=x1000"), "outside the usual 0.3 to 500 Nm"),
         (("--change", "critical_torque=x9999"), "nothing slips in this run"),
         (("--speed", "30"), "speed 30 rad/s is above 13 rad/s, the highest speed to which fluoro"),
     ],

@@ -7,8 +7,8 @@ from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from noise.identification.prediction import excerpts_of, friction_of, predicted_torque
 from sim.bushing import lumped_bushing
+from sim.effects import constant_version
 from sim.motion import simulate_motion
-from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
 from tests.identification.test_bushing_fit import recorded
 

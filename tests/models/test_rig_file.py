@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.bench import Microphone
-from models.condition import CONDITION
 from models.errors import ParameterError
 from models.rig import Rig, damping_at, parse_spec
 from models.rig_file import changed_rig_text, load_material_rig, load_rig, material_names, rig_text
@@ -230,14 +229,14 @@ def test_what_cannot_be_used_is_refused_in_one_line(tmp_path, text, parts):
 # Remarks
 
 
-def test_what_is_unusual_is_told_with_the_unit_that_it_may_be_in(tmp_path):
+def test_what_is_unusual_is_told(tmp_path):
     text = "[sensors]\nrange = { torque = 2e5 }\nbits = 4\nantialias_hz = { pressure = 12 }"
     found = remarks(loaded(tmp_path, text))
     assert [line.split(" = ")[0] for line in found] == ["range.torque", "bits", "antialias_hz"]
-    assert found[-1].endswith("(is it in kHz?)")
     rig = RIG.changed(critical_torque="x1000", kinetic_torque="x1000")
-    assert [("Nmm?" in text) for text in remarks(rig)] == [True, True]
-    assert "metres?" in CONDITION["interference"].remark(0.000279)
+    assert [line.split(" = ")[0] for line in remarks(rig)] == [
+        "critical_torque_Nm", "kinetic_torque_Nm",
+    ]  # fmt: skip
 
 
 # Writing

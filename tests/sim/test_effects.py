@@ -9,9 +9,9 @@ import pytest
 from models.errors import ParameterError
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
+from noise.base.remarks import effect_remarks
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
-from sim.rig_effects import can_act
 from sim.run import simulate
 
 CASES = [(name, form) for name in EFFECTS for form in EFFECTS[name].forms]
@@ -87,4 +87,5 @@ def test_what_an_effect_does_not_have_is_refused_by_name(name):
 def test_an_effect_acts_where_the_law_reads_what_it_changes(name, law):
     """Creep is of true stick alone."""
     idle = {"partial_slip"} if law == "lugre" else set()
-    assert can_act(EFFECTS[name].active({}), LawSpec(law)) == (name not in idle)
+    rig = replace(load_material_rig("PDMS"), friction=LawSpec(law), effects=(LawSpec(name),))
+    assert bool(effect_remarks(rig, EFFECTS)) == (name in idle)

@@ -78,10 +78,6 @@ def expected_torque(name, v, given):
         f, s = STRIBECK[name], p["second_share"]
         fade = (1.0 - s) * f(v / p["first_speed"]) + s * f(v / p["second_speed"])
         return T_KIN + drop * fade
-    if name == "master_curve":
-        decades = math.log10(v / p["peak_speed"]) / p["width"]
-        floor, peak = p["floor_share"] * T_KIN, p["peak_share"] * T_CRIT
-        return floor + (peak - floor) * math.exp(-0.5 * decades**2)
     age = p["renewal_angle"] / v
     if name == "contact_with_memory":
         age += p["renewal_angle_per_torque"] * T_KIN / v
@@ -94,7 +90,6 @@ def expected_torque(name, v, given):
 
 
 UNUSUAL = {
-    "master_curve": {"peak_speed": 0.3, "peak_share": 1.3, "floor_share": 0.7},
     "rate_and_state": {"direct_effect": 0.02, "ageing_time": 1e-3},
     "ageing": {"renewal_angle": 2e-3},
     "contact_with_memory": {"renewal_angle_per_torque": 2e-5, "weakening_share": 0.02},

@@ -15,7 +15,7 @@ from noise.noise_definition import label_by_physics
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import Regime, friction_regime, never_slips
 from sim.bushing import lumped_bushing
-from sim.rig_effects import constant_version
+from sim.effects import constant_version
 from sim.run import simulate
 from sim.shaft import Oscillation
 

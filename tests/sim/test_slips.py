@@ -12,8 +12,8 @@ from sim.analysis.critical_damping import with_damping
 from sim.analysis.regime import Regime, friction_regime
 from sim.analysis.slips import find_slips, motion_slips
 from sim.bushing import lumped_bushing
+from sim.effects import constant_version
 from sim.motion import simulate_motion
-from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
 from tests.helpers.contacts import solve_stick_slip
 

@@ -9,10 +9,9 @@ from hypothesis import given, settings, strategies as st
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.analysis.stability import sliding_growth
-from sim.effects import EFFECTS
+from sim.effects import EFFECTS, constant_version
 from sim.friction import LAWS
 from sim.motion import simulate_motion
-from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed
 
 THESIS = load_material_rig("fluorocarbon-thesis")

@@ -33,15 +33,7 @@ def test_at_the_reference_temperature_a_run_is_to_the_bit_as_without():
     assert np.array_equal(run.recording.samples, plain.recording.samples)
 
 
-def test_a_master_curve_is_moved_by_its_own_speed_and_not_twice():
-    cold = with_law("master_curve", 5.0)
-    assert cold.friction.parameters["peak_speed"] == pytest.approx(
-        0.02 / 10.0 ** RIG.temperature.log_shift(5.0)
-    )
-    assert cold.effects == ()
-
-
-@pytest.mark.parametrize("name", [name for name in LAWS if name != "master_curve"])
+@pytest.mark.parametrize("name", LAWS)
 def test_any_law_rubs_less_far_from_the_peak_of_friction(name):
     usual = mean_torque(with_law(name, 23.0))
     for t in (-5.0, 80.0):

@@ -29,9 +29,8 @@ from noise.diagnosis.fit.closing import CLOSABLE, closed_of, rms, room_of
 from noise.diagnosis.fit.fit import Fitted, fit_effects, fit_parameters, split
 from noise.diagnosis.simulated.model_runs import Model
 from noise.diagnosis.text.words import joined
-from sim.effects import EFFECTS
+from sim.effects import EFFECTS, irregular_effects
 from sim.effects.effect import Effect
-from sim.rig_effects import irregular_effects
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case

@@ -37,10 +37,9 @@ from noise.training.causes.cases.variants import draw_variant
 from sim.acquisition import Acquisition, decimate, digitise
 from sim.bushing import lumped_bushing
 from sim.chain import apply_chain_effects
-from sim.effects import EFFECTS
+from sim.effects import EFFECTS, irregular_effects
 from sim.effects.effect import ActiveEffect, activated
 from sim.plan import LEARNING
-from sim.rig_effects import irregular_effects
 from sim.run import apply_sensor_effects, radiate_motion, sensor_signals
 
 KINDS = {

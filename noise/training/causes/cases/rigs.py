@@ -26,11 +26,10 @@ from noise.base import log_uniform, packaged_toml
 from noise.base.arrays import Array, Rng
 from noise.diagnosis.cases.draws import draw_numbers, drawn_effect
 from sim.acquisition import THESIS_CONVERTER, Acquisition
-from sim.effects import EFFECTS
+from sim.effects import EFFECTS, constant_version
 from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.plan import DIAGNOSIS, REGIME_RATE
-from sim.rig_effects import constant_version
 from sim.shaft import ConstantSpeed, LoggedSpeed
 
 if TYPE_CHECKING:
