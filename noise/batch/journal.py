@@ -93,11 +93,6 @@ class Journal:
         values = self.get(_key(job))
         return None if values is None else _valid_result(values, job)
 
-    def rows(self, job: Job) -> list[list[Any]]:
-        """Return the stored rows of a recording, even if the file has changed."""
-        values = self.get(_key(job))
-        return [] if values is None else values[2]
-
     def add_result(self, job: Job, identity: list[int] | None, result: JobResult) -> None:
         """Store the result of a recording with the `file_identity` from before it was read."""
         if result.error is None:

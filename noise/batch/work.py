@@ -9,7 +9,7 @@ Linear algebra runs on one thread, because several threads sum in another order 
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -220,8 +220,8 @@ def _results(
     work: Work, jobs: Sequence[Job], workers: int
 ) -> Generator[tuple[int, JobResult | None]]:
     """Yield index and result of each recording as it completes; None if the workers died."""
-    calls = [(work, str(job.path), str(job.path.absolute()), job.name) for job in jobs]
     if workers > 1:
+        calls = [(work, job.path, job.name) for job in jobs]
         yield from spread_over_processes(_perform_elsewhere, calls, workers)
     else:
         with one_thread():
@@ -232,47 +232,38 @@ def _results(
 _PREPARED: dict[object, Work] = {}
 
 
-def _perform_elsewhere(work: Work, original: str, absolute: str, name: str) -> JobResult:
-    """Process a recording in another process, whose working folder may differ."""
+def _perform_elsewhere(work: Work, path: Path, name: str) -> JobResult:
+    """Process a recording in another process."""
     # Prepared once per process; the identity notices a model file that changes meanwhile.
     key = work, *map(str, work.identity().values())
     if key not in _PREPARED:
         work.prepare()
         _PREPARED[key] = work
     with one_thread():
-        result = perform(_PREPARED[key], Path(absolute), name)
-    if result.error is None:
-        return result
-    # Messages show the path of the call, also that of a sidecar, which has the same stem.
-    stem, original_stem = (str(Path(path).with_suffix("")) for path in (absolute, original))
-    return refusal(work, name, result.error.replace(stem, original_stem))
+        return perform(_PREPARED[key], path, name)
 
 
-class BatchRows:
-    """Rows of a table, read from the journal one recording at a time.
+def table_rows(
+    columns: Sequence[str], jobs: Iterable[Job], results: Mapping[int, JobResult]
+) -> list[dict[str, Any]]:
+    """Return the rows of the completed recordings, in the order of the jobs.
 
     Parameters
     ----------
     columns : sequence of str
-    journal : Journal
     jobs : iterable of Job
-        Completed recordings, in the order of the table.
-    refused : mapping of int to JobResult
-        Refusals by the index of the recording; the journal does not store them.
+    results : mapping of int to JobResult
+        By the index of the job; recordings without a result are left out.
+
+    Examples
+    --------
+    >>> results = {0: JobResult([["run07.wav", 1.5]], calibrated=True)}
+    >>> table_rows(("file", "level_db"), [Job(0, Path("run07.wav"), "run07.wav")], results)
+    [{'file': 'run07.wav', 'level_db': 1.5}]
     """
-
-    def __init__(
-        self,
-        columns: Sequence[str],
-        journal: Journal,
-        jobs: Iterable[Job],
-        refused: dict[int, JobResult],
-    ) -> None:
-        self._columns, self._journal = columns, journal
-        self._jobs, self._refused = list(jobs), refused
-
-    def __iter__(self) -> Iterator[dict[str, Any]]:
-        for job in self._jobs:
-            refused = self._refused.get(job.index)
-            for row in self._journal.rows(job) if refused is None else refused.rows:
-                yield dict(zip(self._columns, row, strict=True))
+    return [
+        dict(zip(columns, row, strict=True))
+        for job in jobs
+        if job.index in results
+        for row in results[job.index].rows
+    ]

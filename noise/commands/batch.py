@@ -20,9 +20,9 @@ from noise.commands.options import MOST_WORKERS, Option, refuse, whole_number
 
 if TYPE_CHECKING:
     from noise.batch.journal import Journal
-    from noise.batch.work import BatchRows, Job, JobResult, Work
+    from noise.batch.work import Job, JobResult, Work
 
-    Rows = Iterable[dict[str, object]]
+    Rows = list[dict[str, object]]
 
 
 _INTERRUPTED = 130  # 128 + SIGINT
@@ -46,7 +46,7 @@ def run_batch(
     options: Namespace,
     work: Work,
     jobs: Sequence[Job],
-    merge: Callable[[Path | None, BatchRows], Rows] = lambda _, rows: rows,
+    merge: Callable[[Path | None, Rows], Rows] = lambda _, rows: rows,
     export: Callable[[Rows], Sequence[Path]] = lambda _: (),
     summary: Callable[[Rows], Iterable[str]] | None = None,
 ) -> int:
@@ -75,7 +75,7 @@ def run_batch(
         The table cannot be written.
     """
     from noise.batch.journal import open_journal
-    from noise.batch.work import BatchRows
+    from noise.batch.work import table_rows
 
     out = options.out
     # A table of forty columns is not readable on a terminal.
@@ -88,39 +88,32 @@ def run_batch(
     with open_journal(out, work, fresh=options.fresh) as journal:
         try:
             for job, result in _results(options, work, jobs, journal):
+                results[job.index] = result
                 if result.error is not None:
                     refuse(result.error, job.path)
-                    results[job.index] = result
-                else:  # the rows are in the journal and may be too many for memory
-                    results[job.index] = result._replace(rows=[])
         except KeyboardInterrupt:
             exit_code = _INTERRUPTED
         _note_uncalibrated(results.values())
-        refused = {index: result for index, result in results.items() if result.error is not None}
-        completed = [job for job in jobs if job.index in results]
-        new_rows = BatchRows(work.columns, journal, completed, refused)
         # The lock covers reading the existing table and writing the new one.
         with nullcontext() if out is None else locked(out):
-            rows = merge(out, new_rows)
+            rows = merge(out, table_rows(work.columns, jobs, results))
             if not show_summary:
-                extra = () if rows is new_rows else (name for row in rows for name in row)
-                write_table(out, tuple(dict.fromkeys((*work.columns, *extra))), rows)
+                names = (name for row in rows for name in row)
+                write_table(out, tuple(dict.fromkeys((*work.columns, *names))), rows)
         written = [*([] if out is None else [out]), *export(rows)]
         journal.mark_written()
     interrupted = exit_code == _INTERRUPTED
+    refused = sum(result.error is not None for result in results.values())
     number = f"{len(results)} of " * interrupted + counted(len(jobs), "recording")
-    say(f"{'interrupted: ' * interrupted}{number}, {len(refused)} refused")
+    say(f"{'interrupted: ' * interrupted}{number}, {refused} refused")
     if summary is not None and out is not None:
         report(*summary(rows))
     if summary is not None and show_summary:
         print(*summary(rows), sep="\n")
         say("--out labels.csv, or a pipe, takes the whole table")
-    if out is not None:
-        report(*written)
-    else:  # standard output is the table
-        for path in written:
-            say(str(path))
-    return exit_code or int(bool(refused))
+    for path in written:  # standard output may be the table
+        report(path) if out is not None else say(str(path))
+    return exit_code or int(refused > 0)
 
 
 def _results(

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from argparse import Namespace
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +19,6 @@ from noise.commands.batch import BATCH, check_batch, run_batch
 from noise.commands.options import CALIBRATION, Option, full_scale_of, number, one_of
 
 if TYPE_CHECKING:
-    from noise.batch.work import BatchRows
     from noise.labels.labelling import Labelling
 
 
@@ -50,11 +48,7 @@ def run(options: Namespace) -> int:
     if options.out is not None:
         sign_corrections(options.out, [job.name for job in jobs])
 
-    def merge(out: Path | None, rows: BatchRows) -> list[dict[str, object]]:
-        return with_corrections(out, list(rows))
-
-    def export(rows: Iterable[dict[str, object]]) -> list[Path]:
-        rows = list(rows)
+    def export(rows: list[dict[str, object]]) -> list[Path]:
         _note_assumed(rows)
         _note_speeds(rows)
         return _export(options, rows)
@@ -66,7 +60,7 @@ def run(options: Namespace) -> int:
         surroundings=options.surroundings,
     )
     _note_false_names(work)
-    return run_batch(options, work, jobs, merge, export, result_lines)
+    return run_batch(options, work, jobs, with_corrections, export, result_lines)
 
 
 def _note_false_names(work: Labelling) -> None:

@@ -11,7 +11,6 @@ import math
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -224,30 +223,8 @@ def help_of(command: str) -> Help:
     """
     texts = packaged_toml("noise.commands", "help.toml")
     own = texts[command]
-    return Help(
-        _filled(own["description"]),
-        _filled(own.get("epilog", "")),
-        {
-            name: _filled(line)
-            for name, line in (texts["shared"]["options"] | own.get("options", {})).items()
-        },
-    )
-
-
-def _filled(text: str) -> str:
-    """Replace the placeholders of lists in a text."""
-    for placeholder, (module, name) in _LISTS.items():
-        if placeholder in text:
-            names = getattr(import_module(module), name)
-            text = text.replace(placeholder, ", ".join(names() if callable(names) else names))
-    return text
-
-
-_LISTS = {
-    "{environments}": ("noise.screening.environments", "environment_names"),
-    "{effects}": ("sim.effects", "EFFECTS"),
-    "{materials}": ("models.rig_file", "material_names"),
-}
+    options = texts["shared"]["options"] | own.get("options", {})
+    return Help(own["description"], own.get("epilog", ""), options)
 
 
 def add_options(

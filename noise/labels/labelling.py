@@ -15,7 +15,7 @@ from noise.base.labels import SURROUNDINGS
 from noise.base.model_file import model_digest
 from noise.base.tables import check_table_path
 from noise.batch.journal import open_journal
-from noise.batch.work import BatchRows, JobResult, find_jobs, perform_all
+from noise.batch.work import find_jobs, perform_all, table_rows
 from noise.classifier import Classifier, load_classifier
 from noise.classifier.model import CLASSIFIER
 from noise.inference.model import INFERENCE
@@ -101,13 +101,12 @@ def label(
     if out is not None:
         sign_corrections(Path(out), [job.name for job in jobs])
     with open_journal(None if out is None else Path(out), work, fresh=fresh) as journal:
-        refused: dict[int, JobResult] = {}
-        left = [job for job in jobs if journal.find(job) is None]
+        found = {job.index: journal.find(job) for job in jobs}
+        results = {index: result for index, result in found.items() if result is not None}
+        left = [job for job in jobs if job.index not in results]
         with closing(perform_all(work, left, journal, workers=workers)) as performed:
-            for job, done in performed:
-                if done.error is not None:
-                    refused[job.index] = done
-        rows = list(BatchRows(work.columns, journal, jobs, refused))
+            results |= {job.index: result for job, result in performed}
+        rows = table_rows(work.columns, jobs, results)
         if out is None:
             return LabelTable(rows)
         # The lock prevents corrections between reading and writing the table.
