@@ -49,7 +49,7 @@ _EXPORTS = {
     "noise.classifier": ("LABELS", "Classifier", "load_classifier"),
     "noise.training.classifier.fit": ("train",),
     "noise.diagnosis.outcome": ("Diagnosis",),
-    "noise.diagnosis.run": ("diagnose",),
+    "noise.diagnosis.diagnose": ("diagnose",),
     "noise.identification.outcome": ("Identification",),
     "noise.identification.identify": ("identify",),
     "noise.inference": ("Inference", "Inferred", "Interval", "load_inference"),

@@ -12,7 +12,7 @@ from noise.commands.options import CHANGE, Option, changed, check_folder
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
-    from noise.diagnosis.outcome import Diagnosis, Improvement
+    from noise.diagnosis.outcome import Diagnosis
     from sim.effects.effect import Effect
 
 
@@ -90,7 +90,7 @@ def _print_answer(options: Namespace, diagnosis: Diagnosis, printed: set[str]) -
                 say(fit_sentence(finding))
             if sentence := strength_sentence(finding):
                 say(sentence)
-    if not (diagnosis.bench or diagnosis.next_measurement.startswith("none")):
+    if diagnosis.next_measurement and not diagnosis.bench:
         say(f"Measure next: {diagnosis.next_measurement}.")
     printed |= {*diagnosis.bench, *diagnosis.faults}  # sentences of the answer
     note(*(text for text in diagnosis.notes if text not in printed))
@@ -101,8 +101,6 @@ def _print_answer(options: Namespace, diagnosis: Diagnosis, printed: set[str]) -
             "improved.toml is a fit of its own, in forms that a rig file can state, compared with "
             f"repeats of its own. {improved_sentence(diagnosis.improvement)}"
         )
-        for call in _next(options, diagnosis.improvement):
-            say(f"next: {call}")
 
 
 def _write(options: Namespace, diagnosis: Diagnosis) -> list[Path]:
@@ -112,18 +110,9 @@ def _write(options: Namespace, diagnosis: Diagnosis) -> list[Path]:
     from noise.pages.diagnosis import write_diagnosis
 
     improved, improvement = None, diagnosis.improvement
-    commands: list[str] = []
     if improvement is not None:
         base = material_of(options.rig) or base_name(options.rig, options.out)
         improved = improved_text(improvement, base, dict(options.change or ()))
-        commands = _next(options, improvement)
-    write_diagnosis(options.out, diagnosis, improved, commands)
+    write_diagnosis(options.out, diagnosis, improved)
     names = ("report.html", "diagnosis.json", *([NAME] if improved is not None else []))
     return [options.out / name for name in names]
-
-
-def _next(options: Namespace, improvement: Improvement) -> list[str]:
-    """Return the commands to run next."""
-    from noise.diagnosis.improved_file import NAME, improved_commands
-
-    return improved_commands(improvement, options.out / NAME, options.data, options.effects)

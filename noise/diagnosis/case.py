@@ -1,23 +1,16 @@
 """Reader of a case: the recordings of one rig in a folder, and their usable channels.
 
-Speed, interference and support that a recording does not state, taken from angle and torque.
-
-The speed is the angle's. The interference is that of the rig's fits whose kinetic torque the mean
-torque is near to, where it is near to no other. A support is taken only where the rig has one.
-
-What a user is asked to write where a condition is not stated and nothing tells it.
+A speed that a recording does not state is the angle's; an interference or support is taken where
+the rig has only one.
 """
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
 
-import numpy as np
-
-from models.condition import FIXED, Condition, known_condition, same_support
+from models.condition import FIXED, known_condition, same_support
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.recording import Recording
 from models.rig import Rig
@@ -26,72 +19,12 @@ from noise.diagnosis.bench.check import clipped_channels, refuse_unusable, witho
 from noise.diagnosis.gap import KINDS
 from noise.diagnosis.preparation.prepare import measured_speed, prepared
 from noise.diagnosis.preparation.settled_part import shortest
-from noise.diagnosis.text.words import joined
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.rotation import as_logged
-from noise.recordings.sidecar import sidecar_text
 
 
-def sidecar_request(
-    recording: Recording, interferences: Sequence[float], supports: Sequence[float]
-) -> str:
-    """Return a one-line request for the missing sidecar, with its possible content.
-
-    Parameters
-    ----------
-    recording : Recording
-        Named as its file; its condition as far as it is known.
-    interferences : sequence of float
-        Of the rig's fits [m].
-    supports : sequence of float
-        Of the rig [Nm/rad] or `models.condition.FIXED`.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from models.recording import Channel
-    >>> from models.recording import Recording
-    >>> run = Recording(np.zeros((1, 8)), 48e3, (Channel("pressure"),), name="run03.wav")
-    >>> print(sidecar_request(run, [0.000178, 0.000279], [2214.0, FIXED]))
-    write run03.json with your own numbers: {"channels": [{"name": "pressure", "unit": "Pa"}],
-      "conditions": {"speed_rad_s": 1.0, "interference_mm": 0.178,
-      "support_stiffness_Nm_rad": 2214.0}, "calibrated": true}; interference_mm is 0.178 or 0.279,
-      support_stiffness_Nm_rad 2214 or null (clamp bolted to the baseplate)
-    """
-    at = recording.condition
-    filled = Condition(
-        1.0 if not at.speed else at.speed,
-        at.interference or interferences[0],
-        at.support_stiffness or supports[0],
-        at.material,
-        at.temperature,
-    )
-    full = sidecar_text(replace(recording, condition=filled, calibrated=True, notes=()))
-    name = PurePath(recording.name).with_suffix(".json").name if recording.name else "its sidecar"
-    choices = [
-        f"interference_mm is {joined([f'{1e3 * x:.4g}' for x in interferences], 'or')}",
-        f"support_stiffness_Nm_rad {joined([_support(x) for x in supports], 'or')}",
-    ]
-    return (
-        f"write {name} with your own numbers: {json.dumps(json.loads(full))}; {', '.join(choices)}"
-    )
-
-
-def _support(stiffness: float) -> str:
-    return "null (clamp bolted to the baseplate)" if stiffness == FIXED else f"{stiffness:g}"
-
-
-_NEAR, _FAR = (-0.2, 0.3), (-0.35, 0.5)
-"""Logarithm of mean over kinetic torque [-]: of a fit that it can be, and of all that it can be;
-assumed."""
-
-
-def with_inferred_conditions(recording: Recording, rig: Rig) -> Recording:
-    """Return a recording whose missing conditions are inferred from its signals.
+def with_conditions(recording: Recording, rig: Rig) -> Recording:
+    """Return a recording with the conditions that its angle and the rig tell where it states none.
 
     Parameters
     ----------
@@ -102,99 +35,58 @@ def with_inferred_conditions(recording: Recording, rig: Rig) -> Recording:
     Returns
     -------
     Recording
-        With speed, interference and support stiffness, and a note on each that was taken.
+        With speed, interference and support stiffness.
 
     Raises
     ------
     ParameterError
-        Something is not stated, and nothing tells it; the message holds the sidecar to write.
+        Something is not stated, and nothing tells it; the message says what to write.
 
     Examples
     --------
+    >>> import numpy as np
     >>> from models.condition import Condition
+    >>> from models.recording import Channel
     >>> from models.rig_file import load_material_rig
-    >>> from sim.run import simulate
-    >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> at = {"interference": 0.279e-3, "support_stiffness": 3745.0}
-    >>> run = simulate(rig, 1.0, **at, seconds=0.4).recording
-    >>> stated = Condition(speed=1.0, support_stiffness=3745.0)
-    >>> told = with_inferred_conditions(replace(run, condition=stated), rig)
-    >>> told.condition.interference
-    0.000279
-    >>> told.notes[0]
-    'interference taken as 0.279 mm: the mean torque of ... N m fits none of the others'
+    >>> angle = Recording(np.arange(8000)[None] / 4e3, 8e3, (Channel("angle"),))
+    >>> stated = Condition(interference=0.279e-3, support_stiffness=3745.0)
+    >>> turned = with_conditions(
+    ...     replace(angle, condition=stated), load_material_rig("fluorocarbon-thesis")
+    ... )
+    >>> turned.notes
+    ("speed taken as 2 rad/s: the angle's",)
     """
-    at, notes, unclear = recording.condition, list(recording.notes), ""
-    supports = supports_of(rig)
+    at, notes = recording.condition, recording.notes
+    interferences = [fit.interference for fit in rig.fits]
+    damped = {support for fit in rig.fits for support in fit.damping}
+    supports = sorted({entry.support_stiffness for entry in rig.measured} or damped)
     if at.support_stiffness is None and len(supports) == 1:
         at = replace(at, support_stiffness=supports[0])
-    if at.interference is None and len(rig.fits) == 1:
-        at = replace(at, interference=rig.fits[0].interference)
-    angle, torque = recording.first("angle"), recording.first("torque")
+    if at.interference is None and len(interferences) == 1:
+        at = replace(at, interference=interferences[0])
+    angle = recording.first("angle")
     if not at.speed and angle is not None:
         late = recording.samples[angle][recording.samples.shape[1] // 2 :]  # a start lies before
         if speed := as_logged(measured_speed(late, recording.rate), None):
             at = replace(at, speed=speed)
-            notes.append(f"speed taken as {speed:g} rad/s: the angle's")
-    if at.interference is None and torque is not None:
-        mean = abs(float(recording.samples[torque].mean()))
-        near, unclear = _fit_of_torque(mean, rig)
-        if not unclear:
-            at = replace(at, interference=near)
-            notes.append(
-                f"interference taken as {_mm(near)}: the mean torque of {mean:.3g} N m fits none "
-                "of the others"
-            )
-    lacking = [
-        name
-        for name, value in (
-            ("speed_rad_s", at.speed), ("interference_mm", at.interference),
-            ("support_stiffness_Nm_rad", at.support_stiffness),
-        )
-        if not value
-    ]  # fmt: skip
-    if lacking:
-        request = sidecar_request(
-            replace(recording, condition=at), [fit.interference for fit in rig.fits], supports
-        )
-        why = unclear or "neither angle nor torque tells it"
-        raise ParameterError(f"states no {', '.join(lacking)}, and {why}; {request}")
-    return replace(recording, condition=at, notes=tuple(notes))
-
-
-def supports_of(rig: Rig) -> list[float]:
-    """Return the supports in a rig file.
-
-    Parameters
-    ----------
-    rig : Rig
-
-    Returns
-    -------
-    list of float
-        Stiffnesses [Nm/rad] or `models.condition.FIXED`: those whose responses were measured, or
-        else those at which damping is given.
-    """
-    known = [entry.support_stiffness for entry in rig.measured]
-    return sorted(set(known) or {support for fit in rig.fits for support in fit.damping})
-
-
-def _fit_of_torque(mean: float, rig: Rig) -> tuple[float, str]:
-    """Return the interference whose kinetic torque alone a mean torque is near, or why none is."""
-    away = {
-        fit.interference: float(np.log((mean + 1e-12) / fit.kinetic_torque)) for fit in rig.fits
+            notes = (*notes, f"speed taken as {speed:g} rad/s: the angle's")
+    wanted = {
+        "speed_rad_s": ("" if at.speed else "rad/s"),
+        "interference_mm": "" if at.interference else _choices(interferences, 1e3),
+        "support_stiffness_Nm_rad": "" if at.support_stiffness else _choices(supports),
     }
-    near = [fit for fit, by in away.items() if _NEAR[0] < by < _NEAR[1]]
-    possible = [fit for fit, by in away.items() if _FAR[0] < by < _FAR[1]]
-    if len(near) == len(possible) == 1:
-        return near[0], ""
-    each = ", ".join(f"{_mm(f.interference)} {f.kinetic_torque:.3g}" for f in rig.fits)
-    fits = "several fits" if len(possible) > 1 else "no fit clearly"
-    return 0.0, f"the mean torque of {mean:.3g} N m fits {fits} ({each} N m)"
+    if lacking := {name: which for name, which in wanted.items() if which}:
+        sidecar = PurePath(recording.name).with_suffix(".json").name if recording.name else "it"
+        each = ", ".join(f'"{name}" ({which})' for name, which in lacking.items())
+        raise ParameterError(
+            f'states no {", ".join(lacking)}; write into {sidecar}, under "conditions": {each}'
+        )
+    return replace(recording, condition=at, notes=notes)
 
 
-def _mm(interference: float) -> str:
-    return f"{1e3 * interference:.4g} mm"
+def _choices(values: Sequence[float], scale: float = 1.0) -> str:
+    each = ["null: clamp fixed" if x == FIXED else f"{scale * x:.4g}" for x in values]
+    return f"of the rig file: {', '.join(each)}"
 
 
 _SAME = 1e-3
@@ -293,9 +185,6 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
 def usable(recording: Recording, rig: Rig) -> Recording:
     """Return the part of a recording that the diagnosis can use.
 
-    What its condition does not state is taken from angle and torque, where these tell it, and
-    interference and support where the rig has only one.
-
     Raises
     ------
     ParameterError
@@ -304,7 +193,7 @@ def usable(recording: Recording, rig: Rig) -> Recording:
     refuse_unusable(recording, shortest(recording.rate))
     if all(recording.first(kind) is None for kind in KINDS):
         raise ParameterError(f"has no channel of {', '.join(KINDS)}")
-    recording = with_inferred_conditions(recording, rig)
+    recording = with_conditions(recording, rig)
     condition = known_condition(recording.condition)
     interference, support = condition.interference, condition.support_stiffness
     low, high = rig.interference_range

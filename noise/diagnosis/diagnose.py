@@ -13,14 +13,16 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.condition import known_condition
 from models.rig import Rig
-from models.rig_file import load_material_rig, material_names
+from models.rig_file import load_material_rig, load_rig, material_names
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
-from noise.diagnosis.bench.check import bench_findings, unchecked_units
+from noise.base.user_effects import effect_library
+from noise.diagnosis.bench.check import bench_findings
+from noise.diagnosis.case import Case, read_case
 from noise.diagnosis.causes.location import (
     StageNulls,
     differences,
@@ -36,67 +38,75 @@ from noise.diagnosis.causes.verdict import (
     next_measurement,
 )
 from noise.diagnosis.first_answer import FirstAnswer, first_answer
-from noise.diagnosis.gap import KINDS, Gap
-from noise.diagnosis.outcome import (
-    Agreement,
-    Diagnosis,
-    EffectFinding,
-    HypothesisFinding,
-    StageFinding,
-)
+from noise.diagnosis.gap import KINDS
+from noise.diagnosis.outcome import Agreement, Diagnosis, EffectFinding, StageFinding
 from noise.diagnosis.text.sentences import AGREES
-from noise.diagnosis.text.words import joined
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage
 
 if TYPE_CHECKING:
-    from noise.diagnosis.case import Case
     from noise.diagnosis.fit.decide import Judged
 
-
-def assumed_fit(rig: Rig, interferences: Sequence[float]) -> str:
-    """Say which shipped fit a rig has that was given none of its own; empty where it was.
-
-    Parameters
-    ----------
-    rig : Rig
-    interferences : sequence of float
-        Of the recordings [m].
-
-    Examples
-    --------
-    >>> assumed_fit(load_material_rig("fluorocarbon-thesis"), [0.279e-3])
-    'no [[fit]] of its own in the rig file: the bushing is that shipped for fluorocarbon-thesis, \
-0.279 mm: 665 Nm/rad, breaks at 10.7, slides at 8 N m; identify makes a rig file of recordings'
-    """
-    shipped = [name for name in material_names() if load_material_rig(name).fits == rig.fits]
-    if not shipped:
-        return ""
-    name = rig.material if rig.material in shipped else shipped[0]
-    fits = [rig.fit(interference) for interference in sorted(set(interferences))]
-    each = "; ".join(
-        f"{1e3 * fit.interference:.3g} mm: {fit.elastomer_stiffness:.4g} Nm/rad, breaks at "
-        f"{fit.critical_torque:.3g}, slides at {fit.kinetic_torque:.3g} N m"
-        for fit in fits
-    )
-    listed = joined([spec.name for spec in rig.effects])
-    shipped_with = (
-        f"; its effects are simulated and cannot be found missing ({listed})" if listed else ""
-    )
-    return (
-        f"no [[fit]] of its own in the rig file: the bushing is that shipped for {name}, {each}"
-        f"{shipped_with}; identify makes a rig file of recordings"
-    )
-
-
 _SHOWN = 5
-"""Effects that are listed at least, and hypotheses; assumed."""
+"""Effects that are listed at least; assumed."""
 
 _AS_REPEATS = 0.5
 """p-value from which on a stage differs as repeats do [-]; assumed."""
 
 _ROOM = (18.0, 28.0)
 """Between which the shipped bushings, given at 23, are as they are [degree Celsius]; assumed."""
+
+
+def diagnose(
+    data: str | Path | Sequence[str | Path],
+    rig: Rig | str | Path,
+    *,
+    quick: bool = False,
+    effects: str | Path | Sequence[str | Path] = (),
+    seed: int = 0,
+) -> Diagnosis:
+    """Compare recordings with the simulator and name the missing effects.
+
+    Parameters
+    ----------
+    data : path or sequence of paths
+        Recordings, or folders of them.
+    rig : Rig or path
+        Rig, or its file.
+    quick : bool
+        Whether to return the first answer, without fits.
+    effects : path or sequence of paths
+        Python files that define further effects. They are executed.
+    seed : int
+        Of simulated repeats and bootstraps.
+
+    Returns
+    -------
+    Diagnosis
+        Its ``improved`` is the improved rig, None if nothing closes the gap.
+
+    Raises
+    ------
+    ParameterError
+        Rig file, recordings or effects cannot be used.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     rig = Path(folder) / "rig.toml"
+    ...     size = rig.write_text('name = "bench"', encoding="utf-8")
+    ...     diagnose(folder, rig)
+    Traceback (most recent call last):
+    models.errors.ParameterError: ...
+    """
+    library = effect_library(_paths(effects))
+    case = read_case(_paths(data), rig if isinstance(rig, Rig) else load_rig(rig))
+    return diagnose_case(case, quick=quick, library=library, seed=seed)
+
+
+def _paths(given: str | Path | Sequence[str | Path]) -> list[Path]:
+    return [Path(given)] if isinstance(given, str | Path) else [Path(path) for path in given]
 
 
 def diagnose_case(
@@ -131,14 +141,13 @@ def diagnose_case(
     tell = progress or (lambda _text: None)
     library = library or EFFECTS
     tell("checking that it is this rig")
-    faults = bench_findings(case, library)
-    if faults:
-        return _unlike(case, faults, library, time.perf_counter() - started)
+    if findings := bench_findings(case, library):
+        answer = _another_bench(case, findings, library)
+        return replace(answer, seconds=time.perf_counter() - started)
     posterior, nulls = posterior or load_posterior(), load_stage_nulls()
     first = first_answer(case, library, posterior, seed, tell)
     if quick:
         answer = _stated(case, first, first, nulls, library)
-        answer = replace(answer, notes=(*answer.notes, *_unasked(case, library)))
     else:
         from noise.diagnosis.fit.decide import fit_notes, judge  # no part of a quick answer, and
         from noise.diagnosis.fit.fits import add_fits  # loads the classifier
@@ -159,21 +168,31 @@ def _stated(
 ) -> Diagnosis:
     """Return a diagnosis with location, alternatives and next measurement."""
     verdict, probabilities = judged.verdict, judged.probabilities
+    kinds = _kinds(case)
     findings = stage_findings(first.table, nulls, first.flat)
-    faults = _faults(case, first.flat)
-    ranked = [name for name in _ranked(probabilities) if name in library]
+    ranked = sorted(probabilities, key=lambda name: -probabilities[name])
+    ranked = [name for name in ranked if name in library]
     stage = library[verdict[0]].stage.value if verdict and verdict[0] in library else None
     if stage is not None and findings[stage].p_value >= _AS_REPEATS:
         stage = None  # it shows elsewhere
     place = locate(first.table, nulls, stage, first.flat)
-    agreement = _agreement(case, first.gap)
+    agreement = _agreement(case, first)
     farthest = max(agreement, key=lambda one: one.gap)
-    fits = sorted({known_condition(one.condition).interference for one in case.recordings})
+    flat = tuple(
+        f"channel {kind} looks clipped: its peaks are flat, and those of the simulation are not"
+        for kind in first.flat
+        if not any(text.startswith(f"channel {kind} clips") for text in case.faults)
+    )
+    suspected = (
+        f"what is left looks like {name}, which the rig file lists already: its form or numbers "
+        "are off"
+        for name in first.suspected
+    )
     return Diagnosis(
         verdict=verdict,
         equivalent=tuple(
             pair
-            for pair in equivalent_pairs(ranked, probabilities, _kinds(case))
+            for pair in equivalent_pairs(ranked, probabilities, kinds)
             if not (first.flat and "clipping" in pair)  # flat peaks tell it from all else
         ),
         location=place if verdict else None,
@@ -183,67 +202,31 @@ def _stated(
             for name in ranked[:_SHOWN]
         ),
         probabilities=probabilities,
-        parameters={},
         next_measurement=next_measurement(
             verdict,
             probabilities,
-            _kinds(case),
+            kinds,
             place.stage,
             differs=first.gap.p_value <= UNUSUAL,
             farthest=farthest.recording if farthest.gap > AGREES else "",
-            own_fit=not assumed_fit(case.rig, fits),
+            own_fit=not assumed_fit(case.rig),
         ),
-        held_out=(),
         gap=first.gap.distance,
-        floor=1.0,
         p_value=first.gap.p_value,
-        seconds=0.0,
         notes=(
-            *faults,
-            *map(_listed, first.suspected),
-            *unchecked_units(case, library),
-            *_notes(case),
-            *first.unlearned,
+            *case.faults, *flat, *suspected, *_notes(case), *first.unlearned,
             *case_remarks(case, library),
         ),
         differences=differences(first.table, nulls, first.flat),
-        hypotheses=tuple(
-            HypothesisFinding(tuple(sorted(hypothesis)), p)
-            for hypothesis, p in islice(judged.hypotheses.items(), _SHOWN)
-        ),
         agreement=agreement,
-        faults=faults,
-    )
+        faults=(*case.faults, *flat),
+    )  # fmt: skip
 
 
-def _unasked(case: Case, library: Mapping[str, Effect]) -> tuple[str, ...]:
-    """Return notes on user-defined effects without a probability in a quick answer."""
-    listed = {spec.name for spec in case.rig.effects}
-    own = [name for name in library if name not in EFFECTS and name not in listed]
-    if not own:
-        return ()
-    return (
-        f"{joined(own)} was not asked for: only fits tell of effects of your own, and a quick "
-        "answer has none",
-    )
-
-
-def _faults(case: Case, flat: Sequence[str]) -> tuple[str, ...]:
-    """Return notes on channels that are dead, clip at a range, or have flat peaks."""
-    return (
-        *case.faults,
-        *(
-            f"channel {kind} looks clipped: its peaks are flat, and those of the simulation are not"
-            for kind in flat
-            if not any(text.startswith(f"channel {kind} clips") for text in case.faults)
-        ),
-    )
-
-
-def _agreement(case: Case, gap: Gap) -> tuple[Agreement, ...]:
+def _agreement(case: Case, first: FirstAnswer) -> tuple[Agreement, ...]:
     agreements = []
     for name, recording, whole, each in zip(
-        case.names, case.recordings, gap.of_recordings, gap.of_channels, strict=True
+        case.names, case.recordings, first.gap.of_recordings, first.gap.of_channels, strict=True
     ):
         at = known_condition(recording.condition)
         channels = {k: float(d) for k, d in zip(KINDS, each, strict=True) if math.isfinite(d)}
@@ -251,45 +234,44 @@ def _agreement(case: Case, gap: Gap) -> tuple[Agreement, ...]:
     return tuple(agreements)
 
 
-def _unlike(
-    case: Case, reasons: tuple[str, ...], library: Mapping[str, Effect], seconds: float
+def _another_bench(
+    case: Case, reasons: tuple[str, ...], library: Mapping[str, Effect]
 ) -> Diagnosis:
     """Return a diagnosis without a cause, of recordings that cannot be of their rig."""
-    unknown = math.nan
+    nothing = StageFinding(math.nan, math.nan, math.nan)
     return Diagnosis(
         verdict=("unknown",),
-        equivalent=(),
-        location=None,
-        stages={stage.value: StageFinding(unknown, unknown, unknown) for stage in Stage},
-        effects=(),
+        stages={stage.value: nothing for stage in Stage},
         probabilities=dict.fromkeys(("none", "parameters", *EFFECTS), 0.0) | {"unknown": 1.0},
-        parameters={},
         next_measurement="put the recordings or their sidecars right, and diagnose them again",
-        held_out=(),
-        gap=unknown,
-        floor=1.0,
-        p_value=unknown,
-        seconds=seconds,
         notes=(*reasons, *case.faults, *_notes(case), *case_remarks(case, library)),
         bench=reasons,
         faults=case.faults,
     )
 
 
-def _ranked(probabilities: Mapping[str, float]) -> list[str]:
-    return sorted(probabilities, key=lambda name: -probabilities[name])
-
-
-def _listed(name: str) -> str:
-    return (
-        f"what is left looks like {name}, which the rig file lists already: its form or numbers "
-        "are off"
-    )
-
-
 def _kinds(case: Case) -> frozenset[str]:
     return frozenset(
         channel.kind for recording in case.recordings for channel in recording.channels
+    )
+
+
+def assumed_fit(rig: Rig) -> str:
+    """Return a note on the shipped bushing of a rig that was given none of its own, or nothing.
+
+    Examples
+    --------
+    >>> assumed_fit(load_material_rig("fluorocarbon-thesis"))
+    'no [[fit]] of its own in the rig file: the bushing is that shipped for fluorocarbon-thesis;
+      identify makes a rig file of recordings'
+    """
+    shipped = [name for name in material_names() if load_material_rig(name).fits == rig.fits]
+    if not shipped:
+        return ""
+    return (
+        "no [[fit]] of its own in the rig file: the bushing is that shipped for "
+        f"{rig.material if rig.material in shipped else shipped[0]}; identify makes a rig file of "
+        "recordings"
     )
 
 
@@ -309,7 +291,7 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
     """
     at = [known_condition(recording.condition) for recording in case.recordings]
     heat = sorted({c.temperature for c in at if c.temperature is not None})
-    shipped = assumed_fit(case.rig, [c.interference for c in at])
+    shipped = assumed_fit(case.rig)
     elsewhere = shipped and any(not _ROOM[0] <= t <= _ROOM[1] for t in heat)
     remarks = [
         shipped,
@@ -328,9 +310,8 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
     return [text for text in dict.fromkeys(remarks) if text]
 
 
-def _notes(case: Case) -> tuple[str, ...]:
-    kinds = _kinds(case)
-    notes = channel_costs(kinds)
+def _notes(case: Case) -> list[str]:
+    notes = channel_costs(_kinds(case))
     different = {recording.condition for recording in case.recordings}
     if len(case.recordings) == 1:
         notes.append(
@@ -340,5 +321,4 @@ def _notes(case: Case) -> tuple[str, ...]:
         notes.append("no condition was recorded twice: how much repeats differ is assumed (2 %)")
     notes += case.notes
     notes += [f"{r.name}: {text}" for r in case.recordings for text in r.notes]
-    notes += [f"{name} was left out: {reason}" for name, reason in case.refused]
-    return tuple(notes)
+    return [*notes, *(f"{name} was left out: {reason}" for name, reason in case.refused)]

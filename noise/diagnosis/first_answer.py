@@ -1,20 +1,17 @@
 """First answer of a diagnosis: the gap and the probability of each cause, without fits.
 
-What the shipped models of causes have not seen or cannot tell, and what that costs.
-
-The models learned from recordings through sensors up to `NOISIEST` times as noisy as the good ones
-of `sim.acquisition`, and through converters as coarse as the thesis's. Against repeats that are
-simulated through a rig's own sensors a gap stays what it is, whatever the sensors; the
+The models of causes learned from recordings through sensors up to `NOISIEST` times as noisy as the
+good ones of `sim.acquisition`, and through converters as coarse as the thesis's. Against repeats
+that are simulated through a rig's own sensors a gap stays what it is, whatever the sensors; the
 probabilities of causes do not. Nor do they where a rig's responses come from a poor hammer test:
 its errors look like those of a sensor's gain or of the plate.
 
-Channels whose peaks are flat, as an overload leaves them and as no vibration has them.
-
-A range that is reached in all recordings is told by `noise.diagnosis.bench.check`; an amplifier
-that overloads before the anti-alias filter leaves no single largest value, but samples that pile up
-at the ends of the signal. Whatever swings smoothly passes its peak as a parabola does: within a
-small distance w of the end it is 1 / (sqrt(2) - 1) = 2.4 times as long as between w and 2 w, and
-less where peaks have unequal heights. More is an overload, unless the simulation has it as well.
+Channels whose peaks are flat are overloaded. A range that is reached in all recordings is told by
+`noise.diagnosis.bench.check`; an amplifier that overloads before the anti-alias filter leaves no
+single largest value, but samples that pile up at the ends of the signal. Whatever swings smoothly
+passes its peak as a parabola does: within a small distance w of the end it is 1 / (sqrt(2) - 1) =
+2.4 times as long as between w and 2 w, and less where peaks have unequal heights. More is an
+overload, unless the simulation has it as well.
 """
 
 from __future__ import annotations
@@ -28,7 +25,6 @@ import numpy as np
 from models.recording import Recording
 from models.rig import Rig
 from models.sensors import Sensors
-from models.units import CHANNEL_UNITS
 from noise.base.arrays import Array
 from noise.diagnosis.case import Case
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, as_seldom, null_log_odds
@@ -163,8 +159,8 @@ _POOR = 0.05
 benches of the second rig good tests lack 0.001 and poor ones 0.10; between these it is assumed."""
 
 
-def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tuple[str, ...]:
-    """Say which sensors the causes were not learned with; empty where all are as they were.
+def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> str:
+    """Return a note on sensors that the causes were not learned with; empty if there are none.
 
     Parameters
     ----------
@@ -173,11 +169,6 @@ def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tupl
     recordings : sequence of Recording
         Through them.
 
-    Returns
-    -------
-    tuple of str
-        One line, or none.
-
     Examples
     --------
     >>> import numpy as np
@@ -185,76 +176,36 @@ def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tupl
     >>> from models.sensors import Sensor, Sensors
     >>> run = Recording(np.zeros((1, 4)), 30e3, (Channel("torque"),))
     >>> unlearned_sensors(Sensors({"torque": Sensor(full_scale=102.5, bits=16)}), [run])
-    ()
+    ''
     """
-    usual = Acquisition().noise
-    rough: list[str] = []
-    full: list[str] = []
-    filtered: dict[float, list[str]] = {}
-    for kind in dict.fromkeys(c.kind for r in recordings for c in r.channels if c.kind in usual):
+    reasons = []
+    for kind in Acquisition().noise:
         sensor = sensors.of(kind)
         rows = [(r, row) for r in recordings if (row := r.first(kind)) is not None]
+        if not rows:
+            continue
         if _is_rough(sensors, kind):
-            level, most = _levels(sensors, kind)
-            rough.append(f"{kind} {level:.2g} {CHANNEL_UNITS[kind]} (at most {most:.2g})")
+            reasons.append(f"noise or rounding of {kind}")
         if sensor.full_scale is not None:
             end = sensor.full_scale - 1.5 * sensor.step
             if any(abs(r.samples[row]).max() >= end for r, row in rows):
-                full.append(kind)
+                reasons.append(f"a range that {kind} reaches")
         if sensor.antialias is not None and sensor.antialias < USABLE * rows[0][0].rate:
-            filtered.setdefault(sensor.antialias, []).append(kind)
-    reasons = [f"noise and rounding of {', '.join(rough)}"] if rough else []
-    reasons += [f"a filter at {corner:g} Hz ({', '.join(on)})" for corner, on in filtered.items()]
-    reasons += [f"a range that is reached ({', '.join(full)})"] if full else []
+            reasons.append(f"a filter of {kind} at {sensor.antialias:g} Hz")
     if not reasons:
-        return ()
+        return ""
     return (
-        f"the causes were learned with better sensors than these: {'; '.join(reasons)}; their "
+        f"the causes were learned with better sensors than these ({', '.join(reasons)}); their "
         "probabilities are less sure here, and none is named within what repeats through the same "
-        "sensors differ by",
-    )
-
-
-def poor_responses(rig: Rig, recordings: Sequence[Recording]) -> tuple[str, ...]:
-    """Return a note if measured responses are too poor to name a cause; else nothing.
-
-    Parameters
-    ----------
-    rig : Rig
-    recordings : sequence of Recording
-        Whose supports' responses are looked at.
-
-    Returns
-    -------
-    tuple of str
-        One line, or none.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_rig
-    >>> poor_responses(load_rig("fluorocarbon"), [])
-    ()
-    """
-    lacking = lacking_coherence(rig, recordings) if rig.measured else 0.0
-    if lacking <= _POOR:
-        return ()
-    return (
-        f"the rig file's responses were measured with a coherence of {1.0 - lacking:.2f} only: "
-        "what they are off by looks like a gain error or another plate, so nothing is named within "
-        "what repeats differ by; more hits, and harder ones, would tell",
+        "sensors differ by"
     )
 
 
 def _is_rough(sensors: Sensors, kind: str) -> bool:
-    level, most = _levels(sensors, kind)
-    return level > most
-
-
-def _levels(sensors: Sensors, kind: str) -> tuple[float, float]:
-    """Return noise and rounding of a sensor and the largest in training [unit of the channel]."""
+    """Return whether noise and rounding of a sensor are above the largest in training."""
     sensor, usual = sensors.of(kind), Acquisition().noise[kind]
     level = _level(usual if sensor.noise is None else sensor.noise, sensor.step)
-    return level, _level(NOISIEST * usual, THESIS_CONVERTER.of(kind).step)
+    return level > _level(NOISIEST * usual, THESIS_CONVERTER.of(kind).step)
 
 
 def _level(noise: float, step: float) -> float:
@@ -377,7 +328,13 @@ def first_answer(
     probabilities |= dict.fromkeys(again, 0.0)
     probabilities["parameters"] = max([probabilities["parameters"], *again.values()])
     rough = unlearned_sensors(case.rig.sensors, case.recordings)
-    poor = poor_responses(case.rig, case.recordings)
+    lacking = lacking_coherence(case.rig, case.recordings) if case.rig.measured else 0.0
+    poor = ""
+    if lacking > _POOR:
+        poor = (
+            f"the rig file's responses were measured with a coherence of {1.0 - lacking:.2f} only; "
+            "nothing is named within what repeats differ by; more hits, and harder ones, would tell"
+        )
     if any(_is_rough(case.rig.sensors, kind) for kind in case.estimated_noise):
         probabilities["background_noise"] = 0.0  # nothing tells it from the sensors' own
     chance = gap.p_value if poor else None
@@ -392,7 +349,8 @@ def first_answer(
     if chance is not None and chance > UNUSUAL and not needs:
         hypotheses = with_none(hypotheses, _WITHIN_REPEATS)
     flat = flat_channels(case.recordings, lambda one: comparison.simulated(Model(), one, seed))
-    answer = FirstAnswer(comparison, gap, {}, probabilities, (), (), (*rough, *poor), flat)
+    unlearned = tuple(filter(None, (rough, poor)))
+    answer = FirstAnswer(comparison, gap, {}, probabilities, (), (), unlearned, flat)
     answer = answer.with_hypotheses(hypotheses)
     if not needs:
         return replace(answer, verdict=())

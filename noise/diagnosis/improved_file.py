@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
@@ -44,41 +44,6 @@ def improved_sentence(improvement: Improvement) -> str:
         f"{'held-out recordings' if unseen else 'the recording that it was fitted to'}; 1 is what "
         "repeats differ by."
     )
-
-
-def improved_commands(
-    improvement: Improvement, file: Path | str, data: Sequence[Path], effects: Path | None
-) -> list[str]:
-    """Return the commands to run next with the file of an improved rig.
-
-    Parameters
-    ----------
-    improvement : Improvement
-    file : path-like
-    data : sequence of Path
-        Diagnosed recordings.
-    effects : Path, optional
-        File of user-defined effects.
-
-    Examples
-    --------
-    >>> from pathlib import Path
-    >>> from models.rig_file import load_material_rig
-    >>> from noise.diagnosis.outcome import Improvement
-    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), {}, (), (), (),
-    ...                     2.4, 1.1)
-    >>> improved_commands(found, "out/improved.toml", [Path("recordings")], None)[0]
-    'bushing-noise diagnose recordings --rig out/improved.toml'
-    """
-    import shlex
-
-    own = own_effects(improvement)
-    needed = ["--effects", str(effects)] if own and effects is not None else []
-    recordings = [str(path) for path in data]
-    calls = [["diagnose", *recordings, "--rig", str(file), *needed]]
-    if not own:
-        calls.append(["screen", str(file)])
-    return [f"bushing-noise {shlex.join(call)}" for call in calls]
 
 
 NAME = "improved.toml"
@@ -131,45 +96,25 @@ def improved_text(
     )
 
 
-def own_effects(improvement: Improvement) -> tuple[str, ...]:
-    """Return the names of user-defined effects of an improved rig."""
-    return tuple(spec.name for spec in improvement.rig.effects if spec.name not in EFFECTS)
-
-
-_OF_THIS_FORM = (
-    " That of an effect is for this fit and form alone; the report's interval of its strength also "
-    "allows for other forms."
-)
-
-
 def _head(improvement: Improvement) -> list[str]:
-    own = own_effects(improvement)
+    held_out = set(improvement.held_out) - set(improvement.fitted_to)
+    where = f"On {', '.join(improvement.held_out)}, which this fit did not use,"
     paragraphs = [
-        f"Improved by a diagnosis of {len(improvement.fitted_to) + len(improvement.held_out)} "
-        "recordings.",
-        f"Fitted to {', '.join(improvement.fitted_to)}.",
-        f"On {', '.join(improvement.held_out)}, which this fit did not use, the gap fell from "
+        f"Improved by a diagnosis. Fitted to {', '.join(improvement.fitted_to)}.",
+        f"{where if held_out else 'On what it was fitted to'} the gap fell from "
         f"{improvement.gap_before:.2g} to {improvement.gap_after:.2g}; 1 is what repeats of one "
-        "run differ by. Of several forms the one was taken that left least there."
-        if set(improvement.held_out) - set(improvement.fitted_to)
-        else f"The gap fell from {improvement.gap_before:.2g} to {improvement.gap_after:.2g} "
-        "on the recording that it was fitted to: nothing was held out.",
-        "Under [tolerances] stands how well each number is known: a relative standard deviation, "
-        "1.645 of which to either side make the 90 % interval. It is no scatter of built parts."
-        + (_OF_THIS_FORM if improvement.effects else ""),
-        "Do not trust it at speeds, interferences or supports beyond those recorded, after the "
-        "bushing was assembled anew, or for the name of the cause: another effect may do the same "
-        "here.",
+        "run differ by.",
+        "[tolerances] has the relative standard deviation to which each number is known, for this "
+        "fit and these forms of effects. It is no scatter of built parts.",
+        "Do not trust it at speeds, interferences or supports beyond those recorded, or for the "
+        "name of the cause: another effect may do the same here.",
     ]
     if improvement.undetermined:
         paragraphs.append(
-            "These recordings hardly determine " + ", ".join(improvement.undetermined) + "."
+            f"These recordings hardly determine {', '.join(improvement.undetermined)}."
         )
-    if own:
-        paragraphs.append(
-            f"It needs --effects FILE.py with {', '.join(own)}, in simulate, render and diagnose; "
-            "screen knows the shipped effects alone."
-        )
+    if own := [spec.name for spec in improvement.rig.effects if spec.name not in EFFECTS]:
+        paragraphs.append(f"It needs --effects FILE.py with {', '.join(own)}.")
     return [line for paragraph in paragraphs for line in wrap(paragraph, _WIDTH)]
 
 

@@ -117,26 +117,6 @@ class EffectFinding:
 
 @short_repr
 @dataclass(frozen=True)
-class HypothesisFinding:
-    """Set of causes that may be present together.
-
-    Parameters
-    ----------
-    causes : tuple of str
-        Empty if nothing differs.
-    probability : float
-        [-]
-    gap : float, optional
-        Gap of held-out recordings with them, relative to that of repeats; None without a fit [-].
-    """
-
-    causes: tuple[str, ...]
-    probability: float
-    gap: float | None = None
-
-
-@short_repr
-@dataclass(frozen=True)
 class Agreement:
     """Gap of a recording from the simulation of the rig file.
 
@@ -260,8 +240,6 @@ class Diagnosis:
         tests; the smallest first.
     improvement : Improvement, optional
         None if nothing closes the gap, and without fits.
-    hypotheses : tuple of HypothesisFinding
-        Sets of causes, the likeliest first.
     agreement : tuple of Agreement
         Gap of each recording before any fit.
     remainder : Remainder, optional
@@ -281,23 +259,22 @@ class Diagnosis:
     """
 
     verdict: tuple[str, ...]
-    equivalent: tuple[tuple[str, str], ...]
-    location: Location | None
-    stages: Mapping[str, StageFinding]
-    effects: tuple[EffectFinding, ...]
-    probabilities: Mapping[str, float]
-    parameters: Mapping[str, tuple[float, float]]
-    next_measurement: str
-    held_out: tuple[str, ...]
-    gap: float
-    floor: float
-    p_value: float
-    seconds: float
+    equivalent: tuple[tuple[str, str], ...] = ()
+    location: Location | None = None
+    stages: Mapping[str, StageFinding] = field(default_factory=dict)
+    effects: tuple[EffectFinding, ...] = ()
+    probabilities: Mapping[str, float] = field(default_factory=dict)
+    parameters: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    next_measurement: str = ""
+    held_out: tuple[str, ...] = ()
+    gap: float = math.nan
+    floor: float = 1.0
+    p_value: float = math.nan
+    seconds: float = 0.0
     notes: tuple[str, ...] = ()
     illustrations: tuple[Illustration, ...] = ()
     differences: tuple[Location, ...] = ()
     improvement: Improvement | None = None
-    hypotheses: tuple[HypothesisFinding, ...] = ()
     agreement: tuple[Agreement, ...] = ()
     remainder: Remainder | None = None
     bench: tuple[str, ...] = ()
@@ -364,7 +341,6 @@ _KEYS: dict[type, dict[str, str]] = {
     Diagnosis: {"differences": "map", "floor": "gap_floor"},
     Location: {"band": "band_hz"},
     Remainder: {"band": "band_hz"},
-    HypothesisFinding: {"gap": "gap_after"},
     Agreement: {"speed": "speed_rad_s", "interference": "interference_mm"},
 }
 """Keys of fields that have another name in the file."""

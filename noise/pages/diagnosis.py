@@ -55,9 +55,7 @@ from noise.pages.clips import Clip, Entry
 from noise.pages.page import page_html, write_page
 
 
-def write_diagnosis(
-    folder: Path, diagnosis: Diagnosis, improved: str | None = None, commands: Sequence[str] = ()
-) -> None:
+def write_diagnosis(folder: Path, diagnosis: Diagnosis, improved: str | None = None) -> None:
     """Write ``report.html``, ``diagnosis.json`` and ``improved.toml``, all whole or none at all.
 
     Parameters
@@ -67,8 +65,6 @@ def write_diagnosis(
     diagnosis : Diagnosis
     improved : str, optional
         Text of the improved rig file; without it an older file is removed.
-    commands : sequence of str
-        Commands to run next.
 
     Raises
     ------
@@ -88,7 +84,7 @@ def write_diagnosis(
     """
     content = as_json(diagnosis, NAME if improved is not None else None)
     data = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
-    html = _html(diagnosis, commands if improved is not None else ())
+    html = _html(diagnosis, improved is not None)
     with atomic(folder / "diagnosis.json") as json_part, ExitStack() as files:
         # Names of files may hold what no UTF-8 can.
         json_part.write_bytes(f"{data}\n".encode("utf-8", "backslashreplace"))
@@ -100,7 +96,7 @@ def write_diagnosis(
             (folder / NAME).unlink(missing_ok=True)
 
 
-def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
+def _html(diagnosis: Diagnosis, has_improved: bool) -> str:
     entries: dict[str, Entry] = {}
     clips: dict[str, Clip] = {}
     shown: Sequence[b.Block] = ()
@@ -136,7 +132,7 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
         [
             chain,
             b.Group("", [] if bench else [far, causes], style="two"),
-            b.Section("The improved rig", _improved(diagnosis, commands)),
+            b.Section("The improved rig", _improved(diagnosis) if has_improved else []),
             b.Group("", [ahead, b.Section("What to bear in mind", [notes])], style="two"),
             b.Section(
                 "Measured against simulated",
@@ -161,14 +157,14 @@ _GAP = (
 )
 
 
-def _improved(diagnosis: Diagnosis, commands: Sequence[str]) -> list[b.Block]:
-    if not commands:
-        return []
+def _improved(diagnosis: Diagnosis) -> list[b.Block]:
     words = improved_sentence(diagnosis.improvement) if diagnosis.improvement else ""
     return [
         b.Text(f"{NAME} beside this page is a rig file. {words}"),
-        b.Text("What it leaves, and what other designs would do:"),
-        *map(b.Pre, commands),
+        b.Text(
+            f"bushing-noise diagnose with --rig {NAME} says what it leaves, bushing-noise screen "
+            f"{NAME} what other designs would do."
+        ),
         b.Text(
             "Do not trust it at speeds, interferences or supports beyond those recorded. An effect "
             "that closes the gap need not be its cause. It is a fit of its own, in forms that a "

@@ -11,9 +11,8 @@ import pytest
 from models.rig_file import load_material_rig, load_rig
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.case import Case, read_case
-from noise.diagnosis.diagnose import diagnose_case
+from noise.diagnosis.diagnose import diagnose, diagnose_case
 from noise.diagnosis.outcome import as_json
-from noise.diagnosis.run import diagnose
 from noise.diagnosis.text.sentences import answer
 from sim.run import simulate
 from tests.helpers.small_rigs import RIG, at, only, run, write_case

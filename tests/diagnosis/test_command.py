@@ -15,8 +15,8 @@ from models.errors import ParameterError
 from noise.base.user_effects import effect_library
 from noise.cli import main
 from noise.diagnosis.causes.posterior import load_posterior
+from noise.diagnosis.diagnose import diagnose
 from noise.diagnosis.outcome import as_json
-from noise.diagnosis.run import diagnose
 from sim.effects import EFFECTS
 from tests.helpers.answered_diagnoses import as_the_contract_has_it
 from tests.helpers.made_diagnoses import one_effect
@@ -75,8 +75,6 @@ def test_the_quick_answer_has_the_contracts_keys(answered):
     told = answered
     as_the_contract_has_it(told)
     assert told["held_out"] == []
-    nothing = [one["probability"] for one in told["hypotheses"] if not one["causes"]]
-    assert nothing == [told["probabilities"]["none"]]
     assert all(place["p_value"] <= 0.05 for place in told["map"])
     assert all(effect["closed"] is None for effect in told["effects"])
 
@@ -223,8 +221,7 @@ def test_a_notebook_takes_effects_of_the_users_own_as_the_command_does(tmp_path,
     found = as_json(diagnose(data, rig, effects=mine, quick=True))
     assert {**found, "seconds": 0.0} == {**told, "seconds": 0.0}
     more = as_json(diagnose(data, rig, effects=[str(mine), other], quick=True))
-    assert more["notes"][-1].startswith("folded was not asked for")
-    assert {**more, "seconds": 0.0, "notes": told["notes"]} == {**told, "seconds": 0.0}
+    assert {**more, "seconds": 0.0} == {**told, "seconds": 0.0}
     (tmp_path / "mine.py").write_text(RECTIFIER)
     with pytest.raises(ParameterError, match=r"mine.py: effect 'rectifier' is defined in another"):
         diagnose(data, rig, effects=[mine, tmp_path / "mine.py"], quick=True)
@@ -255,8 +252,6 @@ def test_where_nothing_is_to_explain_chances_are_of_the_users_own_effects_and_sa
     chances = {name: p for name, p in told["probabilities"].items() if p}
     assert set(chances) == {"none", "rectifier"}
     assert sum(chances.values()) == pytest.approx(1.0, abs=1e-3)
-    sets = {tuple(one["causes"]): one["probability"] for one in told["hypotheses"]}
-    assert sets == {(): chances["none"], ("rectifier",): chances["rectifier"]}
     assert told["effects"][0]["probability"] == chances["rectifier"]
     assert any("the probabilities are of rectifier and of no gap" in n for n in told["notes"])
 

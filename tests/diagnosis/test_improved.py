@@ -6,7 +6,6 @@ import contextlib
 import io
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,10 +18,9 @@ from models.rig import LawSpec
 from models.rig_file import base_name, changed_rig_text, load_material_rig, load_rig
 from noise.cli import main
 from noise.diagnosis.case import Case
-from noise.diagnosis.diagnose import case_remarks
-from noise.diagnosis.improved_file import check_base, improved_commands, improved_text
+from noise.diagnosis.diagnose import case_remarks, diagnose
+from noise.diagnosis.improved_file import check_base, improved_text
 from noise.diagnosis.outcome import Improvement
-from noise.diagnosis.run import diagnose
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
 from noise.screening.design import load_design
 from sim.effects import EFFECTS
@@ -221,8 +219,6 @@ def test_effects_of_the_users_own_are_said_to_need_their_file():
     rig = replace(load_material_rig("PDMS"), effects=(LawSpec("rectifier", {"share": 0.8}),))
     found = Improvement(rig, {}, rig.effects, {}, (), ("a",), ("b",), 3.0, 1.0)
     assert "--effects FILE.py" in improved_text(found, "PDMS")
-    calls = improved_commands(found, "improved.toml", [Path("data")], Path("mine.py"))
-    assert calls == ["bushing-noise diagnose data --rig improved.toml --effects mine.py"]
 
 
 def test_recordings_beyond_what_a_rig_was_fitted_to_are_remarked_once(weak):

@@ -8,7 +8,7 @@ import pytest
 from models.rig_file import load_rig
 from noise.diagnosis.bench.check import bench_findings, unchecked_units
 from noise.diagnosis.case import Case, read_case
-from noise.diagnosis.run import diagnose
+from noise.diagnosis.diagnose import diagnose
 from tests.helpers.small_rigs import RIG, at, only, run, write_case
 from tests.helpers.wrong_benches import WRONG_BENCHES
 

@@ -12,7 +12,6 @@ from noise.diagnosis.outcome import (
     Agreement,
     Diagnosis,
     EffectFinding,
-    HypothesisFinding,
     Illustration,
     Location,
     Remainder,
@@ -170,10 +169,6 @@ def unknown():
         ("unknown",),
         effects=(tried,),
         probabilities={"unknown": 0.88, "velocity_weakening": 0.12, **SMALL},
-        hypotheses=(
-            HypothesisFinding(("unknown",), 0.88),
-            HypothesisFinding(("velocity_weakening",), 0.12, 4.8),
-        ),
         remainder=Remainder(4.8, ("torque", "pressure"), (500.0, 1400.0)),
         next_measurement="Two speeds more, with the clamp bolted down.",
         illustrations=(illustration("run03", run(PARTIAL), run(), None),),

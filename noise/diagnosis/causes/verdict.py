@@ -386,7 +386,7 @@ def next_measurement(
     farthest: str = "",
     own_fit: bool = True,
 ) -> str:
-    """Return the next measurement that would reduce the uncertainty most.
+    """Return the next measurement that would reduce the uncertainty most; empty if none would.
 
     Parameters
     ----------
@@ -414,7 +414,7 @@ def next_measurement(
             return "each condition once more: what its two recordings share is no chance"
         if farthest:
             return f"the condition of {farthest} once more, to see whether its deviation is chance"
-        return "none: repeats of one condition differ as much as recording and simulation do"
+        return ""
     if verdict == ("parameters",) and not own_fit:
         return (
             "nothing yet: the rig file has no [[fit]] of its own. Let bushing-noise identify make "

@@ -128,9 +128,6 @@ def add_fits(
     diagnosis = replace(
         diagnosis,
         effects=_ranked(diagnosis, findings),
-        hypotheses=tuple(
-            replace(one, gap=_gap_of(one.causes, judged.fits)) for one in diagnosis.hypotheses
-        ),
         held_out=tuple(case.names[i] for i in held),
     )
     fits = judged.fits
@@ -177,15 +174,6 @@ def _ranked(
 ) -> tuple[EffectFinding, ...]:
     listed = {effect.name: effect for effect in diagnosis.effects} | dict(findings)
     return tuple(sorted(listed.values(), key=lambda effect: -effect.probability))
-
-
-def _gap_of(causes: tuple[str, ...], fits: CaseFits | None) -> float | None:
-    if fits is None:
-        return None
-    if not causes or causes == ("parameters",):
-        return rms(fits.held_out(fits.recalibrated if causes else fits.before))
-    fit = fits.of.get(frozenset(causes))
-    return None if fit is None else rms(fits.held_out(fit.squared))
 
 
 def _finding(
