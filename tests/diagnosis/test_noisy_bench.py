@@ -59,7 +59,7 @@ def test_how_seldom_an_answer_is_follows_from_ranks_and_of_one_recording_from_th
     assert as_seldom(-30.0, nulls, 1) < 0.01
 
 
-def test_a_gap_above_its_floor_is_never_said_to_be_no_more_than_repeats(tmp_path):
+def test_a_gap_that_repeats_do_not_have_is_not_said_to_be_like_theirs(tmp_path):
     runs = [run(at(v), seed=i) for i, v in enumerate((1.0, 2.0))]
     quiet = diagnose(*write_case(tmp_path, runs), quick=True)
     large = replace(quiet, verdict=(), gap=2.4, p_value=2e-4)
@@ -67,10 +67,3 @@ def test_a_gap_above_its_floor_is_never_said_to_be_no_more_than_repeats(tmp_path
     assert "by more than simulated repeats do" in verdict_sentence(large)
     small = replace(large, gap=0.9, p_value=0.4, agreement=())
     assert "differ as repeats do" in verdict_sentence(small)
-    far = tuple(replace(one, gap=2.5) for one in quiet.agreement)
-    for above, chance in (
-        (replace(small, gap=1.1), "repeats often differ as much"),
-        (replace(small, agreement=far), "may be chance"),
-    ):
-        assert "no more than repeats" not in verdict_sentence(above)
-        assert chance in verdict_sentence(above)
