@@ -44,10 +44,8 @@ from .modal.hammer import (
     estimate_transfer_function as estimate_transfer_function,
 )
 from .modal.modal_fit import (
-    fit_modes as fit_modes,
-)
-from .modal.modes import (
     Modes as Modes,
+    fit_modes as fit_modes,
 )
 from .recording import (
     feature_vector as feature_vector,

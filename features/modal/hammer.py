@@ -1,10 +1,8 @@
-"""Impulse hammer hits: checks, windows, and the transfer function with its coherence.
+"""Impulse hammer hits: checks, and the transfer function with its coherence.
 
 Each hit is one segment with a boxcar window: the force ends and the response decays before its end,
-so a window would only add damping. Otherwise an exponential window over force and response makes
-them decay; it shifts each pole by its own rate and nothing else, which is removed from the modes
-again. Cross- and autospectra are averaged over the hits. The estimator is H1, which
-assumes noise in the response only.
+so a window would only add damping. Cross- and autospectra are averaged over the hits. The estimator
+is H1, which assumes noise in the response only.
 
 A second contact of the hammer causes notches in the spectrum of the force, a clipped force is
 wrong, and a drifting force hides its lowest lines; none can be corrected, so such hits are refused.
@@ -41,9 +39,6 @@ LONGEST_BLOW = 0.2
 
 LARGEST_DRIFT = 0.01
 """Largest drift of the force outside the impact, over the largest force."""
-
-WINDOW_END = 0.01
-"""Value of the exponential window at the end of a hit; it is 1 at the impact."""
 
 NULL = 0.01
 """Power of the force at a null over that on either side."""
@@ -190,46 +185,6 @@ def remaining_response(hits: Sequence[Hit]) -> float:
         if last > 0.0:
             remaining = max(remaining, math.sqrt(last / after) if after > last else 1.0)
     return remaining
-
-
-def windowed_hits(hits: Sequence[Hit]) -> tuple[list[Hit], float]:
-    """Apply a force and an exponential window to hits.
-
-    Parameters
-    ----------
-    hits : sequence of Hit
-
-    Returns
-    -------
-    hits : list of Hit
-        Hits whose force is zero outside the impact, and whose force and response decay from there.
-    rate : float
-        Rate that the window adds to the decay of each pole [1/s].
-
-    Examples
-    --------
-    >>> force = np.zeros(1000)
-    >>> force[0] = 1.0
-    >>> (hit,), rate = windowed_hits([Hit(force, np.ones(1000), 1e3)])
-    >>> round(rate, 2), round(float(hit.response[-1]), 3)
-    (4.61, 0.01)
-    """
-    blows = []
-    for hit in hits:
-        force, top = _upright(hit.force)
-        start, end = _lobe(force, top, DOUBLE_HIT)
-        blows.append((max(0, 2 * start - end), min(force.size, 2 * end - start)))
-    shortest = min(
-        (hit.force.size - start) / hit.rate for hit, (start, _) in zip(hits, blows, strict=True)
-    )
-    rate = -math.log(WINDOW_END) / shortest
-    windowed = []
-    for hit, (start, end) in zip(hits, blows, strict=True):
-        index = np.arange(hit.force.size)
-        decay = np.exp(-rate * np.maximum(index - start, 0) / hit.rate)
-        force = np.where((index >= start) & (index < end), hit.force, 0.0)
-        windowed.append(replace(hit, force=decay * force, response=decay * hit.response))
-    return windowed, rate
 
 
 def force_nulls(

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from features.modal.hammer import Hit
-    from features.modal.modes import Modes
+    from features.modal.modal_fit import Modes
     from models.transfer_functions.transfer_function import TransferFunction
 
 
@@ -47,7 +47,6 @@ OPTIONS = (
     Option("--response NAME", _channel),
     Option("--band LOW..HIGH", band),
     Option("--coherence C", number(least=0.0, most=1.0), _DEFAULT_COHERENCE),
-    Option("--window"),
 )
 
 
@@ -58,24 +57,13 @@ def run(options: Namespace) -> int:
     say(f"{counted(len(hits), 'hit')} averaged, {refused} refused")
     if not hits:
         return 1
-    from features.modal.hammer import (
-        estimate_transfer_function,
-        remaining_response,
-        windowed_hits,
-    )
+    from features.modal.hammer import estimate_transfer_function, remaining_response
 
-    rate = 0.0
     remaining = remaining_response(hits)
-    if options.window:
-        hits, rate = windowed_hits(hits)
-        note(
-            f"force and exponential window: the response function decays by {rate:.4g} 1/s faster "
-            "than the structure; this is taken off the damping of modes"
-        )
-    elif remaining > _TRUNCATION:
+    if remaining > _TRUNCATION:
         note(
             f"{100 * remaining:.3g} % of a response has not died away at its end (or is noise). "
-            "Peaks are then too low and damping is wrong: record for longer, or use --window"
+            "Peaks are then too low and damping is wrong: record for longer"
         )
     transfer = estimate_transfer_function(
         hits,
@@ -95,7 +83,7 @@ def run(options: Namespace) -> int:
             transfer.frequencies, transfer.response,
             low=low, high=high, coherence=transfer.coherence,
         )  # fmt: skip
-        modes = _trusted(modes, transfer, hits, options.coherence).without_window(rate)
+        modes = _trusted(modes, transfer, hits, options.coherence)
         count = counted(modes.frequency.size, "mode")
         say(f"{count} between {low:.5g} and {high:.5g} Hz")
     _write(options, transfer, modes)

@@ -8,7 +8,6 @@ from features.modal.hammer import (
     Hit,
     check_hit,
     estimate_transfer_function,
-    windowed_hits,
 )
 from models.errors import ParameterError, RecordingError
 
@@ -90,18 +89,6 @@ def test_swapped_channels_are_named_so(sign):
 def test_times_in_milliseconds_taken_for_seconds_are_noticed():
     with pytest.raises(RecordingError, match=r"the blow lasts .* s; times must be in s"):
         check_hit(Hit(pulse(), ringing(), RATE / 1e3))
-
-
-def test_the_exponential_window_moves_poles_by_its_rate_and_nothing_else():
-    decay, w = 3.0, 2 * np.pi * 700.0
-    t = np.arange(2000) / RATE
-    response = np.convolve(pulse(at=100), np.exp(-decay * t) * np.sin(w * t))[:2000]
-    hits, rate = windowed_hits([Hit(pulse(at=100), response, RATE)])
-    h = estimate_transfer_function(hits)
-    s = 2j * np.pi * h.frequencies + decay + rate
-    z = np.exp(-s / RATE)
-    true = z * np.sin(w / RATE) / (1 - 2 * z * np.cos(w / RATE) + z**2)
-    np.testing.assert_allclose(h.response[:300], true[:300], atol=0.011 * np.abs(true).max())
 
 
 def test_h1_and_coherence_are_those_of_scipy():
