@@ -32,15 +32,12 @@ _EXACT = 0.16
 gains; assumed."""
 
 _UNITS = {
-    "acceleration": {1.0 / 9.80665: "g", 1e3: "mm/s^2", 1e3 / 9.80665: "mg", 1e-3: "km/s^2"},
-    "pressure": {1e3: "mPa", 1e6: "uPa", 1e-3: "kPa", 1e-5: "bar", 1e-2: "hPa"},
-    "torque": {
-        1e3: "N mm", 1e2: "N cm", 1e-3: "kN m", 8.851: "lbf in", 10.197: "kgf cm",
-        0.10197: "kgf m",
-    },
+    "acceleration": {1.0 / 9.80665: "g", 1e3: "mm/s^2"},
+    "pressure": {1e3: "mPa", 1e6: "uPa", 1e-3: "kPa"},
+    "torque": {1e3: "N mm", 1e2: "N cm", 1e-3: "kN m"},
     "angle": {180.0 / math.pi: "degrees", 0.5 / math.pi: "turns", 1e3: "mrad"},
-    "speed": {30.0 / math.pi: "rpm", 180.0 / math.pi: "degree/s", 0.5 / math.pi: "turns/s"},
-}  # fmt: skip
+    "speed": {30.0 / math.pi: "rpm", 180.0 / math.pi: "degree/s"},
+}
 """Wrong units by channel and by the factor by which they enlarge a value."""
 
 
@@ -100,12 +97,8 @@ def factor_words(factor: float) -> str:
     >>> factor_words(1000.0), factor_words(0.102)
     ('1000 times too large', '9.8 times too small')
     """
-    size = max(factor, 1.0 / factor)
-    return (
-        f"{size:.2g} times too {'large' if factor > 1.0 else 'small'}"
-        if size < 100.0
-        else (f"{float(f'{size:.2g}'):.0f} times too {'large' if factor > 1.0 else 'small'}")
-    )
+    size = float(f"{max(factor, 1.0 / factor):.2g}")
+    return f"{size:g} times too {'large' if factor > 1.0 else 'small'}"
 
 
 KINDS = ("torque", "acceleration", "pressure", "angle")
@@ -299,9 +292,6 @@ OUTPUTS = ("acceleration", "pressure")
 _TORQUE = (1.0 / 6.0, 6.0)
 """Range of the mean torque over the kinetic torque of the fit, with any effect [-]; assumed."""
 
-_FAR = ("N mm", "kN m")
-"""Units of torque whose factors exceed the difference between rigs of one kind."""
-
 _GAIN = (1.0 / 30.0, 30.0)
 """Range of the gain of a path over the rig's, with any effect [-]; assumed."""
 
@@ -330,10 +320,8 @@ _RISING = 0.5
 """Least skewness of the rate of a torque that rises fast and falls slowly [-]; assumed."""
 
 
-def swapped_channels(recordings: Sequence[Recording], rig: Rig, levels: Sequence[Levels]) -> str:
-    """Return a finding if two channels are swapped; otherwise empty."""
-    if misplaced := misplaced_torque(recordings, rig):
-        return misplaced
+def swapped_outputs(levels: Sequence[Levels]) -> str:
+    """Return a finding if acceleration and pressure are swapped; otherwise empty."""
     crossed, straight = [], []
     for one in _slipping(levels):
         if ("acceleration", "pressure") not in one.paths:
@@ -390,15 +378,15 @@ def _stands_for_torque(recording: Recording, rig: Rig) -> str:
     return torque_like[0] if torque_like and "torque" not in torque_like else ""
 
 
-def wrong_units(levels: Sequence[Levels], *, alike: float = 1.0) -> Iterator[str]:
+def wrong_units(levels: Sequence[Levels], *, alike: float = 1.5) -> Iterator[str]:
     """Yield findings on channels that are wrong by a factor.
 
     Parameters
     ----------
     levels : sequence of Levels
     alike : float
-        Largest ratio of the kinetic torque to the rig's, for units that differ by a factor of
-        1000 [-]; larger if only the kind of the rig is known.
+        Largest ratio of the kinetic torque to the rig's [-]; larger if only the kind of the rig is
+        known.
 
     Yields
     ------
@@ -409,8 +397,7 @@ def wrong_units(levels: Sequence[Levels], *, alike: float = 1.0) -> Iterator[str
     scale = 1.0
     if torque:
         factor = float(np.median(torque))
-        far = unit_of("torque", factor, math.log(alike) + 1e-9)
-        unit = unit_of("torque", factor) or (far if far in _FAR else "") or _torque_of_paths(levels)
+        unit = unit_of("torque", factor, math.log(alike))
         if not _TORQUE[0] < factor < _TORQUE[1]:
             yield _unit_words("torque", unit, factor, "the kinetic torque of the rig file")
             scale = factor if unit else 1.0
@@ -422,36 +409,6 @@ def wrong_units(levels: Sequence[Levels], *, alike: float = 1.0) -> Iterator[str
             factor = scale * float(np.median([fit.gain for fit in fits]))
         if unit or (follows and not _GAIN[0] < factor < _GAIN[1]):
             yield _unit_words(kind, unit, factor, "what the torque makes of it on this rig")
-
-
-def _torque_of_paths(levels: Sequence[Levels]) -> str:
-    """Return the wrong unit of the torque that explains the gains of both paths; else empty."""
-    gains = [
-        [fit.gain for one in levels if (fit := one.paths.get((kind, kind))) and _clear(fit)]
-        for kind in OUTPUTS
-    ]
-    if not all(gains):
-        return ""
-    middle = [-math.log(float(np.median(each))) for each in gains]
-    if abs(middle[0] - middle[1]) > _STEADY[0]:
-        return ""
-    return unit_of("torque", math.exp(sum(middle) / 2.0))
-
-
-def shows_level(kind: str, levels: Sequence[Levels]) -> bool:
-    """Return whether recordings determine the level that a channel should have.
-
-    They do if the contact slips in one recording, or if the channel follows its prediction in two.
-
-    Parameters
-    ----------
-    kind : str
-        Kind of the channel.
-    levels : sequence of Levels
-    """
-    own = [(one, fit) for one in levels if (fit := one.paths.get((kind, kind)))]
-    follow = sum(_clear(fit) for _, fit in own)
-    return follow >= min(2, len(levels)) or any(one.swing > SWINGING for one, _ in own)
 
 
 def _clear(fit: PathFit) -> bool:

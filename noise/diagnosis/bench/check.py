@@ -7,12 +7,9 @@ Material and fit determine the contact's torque, and no effect halves it at ever
 material is reported if a shipped one predicts mean, swing and frequency of the torque in every
 recording and the rig file does not.
 
-If the contact slides smoothly, the torque does not excite acceleration and sound, and the findings
-state that their units were not checked.
-
-A dead channel is removed and the others are checked. A channel that clips stays in the recording,
-because the effect of clipping is known; its range is reported so that it can be set higher. The
-stated conditions (speed, its sign, order of the recordings) are compared with torque and angle.
+If the contact slides smoothly, the torque does not excite acceleration and sound, and their units
+are not checked. The stated conditions (speed, its sign, order of the recordings) are compared with
+torque and angle.
 """
 
 from __future__ import annotations
@@ -31,15 +28,12 @@ from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from noise.base.arrays import Array
 from noise.diagnosis.bench.channels import (
-    KINDS,
-    OUTPUTS,
     SWINGING,
     Levels,
     backwards,
     factor_words,
     levels_of,
-    shows_level,
-    swapped_channels,
+    swapped_outputs,
     turned_channels,
     unit_of,
     wrong_units,
@@ -167,221 +161,6 @@ def shuffled_conditions(case: Case, levels: Sequence[Levels]) -> str:
     return (
         f"conditions look shuffled among the recordings: speed and torque of {', '.join(moved)} "
         "are those stated of others"
-    )
-
-
-_NEEDED = KINDS[:3]
-"""Kinds of channels of which a recording needs at least one."""
-
-_LIVELY = 0.1
-"""Ratio of the torque's standard deviation to its mean [-] above which no working channel stays
-within one step of a coarse converter; assumed."""
-
-_FEWEST = 8
-"""Least number of samples at the largest value of a clipped channel; assumed."""
-
-_FLAT = 3.0
-"""Least ratio of the number of samples at the largest value to that just below it [-] for clipping;
-a signal that is not clipped passes through both; assumed."""
-
-_NEAR = 0.01
-"""Width of the interval just below the largest value, as a share of the channel's peak-to-peak
-value [-]; assumed."""
-
-_SAME = 1e-3
-"""Largest relative difference of largest values that belong to one range [-]; assumed."""
-
-
-def without_dead_channels(
-    names: Sequence[str], recordings: Sequence[Recording]
-) -> tuple[list[Recording | None], list[str]]:
-    """Return recordings without their dead channels, and findings on these channels.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Names of the recordings.
-    recordings : sequence of Recording
-
-    Returns
-    -------
-    recordings : list of Recording or None
-        One entry per input recording; None if no usable channel remains.
-    findings : list of str
-        One line per dead channel.
-
-    Examples
-    --------
-    >>> from models.recording import Channel, Recording
-    >>> sound = np.stack([np.sin(np.arange(9000.0)), np.zeros(9000)])
-    >>> run = Recording(sound, 30e3, (Channel("torque"), Channel("pressure")))
-    >>> (left,), findings = without_dead_channels(["a.wav"], [run])
-    >>> left.channel_names, findings
-    (('torque',), ['channel pressure is dead: it stays at 0 in all recordings'])
-    """
-    dead = _dead(recordings)
-    left: list[Recording | None] = []
-    for i, recording in enumerate(recordings):
-        rows = [row for row in range(len(recording.channels)) if (i, row) not in dead]
-        if len(rows) == len(recording.channels):
-            left.append(recording)
-        elif any(recording.channels[row].kind in _NEEDED for row in rows):
-            channels = tuple(recording.channels[row] for row in rows)
-            left.append(replace(recording, samples=recording.samples[rows], channels=channels))
-        else:
-            left.append(None)
-    return left, dead_channels(names, recordings)
-
-
-def dead_channels(names: Sequence[str], recordings: Sequence[Recording]) -> list[str]:
-    """Return one line per dead channel; arguments as of `without_dead_channels`."""
-    constant: dict[str, list[tuple[str, float]]] = {}
-    for i, row in sorted(_dead(recordings)):
-        value = float(recordings[i].samples[row, 0])
-        constant.setdefault(recordings[i].channel_names[row], []).append((names[i], value))
-    lines = []
-    for channel, where in constant.items():
-        values = {value for _, value in where}
-        at = f"at {values.pop() + 0.0:g}" if len(values) == 1 else "at some value"
-        having = sum(channel in recording for recording in recordings)
-        among = ", ".join(name for name, _ in where) if len(where) < having else "all recordings"
-        lines.append(f"channel {channel} is dead: it stays {at} in {among}")
-    return lines
-
-
-def _dead(recordings: Sequence[Recording]) -> set[tuple[int, int]]:
-    """Return the indices (recording, row) of the dead channels."""
-    constant: dict[str, list[tuple[int, int]]] = {}
-    alive: set[str] = set()
-    for i, recording in enumerate(recordings):
-        for row, channel in enumerate(recording.channels):
-            if channel.kind not in KINDS:
-                continue
-            if float(np.ptp(recording.samples[row])) == 0.0:
-                constant.setdefault(channel.name, []).append((i, row))
-            else:
-                alive.add(channel.name)
-    return {
-        (i, row)
-        for name, places in constant.items()
-        for i, row in places
-        if name not in alive or _lively(recordings[i])
-    }
-
-
-def _lively(recording: Recording) -> bool:
-    """Return whether the torque swings too much for a working channel to stay constant."""
-    row = recording.first("torque")
-    if row is None:
-        return False
-    torque = recording.samples[row]
-    return float(np.std(torque)) > _LIVELY * abs(float(np.mean(torque)))
-
-
-def clipped_channels(recordings: Sequence[Recording], rig: Rig) -> list[str]:
-    """Return findings on channels that clip below the full scale in the rig file.
-
-    Parameters
-    ----------
-    recordings : sequence of Recording
-    rig : Rig
-
-    Returns
-    -------
-    list of str
-        One line per channel that clips.
-
-    Examples
-    --------
-    >>> from models.recording import Channel, Recording
-    >>> from models.rig_file import load_material_rig
-    >>> time = np.arange(9000) / 30e3
-    >>> torque = 8.0 + np.clip(5.0 * np.sin(2 * np.pi * 97.0 * time), -9.0, 4.3)
-    >>> run = Recording(torque[None], 30e3, (Channel("torque"),))
-    >>> clipped_channels([run], load_material_rig("fluorocarbon-thesis"))
-    ['channel torque clips at 12.3 N m']
-    """
-    lines = []
-    for kind in _NEEDED:
-        ends: dict[float, list[float]] = {1.0: [], -1.0: []}
-        reached: dict[float, list[float]] = {1.0: [], -1.0: []}
-        unit = ""
-        for recording in recordings:
-            if (row := recording.first(kind)) is None:
-                continue
-            unit = recording.channels[row].unit
-            x = np.asarray(recording.samples[row], dtype=np.float64)
-            for sign in ends:
-                ends[sign].append(float((sign * x).max()))
-                if _flat_top(sign * x):
-                    reached[sign].append(float((sign * x).max()))
-        stated = rig.sensors.of(kind).full_scale
-        at = []
-        for sign, tops in reached.items():
-            if not tops or (stated and max(tops) >= stated * (1.0 - _SAME)):
-                continue
-            range_ = max(tops)  # no sample exceeds a range, and all clipped tops lie on it
-            alike = sum(abs(top - range_) <= _SAME * abs(range_) for top in tops)
-            if alike == len(tops) and max(ends[sign]) <= range_ * (1.0 + _SAME):
-                at.append(sign * range_)
-        if at:
-            where = " and ".join(f"{value:.3g}" for value in at)
-            lines.append(f"channel {kind} clips at {where} {unit}")
-    return lines
-
-
-def _flat_top(x: Array) -> bool:
-    """Return whether a signal is clipped at its largest value; `x` has shape (n,)."""
-    top, size = float(x.max()), float(np.ptp(x))
-    if not size:
-        return False
-    at_top = x >= top - 1e-6 * size
-    n_top = int(np.count_nonzero(at_top))
-    if n_top < _FEWEST:
-        return False
-    below = x[~at_top]
-    step = top - float(below.max())  # at least one step of the converter
-    if step > 10.0 * _NEAR * size:
-        return False
-    near = below > top - 1e-6 * size - max(_NEAR * size, 1.5 * step)
-    return n_top > _FLAT * int(np.count_nonzero(near))
-
-
-def unchecked_units(case: Case, library: Mapping[str, Effect] | None = None) -> tuple[str, ...]:
-    """Return a note on the channels whose units, signs and order cannot be checked.
-
-    Parameters
-    ----------
-    case : Case
-    library : mapping of str to Effect, optional
-        Effects by name, which include those of the rig.
-
-    Returns
-    -------
-    tuple of str
-        One line; empty if all channels can be checked.
-    """
-    if any(_swings(recording, case.rig) for recording in case.recordings):
-        return ()
-    cache = TransferFunctionCache(case.rig, library)
-    levels = [levels_of(one, case.rig, cache) for one in case.recordings]
-    recorded = [kind for kind in OUTPUTS if any(kind in one for one in case.recordings)]
-    unchecked = [kind for kind in recorded if not shows_level(kind, levels)]
-    if not unchecked:
-        return ()
-    why = "nothing slips" if any("torque" in one for one in case.recordings) else "no torque"
-    return (
-        f"{why}: units, signs and order of {' and '.join(unchecked)} were not checked, since "
-        "nothing tells how large they should be",
-    )
-
-
-def _swings(recording: Recording, rig: Rig) -> bool:
-    """Return whether the torque of a recording swings as one that slips."""
-    row = recording.first("torque")
-    interference = known_condition(recording.condition).interference
-    return row is not None and float(recording.samples[row].std()) > (
-        SWINGING * rig.fit(interference).kinetic_torque
     )
 
 
@@ -514,18 +293,13 @@ def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> t
     tuple of str
         One line per finding; empty if the case fits its rig.
     """
-    if dead := tuple(dead_channels(case.names, case.recordings)):
-        return dead
-    if case.misplaced:
-        return (case.misplaced,)
+    if case.unusable:
+        return case.unusable
     cache = TransferFunctionCache(case.rig, library)
     levels = [levels_of(recording, case.rig, cache) for recording in case.recordings]
-    if swapped := swapped_channels(case.recordings, case.rig, levels):
-        return (swapped,)
-    if reversed_ := backwards(levels):
-        return (reversed_,)
-    if shuffled := shuffled_conditions(case, levels):
-        return (shuffled,)
+    for first in (swapped_outputs(levels), backwards(levels), shuffled_conditions(case, levels)):
+        if first:
+            return (first,)
     findings = [*turned_channels(levels), *wrong_units(levels), wrong_speed(levels)]
     if findings := [text for text in findings if text]:
         return tuple(findings)
