@@ -8,7 +8,7 @@ import os
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from hashlib import blake2b
 from threading import Thread
@@ -28,7 +28,6 @@ from noise.base.labels import LABELS
 from noise.base.progress import LINES
 from noise.base.tables import plain_cell
 from noise.labels.corrections import version
-from noise.labels.labelling import Labelling
 
 _ORDERS = {
     "name": "name",
@@ -59,15 +58,15 @@ def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
     if opened.table is None:
         return [Route("/api/recordings", _nothing)]
-    labels = Labels(opened.jobs, opened.table, Labelling())
-    labelling = Command(lambda _: labels.ended())
+    labels = Labels(opened.jobs, opened.table)
+    labelling = Command()
     opened.leaving.callback(labelling.stop)
 
     def state() -> dict[str, object]:
         """Return number of recordings [-], whether labelling runs, and its message."""
-        failed = labelling.code not in (None, 0, 1)
-        message = labelling.message if failed or labelling.running else ""
-        return {"total": len(opened.jobs), "running": labelling.running, "message": message}
+        return {
+            "total": len(opened.jobs), "running": labelling.running, "message": labelling.message,
+        }  # fmt: skip
 
     def recordings(request: Request) -> Response:
         query, shown = request.query_params, labels.summaries()
@@ -102,7 +101,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
     def labelled(_: Request, __: dict[str, Any]) -> Response:
         if not labelling.running:
-            labels.follow(Labelling())
             paths = [str(path.absolute()) for path in opened.sources]
             labelling.start(["label", "--out", str(labels.path), "--", *paths])
         return JSONResponse(state())
@@ -130,29 +128,20 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
 
 class Command:
-    """Runner of one command of the program at a time, in a subprocess.
+    """Runner of one command of the program at a time, in a subprocess."""
 
-    Parameters
-    ----------
-    ended : callable
-        Called with the exit code.
-    """
-
-    def __init__(self, ended: Callable[[int], None]) -> None:
-        self._ended = ended
+    def __init__(self) -> None:
         self._process: subprocess.Popen[str] | None = None
-        self._watcher: Thread | None = None
         self.message = ""
-        self.code: int | None = None
 
     @property
     def running(self) -> bool:
-        """Whether the command or the processing of its result is running."""
-        return self._watcher is not None and self._watcher.is_alive()
+        """Whether the command is running."""
+        return self._process is not None and self._process.poll() is None
 
     def start(self, arguments: Sequence[str]) -> None:
-        """Start the command."""
-        self.message, self.code = "", None
+        """Start the command; `message` is its last line, empty after its success."""
+        self.message = ""
         self._process = subprocess.Popen(
             [sys.executable, "-m", "noise", *arguments],
             stdin=subprocess.DEVNULL,
@@ -165,27 +154,24 @@ class Command:
         )
         with suppress(OSError, AttributeError):  # it has ended already; this is Windows
             os.setpriority(os.PRIO_PROCESS, self._process.pid, _NICE)
-        self._watcher = Thread(target=self._watch, args=(self._process,), daemon=True)
-        self._watcher.start()
-
-    def stop(self) -> None:
-        """Terminate the command and wait for its end."""
-        if self._process is None or self._watcher is None:
-            return
-        self._process.terminate()
-        try:
-            self._process.wait(_PATIENCE)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-        self._watcher.join(_PATIENCE)
+        Thread(target=self._watch, args=(self._process,), daemon=True).start()
 
     def _watch(self, process: subprocess.Popen[str]) -> None:
         assert process.stderr is not None
         with process.stderr as lines:
             for line in lines:
                 self.message = line.strip()
-        self.code = process.wait()
-        self._ended(self.code)
+        if process.wait() in (0, 1):
+            self.message = ""
+
+    def stop(self) -> None:
+        """Terminate the command and wait for its end."""
+        if self._process is not None:
+            self._process.terminate()
+            try:
+                self._process.wait(_PATIENCE)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
 
 
 def list_answer(query: Mapping[str, str], shown: Sequence[Row]) -> dict[str, object]:

@@ -1,13 +1,12 @@
 """Label table of the app: results of the classifier and manual corrections.
 
-Rows come from the table, and from the journal of the classifier until the table is written. A
-correction is written before the request is answered; it is refused if its rows have changed
-meanwhile.
+A correction is written before the request is answered; it is refused if its rows have changed
+meanwhile. A table that another program has written is read again.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from threading import RLock
@@ -15,12 +14,10 @@ from threading import RLock
 from models.errors import ParameterError
 from noise.app.corrected_segments import Correction, Row, as_rows, measured_rows
 from noise.base.files import locked
-from noise.batch.journal import JournalReader
-from noise.batch.work import Job, JobResult
-from noise.labels.corrections import track, version, with_corrected_rows
-from noise.labels.labelling import Labelling
+from noise.batch.work import Job
+from noise.labels.corrections import track, version
 from noise.labels.summary import labels_in, naming_row
-from noise.labels.table import COLUMNS, HUMAN, LabelTable, read_label_table
+from noise.labels.table import HUMAN, LabelTable, read_label_table
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +39,6 @@ class Labels:
         The recordings.
     table : Path
         Label table, which need not exist.
-    work : Labelling
-        Work that labels them.
 
     Raises
     ------
@@ -51,7 +46,7 @@ class Labels:
         The table cannot be read.
     """
 
-    def __init__(self, jobs: Sequence[Job], table: Path, work: Labelling) -> None:
+    def __init__(self, jobs: Sequence[Job], table: Path) -> None:
         self._lock = RLock()
         self._jobs = jobs
         self.path = table
@@ -61,36 +56,13 @@ class Labels:
         self._summaries: list[dict[str, object] | None] = [None for _ in jobs]
         self._undo: list[_Correction] = []
         self._redo: list[_Correction] = []
-        self._fresh: dict[int, list[Row]] = {}
-        self._classified: dict[int, list[Row]] = {}
         self._read_table()
-        self.follow(work)
-        for index, rows in self._arrived().items():
-            if not self._rows[index]:
-                self._put(index, rows)
-
-    def follow(self, work: Labelling) -> None:
-        """Read new results from the journal of this work."""
-        with self._lock:
-            self._journal = JournalReader(self.path, work)
-            self._fresh = {}
 
     def refresh(self) -> None:
-        """Read changes of the journal and the table."""
+        """Read the table if it has changed."""
         with self._lock:
             if self._state() != self._table_state:
                 self._read_table()
-                for index, rows in self._fresh.items():
-                    self._put(index, with_corrected_rows(self._rows[index], rows))
-            for index, rows in self._arrived().items():
-                self._fresh[index] = rows
-                self._put(index, with_corrected_rows(self._rows[index], rows))
-
-    def ended(self) -> None:
-        """Read the table that the finished work has written."""
-        with self._lock:
-            self.refresh()
-            self._fresh = {}
 
     def summaries(self) -> list[dict[str, object]]:
         """Return the `summary` of each recording."""
@@ -179,13 +151,10 @@ class Labels:
                 done.remove(last)
                 name = self._jobs[last.index].name
                 raise ParameterError(f"{name}: what was corrected last has been changed since then")
-            # What the classifier has found since then is better than nothing.
-            classified = self._classified.get(last.index, []) if not last.before else []
-            back = last.before or [row for row in classified if track(row) in tracks]
-            rows = [*(row for row in rows if track(row) not in tracks), *back]
+            rows = [*(row for row in rows if track(row) not in tracks), *last.before]
             self._write(last.index, sorted(rows, key=_order))
             done.remove(last)
-            undone.append(_Correction(last.index, last.after, back, by))
+            undone.append(_Correction(last.index, last.after, last.before, by))
             return last.index, self._rows[last.index]
 
     def _check_version(self, index: int, of: str, rows: Sequence[Row]) -> None:
@@ -232,11 +201,6 @@ class Labels:
             return None
         return status.st_ino, status.st_size, status.st_mtime_ns
 
-    def _arrived(self) -> Mapping[int, list[Row]]:
-        news = {index: _rows(done) for index, done in self._journal.news(self._jobs).items()}
-        self._classified |= news
-        return news
-
 
 def _changed_tracks(before: Sequence[Row], after: Sequence[Row]) -> set[str]:
     return {track(row) for row in before if row not in after} | {
@@ -251,10 +215,6 @@ def _order(row: Row) -> tuple[int, float]:
         int(number) if number.isascii() and number.isdecimal() else 0,
         start if isinstance(start, float) else 0.0,
     )
-
-
-def _rows(done: JobResult) -> list[Row]:
-    return [dict(zip(COLUMNS, row, strict=True)) for row in done.rows]
 
 
 def _by_recording(

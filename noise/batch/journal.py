@@ -14,7 +14,7 @@ from __future__ import annotations
 import json
 import sqlite3
 import uuid
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -108,39 +108,6 @@ class Journal:
     def close(self) -> None:
         """Close the database."""
         self._database.close()
-
-
-class JournalReader:
-    """Reader of new results while another process writes the journal of a table.
-
-    Parameters
-    ----------
-    table : Path
-    work : Work
-        Work of the journal; results of other work are ignored.
-    """
-
-    def __init__(self, table: Path, work: Work) -> None:
-        self._address = f"{journal_path(table).absolute().as_uri()}?mode=rw"
-        self._identity = _work_identity(work)
-        self._begun, self._last = "", 0
-
-    def news(self, jobs: Sequence[Job]) -> dict[int, JobResult]:
-        """Return the results since the previous call, by the index of the recording."""
-        by_key = {_key(job): job for job in jobs}
-        results: dict[int, JobResult] = {}
-        with suppress(sqlite3.Error), closing(sqlite3.connect(self._address, uri=True)) as database:
-            call = database.execute("select version, identity, begun from call").fetchone()
-            if call is None or call[:2] != (RESULTS_VERSION, self._identity):
-                return {}
-            if call[2] != self._begun:
-                self._begun, self._last = call[2], 0
-            rows = "select rowid, key, value from result where rowid > ? order by rowid"
-            for row_id, key, value in database.execute(rows, (self._last,)):
-                self._last = row_id
-                if key in by_key and (result := _valid_result(json.loads(value), by_key[key])):
-                    results[by_key[key].index] = result
-        return results
 
 
 def written_rows(table: Path) -> list[list[Any]]:

@@ -11,7 +11,6 @@ from noise.app.labels import Labels
 from noise.base.tables import write_table
 from noise.batch.work import find_jobs
 from noise.labels.corrections import version
-from noise.labels.labelling import Labelling
 from noise.labels.table import COLUMNS
 from tests.helpers.labelled_folder import made_row
 
@@ -24,7 +23,7 @@ def write_tone(path, seconds, n_tracks):
 
 
 def correct(folder, said):
-    labels = Labels(find_jobs([folder]), folder / "labels.csv", Labelling())
+    labels = Labels(find_jobs([folder]), folder / "labels.csv")
     return labels.correct(0, said, version(labels.rows(0)))
 
 

@@ -14,7 +14,6 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 from models.errors import ParameterError
 from noise.batch.journal import (
     Journal,
-    JournalReader,
     journal_path,
     open_journal,
     temporary_journal,
@@ -150,18 +149,6 @@ def test_a_full_disk_says_that_it_is_the_journal_and_what_is_in_it_can_be_gone_o
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
     assert [done is None for done in keep(table, work, jobs)] == [False, *[True] * 5]
-
-
-def test_who_watches_a_journal_gets_each_recording_once(work, jobs, tmp_path):
-    table = tmp_path / "t.csv"
-    reader = JournalReader(table, work)
-    assert reader.news(jobs) == {}
-    with open_journal(table, work) as journal:
-        for job, done in perform_all(work, jobs, journal):
-            assert reader.news(jobs) == ({} if done.error else {job.index: done})
-    keep(table, work, jobs, fresh=True)  # begun again
-    assert sorted(reader.news(jobs)) == [0, 2, 3, 4, 5]
-    assert JournalReader(table, Counting(work.log, factor=2.0)).news(jobs) == {}
 
 
 # What is kept until a call is done

@@ -5,14 +5,13 @@ from __future__ import annotations
 from noise.app.labels import Labels
 from noise.batch.work import find_jobs
 from noise.labels.corrections import version
-from noise.labels.labelling import Labelling
 from noise.labels.table import read_label_table
 
 NAMES = ("a.wav", "b.wav", "c.wav")
 
 
 def labels_of(folder):
-    return Labels(find_jobs([folder]), folder / "labels.csv", Labelling())
+    return Labels(find_jobs([folder]), folder / "labels.csv")
 
 
 def correct(labels, index, said):

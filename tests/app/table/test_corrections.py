@@ -10,10 +10,7 @@ import pytest
 from models.errors import ParameterError, RecordingError
 from noise.app.corrected_segments import Correction, read_corrections
 from noise.base.tables import write_table
-from noise.batch.journal import open_journal
-from noise.batch.work import JobResult, file_identity, find_jobs
 from noise.labels.corrections import version, with_corrections
-from noise.labels.labelling import Labelling
 from noise.labels.table import COLUMNS
 from tests.helpers.corrected_table import NAMES, correct, in_table, labels_of
 from tests.helpers.labelled_folder import made_row as row
@@ -51,19 +48,6 @@ def test_a_correction_before_there_is_a_table_outlives_the_labelling(folder):
     correct(labels, 1, [Correction(0.0, 2.0, "squawk")])
     rows = with_corrections(folder / "labels.csv", [row(name) for name in NAMES])
     assert [r["label"] for r in rows] == ["none", "squawk", "none"]
-
-
-def test_rows_arrive_from_the_journal_and_never_over_a_correction(folder):
-    work, jobs = Labelling(), find_jobs([folder])
-    labels = labels_of(folder)
-    correct(labels, 1, [Correction(0.0, 2.0, "squawk")])
-    with open_journal(folder / "labels.csv", work) as journal:
-        for job in jobs[:2]:
-            rows = [list(row(job.name, "creak").values())]
-            journal.add_result(job, file_identity(job.path), JobResult(rows, True))
-        assert [one["label"] for one in labels.summaries()] == ["creak", "squawk", None]
-    assert labels_of(folder).rows(0)[0]["label"] == "creak"
-    assert labels.undo()[1][0]["label"] == "creak"
 
 
 def test_rows_and_columns_that_are_not_ours_stay(folder):

@@ -42,7 +42,6 @@ export class RecordingList {
       const onclick = () => this.#ask(this.label === kind ? "" : kind);
       this.kinds.append(made("button", { type: "button", className: `kind ${kind}`, title: MEANING[kind] ?? "", data: { kind }, onclick }, made("i"), `${text} `, made("span")));
     }
-    this.progress = made("progress", { ariaLabel: "Labelled", hidden: true });
     this.stateLine = made("span");
     this.labelButton = made("button", { type: "button", hidden: true });
     this.labelButton.addEventListener("click", async () => {
@@ -54,7 +53,7 @@ export class RecordingList {
     this.empty = made("p", { className: "empty", hidden: true });
     element.replaceChildren(made("div", { className: "recording-list" },
       made("div", { className: "line" }, this.find, this.order), this.kinds,
-      made("div", { className: "line" }, this.labelButton, this.stateLine, this.progress),
+      made("div", { className: "line" }, this.labelButton, this.stateLine),
       this.empty, this.box));
     addEventListener("focus", () => onceShown(this.box, () => this.load())); // another page may have changed the table
     this.box.addEventListener("click", ({ target }) => { const row = target.closest("[role=option]"); if (row) this.#open(this.rows.findIndex((one) => one.id === row.shown.id)); });
@@ -105,12 +104,9 @@ export class RecordingList {
     }
     const left = state.total - state.done, count = (number) => number.toLocaleString("en");
     this.running = state.running;
-    this.progress.hidden = !state.running;
-    this.progress.max = Math.max(1, state.total);
-    this.progress.value = state.done;
     this.labelButton.hidden = state.running || !left;
     this.labelButton.textContent = state.done ? `Label ${count(left)} more` : `Label ${count(left)}`;
-    this.stateLine.textContent = state.running ? `${count(state.done)} of ${count(state.total)} labelled` : state.message;
+    this.stateLine.textContent = state.message;
     this.empty.hidden = this.rows.length > 0;
     this.empty.textContent = state.total ? "No recording matches. Choose “all” and clear the search." : "No recordings are open. Start the program with a folder of recordings: bushing-noise open FOLDER";
     this.box.hidden = !this.rows.length;
