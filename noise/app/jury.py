@@ -188,23 +188,6 @@ class Votes:
             rows[place] |= {"vote": vote, "seconds": round(seconds, 2), "time": now}
             return _jury(self.path, rows)
 
-    def undo(self, number: int, place: int) -> Jury:
-        """Remove the last vote of a jury, which is on comparison `place`.
-
-        Raises
-        ------
-        ParameterError
-            That vote is not the last one, or the table cannot be written; then all is as it was.
-        RecordingError
-            Somebody else has made something of the table that is none.
-        """
-        with self._changed() as juries:
-            rows = _rows_of(juries, number)
-            if place != len(_jury(self.path, rows).votes) - 1:
-                raise ParameterError(f"the vote on comparison {place + 1} is not the last one")
-            rows[place] |= {"vote": None, "seconds": None, "time": None}
-            return _jury(self.path, rows)
-
     @contextmanager
     def _changed(self) -> Iterator[dict[int, list[Row]]]:
         """Yield the rows of each jury for changes, then write them."""
@@ -332,8 +315,6 @@ def scale(jury: Jury) -> tuple[list[Row], list[str]]:
     >>> [row["sound"] for row in rows], rows[0]["chosen"], rows[0]["not_chosen"]
     (['loud', 'calm'], 2, 0)
     """
-    from scipy.sparse.csgraph import connected_components
-
     names = jury.sounds
     n = len(names)
     at = {name: number for number, name in enumerate(names)}
@@ -365,17 +346,10 @@ def scale(jury: Jury) -> tuple[list[Row], list[str]]:
         }
         for one in order
     ]
-    remarks = []
-    groups = connected_components(joined, directed=False)[0] - compared.count(False)
-    if jury.votes and not all(compared):
-        missing = ", ".join(name for name, there in zip(names, compared, strict=True) if not there)
-        remarks.append(f"not compared yet, so not on the scale: {missing}")
-    if groups > 1:
-        remarks.append(
-            f"the votes so far leave {groups} groups of sounds that were never compared with each "
-            "other; vote on before you compare their values"
-        )
-    return rows, remarks
+    missing = [name for name, there in zip(names, compared, strict=True) if not there]
+    if not jury.votes or not missing:
+        return rows, []
+    return rows, [f"not compared yet, so not on the scale: {', '.join(missing)}"]
 
 
 def in_words(rows: Sequence[Row]) -> str:

@@ -47,9 +47,6 @@ _RATE = 48000
 def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
     votes = Votes(opened.folder / "votes.csv")
-    if opened.table is not None:  # where votes were written before
-        before = opened.table.absolute().with_name("votes.csv")
-        votes = Votes(before) if before.exists() else votes
     playing = JuryPlaying(opened, SoundCache(opened))
     by_name: dict[str, list[int]] = {}
     for job in opened.jobs:
@@ -114,13 +111,9 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
     def voted(request: Request, vote: dict[str, Any]) -> Response:
         seconds = number(vote, "seconds", 0.0, _LONGEST_WAIT)
-        changed = votes.vote(
-            request.path_params["jury"], _place(vote), choice(vote, "vote", VOTES), seconds
-        )
-        return JSONResponse(state(changed))
-
-    def undone(request: Request, vote: dict[str, Any]) -> Response:
-        return JSONResponse(state(votes.undo(request.path_params["jury"], _place(vote))))
+        place = int(number(vote, "place", 0, 1 << 31, whole=True))
+        jury = request.path_params["jury"]
+        return JSONResponse(state(votes.vote(jury, place, choice(vote, "vote", VOTES), seconds)))
 
     def result(request: Request) -> Response:
         jury = jury_of(request)
@@ -138,7 +131,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route(one, gone_on),
         Route(f"{one}/heard/{{place:int}}/{{side}}", audio),
         Route(f"{one}/vote", body(voted), methods=["POST"]),
-        Route(f"{one}/undo", body(undone), methods=["POST"]),
         Route(f"{one}/result", result),
     ]
 
@@ -217,7 +209,3 @@ class JuryPlaying:
         return Recording(
             samples, track.rate, (track.channel,), calibrated=track.calibrated, name=name
         )
-
-
-def _place(vote: dict[str, Any]) -> int:
-    return int(number(vote, "place", 0, 1 << 31, whole=True))

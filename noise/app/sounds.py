@@ -28,7 +28,6 @@ from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel
 from noise.app.requests import number
-from noise.audio.gain import LOUDNESS_BLOCK, loudness
 from noise.audio.sound import playable
 from noise.audio.spectrogram import (
     HIGHEST,
@@ -276,21 +275,6 @@ def bands(track: Track, query: Query) -> dict[str, object]:
     }
 
 
-def equal(track: Track, query: Query) -> dict[str, object]:
-    """Return loudness and peak of an interval, re one unit of its samples.
-
-    The loudness is None for what is too short or too quiet to have one.
-    """
-    first, last = read_stretch(query, track, _LONGEST_PLAYED)
-    sound = playable(track.read(first, last), track.rate, _RATE)
-    peak = float(np.abs(sound).max(initial=0.0))
-    known = None
-    if peak > 0.0 and sound.size >= LOUDNESS_BLOCK * _RATE:
-        # The gate is absolute, so it is put where a sound that just does not clip has it.
-        known = _plain(loudness(sound / peak, _RATE) + 20.0 * math.log10(peak))
-    return {"loudness": known, "peak": peak}
-
-
 def _weighted(track: Track) -> str:
     return "dBFS(A)" if track.in_full_scale else track.level_unit.replace("dB", "dB(A)", 1)
 
@@ -417,7 +401,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route(f"{at}/spectrogram", drawn(spectrogram)),
         Route(f"{at}/levels", measured(lambda track, _: level_course(track))),
         Route(f"{at}/bands", measured(bands)),
-        Route(f"{at}/loudness", measured(equal)),
     ]
 
 

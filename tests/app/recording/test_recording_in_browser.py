@@ -55,7 +55,7 @@ def tone_of(samples):
     return 2.0 * turned[: samples.size // 480 * 480].reshape(-1, 480).mean(axis=1)
 
 
-def test_a_and_b_run_in_step_at_one_gain_and_at_equal_loudness(browser, shown):
+def test_a_and_b_run_in_step_at_one_gain(browser, shown):
     opened = OpenPage(browser, shown, tapped=True).open(HALF)
     opened.press("b")
     opened.open(TONE)
@@ -77,15 +77,6 @@ def test_a_and_b_run_in_step_at_one_gain_and_at_equal_loudness(browser, shown):
     words = opened.page.locator(".gains").text_content()
     assert "full scale = 2 Pa (100 dB peak re 20 µPa)" in words
     assert np.abs(heard).max() == pytest.approx(np.sqrt(2.0) / 2.0, rel=1e-2)
-    opened.press("e")
-    opened.page.locator(".gains").filter(has_text="Equal loudness, -23 LUFS").wait_for()
-    one = opened.heard()
-    opened.press("x")
-    other = opened.heard()
-    amplitudes = [np.median(np.abs(tone_of(of))) for of in (one, other)]
-    assert amplitudes[0] == pytest.approx(amplitudes[1], rel=0.01)
-    opened.page.get_by_role("button", name="Loop").click()  # off: it comes to its end
-    opened.page.locator(".play").filter(has_text="Play").wait_for()
     opened.close()
 
 
@@ -98,4 +89,6 @@ def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, sh
             opened.press(key)
             assert accessibility_errors(opened.page) == []
         assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
+    opened.page.get_by_role("button", name="Loop").click()  # off: it comes to its end
+    opened.page.locator(".play").filter(has_text="Play").wait_for()
     opened.close()

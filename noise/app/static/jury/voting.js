@@ -7,7 +7,7 @@ import { wav } from "../labels/sounds.js";
 
 const RATE = 48000; // sampling rate of the sounds [Hz]
 const VOTES = { 1: "first", 2: "second", 0: "equal" };
-const KEYS = "Keys: A, B to hear A, B; X the other one; Space to play and pause; L loop; 1, 2 to choose A, B; 0 no difference; U undo.";
+const KEYS = "Keys: A, B to hear A, B; X the other one; Space to play and pause; L loop; 1, 2 to choose A, B; 0 no difference.";
 
 export class Voting {
   constructor(element, goes) {
@@ -21,7 +21,7 @@ export class Voting {
     this.player.addEventListener("change", () => this.#playing());
     listen(element, {
       a: () => this.hear("a"), b: () => this.hear("b"), x: () => this.hear(this.player.active === "a" ? "b" : "a"),
-      " ": () => this.toggle(), l: () => this.loop(), u: ({ repeat }) => repeat || this.undo(),
+      " ": () => this.toggle(), l: () => this.loop(),
       ...Object.fromEntries(Object.entries(VOTES).map(([key, vote]) => [key, ({ repeat }) => repeat || this.vote(vote)])),
     });
   }
@@ -41,14 +41,13 @@ export class Voting {
     this.play = button("Play", () => this.toggle(), "play");
     this.looped = button("Loop", () => this.loop());
     this.votes = [["A", 1], ["No difference", 0], ["B", 2]].map(([text, key]) => button(`${text} (${key})`, () => this.vote(VOTES[key])));
-    this.undone = button("Undo (U)", () => this.undo());
     this.saved = made("p", { className: "saved", role: "status" });
     this.gain = made("p", { className: "soft" });
     element.append(this.stage, made("div", { className: "line" }, this.count, this.progress),
       made("div", { className: "sides" }, this.a, this.b),
       made("div", { className: "line" }, this.play, this.looped),
       made("div", { className: "votes" }, ...this.votes), this.saved,
-      made("div", { className: "line" }, this.undone, button("Stop here", () => this.leave("setup")), button("Result, with names", () => this.leave("result"))),
+      made("div", { className: "line" }, button("Stop here", () => this.leave("setup")), button("Result, with names", () => this.leave("result"))),
       this.gain, made("p", { className: "soft", textContent: KEYS }));
   }
 
@@ -141,7 +140,6 @@ export class Voting {
     }
     const may = this.ready && this.heard.size === 2;
     for (const vote of this.votes) vote.disabled = !may;
-    this.undone.disabled = !this.voted;
   }
 
   async vote(vote) {
@@ -150,22 +148,12 @@ export class Voting {
       this.saved.textContent = "Listen to both first.";
       return;
     }
-    const seconds = (performance.now() - this.began) / 1000;
-    await this.#write("vote", { place: this.state.waiting, vote, seconds }, "saved");
-  }
-
-  async undo() {
-    if (this.voted) await this.#write("undo", { place: this.voted - 1 }, "undone");
-  }
-
-  // Write a vote or undo, then show the state of the table.
-  async #write(what, body, word) {
     if (this.busy) return;
     this.busy = true;
-    const { number, shown } = this;
-    let text = `${word} ${new Date().toTimeString().slice(0, 8)}`;
-    const state = await api(`juries/${number}/${what}`, body).catch(({ message }) => {
-      text = `not ${word}: ${message}`;
+    const { number, shown } = this, seconds = (performance.now() - this.began) / 1000;
+    let text = `saved ${new Date().toTimeString().slice(0, 8)}`;
+    const state = await api(`juries/${number}/vote`, { place: this.state.waiting, vote, seconds }).catch(({ message }) => {
+      text = `not saved: ${message}`;
       return api(`juries/${number}`).catch(() => null);
     });
     this.busy = false;

@@ -17,7 +17,7 @@ export function build(element) {
   const parts = {
     title: made("h2"), facts: made("p", { className: "facts" }), saved: made("p", { className: "saved", role: "status" }),
     play: button("Play", "Space", { className: "play" }), loop: toggle("Loop", "L", true), clock: made("output", { className: "clock" }),
-    a: toggle("A", "X changes over", true), b: toggle("B", "X changes over"), keep: button("Keep as B", "B"), equal: toggle("Equal loudness", "E"),
+    a: toggle("A", "X changes over", true), b: toggle("B", "X changes over"), keep: button("Keep as B", "B"),
     out: button("−", "zoom out", { ariaLabel: "Zoom out" }), in: button("+", "zoom in", { ariaLabel: "Zoom in" }),
     left: button("‹", "earlier", { ariaLabel: "Earlier" }), right: button("›", "later", { ariaLabel: "Later" }),
     whole: button("All", "0"), fit: button("Segment", "F", { ariaLabel: "Zoom to the segment" }), harmonic: toggle("Harmonics", "H"),
@@ -45,7 +45,7 @@ export function build(element) {
     made("header", { className: "about" }, parts.title, parts.saved, parts.facts),
     made("div", { className: "tools" },
       group("Playing", parts.play, parts.loop, parts.clock),
-      group("Comparing", parts.a, parts.b, parts.keep, parts.equal),
+      group("Comparing", parts.a, parts.b, parts.keep),
       group("View", parts.out, parts.in, parts.left, parts.right, parts.whole, parts.fit, parts.harmonic),
       group("Correcting", parts.split, parts.join, parts.undo, parts.redo, parts.agree, parts.help)),
     parts.lanes,

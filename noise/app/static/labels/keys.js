@@ -17,7 +17,6 @@ const TOLD = [
   ["H", "multiples of the frequency at the pointer"],
   ["B", "use this sound as B, from the start of the loop"],
   ["X", "switch between A and B at the same moment"],
-  ["E", "equal loudness on, off"],
   ["?", "this list"],
 ];
 

@@ -1,17 +1,15 @@
-// Synchronous player of two recordings at one gain or equal loudness; long ones are read in parts.
+// Synchronous player of two recordings at one gain; long ones are read in parts.
 import { Player } from "../shared/player.js";
-import { facts, samples } from "./sounds.js";
+import { samples } from "./sounds.js";
 
 const { RATE } = Player;
 const QUIETEST = 0.1; // smallest full scale [Pa]
 const HEADROOM = 1.12; // peaks between two samples are higher
 const KEPT = 4; // sounds in memory
 const LONGEST = 600; // maximum duration of an answer [s]
-const TARGET = -23, CEILING = -3, MOST_RAISED = 36; // LUFS, dB re full scale, dB
 
 export class RecordingPlayer extends Player {
   fullScale = null; // of calibrated sounds [Pa]
-  equal = false; // whether A and B are equally loud
   kept = new Map();
 
   // `read` returns the samples of a sound from a time on.
@@ -51,7 +49,6 @@ export class RecordingPlayer extends Player {
     const shift = (b?.anchor ?? start) - start;
     const [first, second] = await Promise.all([this.#cut(a, start, length), b && this.#cut(b, start + shift, length)]);
     this.#scale();
-    if (this.equal) await this.#measure({ start, end: start + length }, shift);
     return { start, a: first, b: second };
   }
 
@@ -66,25 +63,8 @@ export class RecordingPlayer extends Player {
   factor(slot) {
     const sound = this.slots[slot];
     if (!sound) return 0;
-    if (this.equal && sound.equal) return sound.equal;
     if (sound.calibrated) return 1 / (this.fullScale ?? 1);
     return sound.kind === "pressure" ? 1 : 0.5 / (sound.peak || 1);
-  }
-
-  async #measure(stretch, shift) {
-    const known = [];
-    for (const [slot, sound] of Object.entries(this.slots)) {
-      if (!sound) continue;
-      const by = slot === "b" ? shift : 0;
-      const found = await facts(sound.id, "loudness", { channel: sound.channel, start: Math.max(0, stretch.start + by), end: stretch.end + by });
-      sound.equal = null;
-      if (found.loudness !== null) known.push({ sound, ...found });
-    }
-    this.loudness = Math.min(TARGET, ...known.map(({ loudness, peak }) => loudness - 20 * Math.log10(peak) + CEILING));
-    for (const { sound, loudness } of known) {
-      const raised = this.loudness - loudness + 20 * Math.log10(this.fullScale ?? 1);
-      sound.equal = raised > MOST_RAISED ? null : 10 ** ((this.loudness - loudness) / 20);
-    }
   }
 
   hear(slot) { if (this.slots[slot]) super.hear(slot); }
@@ -93,15 +73,9 @@ export class RecordingPlayer extends Player {
   get words() {
     const { a, b } = this.slots, said = [], heard = [a, b].filter(Boolean);
     if (!heard.length) return "";
-    const equal = (sound) => this.equal && sound.equal;
-    if (heard.every(equal)) {
-      const decibel = (slot) => `${(20 * Math.log10(this.factor(slot) * (this.slots[slot].calibrated ? this.fullScale : 1))).toFixed(1)} dB`;
-      said.push(`Equal loudness, ${this.loudness.toFixed(0)} LUFS: A ${decibel("a")}${b ? `, B ${decibel("b")}` : ""} beside ${heard.every((sound) => sound.calibrated) ? "the one gain" : "what the files hold"}`);
-    } else if (heard.some((sound) => sound.calibrated) && this.fullScale !== null) {
-      said.push(`Calibrated sounds share one gain: full scale = ${this.fullScale} Pa (${(20 * Math.log10(this.fullScale / 2e-5)).toFixed(0)} dB peak re 20 µPa)`);
-    }
-    if (heard.some((sound) => sound.kind === "pressure" && !sound.calibrated && !equal(sound))) said.push("not calibrated: played as in the file");
-    if (heard.some((sound) => sound.kind !== "pressure" && !equal(sound))) said.push("no sound pressure: scaled to be audible");
+    if (heard.some((sound) => sound.calibrated) && this.fullScale !== null) said.push(`Calibrated sounds share one gain: full scale = ${this.fullScale} Pa (${(20 * Math.log10(this.fullScale / 2e-5)).toFixed(0)} dB peak re 20 µPa)`);
+    if (heard.some((sound) => sound.kind === "pressure" && !sound.calibrated)) said.push("not calibrated: played as in the file");
+    if (heard.some((sound) => sound.kind !== "pressure")) said.push("no sound pressure: scaled to be audible");
     return said.join("; ");
   }
 }

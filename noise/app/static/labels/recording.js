@@ -141,7 +141,6 @@ export class RecordingPage {
     const { parts, player } = this;
     parts.play.textContent = player.playing ? "Pause" : "Play";
     parts.loop.setAttribute("aria-pressed", player.looping);
-    parts.equal.setAttribute("aria-pressed", player.equal);
     for (const slot of ["a", "b"]) {
       parts[slot].setAttribute("aria-pressed", player.active === slot);
       parts[slot].disabled = !player.slots[slot];
@@ -219,8 +218,8 @@ export class RecordingPage {
     told(`B is ${this.sound.name}${from === null ? "" : ` from ${from.toFixed(2)} s on`}. Open another recording as A; X switches between them.`);
   }
 
-  #toggle(what) {
-    this.player[what] = !this.player[what];
+  #loop() {
+    this.player.looping = !this.player.looping;
     this.#playing();
     if (this.player.playing) this.play();
   }
@@ -229,7 +228,7 @@ export class RecordingPage {
   #actions() {
     const { parts, timeline, player, segments, spectrogram } = this;
     const buttons = {
-      play: () => (player.playing ? player.stop() : this.play()), loop: () => this.#toggle("looping"), equal: () => this.#toggle("equal"),
+      play: () => (player.playing ? player.stop() : this.play()), loop: () => this.#loop(),
       harmonic: () => {
         spectrogram.harmonic = !spectrogram.harmonic;
         parts.harmonic.setAttribute("aria-pressed", spectrogram.harmonic);
@@ -246,7 +245,7 @@ export class RecordingPage {
     const step = (sign) => ({ shiftKey }) => this.seek(timeline.position + sign * (shiftKey ? 1 : 0.1));
     const beside = (sign) => () => { segments.choose(segments.at + sign); if (segments.chosen) timeline.go(segments.chosen.start_s); };
     const named = {
-      " ": "play", l: "loop", e: "equal", h: "harmonic", b: "keep", s: "split", c: "agree", u: "undo", "Ctrl+z": "undo", "Ctrl+Shift+z": "redo", "Ctrl+y": "redo",
+      " ": "play", l: "loop", h: "harmonic", b: "keep", s: "split", c: "agree", u: "undo", "Ctrl+z": "undo", "Ctrl+Shift+z": "redo", "Ctrl+y": "redo",
       Delete: "join", Backspace: "join", "+": "in", "=": "in", "-": "out", 0: "whole", f: "fit", "?": "help",
     };
     const keys = {
