@@ -15,10 +15,10 @@ import numpy as np
 
 from features.recording import recording_features
 from features.table import recording_feature_names
+from models.radiation.impulse_responses import convolve
 from models.radiation.rig_response import impulse_responses
 from models.recording import Recording
 from models.rig_file import load_material_rig
-from models.transfer_functions.filtering import convolve
 from noise.audio.audio_file import write_audio
 from noise.audio.gain import QUIETEST_FULL_SCALE, common_full_scale
 from noise.audio.sound import audible

@@ -10,9 +10,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import rfft
-
-from models.transfer_functions.filtering import convolve, transform_size
+from scipy.fft import irfft, next_fast_len, rfft
 
 Source = Literal["torque", "pulse"]
 """Excitation of the structure: the bushing's torque, or the anchors' pulse force."""
@@ -89,3 +87,58 @@ def radiate(
 @lru_cache(maxsize=16)
 def _spectrum(paths: ImpulseResponses, name: str, size: int) -> NDArray[np.complex128]:
     return np.asarray(rfft(getattr(paths, name), size))
+
+
+BLOCK = 2**18
+"""Samples per block of a convolution, which bounds the memory for long signals."""
+
+
+def convolve(
+    signal: NDArray[np.float64],
+    impulse_response: NDArray[np.float64],
+    spectrum: NDArray[np.complex128] | None = None,
+) -> NDArray[np.float64]:
+    """Convolve a signal causally by overlap-add in blocks, which bounds the memory.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        In any [unit].
+    impulse_response : ndarray, shape (m,)
+        [unit of the output / unit of the signal]
+    spectrum : ndarray, shape (`transform_size` // 2 + 1,), complex, optional
+        Its transform, if cached for a signal of the same length.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In the output's [unit], as long as the signal.
+
+    Examples
+    --------
+    >>> convolve(np.array([1.0, 0.0, 2.0]), np.array([3.0, 1.0])).round(9)
+    array([3., 1., 6.])
+    """
+    n, overlap = signal.size, impulse_response.size - 1
+    size = transform_size(n, impulse_response.size)
+    step = size - overlap
+    if spectrum is None:
+        spectrum = rfft(impulse_response, size)
+    result = np.zeros(n)
+    for start in range(0, n, step):
+        block = irfft(rfft(signal[start : start + step], size) * spectrum, size)
+        end = min(start + size, n)
+        result[start:end] += block[: end - start]
+    return result
+
+
+def transform_size(signal: int, impulse_response: int) -> int:
+    """Return the length of the transforms of `convolve` for these numbers of samples.
+
+    Examples
+    --------
+    >>> transform_size(1000, 25)
+    1024
+    """
+    size: int = next_fast_len(min(signal, BLOCK) + impulse_response - 1, real=True)
+    return size

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from models.bench import HIGHEST_PLATE_FREQUENCY, Beams, Microphone, Plate
 from models.errors import ParameterError
 from models.radiation.beam_sound import beams_pressure
-from models.radiation.impulse_responses import ImpulseResponses
+from models.radiation.impulse_responses import ImpulseResponses, convolve
 from models.rig import Rig, damping_at
 from models.structure.beams import (
     ACCELERATION,
@@ -40,7 +40,6 @@ from models.structure.plate import (
     plate_modes,
     pressure_response,
 )
-from models.transfer_functions.filtering import convolve
 from models.transfer_functions.measured import with_measured
 
 HIGHEST_BEAM_FREQUENCY = 40e3

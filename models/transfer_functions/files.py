@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import ParameterError
-from models.foreign_file import LARGEST_TEXT, read_arrays, reading
-from models.foreign_table import read_table
+from models.foreign_file import LARGEST_TEXT, read_arrays, read_table, reading
 from models.transfer_functions.transfer_function import TransferFunction
 from models.transfer_functions.uff import (
     COHERENCE,
@@ -289,35 +288,20 @@ def write_transfer_function_csv(file: TextIO, transfer: TransferFunction) -> Non
     writer.writerows(zip(*columns.values(), strict=True))
 
 
-_KEYS = {
-    "frequency_hz": ("iuf", "numbers"),
-    "response": ("c", "complex"),
-    "coherence": ("iuf", "numbers"),
-    "input_unit": ("US", "a text"),
-    "output_unit": ("US", "a text"),
-}
-"""Keys of an NPZ file: kinds of array, and their name in messages."""
-
-
 def _read_npz(path: Path) -> TransferFunction:
     arrays = read_arrays(path)
-    for key, (kinds, words) in _KEYS.items():
-        if key not in arrays and key != "coherence":
+    for key in ("frequency_hz", "response", "input_unit", "output_unit"):
+        if key not in arrays:
             raise ParameterError(f"{path}: has no {key}; it holds {', '.join(arrays) or 'nothing'}")
-        array = arrays.get(key)
-        if array is not None and (
-            array.dtype.kind not in kinds or ("US" in kinds and array.size > 1)
-        ):
-            raise ParameterError(f"{path}: {key} has type {array.dtype}; it must be {words}")
-    coherence = arrays.get("coherence")
-    units = [arrays[key].reshape(()).item() for key in ("input_unit", "output_unit")]
-    input_unit, output_unit = (u.decode() if isinstance(u, bytes) else str(u) for u in units)
+    response, coherence = arrays["response"], arrays.get("coherence")
+    if not np.iscomplexobj(response):
+        raise ParameterError(f"{path}: response has type {response.dtype}; it must be complex")
     return TransferFunction(
         arrays["frequency_hz"].astype(np.float64),
-        arrays["response"].astype(np.complex128),
+        response.astype(np.complex128),
         None if coherence is None else coherence.astype(np.float64),
-        input_unit,
-        output_unit,
+        str(arrays["input_unit"].reshape(()).astype(str)),
+        str(arrays["output_unit"].reshape(()).astype(str)),
         str(path),
     )
 

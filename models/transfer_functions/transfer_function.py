@@ -7,8 +7,6 @@ one can be trusted where its coherence is high.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,23 +52,6 @@ class TransferFunction:
     input_unit: str = ""
     output_unit: str = ""
     name: str = "response"
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, TransferFunction) and self._content == other._content
-
-    def __hash__(self) -> int:
-        return hash(self._content)  # equal for copies in other processes
-
-    @cached_property
-    def _content(self) -> tuple[str | bytes, ...]:
-        """Digest of the arrays and the texts; caches compare them many times in a run."""
-        arrays = (self.frequencies, self.response, self.coherence)
-        digests = (b"" if one is None else blake2b(one.tobytes()).digest() for one in arrays)
-        return *digests, self.input_unit, self.output_unit, self.name
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Leave the digest out: a copy is alike whether or not it has been compared before."""
-        return {name: value for name, value in vars(self).items() if name != "_content"}
 
     @property
     def spacing(self) -> float:

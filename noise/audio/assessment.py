@@ -7,15 +7,18 @@ air, and all levels are told re full scale of the file that is written.
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.level_meter import SoundLevels, a_weighting, sound_levels
 from features.kernels.levels import NOMINAL_THIRD_OCTAVES
-from models.radiation.sound_power import BandPower
 from models.recording import REFERENCE_PRESSURE, Recording
 from noise.audio.sound import pressure_channel
+
+if TYPE_CHECKING:
+    from sim.analysis.sound_power import BandPower
 
 COLUMNS = (
     *("level_db", "level_dba", "l_afmax_dba", "level_dbfs"),
@@ -121,7 +124,7 @@ def _rounded(value: float, digits: int = 2) -> float | None:
     return round(float(value), digits) if math.isfinite(value) else None
 
 
-def sound_power_rows(power: BandPower) -> list[dict[str, object]]:
+def sound_power_rows(power: "BandPower") -> list[dict[str, object]]:
     """Return rows by `POWER_COLUMNS`, one per band and one for the sum.
 
     Parameters

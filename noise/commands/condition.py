@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from models.foreign_table import ForeignTable
+    from models.foreign_file import ForeignTable
     from models.recording import Recording
     from sim.effects.effect import Effect
     from sim.run import Run
@@ -316,7 +316,7 @@ def shaft_motion(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:
 
 def _logged_speed(path: Path, seconds: float) -> LoggedSpeed:
     """Read a log of the speed."""
-    from models.foreign_table import read_table
+    from models.foreign_file import read_table
     from sim.shaft import LoggedSpeed
 
     where = f"--speed {path}"

@@ -25,8 +25,7 @@ from models.condition import Condition
 from models.drawing import BLUE, GREY, ORANGE, frequency_axis, levels, padded, styled, thinned
 from models.recording import Recording
 from noise.pictures.figure import KINDS, new_figure
-from sim.analysis.regime import LEAST_OSCILLATION
-from sim.analysis.slips import motion_slips
+from sim.analysis.regime import LEAST_OSCILLATION, motion_slips
 from sim.motion import Motion
 from sim.run import Curve, Run, torque_curves
 

@@ -14,8 +14,14 @@ from numpy.typing import NDArray
 
 from features.modal.hammer import Hit
 from models.errors import ParameterError, RecordingError
-from models.foreign_file import LARGEST_TEXT, read_array, reading, refusing
-from models.foreign_table import ForeignTable, read_table
+from models.foreign_file import (
+    LARGEST_TEXT,
+    ForeignTable,
+    read_array,
+    read_table,
+    reading,
+    refusing,
+)
 from models.recording import Channel, Recording
 from models.units import CHANNEL_UNITS, quantity_of_unit
 from noise.recordings import find_recordings, read_recording

@@ -50,8 +50,7 @@ from noise.screening.vibration import (
     vibrations_at,
 )
 from sim.acquisition import Acquisition, sample
-from sim.analysis.regime import Regime
-from sim.analysis.slips import motion_slips
+from sim.analysis.regime import Regime, motion_slips
 from sim.chain import apply_chain_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import activated

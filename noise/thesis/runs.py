@@ -1,6 +1,6 @@
 """Runs of the three models at a condition, reduced to the numbers that the thesis reports.
 
-Slips and stick-slip are those that the torque shows, of all three models (`sim.analysis.slips`):
+Slips and stick-slip are those that the torque shows, of all three models (`sim.analysis.regime`):
 the calibrated contact never sticks truly, and of true stick the count is that of its ends.
 """
 
@@ -23,10 +23,15 @@ from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from models.structure.beams import beam_structure
 from noise.thesis.listing import STEP, ListingRun, run_listing
-from sim.analysis.critical_damping import critical_damping, largest_sticking, with_damping
-from sim.analysis.critical_speeds import SPEEDS, CriticalSpeeds, critical_speeds
-from sim.analysis.regime import LEAST_OSCILLATION
-from sim.analysis.slips import LEAST_SUDDEN, Slips, find_slips, motion_slips
+from sim.analysis.critical_speeds import (
+    SPEEDS,
+    CriticalSpeeds,
+    critical_damping,
+    critical_speeds,
+    largest_sticking,
+    with_damping,
+)
+from sim.analysis.regime import LEAST_OSCILLATION, LEAST_SUDDEN, Slips, find_slips, motion_slips
 from sim.bushing import lumped_bushing
 from sim.effects import constant_version, irregular_effects
 from sim.motion import Motion, simulate_motion

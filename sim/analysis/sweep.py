@@ -15,7 +15,7 @@ from models.drawing import CURVES, axes_or_new
 from models.errors import ParameterError
 from models.rig import Rig
 from models.show import data_frame, short_repr
-from sim.analysis.slips import motion_slips
+from sim.analysis.regime import motion_slips
 from sim.motion import Motion, simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -33,7 +33,7 @@ FEATURES = {
     "torque_max": "Largest torque [Nm]",
     "clamp_speed_rms": "Speed of the clamp, rms [rad/s]",
 }
-"""Features of a motion, with axis labels. Slips are those of `sim.analysis.slips`, their frequency
+"""Features of a motion, with axis labels. Slips are those of `sim.analysis.regime`, their frequency
 is NaN for fewer than two, and stick is that of `sim.motion.Motion.stuck`."""
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from models.condition import Condition
+from models.radiation.impulse_responses import convolve
 from models.recording import Channel, Recording
 from models.structure.modal import ModalModel
 from models.transfer_functions.files import read_transfer_function
-from models.transfer_functions.filtering import convolve
 from noise.cli import main
 from noise.recordings import write_recording
 from tests.helpers.files import csv_rows

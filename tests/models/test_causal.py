@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given, settings, strategies as st
 from scipy.signal import butter, sosfilt
 
+from models.radiation.impulse_responses import convolve
 from models.structure.modal import ModalModel
-from models.transfer_functions.filtering import convolve
 from models.transfer_functions.measured import measured_impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
 

@@ -9,12 +9,11 @@ from models.bench import HIGHEST_PLATE_FREQUENCY
 from models.condition import FIXED
 from models.errors import ParameterError
 from models.radiation.rig_response import anchor_drives, first_mode_damping
-from models.radiation.sound_power import radiated_spectrum
 from models.rig_file import load_material_rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import plate_modes
 from noise.audio.assessment import POWER_COLUMNS, sound_power_rows
-from sim.analysis.sound_power import motion_sound_power
+from sim.analysis.sound_power import motion_sound_power, radiated_spectrum
 from sim.run import simulate
 
 BENCH = load_material_rig("PDMS")
@@ -67,6 +66,18 @@ def test_a_constant_torque_is_silent_and_its_table_is_empty():
     power = power_of(2214.0, lambda time: np.full(time.size, 8.0))
     rows = sound_power_rows(power)
     assert {row[name] for row in rows for name in POWER_COLUMNS[1:]} == {None}
+
+
+def test_bands_beyond_the_modes_are_refused():
+    stiff = replace(
+        RIG,
+        plate=replace(
+            RIG.plate, length=0.1, width=0.08, thickness=0.012, clamp_position=(0.0, 0.0)
+        ),
+    )
+    motion = simulate(RIG, 5.0, support_stiffness=FIXED, seconds=0.3).motion
+    with pytest.raises(ParameterError, match="reach beyond the plate's modes"):
+        motion_sound_power(stiff, motion, interference=0.279e-3, support_stiffness=FIXED)
 
 
 def test_a_run_too_short_for_the_lowest_band_is_refused():

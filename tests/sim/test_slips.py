@@ -8,9 +8,8 @@ from hypothesis import given, settings, strategies as st
 
 from models.condition import FIXED
 from models.rig_file import load_material_rig
-from sim.analysis.critical_damping import with_damping
-from sim.analysis.regime import Regime, friction_regime
-from sim.analysis.slips import find_slips, motion_slips
+from sim.analysis.critical_speeds import with_damping
+from sim.analysis.regime import Regime, find_slips, friction_regime, motion_slips
 from sim.bushing import lumped_bushing
 from sim.effects import constant_version
 from sim.motion import simulate_motion

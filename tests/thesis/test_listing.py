@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from noise.thesis.listing import STEP, run_listing
-from sim.analysis.critical_damping import largest_sticking
+from sim.analysis.critical_speeds import largest_sticking
 
 
 def sticks(speed, stiffness, damping, **about):

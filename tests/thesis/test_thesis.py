@@ -18,8 +18,7 @@ from noise.cli import main
 from noise.thesis import table
 from noise.thesis.runs import rig_of
 from noise.thesis.table import reasons
-from sim.analysis.critical_damping import critical_damping
-from sim.analysis.critical_speeds import motion_from_rest
+from sim.analysis.critical_speeds import critical_damping, motion_from_rest
 from sim.analysis.regime import Regime, friction_regime
 from tests.helpers.exact_beams import ClampOnBeams, RootMotion, natural_frequencies
 

@@ -23,7 +23,7 @@ from scipy.ndimage import uniform_filter1d
 from scipy.signal.windows import tukey
 
 from models.condition import known_condition
-from models.transfer_functions.filtering import impulse_response
+from models.transfer_functions.measured import impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.simulated.transfer_functions import predict
 from sim.chain import padded_sum

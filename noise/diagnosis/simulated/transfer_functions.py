@@ -21,12 +21,12 @@ from models.radiation.impulse_responses import ImpulseResponses, radiate
 from models.radiation.rig_response import impulse_responses
 from models.recording import Recording
 from models.rig import Rig
-from models.transfer_functions.filtering import (
+from models.transfer_functions.measured import (
     FINER,
     fill_between_lines,
     impulse_response,
+    measured_with,
 )
-from models.transfer_functions.measured import measured_with
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.reconstruction import closed_length, closed_spectrum
