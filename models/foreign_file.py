@@ -178,7 +178,7 @@ def check_inflation(path: Path) -> None:
     Parameters
     ----------
     path : Path
-        Path of an NPZ file or a workbook.
+        Path of an NPZ file.
 
     Raises
     ------

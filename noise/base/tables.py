@@ -1,38 +1,44 @@
-"""Reading and writing of tables as CSV, Excel, JSON Lines or Parquet, by the suffix of the file.
+"""Reading and writing of tables as CSV, JSON Lines or Parquet, by the suffix of the file.
 
 All formats store the same values: missing, undefined and infinite numbers are empty; text is
 escaped by `noise.base.progress.readable`; numbers have as many digits as reproduce them exactly.
-CSV and Excel write the infinite stiffness of a bolted clamp as ``fixed``. CSV that replaces another
-keeps its dialect, see `noise.base.csv_table`. Tables are written atomically, and a target that
-cannot be written is refused before the work.
+CSV writes the infinite stiffness of a bolted clamp as ``fixed``. Tables are written atomically, and
+a target that cannot be written is refused before the work.
+
+CSV is read as spreadsheets write it. Excel in a locale with decimal commas writes semicolons and a
+UTF-8 byte order mark, its "Unicode text" is UTF-16 with tabs, and older versions use a code page.
+Users add comments and ``sep=;`` above the header. A table that replaces another keeps its
+separator, decimal sign and line ends. Text that a spreadsheet would evaluate as a formula gets an
+apostrophe.
 """
 
 from __future__ import annotations
 
+import codecs
+import csv
+import io
 import json
 import math
 import numbers
+import re
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from datetime import date, time
-from importlib import import_module
+from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple, TextIO
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError, not_installed
-from models.foreign_file import LARGEST_TEXT, ExcessError, check_inflation, parse_json, reading
-from noise.base.csv_table import Cell, CsvForm, decimal_sign, finite_or_fixed, read_csv, write_csv
+from models.foreign_file import LARGEST_TEXT, ExcessError, parse_json, reading
 from noise.base.files import atomic
 from noise.base.progress import readable
 
-TABLE_ENDINGS = (".csv", ".xlsx", ".jsonl", ".parquet")
+Cell = bool | int | float | str | None
+"""Value of a cell that every table format can store."""
+
+TABLE_ENDINGS = (".csv", ".jsonl", ".parquet")
 """Suffixes of the table formats."""
 
-_LIBRARIES = {
-    ".xlsx": ("openpyxl", "excel", "an Excel workbook needs"),
-    ".parquet": ("pyarrow", "parquet", "Parquet needs"),
-}
 _LABEL_COLUMN = "label_source"
 """Column that identifies a label table."""
 
@@ -54,24 +60,18 @@ def check_table_path(path: str | Path | None, columns: Collection[str] = (_LABEL
     ------
     ParameterError
         The suffix is not in `TABLE_ENDINGS`, the path is a folder, the library of the format is
-        not installed, or data would be lost: a label table that another table replaces, or
-        further sheets of a workbook.
+        not installed, or a label table would be replaced by another table.
 
     Examples
     --------
     >>> check_table_path("features.ods")
     Traceback (most recent call last):
-    models.errors.ParameterError: features.ods: tables end in .csv, .xlsx, .jsonl or .parquet
+    models.errors.ParameterError: features.ods: tables end in .csv, .jsonl or .parquet
     """
     if path is None:
         return
     path = Path(path)
     _check_format(path)
-    if path.suffix.lower() == ".xlsx" and path.is_file() and (others := _sheet_names(path)[1:]):
-        raise ParameterError(
-            f"{path}: has more sheets than that of the table ({', '.join(others)}), which would "
-            "be lost; name another file"
-        )
     existing = table_columns(path) if _LABEL_COLUMN not in columns and path.is_file() else ()
     if _LABEL_COLUMN in {name.strip().casefold() for name in existing}:
         raise ParameterError(
@@ -83,15 +83,15 @@ def _check_format(path: Path) -> None:
     """Refuse an unknown suffix, a folder, or a format whose library is not installed."""
     ending = path.suffix.lower()
     if ending not in TABLE_ENDINGS:
-        raise ParameterError(f"{path}: tables end in .csv, .xlsx, .jsonl or .parquet")
+        raise ParameterError(f"{path}: tables end in .csv, .jsonl or .parquet")
     if path.is_dir():
         raise ParameterError(f"{path}: is a folder; name a file to write")
-    if ending in _LIBRARIES:
-        package, extra, needs = _LIBRARIES[ending]
+    if ending == ".parquet":
         try:
-            import_module(package)
+            import pyarrow as pa  # noqa: F401
         except ImportError:
-            raise ParameterError(not_installed(f"{path}: {needs}", package, extra)) from None
+            needs = not_installed(f"{path}: Parquet needs", "pyarrow", "parquet")
+            raise ParameterError(needs) from None
 
 
 def write_table(
@@ -122,38 +122,30 @@ def write_table(
     run07.wav,81.5
     bad.wav,
     """
-    ending = "" if path is None else Path(path).suffix.lower()
-    keys, columns = columns, [readable(column) for column in columns]
-    native_types = (date, time) if ending == ".xlsx" else ()
-
-    def cells() -> Iterator[list[Any]]:
-        for row in rows:
-            yield [v if isinstance(v, native_types) else _table_cell(v) for v in map(row.get, keys)]
-
+    names = [readable(column) for column in columns]
+    cells = ([_table_cell(row.get(column)) for column in columns] for row in rows)
     if path is None:
         if sys.stdout is None:
             raise ParameterError("standard output is closed; name a file for the table")
-        write_csv(sys.stdout, columns, cells())
+        _write_csv(sys.stdout, names, cells, _Form())
         sys.stdout.flush()
         return
     path = Path(path)
-    check_table_path(path, columns)
+    check_table_path(path, names)
     with atomic(path) as temporary:
-        if ending == ".parquet":
-            _write_parquet(temporary, columns, cells())
-        elif ending == ".xlsx":
-            _write_workbook(temporary, columns, cells(), path.stem)
-        elif ending == ".jsonl":
+        if path.suffix.lower() == ".parquet":
+            _write_parquet(temporary, names, cells)
+        elif path.suffix.lower() == ".jsonl":
             with temporary.open("w", encoding="utf-8", newline="") as file:
-                for row in cells():
-                    record = dict(zip(columns, map(_finite, row), strict=True))
+                for row in cells:
+                    record = dict(zip(names, map(_finite, row), strict=True))
                     file.write(json.dumps(record, ensure_ascii=False) + "\n")
         else:
-            form = CsvForm()  # unless a CSV table is replaced, whose dialect is kept
+            form = _Form()  # unless a CSV table is replaced, whose dialect is kept
             with suppress(BushingNoiseError), reading(path, "table", largest=LARGEST_TEXT):
-                form = read_csv(path.read_bytes())[0]
+                form = _read_csv(path.read_bytes())[0]
             with temporary.open("w", encoding=form.encoding, newline="") as file:
-                write_csv(file, columns, cells(), form)
+                _write_csv(file, names, cells, form)
 
 
 def read_table(
@@ -211,10 +203,9 @@ def read_table(
 
 def _lines(path: Path) -> tuple[Iterator[Sequence[object]], str]:
     """Return header and rows of a table, and the separator of a CSV."""
-    ending = path.suffix.lower()
-    if ending != ".csv":
-        return (_parquet_lines(path) if ending == ".parquet" else _sheet_lines(path)), ""
-    form, lines = read_csv(path.read_bytes())
+    if path.suffix.lower() == ".parquet":
+        return _parquet_lines(path), ""
+    form, lines = _read_csv(path.read_bytes())
     return lines, form.separator
 
 
@@ -245,7 +236,7 @@ def _replace_commas(
 ) -> None:
     """Replace decimal commas by points in place; refuse commas that may separate thousands."""
     cells = [(row, name, str(row[name])) for row in rows for name in numbers]
-    signs = {sign: cell for _, _, cell in cells if (sign := decimal_sign(cell.strip()))}
+    signs = {sign: cell for _, _, cell in cells if (sign := _decimal_sign(cell.strip()))}
     if "," not in signs:
         return
     parts = (cell.partition(",")[2] for _, _, cell in cells if "," in cell)
@@ -257,7 +248,7 @@ def _replace_commas(
             "or not; write them with a point"
         )
     for row, name, cell in cells:
-        if decimal_sign(cell.strip()):
+        if _decimal_sign(cell.strip()):
             row[name] = cell.strip().replace(",", ".")
 
 
@@ -310,13 +301,8 @@ def _table_cell(value: object) -> Cell:
     return None if isinstance(plain, float) and math.isnan(plain) else plain
 
 
-# --- Parquet files, and the first sheet of Excel workbooks ---
-
 _MIN_CELLS, _CELLS_PER_BYTE = 200_000, 20
-"""Largest number of cells of a workbook or Parquet file: a constant plus a number per byte."""
-
-_MOST_ROWS, _LONGEST_TEXT = 1_048_576, 32_767
-"""Limits of Excel: rows of a sheet, and characters of a cell."""
+"""Largest number of cells of a Parquet file: a constant plus a number per byte."""
 
 
 def _finite(value: Cell) -> Cell:
@@ -335,7 +321,9 @@ def _parquet_lines(path: Path) -> Iterator[Sequence[object]]:
 
     with parquet.ParquetFile(path) as file:
         yield file.schema_arrow.names
-        _check_size(path, file.metadata.num_rows * file.metadata.num_columns)
+        cells = file.metadata.num_rows * file.metadata.num_columns
+        if cells > _MIN_CELLS + _CELLS_PER_BYTE * path.stat().st_size:
+            raise ExcessError(f"claims {cells} cells, more than a file of its size holds")
         table = file.read()
     yield from zip(*(column.to_pylist() for column in table.columns), strict=True)
 
@@ -356,65 +344,104 @@ def _write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[C
     parquet.write_table(pa.table(arrays), path)
 
 
-def _sheet_names(path: Path) -> list[str]:
-    """Return the sheet names of a workbook; empty if it cannot be read."""
-    from openpyxl import load_workbook
+_SEPARATORS = ",;\t|"
+_SEPARATOR_LINE = re.compile(r'"?sep=(.)', re.IGNORECASE)
+_FORMULA = re.compile(r"'*[=+\-@\t\r]")
+"""Start of a formula, or of text that an apostrophe protects from being one."""
 
+_NUMBER = re.compile(r"-?\d+(?:([.,])\d+)?(?:[eE][+-]?\d+)?")
+_DECIMAL_ROWS = 1000
+"""Rows from which the decimal sign of a table is detected."""
+
+_SUPPORT = "support_stiffness"
+"""Prefix of the columns in which infinity means the bolted clamp, written ``fixed``."""
+
+
+class _Form(NamedTuple):
+    """Dialect of a CSV table.
+
+    Parameters
+    ----------
+    encoding : str
+        Encoding for writing.
+    separator, decimal, line_end : str
+        Cell separator, decimal sign and line terminator.
+    """
+
+    encoding: str = "utf-8"
+    separator: str = ","
+    decimal: str = "."
+    line_end: str = "\n"
+
+
+def _read_csv(content: bytes) -> tuple[_Form, Iterator[list[str]]]:
+    """Return the dialect of a CSV table and its rows of text, header first."""
+    text, encoding = _decoded(content)
+    if "\0" in text:
+        raise ValueError("is no text")
+    lines, separators, at = text.splitlines(keepends=True), _SEPARATORS, 0
+    for line in lines:
+        if named := _SEPARATOR_LINE.match(line):
+            separators = named[1] + _SEPARATORS
+        elif (bare := line.strip(" \t\r\n\"',;|")) and not bare.startswith("#"):
+            break
+        at += len(line)
+    head = text[at:].partition("\n")[0]
+    separator = max(separators, key=lambda one: len(next(csv.reader([head], delimiter=one), ())))
+    sample = islice(csv.reader(_file(text, at), delimiter=separator), 1, _DECIMAL_ROWS)
+    signs = [sign for row in sample for cell in row if (sign := _decimal_sign(cell))]
+    commas = 2 * signs.count(",") - len(signs)
+    decimal = "," if commas > 0 or (not commas and separator == ";") else "."
+    # Other separators are read only below a line ``sep=``, which is not written.
+    writable = separator if separator in _SEPARATORS else ","
+    form = _Form(encoding, writable, decimal, "\r\n" if "\r\n" in text else "\n")
+    rows = csv.reader(_file(text, at), delimiter=separator, strict=True)
+    return form, ([_without_apostrophe(cell) for cell in row] for row in rows)
+
+
+def _decoded(content: bytes) -> tuple[str, str]:
+    """Return the text and the encoding for writing; a code page is replaced by UTF-8."""
+    if content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+        return content.decode("utf-16"), "utf-16"
+    marked = content.startswith(codecs.BOM_UTF8)
     try:
-        with reading(path, "workbook"), path.open("rb") as file:
-            check_inflation(path)
-            return list(load_workbook(file, read_only=True).sheetnames)
-    except BushingNoiseError:  # reading the table reports it
-        return []
+        return content.decode("utf-8-sig"), "utf-8-sig" if marked else "utf-8"
+    except UnicodeDecodeError:
+        return content.decode("cp1252", "replace"), "utf-8-sig"
 
 
-def _sheet_lines(path: Path) -> Iterator[Sequence[object]]:
-    """Yield the rows of the first sheet below its leading comments and empty rows."""
-    from openpyxl import load_workbook
-
-    check_inflation(path)
-    with path.open("rb") as file:
-        book = load_workbook(file, read_only=True, data_only=True)
-        cells, in_table = 0, False
-        for line in book.worksheets[0].iter_rows(max_row=_MOST_ROWS, values_only=True):
-            cells += 1 + len(line)  # a small hostile file may claim any number
-            _check_size(path, cells)
-            first = next(filter(None, map(_cell_text, line)), "")
-            in_table = in_table or (bool(first) and not first.startswith("#"))
-            if in_table:
-                yield line
+def _file(text: str, at: int) -> io.StringIO:
+    """Return the text from a position on as a file for the csv module."""
+    return io.StringIO(text[at:], newline="")
 
 
-def _write_workbook(
-    path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]], name: str
+def _without_apostrophe(cell: str) -> str:
+    """Return a cell without the apostrophe that protects it from being a formula."""
+    return cell[1:] if cell[:1] == "'" and _FORMULA.match(cell) else cell
+
+
+def _write_csv(
+    file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]], form: _Form
 ) -> None:
-    """Write a workbook of one sheet with a frozen header and no formulas."""
-    from openpyxl import Workbook
-    from openpyxl.cell import WriteOnlyCell
-
-    lines = [list(map(finite_or_fixed, columns, row)) for row in rows]
-    if len(lines) >= _MOST_ROWS:
-        raise ParameterError(
-            f"{len(lines)} rows are more than an Excel sheet has ({_MOST_ROWS}); name a .csv or "
-            ".parquet"
-        )
-    book = Workbook(write_only=True)
-    title = "".join("_" if letter in r"[]:*?/\'" else letter for letter in readable(name))[:31]
-    sheet = book.create_sheet(title or "table")
-    sheet.freeze_panes = "A2"
-
-    def text(value: str) -> Any:
-        cell: Any = WriteOnlyCell(sheet)
-        cell.value, cell.data_type = value[:_LONGEST_TEXT], "s"  # never a formula
-        return cell
-
-    for line in (columns, *lines):
-        sheet.append([text(value) if isinstance(value, str) else value for value in line])
-    book.properties.creator = "bushing-noise"
-    book.save(path)
+    """Write a table in a given dialect."""
+    writer = csv.writer(file, delimiter=form.separator, lineterminator=form.line_end)
+    writer.writerow(columns)
+    for row in rows:
+        writer.writerow([_csv_cell(*cell, form.decimal) for cell in zip(columns, row, strict=True)])
 
 
-def _check_size(path: Path, n_cells: int) -> None:
-    """Refuse a file that claims more cells than its size can hold."""
-    if n_cells > _MIN_CELLS + _CELLS_PER_BYTE * path.stat().st_size:
-        raise ExcessError(f"claims {n_cells} cells, more than a file of its size holds")
+def _decimal_sign(cell: str) -> str | None:
+    """Return the decimal sign of a cell; None for integers and text."""
+    number = _NUMBER.fullmatch(cell)
+    return number and number[1]
+
+
+def _csv_cell(column: str, value: Cell, decimal: str) -> Cell:
+    """Return a value as it is written into a CSV cell."""
+    if isinstance(value, str):
+        return f"'{value}" if _FORMULA.match(value) and not _NUMBER.fullmatch(value) else value
+    if isinstance(value, bool):
+        return json.dumps(value)
+    if isinstance(value, float) and math.isinf(value):
+        return "fixed" if value > 0.0 and column.startswith(_SUPPORT) else None
+    return str(value).replace(".", decimal) if isinstance(value, float) else value

@@ -17,10 +17,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from models.errors import BushingNoiseError, ParameterError
 from models.foreign_file import one_line
-from noise.base.csv_table import Cell
 from noise.base.processes import spread_over_processes
 from noise.base.progress import readable
-from noise.base.tables import plain_cell
+from noise.base.tables import Cell, plain_cell
 from noise.recordings import find_recordings
 from noise.recordings.sidecar import find_sidecar
 
