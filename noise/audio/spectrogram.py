@@ -1,4 +1,4 @@
-"""Spectrogram of a sound over time and logarithmic frequency, and its level over time.
+"""Spectrogram of a sound over time and logarithmic frequency.
 
 Pages, app and pictures share it, so that the same sound looks the same in all of them. Each row and
 column holds the largest line in it, so that neither a click nor a tone is lost where a row or
@@ -12,11 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
-from features.kernels.level_meter import fast_level_pieces
-from models.blocks import RecordingBlocks, reader_of
-from models.drawing import thinned
-from models.recording import REFERENCE_PRESSURE, Recording
 
 LOWEST, HIGHEST = 50.0, 20e3
 """Of the frequency axis, where nothing else is asked for [Hz]."""
@@ -144,41 +139,6 @@ def spectrogram(
         power[column : column + columns] = np.where(between, strength[:, nearest], largest)
     power[:, grid.edges[:-1] > 0.5 * rate] = 0.0
     return _levels(power, reference).T[::-1]
-
-
-def recorded_levels(
-    recording: Recording | RecordingBlocks, *, columns: int = 1200
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the A-weighted level, time weighting F, of the first pressure channel over time.
-
-    Parameters
-    ----------
-    recording : Recording or RecordingBlocks
-    columns : int
-        Columns of the drawing; each keeps its lowest and its highest level.
-
-    Returns
-    -------
-    time, level : ndarray, shape (m,)
-        [s] and [dB], thinned for drawing; digital silence is left out.
-
-    Examples
-    --------
-    >>> from models.recording import Channel, Recording
-    >>> tone = np.sin(2 * np.pi * 1000 * np.arange(48000) / 48e3)
-    >>> time, level = recorded_levels(Recording(tone[np.newaxis], 48e3, (Channel("pressure"),)))
-    >>> round(float(level.max()), 1)
-    91.0
-    """
-    row = recording.first("pressure")
-    read = reader_of(recording, row or 0)
-    reference = REFERENCE_PRESSURE if recording.calibrated and row is not None else 1.0
-    pieces = fast_level_pieces(read, recording.n_samples, recording.rate, reference=reference)
-    level = np.concatenate([np.empty(0), *pieces])
-    there = np.isfinite(level)
-    if not there.any():
-        return level[:0], level[:0]
-    return thinned(np.flatnonzero(there) / recording.rate, level[there], columns=columns)
 
 
 def _window(length: int) -> NDArray[np.float32]:

@@ -1,4 +1,4 @@
-"""Cards of a page: spectrogram, labels, level over time and facts of a sound.
+"""Cards of a page: spectrogram, labels and facts of a sound.
 
 A picture is the plain spectrogram over the whole duration of the clip, so a cursor needs only the
 played fraction; the page draws the axes. Frequency is logarithmic. All pictures of a page share
@@ -16,7 +16,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.drawing import thinned
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.labels.summary import ASSUMED, assumes_material
@@ -106,52 +105,6 @@ def _png(steps: NDArray[np.uint8]) -> bytes:
     return png.getvalue()
 
 
-_RANGE_OVER_TIME = 60.0
-"""Range of level curves below the maximum of the page [dB]."""
-
-_STEP, _MARGIN = 20.0, 5.0
-"""Distance of ticks from each other and from the ends of the axis [dB]."""
-
-_COLUMNS, _WIDTH, _HEIGHT = 120, 600, 100
-
-
-class LevelDisplay(NamedTuple):
-    """Line in a box of 600 by 100, ticks in per cent from below, and maximum of a level."""
-
-    line: str
-    ticks: Ticks
-    most: str
-
-
-def _level_displays(
-    clips: Mapping[str, Clip], entries: Mapping[str, Entry], unit: str
-) -> dict[str, LevelDisplay]:
-    """Return the level curves of audible sounds on a common axis."""
-    curves = {}
-    for key, clip in clips.items():
-        if (measured := entries[key].fast_levels) is None:
-            continue
-        time, level = measured
-        inside = (time >= clip.start) & (time <= clip.end)
-        time, level = thinned(time[inside] - clip.start, level[inside], columns=_COLUMNS)
-        if level.size:
-            curves[key] = time * RATE / clip.samples.size, level
-    highest = max((float(level.max()) for _, level in curves.values()), default=0.0)
-    top = 5.0 * math.ceil(highest / 5.0)
-    first = _STEP * math.floor((top - _MARGIN) / _STEP)
-    ticks = tuple(
-        (round(100.0 * (1.0 - (top - tick) / _RANGE_OVER_TIME), 1), _plain(float(tick), ".0f"))
-        for tick in np.arange(first, top - _RANGE_OVER_TIME + _MARGIN, -_STEP)
-    )
-    displays = {}
-    for key, (share, level) in curves.items():
-        y = _HEIGHT * np.clip((top - level) / _RANGE_OVER_TIME, 0.0, 1.0)
-        line = " ".join(f"{a:.0f},{b:.1f}" for a, b in zip(_WIDTH * share, y, strict=True))
-        most = f"{_plain(float(level.max()), '.1f')} {unit}"
-        displays[key] = LevelDisplay(line, ticks, most)
-    return displays
-
-
 _MOST_TICKS = 6
 
 
@@ -188,7 +141,7 @@ class EntryDisplay:
         Labels of the entry, longest first.
     facts : dict of str to Fact
         Those known of ``speed``, ``interference``, ``stiffness``, ``material``, ``temperature``,
-        ``frequency`` and ``level``.
+        ``frequency``, ``level`` and ``fast``.
     note : str
     picture : bytes
         Spectrogram, a PNG file; empty where there is nothing to be heard.
@@ -200,8 +153,6 @@ class EntryDisplay:
         Of the time axis: share of the clip [%], and seconds of the recording.
     alt : str
         What the spectrogram shows.
-    level : LevelDisplay or None
-        A-weighted, Fast, over the time of the clip.
     """
 
     id: str
@@ -214,7 +165,6 @@ class EntryDisplay:
     tracks: tuple[tuple[str, tuple[Band, ...]], ...]
     ticks: tuple[tuple[float, str], ...]
     alt: str
-    level: LevelDisplay | None
 
 
 def draw_entries(
@@ -243,7 +193,6 @@ def draw_entries(
     ('run07', [])
     """
     pictures: dict[str, bytes] = {}
-    over_time: dict[str, LevelDisplay] = {}
     scale_words = []
     for calibrated, reference, unit in ((True, REFERENCE_PRESSURE, "dB re 20 µPa"),
                                         (False, 1.0, "dBFS")):  # fmt: skip
@@ -252,15 +201,13 @@ def draw_entries(
             key: spectrogram(_reader(clip.samples), clip.samples.size, RATE, reference)
             for key, clip in of_it.items()
         }
-        unit_a = "dB(A)" if calibrated else "dBFS(A)"
-        over_time |= _level_displays(of_it, entries, unit_a)
         if levels:
             highest = top(list(levels.values()))
             pictures |= {key: picture(one, highest) for key, one in levels.items()}
             words = f"{highest - RANGE:.0f} to {highest:.0f} {unit}"
             scale_words.append(words.replace("-", "\N{MINUS SIGN}"))
     displays = {
-        key: _display(key, entry, clips.get(key), pictures.get(key, b""), over_time.get(key))
+        key: _display(key, entry, clips.get(key), pictures.get(key, b""))
         for key, entry in entries.items()
     }
     return displays, scale_words
@@ -284,9 +231,7 @@ def frequency_ticks() -> tuple[tuple[float, str], ...]:
     )
 
 
-def _display(
-    key: str, entry: Entry, clip: Clip | None, picture: bytes, level: LevelDisplay | None
-) -> EntryDisplay:
+def _display(key: str, entry: Entry, clip: Clip | None, picture: bytes) -> EntryDisplay:
     start = 0.0 if clip is None else clip.start
     end = entry.duration if clip is None else clip.end
     notes = [entry.note] if entry.note else []
@@ -307,7 +252,6 @@ def _display(
         tracks=_tracks(entry, start, end) if end > start else (),
         ticks=tuple((_per_cent(tick, start, end), f"{tick:.6g}") for tick in ticks),
         alt=_alt(entry, start, end),
-        level=level,
     )
 
 
@@ -342,6 +286,7 @@ def facts_of(entry: Entry) -> dict[str, Fact]:
         "level": _number(row.get("level_dba"), ".1f", "dB(A)")
         or _number(row.get("level_db"), ".1f", "dB")
         or _number(row.get("level_dbfs"), ".1f", "dBFS"),
+        "fast": _number(row.get("l_afmax_dba"), ".1f", "dB(A) Fast at most"),
     }
     return {name: fact for name, fact in facts.items() if fact is not None}
 

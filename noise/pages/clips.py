@@ -29,7 +29,6 @@ from noise.labels.summary import labels_in, naming_row
 from noise.recordings.wav import integers, largest_sample
 
 Row = Mapping[str, object]
-FastLevels = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 RATE = 48000
 """Sampling rate of sounds on pages [Hz]."""
@@ -64,9 +63,6 @@ class Entry:
     offset : float
         Where that stretch begins [s].
     calibrated : bool
-    fast_levels : tuple of 2 ndarrays, shape (n,), optional
-        Time [s] and A-weighted level, Fast [dB], where they were measured before the sound was
-        faded and resampled, as by `noise.audio.spectrogram.recorded_levels`.
     note : str
         Where the labels come from, or why there is no sound.
     """
@@ -79,7 +75,6 @@ class Entry:
     offset: float = 0.0
     calibrated: bool = True
     note: str = ""
-    fast_levels: FastLevels | None = None
 
     @property
     def parts(self) -> tuple[Part, ...]:

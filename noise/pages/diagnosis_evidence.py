@@ -21,7 +21,6 @@ from features.kernels.spectra import autospectrum
 from models.drawing import BLUE, VERMILION, padded, styled, thinned
 from models.recording import Recording
 from noise.audio.sound import audible
-from noise.audio.spectrogram import recorded_levels
 from noise.diagnosis.outcome import ROLES, Illustration
 from noise.diagnosis.text.words import number
 from noise.pages import blocks as b
@@ -244,7 +243,6 @@ def illustration_entries(illustration: Illustration) -> dict[str, Entry]:
                 duration=sound.size / RATE,
                 sound=sound,
                 note=f"{number(level, '.1f')} dB(A)" if math.isfinite(level) else "",
-                fast_levels=recorded_levels(recording),
             )
     return entries
 

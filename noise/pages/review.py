@@ -21,7 +21,6 @@ from models.errors import BushingNoiseError, ParameterError
 from models.recording import Recording
 from models.show import short_repr
 from noise.audio.sound import LOWEST_AUDIBLE_RATE, audible
-from noise.audio.spectrogram import recorded_levels
 from noise.base.progress import readable, track
 from noise.base.tables import TABLE_ENDINGS, table_columns
 from noise.classifier import Classifier, load_classifier
@@ -322,18 +321,14 @@ def _read_entry(
             offset = stretch_start(rows, duration, longest)
             excerpt, why = _excerpt(blocks, offset, longest)
             notes += [why] * bool(why)
-            sound = levels = None
-            if excerpt is not None:
-                sound = audible(excerpt, RATE).astype(np.float32)
-                time, level = recorded_levels(excerpt)
-                levels = offset + time, level
+            sound = None if excerpt is None else audible(excerpt, RATE).astype(np.float32)
     except BushingNoiseError as error:
         return Refusal.of(path, error)
     except OSError as error:  # it was there when the folder was searched
         return Refusal.of(path, f"cannot be read ({error.strerror or error})")
     return Entry(
         name, tuple(rows), blocks.condition, duration, sound, offset, blocks.calibrated,
-        "; ".join(notes), levels,
+        "; ".join(notes),
     )  # fmt: skip
 
 

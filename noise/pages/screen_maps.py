@@ -23,7 +23,6 @@ from features.kernels.level_meter import a_weighted_level
 from models.errors import BushingNoiseError
 from models.rig import Rig
 from noise.audio.sound import audible
-from noise.audio.spectrogram import recorded_levels
 from noise.base.labels import LABEL_LOOKS, NAMED, PERSISTS, Look
 from noise.base.progress import counted, track
 from noise.batch.work import one_thread
@@ -341,7 +340,6 @@ def _sound(
         duration=SECONDS,
         sound=audible(run.recording, RATE).astype(np.float32),
         note=note,
-        fast_levels=recorded_levels(run.recording),
     )
 
 

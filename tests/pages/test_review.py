@@ -237,8 +237,3 @@ def test_a_sound_beyond_full_scale_is_clipped_and_does_not_wrap():
     clips = make_clips({"s1": Entry("run", duration=1.0, sound=2.0 * TONE_48)}, Gain(1.0, None))
     heard, _ = soundfile.read(io.BytesIO(clips["s1"].flac))
     assert np.abs(heard - np.clip(2.0 * TONE_48, -1.0, 1.0)).max() < 2.0**-14
-
-
-def test_the_level_over_time_is_drawn(campaign):
-    page = Page(review(campaign, campaign / "review.html").path)
-    assert page.html.count('<svg class="level"') == 2
