@@ -80,7 +80,7 @@ def run(options: Namespace) -> int:
             screening = _screening(options, use, environments, bar, journal)
         from noise.screening.summary import summary_lines
 
-        for name, reason in (*screening.refused, *screening.failed):
+        for name, reason in screening.refused:
             say(f"{name}: {reason}")
         if options.out is None:
             print(*summary_lines(screening), sep="\n")
@@ -89,7 +89,7 @@ def run(options: Namespace) -> int:
             with steps("writing", 2) as progress:
                 written = _write(options, screening, progress)
             report(*written)
-    return 1 if screening.refused or screening.failed else 0
+    return 1 if screening.refused else 0
 
 
 def _screening(

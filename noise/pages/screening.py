@@ -23,12 +23,10 @@ from noise.screening.summary import (
     margin_is_bound,
     percent,
     ranking_words,
-    standing_place,
-    use_head,
+    use_words,
 )
 
 if TYPE_CHECKING:
-    from noise.screening.grid import Grid
     from noise.screening.screen import Screening
 
 
@@ -50,38 +48,36 @@ def ranking_rows(screening: Screening) -> list[list[b.Cell | str]]:
     >>> rank, design.text, noise.labels, mean, loudest
     ('1', 'PDMS', (('none', '100%'),), '0 sone', 'quiet')
     """
-    return [_row(one, screening) for one in screening.standings]
+    return [_row(one) for one in screening.standings]
 
 
-def _row(one: Standing, screening: Screening) -> list[b.Cell | str]:
-    loudest = "quiet" if one.rank is not None else ""
-    if math.isfinite(one.loudest_level) and not one.never_slips:
-        loudest = f"{one.loudest_level:.0f} dB(A)"
+def _row(one: Standing) -> list[b.Cell | str]:
+    loudest = "quiet" if one.loudest is None else f"{one.loudest_level:.0f} dB(A)"
     shares = {name: one.shares[name] for name in SHARED if one.shares.get(name)}
     ends = np.cumsum([0.0, *shares.values()])
     bars = [
         b.Bar(100.0 * begin, 100.0 * share, f"filled {name} {LABEL_LOOKS[name].pattern}")
         for begin, (name, share) in zip(ends, shares.items(), strict=False)
     ]
-    details = () if one.never_slips else detail_lines(one, screening)
     return [
-        "\N{EN DASH}" if one.rank is None else str(one.rank),
-        b.Cell(one.design, standing_place(one)),
+        str(one.rank),
+        b.Cell(one.design, one.place),
         b.Cell(bars=bars, labels=tuple((name, percent(share)) for name, share in shares.items())),
-        "" if one.rank is None else f"{one.mean_loudness:.3g} sone",
+        f"{one.mean_loudness:.3g} sone",
         loudest,
-        _margin(one, screening.map_of(one).grid),
-        b.Cell(use_head(one, screening), items=tuple(details)),
+        _margin(one),
+        b.Cell(use_words(one.mapped)[0], items=tuple(detail_lines(one))),
     ]
 
 
-def _margin(one: Standing, grid: Grid) -> str:
-    if math.isnan(one.margin_v_crit2) or one.never_slips:
+def _margin(one: Standing) -> str:
+    margin = one.worst("margin_v_crit2")
+    if math.isnan(margin):
         return ""
-    if math.isinf(one.margin_v_crit2):
+    if math.isinf(margin):
         return "nothing vibrates"
-    text = f"{one.margin_v_crit2:+.3g} rad/s".replace("-", "\N{MINUS SIGN}")
-    if margin_is_bound(one.margin_v_crit2, grid):
+    text = f"{margin:+.3g} rad/s".replace("-", "\N{MINUS SIGN}")
+    if margin_is_bound(margin, one.mapped.grid):
         return f"at least {text}: vibration does not end within the map"
     return text
 
@@ -125,21 +121,14 @@ def write_screening(
     True
     """
     rigs = {one.name: one.rig for one in screening.designs}
-    held = {one.design: one.never_slips for one in screening.standings if one.rank is None}
-    # A contact that is wound up without end would set the gain of all others.
     laid = [
-        held.get(one.design) or in_environment(rigs[one.design], environment(one.environment))
-        for one in screening.maps
+        in_environment(rigs[one.design], environment(one.environment)) for one in screening.maps
     ]
     compared, entries = compare_designs(
         screening, laid, number=sounds, seed=seed, workers=workers, pair=_pair(screening)
     )
     gain = common_gain(entries.values())
     clips = make_clips(entries, gain)
-    refused = [
-        *screening.refused,
-        *((f"{name}, in part", reason) for name, reason in screening.failed),
-    ]
     html = page_html(
         "screening",
         _title(screening),
@@ -148,7 +137,7 @@ def write_screening(
             b.Sounds(gain.sentences, MAP_LABELS),
         ],
         [
-            b.Section("Not on this page", [b.Items(refused)], "refused"),
+            b.Section("Not on this page", [b.Items(screening.refused)], "refused"),
             b.Section(
                 "Ranking",
                 [

@@ -30,7 +30,6 @@ from numpy.typing import NDArray
 
 from features.kernels.level_meter import WeightedLevels, weighted_levels
 from models.condition import Condition as Stated
-from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
 from models.recording import Recording
@@ -46,7 +45,6 @@ from noise.screening.vibration import (
     Condition,
     gone_on,
     oscillation,
-    vibration_at,
     vibrations_at,
 )
 from sim.acquisition import Acquisition, sample
@@ -283,31 +281,6 @@ def _sound(rig: Rig, at: Condition, motion: Motion) -> Sound:
     paths = _paths(rig, at.interference, at.support_stiffness)
     paths = apply_chain_effects(paths, effects, np.random.default_rng(0))
     return radiate_motion(motion, paths, effects)
-
-
-def point_sound(rig: Rig, at: Condition) -> tuple[float, NDArray[np.float64]]:
-    """Return the sound of a point that sounds.
-
-    Parameters
-    ----------
-    rig : Rig
-    at : Condition
-
-    Returns
-    -------
-    rate : float
-        [Hz]
-    pressure : ndarray, shape (n,)
-        [Pa]
-    """
-    if at.frequency:
-        motion, start = _motion(rig, at, at.frequency), 0.25 / at.frequency
-    elif (course := vibration_at(rig, at).course) is not None:
-        motion, start = gone_on(course, 1.0), _RINGING
-    else:
-        raise ParameterError(f"nothing vibrates at {at}")
-    sound = _sound(at_temperature(rig, at.temperature), at, motion)
-    return RATE, sound.pressure[round(start * RATE) :]
 
 
 def _motion(rig: Rig, at: Condition, frequency: float) -> Motion:

@@ -8,9 +8,9 @@ on.
 
 A shaft that turns on winds the bushing up until the contact slips. Where it would have to wind it
 up further than rubber bears, or longer than a few seconds at the fastest speed of use, with every
-fit and support, nothing is known of the design's noise, and it gets no rank; most often a torque or
-a stiffness is in another unit. A shaft that swings may well never make the contact slip, which is
-a result.
+fit and support, nothing is known of the design's noise, and it is refused; most often a torque or a
+stiffness is in another unit. A shaft that swings may well never make the contact slip, which is a
+result.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -38,10 +38,8 @@ from noise.screening.mapping import SIMULATED, DesignMap, map_design
 from noise.screening.parts import noisy_parts
 from noise.screening.point import batch_evaluator, keeping
 from noise.screening.standing import (
-    CriticalPoint,
     Standing,
     condition_at,
-    critical_points,
     ranked,
     standing_of,
 )
@@ -81,12 +79,10 @@ class Screening:
         Those that were screened, as they were: named, and changed where a change was given.
     maps : tuple of DesignMap
         One for each design, environment and motion; all designs have the same grids.
-    critical : tuple of CriticalPoint
-        Critical speeds and margins, by simulation and by stability.
     standings : tuple of Standing
         The designs ranked, the quietest first; one for each map.
     refused : tuple of (str, str)
-        Designs that could not be screened, and why.
+        Designs that could not be screened, or not in all, and why.
     seconds : float
         How long it took [s].
 
@@ -101,20 +97,9 @@ class Screening:
 
     designs: tuple[Design, ...]
     maps: tuple[DesignMap, ...]
-    critical: tuple[CriticalPoint, ...]
     standings: tuple[Standing, ...]
     refused: tuple[tuple[str, str], ...]
     seconds: float
-
-    def map_of(self, one: Standing) -> DesignMap:
-        """Return the map that a standing is of."""
-        where = one.design, one.environment, one.motion
-        return next(m for m in self.maps if (m.design, m.environment, m.motion) == where)
-
-    @property
-    def failed(self) -> tuple[tuple[str, str], ...]:
-        """Designs with an analysis that failed, and the reason."""
-        return tuple((one.design, why) for one in self.standings for why in one.failed)
 
     def plot(
         self,
@@ -235,7 +220,7 @@ def screen(
     --------
     >>> from noise.screening.design import Use
     >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0, 9.0), support_stiffness=(2214.0,)))
-    >>> found.standings[0].shares["none"], found.critical[0].margin_v_crit2
+    >>> found.standings[0].shares["none"], found.standings[0].worst("margin_v_crit2")
     (1.0, inf)
     """
     started = time.perf_counter()
@@ -264,6 +249,7 @@ def screen(
                 for (where, swinging), grid in grids.items():
                     progress(f"mapping {name}, {where}")
                     rig = in_environment(design.rig, environment(where))
+                    refuse_never_slipping(rig, grid)
                     one = map_design(
                         rig, grid, evaluate, design=name, environment=where, most=simulations
                     )
@@ -278,32 +264,29 @@ def screen(
                 maps, notes = maps + of_design, notes | own
     if not maps:
         raise ParameterError(refused[0][1])
-    critical = [critical_points(one) for one in maps]
     standings: list[Standing] = []
     rng = rng or np.random.default_rng(0)
-    for one, points, stream in zip(maps, critical, rng.spawn(len(maps)), strict=True):
+    for one, stream in zip(maps, rng.spawn(len(maps)), strict=True):
         design = loaded[one.design]
         design = replace(design, rig=in_environment(design.rig, environment(one.environment)))
-        never = why_never_slipping(design.rig, one.grid)
-        standing = standing_of(one, points, never)
-        remarks = *notes[one.design, one.environment], *filter(None, [never])
-        standing = replace(standing, notes=remarks)
-        if one.motion == "steady" and not never:
-            if standing.loudest is not None:
+        standing = standing_of(one)
+        standing = replace(standing, notes=tuple(notes[one.design, one.environment]))
+        parts = bool(design.tolerances) if tolerances is None else tolerances
+        try:
+            if one.motion == "steady" and standing.loudest is not None:
                 progress(f"advice for {one.design}, {one.environment}")
-                standing = _attempted("advice", standing, _advised, one, design.rig, workers)
-            if bool(design.tolerances) if tolerances is None else tolerances:
+                standing = _advised(standing, standing.loudest, design.rig, workers)
+            if one.motion == "steady" and parts:
                 progress(f"tolerances of {one.design}, {one.environment}")
-                standing = _attempted(
-                    "tolerances", standing, _with_parts, one, design, stream, workers
-                )
+                standing = _with_parts(standing, design, stream, workers)
+        except _FAILURES as error:
+            refused.append((f"{one.design}, in part", f"advice or tolerances: {error}"))
         standings.append(standing)
         work.add(_STATISTICS)
     screened = {one.design: loaded[one.design] for one in maps}
     return Screening(
         designs=tuple(screened.values()),
         maps=tuple(maps),
-        critical=tuple(itertools.chain(*critical)),
         standings=ranked(standings),
         refused=tuple(refused),
         seconds=time.perf_counter() - started,
@@ -332,28 +315,17 @@ class _Work:
         self.add(0)
 
 
-def _attempted(
-    what: str, standing: Standing, complete: Callable[..., Standing], *given: Any
-) -> Standing:
-    """Return a completed standing, or one with the reason why it cannot be."""
-    try:
-        return complete(standing, *given)
-    except _FAILURES as error:
-        return replace(standing, failed=(*standing.failed, f"{what}: {error}"))
-
-
-def _advised(standing: Standing, mapped: DesignMap, rig: Rig, workers: int) -> Standing:
+def _advised(standing: Standing, loudest: Condition, rig: Rig, workers: int) -> Standing:
     """Add the changes that end the loudest noise."""
-    assert standing.loudest is not None
-    others = _other_noisy(mapped, standing.loudest)
-    return replace(standing, offers=advise(rig, standing.loudest, others, workers=workers))
+    others = _other_noisy(standing.mapped, loudest)
+    return replace(standing, offers=advise(rig, loudest, others, workers=workers))
 
 
 def _with_parts(
-    standing: Standing, mapped: DesignMap, design: Design, rng: np.random.Generator, workers: int
+    standing: Standing, design: Design, rng: np.random.Generator, workers: int
 ) -> Standing:
     """Add what tolerances do."""
-    grid = mapped.grid
+    grid = standing.mapped.grid
     axes = grid.interference, grid.support_stiffness, grid.temperature
     middle = (axis[(len(axis) - 1) // 2] for axis in axes)
     at = standing.loudest or Condition(0.5 * sum(grid.use), *middle)
@@ -378,8 +350,8 @@ _MOST_TWIST = 2.0
 """Of a bushing [rad]: one half as thick as its radius is then sheared by 400 %, and tears."""
 
 
-def why_never_slipping(rig: Rig, grid: Grid) -> str:
-    """Return why the contact slips at no point of a map; empty where it does.
+def refuse_never_slipping(rig: Rig, grid: Grid) -> None:
+    """Refuse a rig of which the contact slips at no point of a map of constant speeds.
 
     Parameters
     ----------
@@ -387,35 +359,40 @@ def why_never_slipping(rig: Rig, grid: Grid) -> str:
         In its environment.
     grid : Grid
 
+    Raises
+    ------
+    ParameterError
+        The message says which torque holds.
+
     Examples
     --------
     >>> from noise.screening.design import Use, load_design
     >>> from noise.screening.grid import shared_grid
     >>> design = load_design("fluorocarbon-thesis")
     >>> grid = shared_grid([design], Use(speed=(5.0,), interference=(0.279e-3,)))
-    >>> why_never_slipping(design.rig, grid)
-    ''
+    >>> refuse_never_slipping(design.rig, grid)
     >>> in_nmm = design.rig.changed(critical_torque="x1000", kinetic_torque="x1000")
-    >>> why_never_slipping(in_nmm, grid)
-    'never slips: the contact holds 10700 Nm, for which the shaft winds the bushing up by 16.1 rad'
+    >>> refuse_never_slipping(in_nmm, grid)
+    Traceback (most recent call last):
+    models.errors.ParameterError: never slips: the contact holds 10700 Nm, for which the shaft ...
     """
+    if grid.frequency:
+        return
     twist, torque, interference, support = min(
         (fit.critical_torque / effective_stiffness(fit, support), fit.critical_torque, at, support)
         for at, support in itertools.product(grid.interference, grid.support_stiffness)
         for fit in (rig.fit(at),)
     )
-    swing = bool(grid.frequency)
     fastest = grid.use[1]
-    way = fastest / (2.0 * math.pi * min(grid.frequency)) if swing else fastest * _LONGEST_WINDING
-    if twist <= (way if swing else min(way, _MOST_TWIST)):
-        return ""
-    if not swing and twist <= _MOST_TWIST:
+    if twist <= min(fastest * _LONGEST_WINDING, _MOST_TWIST):
+        return
+    if twist <= _MOST_TWIST:
         motion = motion_from_rest(rig, fastest, interference, support, seconds=_LONGEST_WINDING)
         if not never_slips(motion):
-            return ""
-    return (
+            return
+    raise ParameterError(
         f"never slips: the contact holds {torque:g} Nm, for which the shaft winds the bushing up "
-        f"by {twist:.3g} rad"
+        f"by {twist:.3g} rad; are torque and stiffness in their units?"
     )
 
 

@@ -19,7 +19,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,9 +32,6 @@ from noise.screening.parts import NoisyParts
 from noise.screening.vibration import Condition
 from sim.analysis.regime import Regime
 
-_CRITICAL_SPEEDS = "v_crit1", "v_crit2", "v_crit2_high"
-_MARGINS = "margin_v_crit1", "margin_v_crit2", "margin_stability"
-
 SHARED = ("creak", "squawk", "squeal", "none", PERSISTS)
 """Labels of a map whose shares are reported."""
 
@@ -46,7 +42,6 @@ class CriticalPoint:
 
     Parameters
     ----------
-    design, environment : str
     temperature : float
         [degree Celsius]
     interference : float
@@ -63,8 +58,6 @@ class CriticalPoint:
         positive where no speed of use does.
     """
 
-    design: str
-    environment: str
     temperature: float
     interference: float
     support_stiffness: float
@@ -93,8 +86,8 @@ def critical_points(mapped: DesignMap) -> list[CriticalPoint]:
         )
         points.append(
             CriticalPoint(
-                mapped.design, mapped.environment, mapped.grid.temperature[at[0]],
-                mapped.grid.interference[at[2]], mapped.grid.support_stiffness[at[1]],
+                mapped.grid.temperature[at[0]], mapped.grid.interference[at[2]],
+                mapped.grid.support_stiffness[at[1]],
                 last[0], spans[0][1], last[1], spans[1][1], last[2],
                 *(margin_of(span, mapped.grid.use) for span in spans),
             )
@@ -158,9 +151,9 @@ class Standing:
 
     Parameters
     ----------
-    rank : int, optional
-        Of the design among all, 1 being quietest; None where the contact never slips.
-    design, environment, motion : str
+    mapped : DesignMap
+    critical : tuple of CriticalPoint
+        Critical speeds and margins, by simulation and by stability.
     mean_loudness : float
         Of the use [sone].
     shares : dict of str to float
@@ -171,43 +164,55 @@ class Standing:
         Its noise, ``none`` if there is none.
     loudest_level, loudest_level_max : float
         Its L_Aeq and L_AFmax [dB re 20 uPa]; NaN if there is none.
-    v_crit1, v_crit2, v_crit2_high : float
-        Largest of all fits, supports and temperatures [rad/s]; NaN where the shaft swings.
-    margin_v_crit1, margin_v_crit2, margin_stability : float
-        Smallest likewise [rad/s].
+    rank : int
+        Of the design among all, 1 being quietest.
     offers : tuple of Offer
         Changes that end the loudest noise of use, and those that do not.
     parts : NoisyParts, optional
         Of its parts within tolerances, where they were looked at.
-    never_slips : str
-        Why the contact never slips; empty where it does.
     notes : tuple of str
         Remarks on its data.
-    failed : tuple of str
-        Analyses that failed, and the reason.
     """
 
-    rank: int | None
-    design: str
-    environment: str
-    motion: str
+    mapped: DesignMap
+    critical: tuple[CriticalPoint, ...]
     mean_loudness: float
     shares: dict[str, float]
     loudest: Condition | None
     loudest_label: str
     loudest_level: float
     loudest_level_max: float
-    v_crit1: float
-    v_crit2: float
-    v_crit2_high: float
-    margin_v_crit1: float
-    margin_v_crit2: float
-    margin_stability: float
+    rank: int = 0
     offers: tuple[Offer, ...] = ()
     parts: NoisyParts | None = None
-    never_slips: str = ""
     notes: tuple[str, ...] = ()
-    failed: tuple[str, ...] = ()
+
+    @property
+    def design(self) -> str:
+        """Name of the design."""
+        return self.mapped.design
+
+    @property
+    def place(self) -> str:
+        """Environment, and motion where the shaft swings."""
+        one = self.mapped
+        return one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}"
+
+    def worst(self, name: str) -> float:
+        """Return a critical speed or margin at its worst fit, support and temperature [rad/s].
+
+        Parameters
+        ----------
+        name : str
+            Of a `CriticalPoint`; of speeds the largest is the worst, of margins the smallest.
+
+        Returns
+        -------
+        float
+            NaN where the shaft swings.
+        """
+        choose = min if name.startswith("margin") else max
+        return choose((getattr(one, name) for one in self.critical), default=math.nan)
 
 
 def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -231,18 +236,12 @@ def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(2.0 ** ((level - 40.0) / 10.0))
 
 
-def standing_of(
-    mapped: DesignMap, critical: Sequence[CriticalPoint], never_slips: str = ""
-) -> Standing:
+def standing_of(mapped: DesignMap) -> Standing:
     """Return the standing of a mapped design, without rank.
 
     Parameters
     ----------
     mapped : DesignMap
-    critical : sequence of CriticalPoint
-        Of this map.
-    never_slips : str
-        Why the contact never slips; empty where it does.
 
     Returns
     -------
@@ -254,27 +253,16 @@ def standing_of(
     )
     noisy = (sound != "none") & np.isfinite(level)
     loudest = np.unravel_index(np.argmax(np.where(noisy, level, -np.inf)), level.shape)
-    nothing, any_noise = math.nan, bool(noisy.any())
-    numbers: dict[str, Any] = {
-        name: max((getattr(point, name) for point in critical), default=nothing)
-        for name in _CRITICAL_SPEEDS
-    } | {
-        name: min((getattr(point, name) for point in critical), default=nothing)
-        for name in _MARGINS
-    }
+    any_noise = bool(noisy.any())
     return Standing(
-        rank=None,
-        design=mapped.design,
-        environment=mapped.environment,
-        motion=mapped.motion,
+        mapped=mapped,
+        critical=tuple(critical_points(mapped)),
         mean_loudness=float(np.sum(loudness_weight(level_max[noisy])) / label.size),
         shares={name: float(np.mean(label == name)) for name in SHARED},
         loudest=condition_at(mapped.grid, loudest) if any_noise else None,
         loudest_label=str(sound[loudest]) if any_noise else "none",
-        loudest_level=float(level[loudest]) if any_noise else nothing,
-        loudest_level_max=float(level_max[loudest]) if any_noise else nothing,
-        **numbers,
-        never_slips=never_slips,
+        loudest_level=float(level[loudest]) if any_noise else math.nan,
+        loudest_level_max=float(level_max[loudest]) if any_noise else math.nan,
     )
 
 
@@ -302,17 +290,13 @@ def ranked(standings: Sequence[Standing]) -> tuple[Standing, ...]:
     Returns
     -------
     tuple of Standing
-        Those without a rank are the last; equals share one.
+        Equals share a rank.
     """
     keys: dict[str, tuple[float, float]] = {}
     for one in standings:
-        margin = -math.inf if math.isnan(one.margin_v_crit2) else one.margin_v_crit2
-        key = round(one.mean_loudness, 6), -margin
+        margin = one.worst("margin_v_crit2")
+        key = round(one.mean_loudness, 6), math.inf if math.isnan(margin) else -margin
         keys[one.design] = max(keys.get(one.design, key), key)
-    for one in standings:
-        if one.never_slips and one.motion == "steady":
-            keys.pop(one.design, None)
     order = sorted(keys.values())
-    ranks = {name: 1 + order.index(key) for name, key in keys.items()}
-    standings = [replace(one, rank=ranks.get(one.design)) for one in standings]
-    return tuple(sorted(standings, key=lambda one: (one.rank or math.inf, one.design)))
+    standings = [replace(one, rank=1 + order.index(keys[one.design])) for one in standings]
+    return tuple(sorted(standings, key=lambda one: (one.rank, one.design)))

@@ -120,29 +120,24 @@ def condition_words(at: Condition | CriticalPoint) -> str:
     return f"{1e3 * at.interference:.3g} mm, {support}"
 
 
-def margin_words(one: Standing, grid: Grid) -> str:
+def margin_words(one: Standing) -> str:
     """Return a sentence on the last vibration and the margin of the use; empty for a swing.
-
-    Parameters
-    ----------
-    one : Standing
-    grid : Grid
-        Of its map.
 
     Examples
     --------
     >>> from noise.screening.design import Use
     >>> from noise.screening.screen import screen
     >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,)))
-    >>> margin_words(found.standings[0], found.maps[0].grid)
+    >>> margin_words(found.standings[0])
     'nothing vibrates at any speed of the map'
     """
-    margin, last, use = one.margin_v_crit2, one.v_crit2, grid.use
+    grid, use = one.mapped.grid, one.mapped.grid.use
+    margin, last, beyond = map(one.worst, ("margin_v_crit2", "v_crit2", "v_crit2_high"))
     if math.isnan(margin):
         return ""
     if margin == math.inf:
         return "nothing vibrates at any speed of the map"
-    text = f"the last vibration ends between {last:.3g} and {one.v_crit2_high:.3g} rad/s (V_crit2)"
+    text = f"the last vibration ends between {last:.3g} and {beyond:.3g} rad/s (V_crit2)"
     if math.isinf(last):
         text = f"vibration does not end within the map, up to {grid.speed[-1]:.3g} rad/s (V_crit2)"
     if margin_is_bound(margin, grid):
@@ -310,23 +305,10 @@ def limit_words(offers: Sequence[Offer], noise: str, most: int = 2) -> list[str]
 # --- all of a screen -----------------------------------------------------------------------------
 
 
-def detail_lines(one: Standing, screening: Screening) -> list[str]:
-    """Return lines on where a design is noisy, level, changes, critical speeds and certainty.
-
-    Parameters
-    ----------
-    one : Standing
-    screening : Screening
-        That it is of.
-    """
-    mapped = screening.map_of(one)
-    points = [
-        point
-        for point in screening.critical
-        if (point.design, point.environment, "steady") == (one.design, one.environment, one.motion)
-    ]
-    ranges = [] if one.never_slips else use_words(mapped)[1]
-    lines = [f"where: {text}" for text in ranges]
+def detail_lines(one: Standing) -> list[str]:
+    """Return lines on where a design is noisy, level, changes, critical speeds and certainty."""
+    mapped = one.mapped
+    lines = [f"where: {text}" for text in use_words(mapped)[1]]
     if one.loudest is not None:
         lines.append(
             f"heard: up to {one.loudest_level:.0f} dB(A) ({one.loudest_label}); mean loudness "
@@ -336,11 +318,10 @@ def detail_lines(one: Standing, screening: Screening) -> list[str]:
         advice = advice_words(one.loudest_label, one.loudest, one.offers, left)
         lines += [f"what to change: {text}" for text in [advice] if text]
         lines += [f"limits: {text}" for text in limit_words(one.offers, one.loudest_label)]
-    lines += [f"critical speeds: {text}" for text in critical_words(points, mapped.grid)]
-    lines += [f"margin: {text}" for text in [margin_words(one, mapped.grid)] if text]
+    lines += [f"critical speeds: {text}" for text in critical_words(one.critical, mapped.grid)]
+    lines += [f"margin: {text}" for text in [margin_words(one)] if text]
     lines.append(f"how sure: {'; '.join(_sure_words(one, mapped))}")
-    lines += [f"failed: {why}" for why in one.failed]
-    return [*lines, *(f"note: {note}" for note in one.notes if note != one.never_slips)]
+    return [*lines, *(f"note: {note}" for note in one.notes)]
 
 
 def _noise_at(mapped: DesignMap, at: Condition) -> str:
@@ -378,14 +359,6 @@ def _sure_words(one: Standing, mapped: DesignMap) -> list[str]:
     return texts
 
 
-def use_head(one: Standing, screening: Screening) -> str:
-    """Return in a few words whether a design is quiet in its use; `detail_lines` has the rest."""
-    mapped = screening.map_of(one)
-    if one.never_slips:
-        return f"{one.never_slips}; quiet" if mapped.grid.frequency else one.never_slips
-    return use_words(mapped)[0]
-
-
 def summary_lines(screening: Screening) -> list[str]:
     """Return the summary of a screening for the terminal.
 
@@ -399,13 +372,8 @@ def summary_lines(screening: Screening) -> list[str]:
     """
     lines = []
     for one in screening.standings:
-        head = f"{one.design}, {standing_place(one)}"
-        if one.rank is None:
-            why = one.never_slips or "with the shaft turning it never slips"
-            lines.append(f"-. {head}: no rank; {why}")
-        else:
-            lines.append(f"{one.rank}. {head}: {use_head(one, screening)}")
-            lines += [f"   {line}" for line in detail_lines(one, screening)]
+        lines.append(f"{one.rank}. {one.design}, {one.place}: {use_words(one.mapped)[0]}")
+        lines += [f"   {line}" for line in detail_lines(one)]
     if len(screening.designs) > 1:
         lines.append(RANKING_RULE)
     maps = screening.maps
@@ -419,11 +387,6 @@ def summary_lines(screening: Screening) -> list[str]:
     ]
 
 
-def standing_place(one: Standing) -> str:
-    """Return environment and motion of a standing as text."""
-    return one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}"
-
-
 def ranking_words(standings: Sequence[Standing]) -> str:
     """Return a sentence on the designs that come first; empty for a single design.
 
@@ -432,12 +395,9 @@ def ranking_words(standings: Sequence[Standing]) -> str:
     standings : sequence of Standing
         The first ranked first.
     """
-    best = standings[0]
-    if best.rank is None:
-        return "No design slips, so none has a rank."
     if len({one.design for one in standings}) == 1:
         return ""
-    first = [one for one in standings if one.rank == best.rank]
+    first = [one for one in standings if one.rank == 1]
     names = " and ".join(sorted({one.design for one in first}))
     loudness = max(one.mean_loudness for one in first)
     if loudness == 0.0:

@@ -44,7 +44,9 @@ def screening_tables(screening: Screening) -> dict[str, Table]:
     rows += [{"design": name, "error": reason} for name, reason in screening.refused]
     tables = {
         "map.csv": _table(_MAP, points),
-        "critical_speeds.csv": _table(_CRITICAL, ((point,) for point in screening.critical)),
+        "critical_speeds.csv": _table(
+            _CRITICAL, ((one, point) for one in screening.standings for point in one.critical)
+        ),
         "designs.csv": (columns, rows),
     }
     offers = [(one, offer) for one in screening.standings for offer in one.offers]
@@ -72,17 +74,14 @@ def _loudest(axis: str, scale: float = 1.0) -> Callable[..., object]:
     return cell
 
 
-def _speeds(*names: str) -> Columns:
-    return {f"{name}_rad_s": lambda one, name=name: _short(getattr(one, name)) for name in names}
-
-
 _OF_DESIGN: Columns = {
-    "design": lambda one, *_: one.design,
-    "environment": lambda one, *_: one.environment,
+    "design": lambda one, *_: one.mapped.design,
+    "environment": lambda one, *_: one.mapped.environment,
 }
 
 _MAP: Columns = {
-    **_OF_DESIGN,
+    "design": lambda mapped, _: mapped.design,
+    "environment": lambda mapped, _: mapped.environment,
     "motion": lambda mapped, _: mapped.motion,
     "temperature_C": lambda mapped, at: mapped.grid.temperature[at[0]],
     "speed_rad_s": lambda mapped, at: _short(mapped.grid.speed[at[3]]),
@@ -100,19 +99,23 @@ _MAP: Columns = {
 }
 
 _MARGINS = "margin_v_crit1", "margin_v_crit2", "margin_stability"
+_SPEEDS = "v_crit1", "v_crit1_high", "v_crit2", "v_crit2_high", "v_crit2_stability", *_MARGINS
 
 _CRITICAL: Columns = {
     **_OF_DESIGN,
-    "temperature_C": lambda point: point.temperature,
-    "interference_mm": lambda point: _short(1e3 * point.interference),
-    "support_stiffness_Nm_rad": lambda point: _support(point.support_stiffness),
-    **_speeds("v_crit1", "v_crit1_high", "v_crit2", "v_crit2_high", "v_crit2_stability", *_MARGINS),
+    "temperature_C": lambda _, point: point.temperature,
+    "interference_mm": lambda _, point: _short(1e3 * point.interference),
+    "support_stiffness_Nm_rad": lambda _, point: _support(point.support_stiffness),
+    **{
+        f"{name}_rad_s": lambda _, point, name=name: _short(getattr(point, name))
+        for name in _SPEEDS
+    },
 }
 
 _DESIGNS: Columns = {
     "rank": lambda one: one.rank,
     **_OF_DESIGN,
-    "motion": lambda one: one.motion,
+    "motion": lambda one: one.mapped.motion,
     "mean_loudness_sone": lambda one: _short(one.mean_loudness),
     **{f"share_{label}": lambda one, label=label: round(one.shares[label], 4) for label in SHARED},
     "loudest_label": lambda one: one.loudest_label,
@@ -121,13 +124,16 @@ _DESIGNS: Columns = {
     "loudest_speed_rad_s": _loudest("speed"),
     "loudest_interference_mm": _loudest("interference", 1e3),
     "loudest_support_stiffness_Nm_rad": _loudest("support_stiffness"),
-    **_speeds("v_crit1", "v_crit2", "v_crit2_high", *_MARGINS),
+    **{
+        f"{name}_rad_s": lambda one, name=name: _short(one.worst(name))
+        for name in ("v_crit1", "v_crit2", "v_crit2_high", *_MARGINS)
+    },
     "tolerances": lambda one: one.parts and ("assumed" if one.parts.assumed else "stated"),
     "p_noisy_part": lambda one: one.parts and round(one.parts.probability, 4),
     "p_noisy_part_low": lambda one: one.parts and round(one.parts.low, 4),
     "p_noisy_part_high": lambda one: one.parts and round(one.parts.high, 4),
     "notes": lambda one: "; ".join(one.notes) or None,
-    "error": lambda one: "; ".join(filter(None, (one.never_slips, *one.failed))) or None,
+    "error": lambda _: None,
 }
 
 _ADVICE: Columns = {

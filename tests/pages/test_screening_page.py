@@ -64,13 +64,12 @@ def page_of(found, folder, **options):
 def renamed(found, names):
     """The same screen of designs called otherwise."""
     known = dict(zip([one.name for one in found.designs], names, strict=True))
+    maps = {one: replace(one, design=known[one.design]) for one in found.maps}
     return replace(
         found,
         designs=tuple(replace(one, name=known[one.name]) for one in found.designs),
-        **{
-            part: tuple(replace(one, design=known[one.design]) for one in getattr(found, part))
-            for part in ("maps", "critical", "standings")
-        },
+        maps=tuple(maps.values()),
+        standings=tuple(replace(one, mapped=maps[one.mapped]) for one in found.standings),
     )
 
 
@@ -116,16 +115,14 @@ def test_a_quiet_design_is_shown_as_quiet_and_a_noisy_one_by_its_shares(two):
     assert re.fullmatch(r"\d+ dB\(A\)", noisy["Loudest"])
 
 
-def test_a_design_that_never_slips_has_no_rank_no_sound_and_says_why(tmp_path):
+def test_a_design_that_never_slips_is_refused_and_says_why(tmp_path):
     held = load_material_rig("fluorocarbon").changed(
         critical_torque="x1000", kinetic_torque="x1000"
     )
     found = quick_screen(["fluorocarbon", Design("in Nmm", held)], replace(QUICK, speed=(5.0,)))
-    row = by_name(ranking_rows(found))["in Nmm"]
-    assert (row["Rank"], row["Margin"], row["Loudest"]) == ("\N{EN DASH}", "", "")
-    assert "never slips" in row["In its use"].text
+    assert list(by_name(ranking_rows(found))) == ["fluorocarbon"]
     page = page_of(found, tmp_path, sounds=2)
-    assert "No sounds: never slips" in page.said
+    assert "never slips: the contact holds" in page.said
     assert {one["title"].partition(":")[0] for one in page.data("about").values()} == {
         "fluorocarbon"
     }

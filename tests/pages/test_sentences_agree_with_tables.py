@@ -306,7 +306,7 @@ def test_critical_speeds_and_margins_of_a_design_are_those_of_its_map():
                 assert (span in line) == (0 < end < n), line
                 assert (f"nothing {word}" in line) == (end == 0), line
         assert (times == (last > 0)).all()
-        words = margin_words(standing_of(one, critical_points(one)), grid)
+        words = margin_words(standing_of(one))
         assert ("does not end within the map" in words) == (last.max() == n)
         # What the margin would be if vibration ended right there, and if it never did.
         low = speed[0] if first else 0.0

@@ -68,7 +68,7 @@ def quick(monkeypatch):
 
     monkeypatch.setattr("noise.screening.screen.batch_evaluator", evaluator)
     monkeypatch.setattr("noise.screening.screen.advise", lambda *_, **__: ())
-    monkeypatch.setattr("noise.screening.screen.why_never_slipping", lambda *_: "")
+    monkeypatch.setattr("noise.screening.screen.refuse_never_slipping", lambda *_: None)
 
 
 @settings(max_examples=8, suppress_health_check=[HealthCheck.function_scoped_fixture])
